@@ -1,4 +1,4 @@
-"""Which modules of Gazebo's Python are known under which names, and how an import finds them.
+"""Import hook that finds Gazebo's modules in simkit, by every version and spelling of their names.
 
 Every version and both spellings mean one implementation: `gz.sim8`, `gz.sim`, `ignition.gazebo6` are
 `simkit.plugins.gz_python.sim`. They can be imported only between `enter` and `leave`, or after `install`, and
@@ -139,7 +139,7 @@ _finder: Final = ShimFinder()
 
 
 def is_shim(module: types.ModuleType) -> bool:
-    """Whether a module is one of ours under Gazebo's name."""
+    """Check whether a module is one of ours under Gazebo's name."""
     return _OURS in getattr(module, "__dict__", {})
 
 
@@ -191,7 +191,7 @@ def _forget_shims_of_installed() -> None:
 
 
 def installed() -> dict[str, str]:
-    """What is really installed under Gazebo's names and would be imported: name -> where it lies."""
+    """Find what is really installed under Gazebo's names and would be imported: name -> location."""
     sims, maths = (f"gz.sim{v}" for v in range(7, 12)), (f"gz.math{v}" for v in range(6, 11))
     older = "ignition.gazebo", "ignition.math", "sdformat", *(f"sdformat{v}" for v in range(12, 18))
     names = "gz.sim", *sims, "gz.math", *maths, *older
@@ -199,7 +199,7 @@ def installed() -> dict[str, str]:
 
 
 def _real_location(name: str) -> str:
-    """Where a module lies; empty where there is none, or only ours."""
+    """Return the location of a module; empty where there is none, or only simkit's."""
     module = sys.modules.get(name)
     if module is not None:
         return "" if is_shim(module) else str(getattr(module, "__file__", None) or "a package")

@@ -235,11 +235,11 @@ class Element:
         return self._read(key, default, Vector3d(), lambda p, name: Vector3d(*p.vector3(name)))
 
     def get_quaterniond(self, key: str = "", *default: Quaterniond) -> Quaterniond | tuple[Quaterniond, bool]:
-        """Of roll, pitch and yaw [rad]."""
+        """Read a rotation of roll, pitch and yaw [rad]."""
         return self._read(key, default, Quaterniond(), lambda p, name: Quaterniond(*p.vector3(name)))
 
     def get_pose(self, key: str = "", *default: Pose3d) -> Pose3d | tuple[Pose3d, bool]:
-        """Of x, y, z [m], roll, pitch and yaw [rad]."""
+        """Read a pose of x, y, z [m], roll, pitch and yaw [rad]."""
 
         def parse(p: Params, name: str) -> Pose3d:
             pose = p.pose(name)

@@ -1,4 +1,4 @@
-"""Which simulation is meant while a system of gz is at work: what gz-sim's Python leaves to its process."""
+"""The simulation whose plugin code runs now: a Node of gz-transport belongs to it without being told."""
 
 from __future__ import annotations
 

@@ -70,15 +70,15 @@ def _warn_of_rate(sim: Simulation, owner: Plugin | None, topic: str, options: _O
 
 
 class AdvertiseMessageOptions(_Options):
-    """Of a publisher."""
+    """Options of a publisher."""
 
 
 class AdvertiseServiceOptions(_Options):
-    """Of a service."""
+    """Options of a service."""
 
 
 class SubscribeOptions(_Options):
-    """Of a subscription."""
+    """Options of a subscription."""
 
 
 class Publisher:
@@ -115,7 +115,7 @@ class Publisher:
         return True
 
     def has_connections(self) -> bool:
-        """Whether somebody reads now."""
+        """Check whether somebody reads now."""
         return self._publisher is not None and bool(self._publisher.wanted)
 
     def __bool__(self) -> bool:
@@ -126,7 +126,7 @@ class Publisher:
 
 
 class _Subscription:
-    """What a node hears on a topic.
+    """Subscription of a node to a topic.
 
     Attributes:
         end: the listener; None until there is a simulation.
@@ -136,7 +136,7 @@ class _Subscription:
         self.topic, self._kind, self._callback, self._options = topic, kind, callback, options
         self.listener: Listener | None = None
 
-    def _on_message(self, message: Any) -> None:
+    def _on_message(self, message: object) -> None:
         heard = from_ros(self._kind, message)
         if self._kind is MESSAGE_CLASSES["Pose_V"] and self.topic.endswith(_SCENE_POSES):
             for pose in heard.pose:
@@ -256,7 +256,7 @@ class Node:
 
 
 def _call_as_owner(sim: Simulation, owner: Plugin | None, topic: str, callback: Handler) -> Handler:
-    """What a plugin's callback raises is the plugin's, and what it opens too."""
+    """Guard a plugin's callback: what it raises is the plugin's fault, and what it opens is the plugin's."""
 
     def run(message: Message) -> None:
         before = simulation_context.enter_simulation(sim, owner)

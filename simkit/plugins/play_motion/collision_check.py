@@ -1,4 +1,4 @@
-"""Whether a robot meets itself or its surroundings when some of its joints are elsewhere.
+"""Check whether a robot collides with itself or its surroundings at other positions of its joints.
 
 It is asked of a copy of the state, so that nothing moves. Within the robot every two links count that a joint of the
 motion moves against each other, also where the model is not to collide with itself, but for neighbours and for links
@@ -158,7 +158,7 @@ class CollisionCheck:
     # ------------------------------------------------------------------ what there is
 
     def _find_parts(self, free_joints: Collection[str]) -> None:
-        """Which geoms are the robot's, which of them move, and which belong to joints that may touch things."""
+        """Find the robot's geoms, those of them that move, and those of joints that may touch things."""
         model, sim = self._model, self._sim
         moved = {int(model.jnt_bodyid[j]) for b in self._bindings for j in b.joint_ids}
         moved |= {int(model.dof_bodyid[f.dof]) for b in self._bindings for f in b.followers}
@@ -184,7 +184,7 @@ class CollisionCheck:
         self._is_free = np.append(is_free[bodies], False)
 
     def _find_loose(self) -> None:
-        """Which geoms belong to something that lies loose, the robot apart."""
+        """Find the geoms of free bodies, the robot apart."""
         model = self._model
         roots = model.body_rootid[model.geom_bodyid]
         starts = np.where(model.body_jntnum > 0, model.body_jntadr, 0)
@@ -195,7 +195,7 @@ class CollisionCheck:
         self._is_loose = np.append(floats[roots] & ~self._is_robot[:-1], False)
 
     def _find_held(self, now: mujoco.MjData) -> list[_HeldObject]:
-        """What the moving links hold: a free body that touches two or more of them."""
+        """Find the objects that the moving links hold: free bodies that touch two or more of them."""
         model = self._model
         touched: dict[int, set[int]] = {}
         for a, b in np.array(now.contact.geom).tolist() if now.ncon else ():
@@ -247,7 +247,7 @@ class CollisionCheck:
         self._allowed = np.minimum(np.array(now, dtype=float), 0.0) - SELF_TOLERANCE
 
     def _belong(self, first: int, second: int) -> bool:
-        """Whether two geoms meet by the robot's make: one joint joins their links, or two and they nearly always do."""
+        """Check whether two geoms touch by design: their links share a joint, or two joints and nearly always touch."""
         model = self._model
         a, b = (int(model.body_weldid[model.geom_bodyid[g]]) for g in (first, second))
         up_a, up_b = self._above(a), self._above(b)
@@ -260,7 +260,7 @@ class CollisionCheck:
         return up_a == up_b and self._mostly_meet(first, second, (a, b))
 
     def _mostly_meet(self, first: int, second: int, bodies: tuple[int, int]) -> bool:
-        """Whether two geoms come into each other at most of the places of the two joints that join them."""
+        """Check whether two geoms come into each other at most of the places of the two joints that join them."""
         model, data = self._model, self._data
         joints = [j for body in bodies for j in self._joints_of(body)]
         if len(joints) != 2 or any(model.jnt_type[j] not in _ONE_AXIS for j in joints):

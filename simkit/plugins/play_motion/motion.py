@@ -43,7 +43,7 @@ class Motion:
 
     @property
     def duration(self) -> float:
-        """When its last point is reached as the file has it, the approach apart [s]."""
+        """Time of its last point as the file has it, without the approach [s]."""
         return self.times[-1]
 
     def __deepcopy__(self, memo: dict[int, object]) -> Motion:
@@ -96,7 +96,7 @@ def point_rows(flat: Sequence[float], width: int) -> tuple[tuple[float, ...], ..
 def motion_fault(
     joints: Sequence[str], flat: Sequence[float], times: Sequence[float], velocities: Sequence[float] = ()
 ) -> str:
-    """What makes these no motion; empty for nothing."""
+    """Describe why these are no motion; empty where they are one."""
     if not joints:
         return "it names no joint"
     twice = next((joint for k, joint in enumerate(joints) if joint in joints[:k]), None)
@@ -122,7 +122,7 @@ _ROUNDING: Final = 1e-6  # [rad or m]
 
 
 def limit_violations(motion: Motion, joints: Mapping[str, Joint]) -> list[str]:
-    """What of a motion leaves the limits of its joints, in words; a joint is named once, where it goes furthest."""
+    """Describe where a motion leaves the limits of its joints; a joint is named once, where it goes furthest."""
     found = []
     for column, name in enumerate(motion.joints):
         axis = joints[name].scene.axes[0]

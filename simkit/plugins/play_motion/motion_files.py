@@ -31,7 +31,7 @@ _SETTINGS: Final = (*_SPEEDS, *_SHORTEST, *_EXCLUDED)
 
 @dataclass(slots=True)
 class MotionFile:
-    """What a file of motions says.
+    """Contents of a file of motions.
 
     Attributes:
         motions: by key, in the order of the file.
@@ -145,7 +145,7 @@ def _motion(key: str, entry: Entry, diagnostics: Diagnostics) -> Motion:
 
 
 def _meta(key: str, below: dict[str, Entry], diagnostics: Diagnostics) -> dict[str, Entry]:
-    """What a motion says for people."""
+    """Read the description of a motion."""
     entry = below.get("meta")
     if entry is None:
         return {}

@@ -50,7 +50,7 @@ class MotionRefused(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Approach:
-    """How the first point of a motion is reached.
+    """Approach to the first point of a motion.
 
     Attributes:
         speed: at most, on average of the joint that has the longest way [rad/s or m/s].

@@ -1,4 +1,4 @@
-"""When a motion is where: a smooth course through its points, no faster than its joints may go.
+"""Timing of a motion: a smooth course through its points, within the velocity limits of its joints.
 
 Between two points every joint follows the cubic of their positions and velocities, as joint_trajectory_controller
 interpolates. Where a motion gives no velocities they are those of a monotone cubic (Fritsch and Butland, "A method for
@@ -144,5 +144,5 @@ def _peak_speeds(points: Vector, velocities: Vector, gaps: Vector) -> Vector:
 
 
 def approach_time(start: Vector, first: Vector, speed: float, shortest: float) -> float:
-    """How long the way to the first point takes [s]: its farthest joint goes at that speed on average."""
+    """Return the duration of the approach [s]: its farthest joint moves at that speed on average."""
     return max(float(np.max(np.abs(first - start))) / speed, shortest, SHORTEST_INTERVAL)

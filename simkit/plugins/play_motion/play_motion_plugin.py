@@ -179,7 +179,7 @@ class PlayMotion(ModelPlugin):
 
     @property
     def action_name(self) -> str:
-        """Of the action `PlayMotion2`."""
+        """Name of the action `PlayMotion2`."""
         return self.ros.topic("play_motion2")
 
     @property
@@ -189,7 +189,7 @@ class PlayMotion(ModelPlugin):
 
     @property
     def is_idle(self) -> bool:
-        """Whether no motion is being played."""
+        """Check whether no motion is being played."""
         return not self._runs
 
     # ------------------------------------------------------------------ goals

@@ -39,7 +39,7 @@ class MotionPlayer(Protocol):
 
     @property
     def is_idle(self) -> bool:
-        """Whether no motion is being played."""
+        """Check whether no motion is being played."""
 
     def offer(self, service: str, type_name: str, handler: Callable[[Any], Any]) -> object:
         """Offer a service below the plugin's namespace."""

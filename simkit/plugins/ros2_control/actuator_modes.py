@@ -1,4 +1,4 @@
-"""How a joint may be driven, and what each way amounts to: gains, bounds and which of the losses it feels."""
+"""Modes in which a joint is driven, with the gains, effort bounds and losses of each."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ class ControlLoops:
 
 @dataclass(slots=True)
 class ActiveModes:
-    """What the present modes amount to, one number or truth for each joint; made anew when the modes change.
+    """Gains, bounds and losses of the present modes, one value for each joint; made anew when the modes change.
 
     Attributes:
         modes: that it is of.
@@ -151,7 +151,7 @@ class ActiveModes:
         addresses: tuple[Indices, Indices, Indices],
         fastest: Vector,
     ) -> ActiveModes:
-        """What these modes amount to.
+        """Derive gains, bounds and losses from the modes.
 
         Args:
             modes: of the joints.

@@ -118,11 +118,11 @@ class Controller(abc.ABC):
         """Reads `params`, opens topics, services, actions; a problem recorded in `params` keeps it unconfigured."""
 
     def command_interfaces(self) -> Sequence[str]:
-        """What it writes, such as `arm_1_joint/position`; asked after `configure`."""
+        """List the interfaces that it writes, such as `arm_1_joint/position`; called after `configure`."""
         return ()
 
     def state_interfaces(self) -> Sequence[str]:
-        """What it reads, such as `arm_1_joint/velocity`; asked after `configure`."""
+        """List the interfaces that it reads, such as `arm_1_joint/velocity`; called after `configure`."""
         return ()
 
     def activate(self) -> None:

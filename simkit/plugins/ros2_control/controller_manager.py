@@ -117,7 +117,7 @@ class ControllerManager:
 
     @property
     def reports(self) -> Diagnostics:
-        """Where problems go: those of the load, later those of the run."""
+        """Diagnostics that problems go to: those of the load, later those of the run."""
         found: Diagnostics = self.plugin.sim.reports if self._diagnostics is None else self._diagnostics
         return found
 

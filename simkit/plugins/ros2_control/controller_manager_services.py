@@ -42,7 +42,7 @@ def offer_services(manager: ControllerManager) -> None:
 
 
 def _report_problem(manager: ControllerManager, problem: str) -> bool:
-    """Whether there is no problem; one is reported."""
+    """Check whether there is no problem; one is reported."""
     if problem:
         manager.reports.warning("SK-CONTROL-010", problem, manager.plugin.where)
     return not problem

@@ -131,7 +131,7 @@ _ROS_1_NAMES = ("left_wheel", "right_wheel")
 
 @dataclass(frozen=True, slots=True)
 class DriveOptions:
-    """What a differential drive is told once.
+    """Parameters of a differential drive that are read once.
 
     Attributes:
         left, right: joints of the wheels.
@@ -261,7 +261,7 @@ def _wheel_size(
 
 
 def _frame_prefix(params: Params, namespace: str) -> str:
-    """What goes before the frames: `tf_frame_prefix`, else the namespace; never with a slash in front."""
+    """Return the prefix of the frames: `tf_frame_prefix`, else the namespace; never with a slash in front."""
     enabled, prefix = params.boolean("tf_frame_prefix_enable", True), params.text("tf_frame_prefix", "")
     if not enabled:
         return ""

@@ -1,4 +1,4 @@
-"""What holds joints against gravity, at the state of now, whoever looked at the engine's data before."""
+"""Efforts that hold joints against gravity, at the present state of the simulation."""
 
 from __future__ import annotations
 

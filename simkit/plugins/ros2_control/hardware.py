@@ -169,7 +169,7 @@ class Hardware:
         self.drives.groups = np.array(claimed, np.intp)
 
     def _idle_mode(self, joint: HardwareJoint, of_leader: str) -> int:
-        """How a joint is driven that nobody claims; `of_leader`: how the one is that it mimics."""
+        """Return the mode of a joint that no controller claims; `of_leader` is the interface of its leader."""
         if of_leader:
             return _MODES[of_leader] if of_leader in joint.command_interfaces else FREE
         return POSITION_MODE if self.holds or POSITION in joint.command_interfaces else FREE
@@ -218,7 +218,7 @@ class Hardware:
         self.states.late_places = frozenset(row for rows, _ in self._deferred for row in rows.tolist())
 
     def reading(self, interface: str, joints: Sequence[str]) -> Callable[[], Vector]:
-        """What gives the positions, velocities or efforts of joints, as long as the engine's model is the same."""
+        """Return a function that reads positions, velocities or efforts of joints, for the present model of the engine."""
         names, physics = self._sim.names, self._sim.physics
         bindings = [names.joint(self.joints[joint].scoped) for joint in joints]
         if interface == POSITION:

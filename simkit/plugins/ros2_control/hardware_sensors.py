@@ -43,7 +43,7 @@ class HardwareSensor:
     kind: str
 
     def read(self, sim: Simulation, interfaces: tuple[str, ...]) -> Vector:
-        """What it measured last, by state interface; NaN before its first sample and for what it does not measure."""
+        """Return the last measurement by state interface; NaN before the first sample and for other interfaces."""
         message = sim.sensor(self.scoped).latest
         fields = SENSOR_INTERFACES[self.kind]
         if message is None:
@@ -55,7 +55,7 @@ class HardwareSensor:
 
 @cache
 def _field_getter(kind: str, interfaces: tuple[str, ...]) -> attrgetter[Any]:
-    """What takes some interfaces from a message of a kind of sensor."""
+    """Return the getter of some interfaces from a message of a kind of sensor."""
     return attrgetter(*(SENSOR_INTERFACES[kind][interface] for interface in interfaces))
 
 

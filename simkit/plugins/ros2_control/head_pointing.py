@@ -1,4 +1,4 @@
-"""Where a head has to turn so that it looks at a point, and the point that lies behind a pixel of its camera."""
+"""Pointing of a head: joint angles that aim at a point, and the point behind a pixel of its camera."""
 
 from __future__ import annotations
 
@@ -105,7 +105,7 @@ def _rotate_vectors(vectors: Vector, axis: Vector, angles: Vector) -> Vector:
 
 
 def frame_pose(sim: Simulation, model: str, name: str, others: Mapping[str, Pose] | None = None) -> Pose:
-    """Where a frame is now, in the world.
+    """Return the present pose of a frame in the world.
 
     Args:
         sim: the simulation.
@@ -153,7 +153,7 @@ def frame_link(sim: Simulation, model: str, name: str, others: Sequence[str] = (
 
 
 def is_moved_by_joint(sim: Simulation, link: str, joint: str) -> bool:
-    """Whether a link is what a joint turns, or fixed to that, or carried by it; both by their scoped names."""
+    """Check whether a link is what a joint turns, or fixed to that, or carried by it; both by their scoped names."""
     parents, body = sim.mj_model.body_parentid, int(sim.names.link(link).body)
     turning = int(sim.mj_model.jnt_bodyid[sim.mj_model.dof_jntid[sim.names.joint(joint).dofs[0]]])
     while body > 0 and body != turning:

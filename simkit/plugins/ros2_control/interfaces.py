@@ -63,7 +63,7 @@ class InterfaceTable:
         return name in self._index
 
     def index(self, name: str) -> int:
-        """Where a name is in `values`. Raises InputError naming the closest."""
+        """Return the place of a name in `values`. Raises InputError naming the closest."""
         found = self._index.get(name)
         if found is None:
             near = did_you_mean(name, self.names)

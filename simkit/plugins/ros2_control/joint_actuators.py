@@ -1,4 +1,4 @@
-"""What moves the joints of the hardware: one actuator of the engine for each, which is a servo or a motor by turns.
+"""Actuators of the hardware's joints: one of the engine for each, which acts as a servo or as a motor.
 
 An actuator's force is its state − kp · position − kv · velocity, within the effort limit. As a servo its state is
 kp · reference + kv · the reference's velocity + what holds the joint against gravity and dry friction, and it goes on
@@ -197,7 +197,7 @@ class JointActuators:
             ranges[self._ids] = np.clip(np.stack((now.lowest, now.highest), 1), -_LARGEST_CONTROL, _LARGEST_CONTROL)
 
     def _active_modes(self) -> ActiveModes:
-        """What the present modes amount to."""
+        """Return the gains and bounds of the present modes."""
         cached = self._cached
         if cached is not None and cached.modes is self.modes and cached.claims is self.groups:
             return cached
@@ -242,7 +242,7 @@ class JointActuators:
         physics.changed(CONTROL)
 
     def _advance_all(self, now: ActiveModes, wanted: Vector, period: float) -> tuple[Vector, Vector]:
-        """Where the references are [rad or m], and how fast they move from now on [rad/s or m/s], within the limits."""
+        """Return the references [rad or m] and their rates from now on [rad/s or m/s], within the limits."""
         targets = self.targets
         if period <= 0.0:
             return targets, np.zeros_like(targets)
@@ -301,7 +301,7 @@ class JointActuators:
         return self.integrals
 
     def efforts(self) -> Vector:
-        """What each gives now [N·m or N]."""
+        """Return the effort of each actuator now [N·m or N]."""
         now, data = self._active_modes(), self._sim.physics.data
         force = data.act[self._states] - now.kp * data.qpos[self._qpos] - now.kv * data.qvel[self._dofs]
         effort: Vector = np.minimum(np.maximum(force, now.lowest), now.highest)

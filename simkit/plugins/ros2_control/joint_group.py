@@ -69,7 +69,7 @@ class JointGroup:
     def read(
         cls, params: Params, hardware: Hardware, commands: Sequence[str] = (), states: Sequence[str] = ()
     ) -> JointGroup:
-        """Of a controller's parameters; what is wrong with them is recorded there.
+        """Read a controller's parameters; problems are recorded there.
 
         Args:
             params: `joints`, `command_joints`, `command_interfaces`, `state_interfaces`, `gains`.
@@ -117,12 +117,12 @@ class JointGroup:
 
     @property
     def has_velocity_state(self) -> bool:
-        """Whether velocities are measured."""
+        """Check whether velocities are measured."""
         return VELOCITY in self.states
 
     @property
     def has_effort(self) -> bool:
-        """Whether it commands efforts."""
+        """Check whether it commands efforts."""
         return EFFORT in self.commands
 
     def command_of(self, joint: str) -> str:
@@ -223,7 +223,7 @@ class TrajectoryMessages:
         return self
 
     def feedback(self, now: int, desired: Vector, state: Vector, errors: Vector) -> FollowJointTrajectory_Feedback:
-        """How far a goal is; arrays (3, n)."""
+        """Make the feedback of a goal from arrays (3, n)."""
         measured = len(self._group.states)
         points = self._point(desired, 3), self._point(state, measured), self._point(errors, measured)
         none = (self._empty_multi_dof_point() for _ in range(3))
@@ -232,7 +232,7 @@ class TrajectoryMessages:
     def state(
         self, now: int, desired: Vector, state: Vector, errors: Vector, commands: Vector
     ) -> JointTrajectoryControllerState:
-        """What the controller is at; arrays (3, n), and the values of its command interfaces."""
+        """Make the controller's state from arrays (3, n) and the values of its command interfaces."""
         measured = len(self._group.states)
         wanted, actual = self._point(desired, 3), self._point(state, measured)
         points = wanted, actual, self._point(errors, measured), self._command_point(commands), wanted, actual

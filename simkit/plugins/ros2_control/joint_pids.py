@@ -45,7 +45,7 @@ class JointPids:
 
     @classmethod
     def read(cls, gains: Params, joints: tuple[str, ...]) -> JointPids:
-        """Of `gains: {<joint>: {p: …, i: …, d: …}}`; `i_clamp` bounds both ways."""
+        """Read `gains: {<joint>: {p: …, i: …, d: …}}`; `i_clamp` bounds both ways."""
         blocks = [gains.block(joint) for joint in joints]
         for block in blocks:
             for name in _IGNORED_CLAMPS:

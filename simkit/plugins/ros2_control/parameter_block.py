@@ -101,7 +101,7 @@ class ParameterBlock(Params):
         return False
 
     def _is_in(self, wanted: str, name: str, allowed: str, fitting: tuple[Form, ...]) -> bool:
-        """Whether a name is written in a form that fits (or not at all); what does not is reported."""
+        """Check whether a name is written in a form that fits (or not at all); what does not is reported."""
         form, where = self.forms.get(name, (fitting[0], self.where))
         if form in fitting:
             return True

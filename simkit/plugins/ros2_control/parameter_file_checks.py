@@ -1,4 +1,4 @@
-"""What a robot's parameter files say that reaches nobody: controllers without a type, misspelt names, other rates."""
+"""Warnings about parameter files: controllers without a type, misspelt names, rates above the manager's."""
 
 from __future__ import annotations
 

@@ -65,7 +65,7 @@ class Entry:
 
     @property
     def form(self) -> Form:
-        """What it is written as."""
+        """Form in which the file has it."""
         if self.items is not None:
             return "list"
         if self.below is not None:
@@ -82,7 +82,7 @@ class Entry:
         return Entry(self.where, below=below)
 
     def leaves(self) -> int:
-        """How many values there are in it."""
+        """Count the values in it."""
         inside = [*(self.items or ()), *(self.below or {}).values()]
         return sum(one.leaves() for one in inside) if inside else 1
 
@@ -136,7 +136,7 @@ class ParameterFiles:
 
 
 def node_matches(pattern: str, name: str) -> bool:
-    """Whether a node's full name fits a key of a parameter file: `*` is one part of it, `**` any number of them."""
+    """Check whether a node's full name matches a key of a parameter file: `*` is one part, `**` any number of parts."""
     return _node_pattern(pattern).fullmatch(name.strip("/")) is not None
 
 
@@ -286,7 +286,7 @@ class _EntryReader:
         return {**merged, **below}
 
     def _merged(self, entry: Entry, key: yaml.Node) -> dict[str, Entry]:
-        """What `<<` brings in: the names of a block, or of several, the first of which counts."""
+        """Return what `<<` merges: the names of a block, or of several, the first of which counts."""
         found: dict[str, Entry] = {}
         for one in [entry] if entry.items is None else entry.items:
             if one.below is None:

@@ -33,7 +33,7 @@ class RunParameterFile:
     file: ParameterFile
 
     def is_for(self, model: SceneModel) -> bool:
-        """Whether the plugins of that model read it: it has the name, or is inside the one that has."""
+        """Check whether the plugins of that model read it: it has the name, or is inside the one that has."""
         scoped = f"{model.scoped}::"
         return not self.model or self.model == model.name or scoped.startswith(f"{self.model}::")
 

@@ -41,7 +41,7 @@ class TrajectoryPoint:
 
 
 class Setpoint(NamedTuple):
-    """Where the joints are to be at one moment.
+    """Targets of the joints at one moment.
 
     Attributes:
         motion: shape (3, n): positions, velocities, accelerations.
@@ -53,7 +53,7 @@ class Setpoint(NamedTuple):
 
 
 class Spline:
-    """Where all joints are to be at every time.
+    """Targets of all joints at every time.
 
     Attributes:
         times: where one piece ends and the next begins, since the start [ns]; rising.
@@ -80,11 +80,11 @@ class Spline:
 
     @property
     def end(self) -> int:
-        """When it is over [ns since the start]."""
+        """End of the spline [ns since the start]."""
         return self.times[-1]
 
     def at(self, now: int, step: int = 0) -> Setpoint:
-        """Where the joints are to be at a time.
+        """Return the targets of the joints at a time.
 
         Args:
             now: [ns since the start].
@@ -213,7 +213,7 @@ def integrate_points(start: TrajectoryPoint, points: Sequence[TrajectoryPoint]) 
 
 
 def whole_turn_offset(here: Vector, first: Vector, turning: Vector) -> Vector:
-    """What is to be added to a trajectory so that joints that turn without end take the short way to its first point.
+    """Return the whole turns to add to a trajectory, so that continuous joints take the short way to its first point.
 
     Args:
         here: positions [rad].

@@ -1,4 +1,4 @@
-"""What a trajectory that comes in has to be like, and how far its joints may be off: the checks of ros2_control."""
+"""Checks of incoming trajectories, and tolerances of their joints, as ros2_control has them."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _REST_VELOCITY: Final = 1.1920929e-07  # the smallest step of a 32-bit float at 
 
 @dataclass(frozen=True, slots=True)
 class TrajectoryRules:
-    """Which trajectories a controller takes.
+    """Rules for the trajectories that a controller accepts.
 
     Attributes:
         joints: the controller's.
@@ -139,7 +139,7 @@ def read_points(message: JointTrajectory, joints: Sequence[str], here: Vector) -
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Tolerances:
-    """How far each joint may be off; infinite where nothing is checked.
+    """Largest allowed error of each joint; infinite where nothing is checked.
 
     Attributes:
         path: shape (3, n): position, velocity, acceleration under way [rad or m, per s, per s²].
@@ -153,12 +153,12 @@ class Tolerances:
 
     @property
     def watches_path(self) -> bool:
-        """Whether anything is checked under way."""
+        """Check whether anything is checked under way."""
         return bool(np.isfinite(self.path).any())
 
     @classmethod
     def of(cls, path: Sequence[float], goal: Sequence[float], stopped: float, goal_time: float) -> Tolerances:
-        """Of the numbers of a file, where 0 is no tolerance.
+        """Make tolerances of a file's numbers, where 0 is no tolerance.
 
         Args:
             path: of each joint's position under way.

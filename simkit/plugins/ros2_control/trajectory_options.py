@@ -1,4 +1,4 @@
-"""What trajectory controllers are told: tolerances, the gains of their PIDs (both live), and how to stop."""
+"""Parameters of trajectory controllers: live tolerances, live gains of their PIDs, and the rule for stopping."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class LiveTolerances:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StopRule:
-    """How joints are brought to rest where a trajectory is given up.
+    """Rule by which joints are brought to rest where a trajectory is aborted.
 
     Attributes:
         decelerations: of each joint [rad/s² or m/s²], shape (n,); 0 stops at once.
@@ -59,7 +59,7 @@ class StopRule:
 
     @classmethod
     def read(cls, params: Params, joints: tuple[str, ...]) -> StopRule:
-        """Of `constraints` and of `stop_trajectory_duration`."""
+        """Read `constraints` and `stop_trajectory_duration`."""
         constraints = params.block("constraints")
         slows_down = constraints.boolean("decelerate_on_cancel", False)
         blocks = [constraints.block(joint) for joint in joints]

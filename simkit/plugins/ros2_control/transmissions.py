@@ -36,7 +36,7 @@ _SMALLEST_REDUCTION: Final = 1e-12  # of a reduction; its inverse is the most
 
 @dataclass(frozen=True, slots=True)
 class TransmissionLaw:
-    """How actuators follow from joints.
+    """Linear law between the joints and the actuators of a transmission.
 
     Attributes:
         actuators, joints: plain names.

@@ -1,4 +1,4 @@
-"""How the references of velocity servos go on: as commanded, but no further than the motors can follow.
+"""References of velocity servos: they move as commanded, but no further than the motors can follow.
 
 A reference that its joint cannot follow would wind up, so it keeps within what the whole effort makes up for. Wheels of
 one controller go on together: where one is too weak for the moment (the load lies on its side), the others wait for it,

@@ -92,13 +92,13 @@ class MassMatrix3d:
     # ------------------------------------------------------------------ of bodies
 
     def set_from_box(self, *values: Any) -> bool:
-        """Of a box: ([mass], size [m], [rotation]); without a mass the present one."""
+        """Set the moments of a box: ([mass], size [m], [rotation]); without a mass the present one."""
         mass, (size, *rest) = self._leading_mass(values)
         x, y, z = (v * v for v in components_of(size, 3))
         return self._set_turned(mass, (mass / 12 * (y + z), mass / 12 * (z + x), mass / 12 * (x + y)), rest)
 
     def set_from_cylinder_z(self, *values: Any) -> bool:
-        """Of a cylinder along z: (mass, length [m], radius [m], [rotation]), or without the mass."""
+        """Set the moments of a cylinder along z: (mass, length [m], radius [m], [rotation]), or without the mass."""
         *numbers, last = values
         rest = [last] if callable(getattr(last, "w", None)) else []
         numbers = numbers if rest else [*numbers, last]
@@ -108,7 +108,7 @@ class MassMatrix3d:
         return self._set_turned(mass, (across, across, mass / 2 * radius**2), rest)
 
     def set_from_sphere(self, *values: float) -> bool:
-        """Of a sphere: ([mass], radius [m])."""
+        """Set the moments of a sphere: ([mass], radius [m])."""
         mass = float(values[0]) if len(values) == 2 else self._mass
         moment = 0.4 * mass * float(values[-1]) ** 2
         return self._set_turned(mass, (moment, moment, moment), [])
@@ -160,16 +160,16 @@ class MassMatrix3d:
 
     @staticmethod
     def epsilon(moments: VectorLike, tolerance: float = TOLERANCE) -> float:
-        """What rounding may be off by [kg·m²]: `tolerance` times a double's, of half the moments' sum."""
+        """Return the rounding error [kg·m²]: `tolerance` times a double's, of half the moments' sum."""
         largest = 0.5 * sum(components_of(moments, 3))
         return abs(tolerance) * float(np.finfo(float).eps) * largest
 
     def is_positive(self, tolerance: float = TOLERANCE) -> bool:
-        """Whether the mass and the matrix are positive definite."""
+        """Check whether the mass and the matrix are positive definite."""
         return self._is_definite(tolerance, strict=True)
 
     def is_near_positive(self, tolerance: float = TOLERANCE) -> bool:
-        """Whether the mass and the matrix are positive semidefinite."""
+        """Check whether the mass and the matrix are positive semidefinite."""
         return self._is_definite(tolerance, strict=False)
 
     def _is_definite(self, tolerance: float, strict: bool) -> bool:
@@ -180,7 +180,7 @@ class MassMatrix3d:
         return all(m > least if strict else m >= least for m in minors)
 
     def is_valid(self, tolerance: float = TOLERANCE) -> bool:
-        """Whether a body can have it: semidefinite, and no principal moment larger than the other two together."""
+        """Check whether a body can have it: semidefinite, no principal moment larger than the other two together."""
         return self.is_near_positive(tolerance) and self.valid_moments(self.principal_moments(), tolerance)
 
     @classmethod

@@ -35,7 +35,7 @@ class Matrix3d:
             raise TypeError(f"a 3 x 3 matrix takes nothing, nine numbers, a rotation or a matrix, got {values!r}")
 
     @classmethod
-    def of(cls, rows: Any) -> Matrix3d:
+    def of(cls, rows: npt.ArrayLike) -> Matrix3d:
         """From an array of rows."""
         return cls(*np.asarray(rows, dtype=float).reshape(9).tolist())
 
@@ -43,7 +43,7 @@ class Matrix3d:
         """A copy as NumPy's array, shape (3, 3)."""
         return self._m.copy()
 
-    def __array__(self, dtype: Any = None, copy: bool | None = None) -> Rows:
+    def __array__(self, dtype: npt.DTypeLike | None = None, copy: bool | None = None) -> Rows:
         return np.array(self._m, dtype=dtype)
 
     def __call__(self, row: int, column: int) -> float:
@@ -61,7 +61,7 @@ class Matrix3d:
         for column, axis in enumerate((x, y, z)):
             self.set_col(column, axis)
 
-    def set_col(self, column: int, values: Any) -> None:
+    def set_col(self, column: int, values: VectorLike) -> None:
         self._m[:, column] = components_of(values, 3)
 
     def set_from_axis_angle(self, axis: VectorLike, angle: float) -> None:
@@ -155,7 +155,7 @@ class Matrix4d:
     def determinant(self) -> float:
         return float(np.linalg.det(self._m))
 
-    def _of(self, rows: Any) -> Matrix4d:
+    def _of(self, rows: npt.NDArray[np.floating]) -> Matrix4d:
         return Matrix4d(*rows.reshape(16).tolist())
 
     def inverse(self) -> Matrix4d:

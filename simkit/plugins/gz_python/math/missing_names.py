@@ -1,4 +1,4 @@
-"""What is said of a name of Gazebo's Python that simkit does not have: which it is, and what to use instead."""
+"""Errors for names of Gazebo's Python that simkit does not have, with what to use instead."""
 
 from __future__ import annotations
 

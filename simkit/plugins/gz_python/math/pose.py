@@ -109,7 +109,7 @@ class Pose3d:
         return self
 
     def coord_position_add(self, other: Any) -> Vector3d:
-        """Of a point, where it is in the frame this pose is given in; of a pose, where `other * self` is."""
+        """Return a point in the frame that this pose is given in; of a pose, the position of `other * self`."""
         if callable(getattr(other, "pos", None)):
             moved: Vector3d = other.rot().rotate_vector(self._p) + other.pos()
             return moved
@@ -162,7 +162,7 @@ class Pose3d:
     def __deepcopy__(self, memo: dict[int, object]) -> Pose3d:
         return Pose3d(self)
 
-    def __reduce__(self) -> tuple[type[Pose3d], tuple[Any, ...]]:
+    def __reduce__(self) -> tuple[type[Pose3d], tuple[float, ...]]:
         return (Pose3d, (*self._p, *self._q._q))
 
     def __repr__(self) -> str:

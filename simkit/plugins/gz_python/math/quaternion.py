@@ -111,7 +111,7 @@ class Quaterniond:
 
     @staticmethod
     def euler_to_quaternion(*values: Any) -> Quaterniond:
-        """Of roll, pitch, yaw [rad]."""
+        """Make a rotation of roll, pitch, yaw [rad]."""
         found = Quaterniond()
         found.set_from_euler(*values)
         return found
@@ -200,7 +200,7 @@ class Quaterniond:
         return found
 
     def log(self) -> Quaterniond:
-        """Of a unit quaternion: half its rotation vector, w = 0."""
+        """Return the logarithm of a unit quaternion: half its rotation vector, w = 0."""
         w, x, y, z = self._q
         scale = 1.0
         if abs(w) < 1.0:
@@ -254,7 +254,7 @@ class Quaterniond:
 
     @staticmethod
     def slerp(t: float, first: Quaterniond, second: Quaterniond, shortest_path: bool = False) -> Quaterniond:
-        """Between two rotations at an even pace, `t` from 0 to 1."""
+        """Interpolate between two rotations at an even pace, `t` from 0 to 1."""
         cosine, target = first.dot(second), second
         if cosine < 0.0 and shortest_path:
             cosine, target = -cosine, -second
@@ -309,7 +309,7 @@ class Quaterniond:
         return Quaterniond(*(a * factor for a in self._q))
 
     def equal(self, other: Quaterniond, tolerance: float = EQUALITY_TOLERANCE) -> bool:
-        """Whether every component is within a tolerance."""
+        """Check whether every component is within a tolerance."""
         return all(abs(a - b) <= tolerance for a, b in zip(self._q, other._q, strict=True))
 
     def __eq__(self, other: object) -> bool:

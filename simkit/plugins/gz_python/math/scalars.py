@@ -53,7 +53,7 @@ def variance(values: Sequence[float]) -> float:
 
 
 def equal(a: float, b: float, epsilon: float = DEFAULT_TOLERANCE) -> bool:
-    """Whether two numbers are at most `epsilon` apart."""
+    """Check whether two numbers are at most `epsilon` apart."""
     return abs(a - b) <= epsilon
 
 

@@ -1,4 +1,4 @@
-"""Between simkit's poses and vectors and those of gz-math, whoever made them."""
+"""Conversion between simkit's poses and vectors and those of gz-math."""
 
 from __future__ import annotations
 

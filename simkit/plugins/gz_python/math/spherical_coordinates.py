@@ -1,4 +1,4 @@
-"""Where on a planet a world lies, as gz-math says it."""
+"""Location of a world on a planet, as gz-math has it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ MEAN_EARTH_RADIUS: Final = 6371000.0  # [m], of distances between points
 
 
 class Surface(enum.IntEnum):
-    """Which planet."""
+    """Planets."""
 
     EARTH_WGS84 = 1
     MOON_SCS = 2
@@ -25,7 +25,7 @@ class Surface(enum.IntEnum):
 
 
 class Coordinates(enum.IntEnum):
-    """What a position is given in."""
+    """Coordinate systems of a position."""
 
     SPHERICAL = 1
     ECEF = 2
@@ -167,7 +167,7 @@ class SphericalCoordinates:
         return self.velocity_transform(velocity, Coordinates.GLOBAL, Coordinates.LOCAL)
 
     def position_transform(self, position: VectorLike, from_type: Coordinates, to_type: Coordinates) -> Vector3d:
-        """Between spherical (rad, rad, m), the planet's axes, east-north-up and the world's own axes [m]."""
+        """Transform between spherical (rad, rad, m), the planet's axes, east-north-up and the world's own axes [m]."""
         place, point = self._place(), np.array(components_of(position, 3))
         level, start, end = self._level(place), Coordinates(from_type), Coordinates(to_type)
         if start is Coordinates.SPHERICAL:
@@ -183,7 +183,7 @@ class SphericalCoordinates:
         return Vector3d(*point.tolist())
 
     def velocity_transform(self, velocity: VectorLike, from_type: Coordinates, to_type: Coordinates) -> Vector3d:
-        """Between the planet's axes, east-north-up and the world's axes [m/s].
+        """Transform between the planet's axes, east-north-up and the world's axes [m/s].
 
         Raises:
             ValueError: one of the two is spherical, which velocities have none in.

@@ -48,7 +48,7 @@ def components_of(value: VectorLike, size: int) -> tuple[float, ...]:
 
 
 class Vector:
-    """What vectors of two, three and four numbers share.
+    """Base of vectors of two, three and four numbers.
 
     Attributes:
         SIZE: how many numbers.
@@ -228,7 +228,7 @@ class Vector:
     # ------------------------------------------------------------------ equality and text
 
     def equal(self, other: VectorLike, tolerance: float = EQUALITY_TOLERANCE) -> bool:
-        """Whether every component is within a tolerance."""
+        """Check whether every component is within a tolerance."""
         return all(abs(a - b) <= tolerance for a, b in zip(self._v, components_of(other, self.SIZE), strict=True))
 
     def __eq__(self, other: object) -> bool:

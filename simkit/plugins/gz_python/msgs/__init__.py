@@ -30,7 +30,7 @@ def message_class(name: str) -> type[Message]:
 
 
 def contents_of(module: str) -> dict[str, object]:
-    """What a module such as `twist_pb2` holds.
+    """Return the contents of a module such as `twist_pb2`.
 
     Raises:
         ModuleNotFoundError: it is none that simkit has.

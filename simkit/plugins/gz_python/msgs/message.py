@@ -11,39 +11,39 @@ from typing import Any, ClassVar, Final, NamedTuple, TypeVar
 from simkit.diagnostics import did_you_mean
 
 M = TypeVar("M", bound="Message")
-PLAIN_DEFAULTS: Final[Mapping[str, Any]] = {"f": 0.0, "i": 0, "s": "", "b": False, "y": b""}
+PLAIN_DEFAULTS: Final[Mapping[str, object]] = {"f": 0.0, "i": 0, "s": "", "b": False, "y": b""}
 """Letter of a kind of field -> its value at the start: number, whole number, text, truth, bytes."""
 
 
 class Repeated(list[Any]):
     """A field that may be there many times; of messages `add()` makes one more."""
 
-    def __init__(self, kind: str, values: Iterable[Any] = ()) -> None:
+    def __init__(self, kind: str, values: Iterable[object] = ()) -> None:
         super().__init__(values)
         self._kind = kind
 
-    def add(self, **fields: Any) -> Any:
+    def add(self, **fields: object) -> Any:
         """One more message, with these fields."""
         made = MESSAGE_CLASSES[self._kind](**fields)
         self.append(made)
         return made
 
-    def CopyFrom(self, other: Iterable[Any]) -> None:  # noqa: N802 - protobuf's names
+    def CopyFrom(self, other: Iterable[object]) -> None:  # noqa: N802 - protobuf's names
         self[:] = copy.deepcopy(list(other))
 
-    def MergeFrom(self, other: Iterable[Any]) -> None:  # noqa: N802
+    def MergeFrom(self, other: Iterable[object]) -> None:  # noqa: N802
         self.extend(copy.deepcopy(list(other)))
 
 
 class Descriptor(NamedTuple):
-    """What protobuf tells of a class of messages."""
+    """Names of a class of messages, as protobuf has them."""
 
     name: str
     full_name: str
 
 
 class Message:
-    """What all messages share.
+    """Base of all messages.
 
     Attributes:
         DESCRIPTOR: its names.
@@ -115,11 +115,11 @@ class Message:
         self._values.clear()
 
     def HasField(self, name: str) -> bool:  # noqa: N802
-        """Whether a nested message was ever looked into, or a plain field set."""
+        """Check whether a nested message was ever looked into, or a plain field set."""
         type(self)._kind_of(name)
         return name in self._values
 
-    def ListFields(self) -> list[tuple[str, Any]]:  # noqa: N802
+    def ListFields(self) -> list[tuple[str, object]]:  # noqa: N802
         """Names and values of what is not as at the start."""
         return [(name, getattr(self, name)) for name in self.FIELDS if not _is_empty(self._values.get(name))]
 
@@ -135,14 +135,14 @@ class Message:
         made._values.update({name: copy.deepcopy(value, memo) for name, value in self._values.items()})
         return made
 
-    def __reduce__(self) -> tuple[Any, ...]:
+    def __reduce__(self) -> tuple[object, ...]:
         return (_unpickle_message, (type(self).__name__, dict(self._values)))
 
     def __repr__(self) -> str:
         return _format_message(self, "")
 
 
-def _unpickle_message(name: str, values: dict[str, Any]) -> Message:
+def _unpickle_message(name: str, values: dict[str, object]) -> Message:
     made = MESSAGE_CLASSES[name]()
     made._values.update(values)
     return made

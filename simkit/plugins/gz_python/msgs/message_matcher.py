@@ -1,4 +1,4 @@
-"""Whether a message of gz is as another one says: what gz's TriggeredPublisher asks of each message.
+"""Match messages of gz against a pattern, as gz's TriggeredPublisher does with each message.
 
 Numbers are compared as protobuf's `MessageDifferencer` does it with a margin, fields that are not set as their value at
 the start.
@@ -25,7 +25,7 @@ _SINGLE_PRECISION_MESSAGES: Final = frozenset(
 
 
 class MessageMatcher:
-    """What a message is to be like.
+    """Pattern of a message.
 
     Args:
         kind: its class.
@@ -61,7 +61,7 @@ class MessageMatcher:
             self._wanted = int(getattr(MESSAGE_CLASSES[self._owner], self._wanted, -1))
 
     def meets(self, message: Message) -> bool:
-        """Whether a message is as it is to be."""
+        """Check whether a message is as it is to be."""
         return self._is_same(message) == self._is_positive
 
     def _is_same(self, message: Message) -> bool:
@@ -94,8 +94,8 @@ def _find_field(kind: type[Message], path: Sequence[str]) -> tuple[str, str]:
     return owner, found
 
 
-def _values_match(want: Any, found: Any, tolerance: float, single: bool, is_partial: bool) -> bool:
-    """Whether a value is the wanted one; `is_partial`: fields that are not set in it do not count."""
+def _values_match(want: object, found: Any, tolerance: float, single: bool, is_partial: bool) -> bool:
+    """Check whether a value is the wanted one; `is_partial`: fields that are not set in it do not count."""
     if isinstance(want, Message):
         single = type(want).__name__ in _SINGLE_PRECISION_MESSAGES
         names = [name for name, _ in want.ListFields()] if is_partial else list(want.FIELDS)

@@ -102,7 +102,7 @@ def _twin_by_fields(name: str, ros: str, fields: list[str]) -> RosTwin:
                 place[last] = _value_to_ros(kind, gz if ours == "." else getattr(gz, ours))
         return found
 
-    def from_ros(gz: Message, message: Any) -> None:
+    def from_ros(gz: Message, message: object) -> None:
         for ours, path, kind, _ in pairs:
             value = message
             for part in path:
@@ -117,11 +117,11 @@ def _twin_by_fields(name: str, ros: str, fields: list[str]) -> RosTwin:
 
 @cache
 def _twin_of_field(kind: str) -> RosTwin:
-    """What a message is within others."""
+    """Return the twin of a message within other messages."""
     return next(twin for twin in _all_twins()[kind] if not twin.is_wrapped)
 
 
-def _value_to_ros(kind: str, value: Any) -> Any:
+def _value_to_ros(kind: str, value: Any) -> object:
     if kind in PLAIN_DEFAULTS:
         return value
     if not kind.endswith("[]"):
@@ -145,7 +145,7 @@ def _value_from_ros(gz: Message, ours: str, kind: str, value: Any) -> None:
 
 
 def _header_entry(header: Message, key: str) -> str:
-    """What gz keeps beside the stamp, such as the name of the frame."""
+    """Return an entry that gz keeps beside the stamp, such as the name of the frame."""
     return next((str(entry.value[0]) for entry in header.data if entry.key == key and entry.value), "")
 
 
@@ -286,13 +286,13 @@ def fields_of(message: Message) -> RosFields:
     return _twin_of_field(type(message).__name__).to_ros(message)
 
 
-def to_ros(message: Message, ros: str) -> Any:
+def to_ros(message: Message, ros: str) -> object:
     """A message of a ROS type."""
     twin = next(twin for twin in twins_of(type(message)) if twin.ros == ros)
     return msgs.make(ros, **twin.to_ros(message))
 
 
-def from_ros(kind: type[Message], message: Any) -> Message:
+def from_ros(kind: type[Message], message: object) -> Message:
     """A message of gz of one of ROS, whose type must be a twin of it."""
     name, made = msgs.type_name(message), MESSAGE_CLASSES[kind.__name__]()
     twin = next(twin for twin in twins_of(kind) if twin.ros == name)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from typing import Any, Final
+from typing import Final
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import MessageError
@@ -41,7 +41,7 @@ def parse_message(kind: type[Message], text: str) -> Message:
     return message
 
 
-def parse_value(kind: str, text: str) -> Any:
+def parse_value(kind: str, text: str) -> object:
     """The value of one field; of a repeated one a list of what is in `[…]`, or of the one value.
 
     Args:
@@ -108,18 +108,18 @@ class _TextReader:
             self._skip(",", ";")
         self._depth -= 1
 
-    def read_values(self, kind: str, *, is_repeated: bool) -> list[Any]:
+    def read_values(self, kind: str, *, is_repeated: bool) -> list[object]:
         """One value, or those of a list."""
         if not (is_repeated and self._skip("[")):
             return [self._read_value(kind)]
-        values: list[Any] = []
+        values: list[object] = []
         while not self._skip("]"):
             values.append(self._read_value(kind))
             if not self._skip(",") and self._peek() != "]":
                 raise MessageError(f"found {_shorten(self._peek())} in a list, allowed is a comma or ]")
         return values
 
-    def _read_value(self, kind: str) -> Any:
+    def _read_value(self, kind: str) -> object:
         token = self._next()
         if kind not in PLAIN_DEFAULTS:
             if token not in _CLOSES:
@@ -170,7 +170,7 @@ def _number_of_word(kind: type[Message], word: str) -> int:
     return number
 
 
-def _parse_plain(kind: str, token: str) -> Any:
+def _parse_plain(kind: str, token: str) -> object:
     if kind == "b":
         if token in _TRUE or token in _FALSE:
             return token in _TRUE

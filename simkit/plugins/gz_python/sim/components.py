@@ -10,6 +10,7 @@ from simkit.plugins.gz_python.math.inertia import Inertiald as _Inertiald
 from simkit.plugins.gz_python.math.missing_names import missing_name_error
 from simkit.plugins.gz_python.math.pose import Pose3d as _Pose3d
 from simkit.plugins.gz_python.math.simkit_conversion import simkit_pose, three_numbers
+from simkit.plugins.gz_python.math.vectors import Vector3d as _Vector3d
 from simkit.plugins.gz_python.sim.entity_table import EntityRecord
 from simkit.plugins.gz_python.sim.entity_view import EntityView
 from simkit.plugins.gz_python.sim.joint import Joint as _Joint
@@ -21,7 +22,7 @@ from simkit.plugins.gz_python.sim.world import world_pose
 
 
 class ComponentState(IntEnum):
-    """How a component changed; nothing is sent of components here."""
+    """Kinds of changes of a component; nothing is sent of components here."""
 
     NoChange = 0
     PeriodicChange = 1
@@ -68,7 +69,7 @@ def register_custom_component(name: str) -> ComponentProxy:
 
 
 _TAGS: Final = ("World", "Model", "Link", "Joint", "Visual", "Collision", "Sensor", "Light", "Actor")
-_Reader = Callable[[EntityView, EntityRecord], Any]
+_Reader = Callable[[EntityView, EntityRecord], object]
 
 
 def _kind_reader(kind: str, read: _Reader) -> _Reader:
@@ -78,8 +79,8 @@ def _kind_reader(kind: str, read: _Reader) -> _Reader:
 _HANDLES: Final = {"model": _Model, "link": _Link, "joint": _Joint, "sensor": _Sensor, "world": _World}
 
 
-def _handle_reader(kind: str, method: Callable[[Any, EntityView], Any]) -> _Reader:
-    """What a method of the handle says."""
+def _handle_reader(kind: str, method: Callable[[Any, EntityView], object]) -> _Reader:
+    """Make a reader that calls a method of the handle."""
     return _kind_reader(kind, lambda ecm, record: method(_HANDLES[kind](record.entity), ecm))
 
 
@@ -95,8 +96,8 @@ def _local_pose(ecm: EntityView, record: EntityRecord) -> _Pose3d | None:
     return own if record.parent <= 1 else world_pose(record.parent, ecm).inverse() * own
 
 
-def _in_link_axes(read: Callable[[_Link, EntityView], Any]) -> _Reader:
-    def turned(ecm: EntityView, record: EntityRecord) -> Any:
+def _in_link_axes(read: Callable[[_Link, EntityView], _Vector3d | None]) -> _Reader:
+    def turned(ecm: EntityView, record: EntityRecord) -> object:
         value, pose = read(_Link(record.entity), ecm), _Link(record.entity).world_pose(ecm)
         return pose.rot().rotate_vector_reverse(value) if value is not None and pose is not None else None
 
@@ -200,7 +201,7 @@ def _check_component(kind: ComponentProxy) -> ComponentProxy:
     return kind
 
 
-def read_component(ecm: EntityView, entity: int, kind: ComponentProxy) -> Any:
+def read_component(ecm: EntityView, entity: int, kind: ComponentProxy) -> object:
     """The data of a component; of a tag the tag itself; None where the entity has none."""
     proxy = _check_component(kind)
     kept = ecm.custom.get(proxy.name, {})
@@ -292,9 +293,9 @@ class ComponentCursor:
     """
 
     entity = 0
-    components: list[Any]
+    components: list[object]
 
-    def __iter__(self) -> Iterator[Any]:
+    def __iter__(self) -> Iterator[object]:
         """`for entity, (pose, name) in ecm.each([Pose, Name])`"""
         return iter((self.entity, tuple(self.components)))
 

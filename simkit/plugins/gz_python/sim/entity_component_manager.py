@@ -72,11 +72,13 @@ class EntityComponentManager(EntityView):
 
     component_data = component  # its name in later versions
 
-    def create_component(self, entity: int, kind: components.ComponentProxy, *data: Any) -> None:
+    def create_component(self, entity: int, kind: components.ComponentProxy, *data: object) -> None:
         """Gives an entity a component, or other data to the one it has."""
         components.write_component(self, entity, kind, *data)
 
-    def set_component_data(self, entity: int, kind: components.ComponentProxy, data: Any, compare: bool = True) -> bool:
+    def set_component_data(
+        self, entity: int, kind: components.ComponentProxy, data: object, compare: bool = True
+    ) -> bool:
         """Other data for a component; False where it had the same and `compare`."""
         if compare and self.component(entity, kind) == data:
             return False
@@ -102,7 +104,7 @@ class EntityComponentManager(EntityView):
         """Entities that have every one of some components: `.entity`, `.components`; one object moves along."""
         return components.each_entity(self, list(kinds))
 
-    def each_data(self, *kinds: components.ComponentProxy) -> list[tuple[Any, ...]]:
+    def each_data(self, *kinds: components.ComponentProxy) -> list[tuple[object, ...]]:
         """The same as a list, as later versions have it: (entity, data, data, …)."""
         return [(item.entity, *item.components) for item in self.each(kinds)]
 

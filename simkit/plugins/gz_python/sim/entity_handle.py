@@ -1,4 +1,4 @@
-"""What the handles of gz-sim share: an entity's number, asked of a manager each time."""
+"""Base of the handles of gz-sim: the number of an entity, with readings through a manager."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class EntityHandle:
         self._entity = int(new_entity)
 
     def valid(self, ecm: EntityView) -> bool:
-        """Whether the entity is there and of this kind."""
+        """Check whether the entity is there and of this kind."""
         return self._record(ecm) is not None
 
     def name(self, ecm: EntityView) -> str | None:

@@ -40,7 +40,7 @@ class EntityView:
         self.commands = PhysicsCommands()
         self.checks: dict[tuple[int, str], int] = {}
         self.values: dict[tuple[int, str], object] = {}
-        self.custom: dict[str, dict[int, Any]] = {}
+        self.custom: dict[str, dict[int, object]] = {}
         self.published: Callable[[Simulation], frozenset[str]] = lambda _: frozenset()
         self._published: tuple[WorldStructure | None, frozenset[int]] = (None, frozenset())
 
@@ -60,7 +60,7 @@ class EntityView:
 
     @property
     def is_live(self) -> bool:
-        """Whether it shows a simulation."""
+        """Check whether it shows a simulation."""
         return self._sim is not None
 
     def sync(self) -> EntityTable:
@@ -113,8 +113,8 @@ class EntityView:
 
     # ------------------------------------------------------------------ state
 
-    def get_state(self) -> dict[str, Any]:
-        """What a snapshot has to keep."""
+    def get_state(self) -> dict[str, object]:
+        """Return the state that a snapshot keeps."""
         made = [r.entity for r in self.table.records.values() if not r.kind]
         return {
             "next": self.table.next,

@@ -57,7 +57,7 @@ class Joint(EntityHandle):
         return gz_pose(child.scene.pose_world.inverse() @ scene.pose_world)
 
     def thread_pitch(self, ecm: EntityView) -> float | None:
-        """Of a screw [m per turn]."""
+        """Return the pitch of a screw [m per turn]."""
         record = self._record(ecm)
         return float(record.scene.thread_pitch) if record is not None else None
 

@@ -68,7 +68,7 @@ class Link(EntityHandle):
         return Model(record.parent) if record is not None else None
 
     def is_canonical(self, ecm: EntityView) -> bool:
-        """Whether its motion is that of the model it is in."""
+        """Check whether its motion is that of the model it is in."""
         record = self._record(ecm)
         if record is None:
             return False
@@ -109,12 +109,12 @@ class Link(EntityHandle):
     # ------------------------------------------------------------------ where it is and how it moves
 
     def world_pose(self, ecm: EntityView) -> Pose3d | None:
-        """Of the link frame; None only where there is no such link."""
+        """Return the pose of the link frame; None only where there is no such link."""
         link = self._handle(ecm)
         return gz_pose(link.pose) if link is not None else None
 
     def world_inertial_pose(self, ecm: EntityView) -> Pose3d | None:
-        """Of the centre of mass, with the axes of its inertia."""
+        """Return the pose of the centre of mass, with the axes of its inertia."""
         inertial = self.world_inertial(ecm)
         return inertial.pose() if inertial is not None else None
 

@@ -22,7 +22,7 @@ class Model(EntityHandle):
         return bool(record is not None and record.scene.self_collide)
 
     def wind_mode(self, ecm: EntityView) -> bool:
-        """Whether the wind pushes it: all of its links."""
+        """Check whether the wind pushes it: all of its links."""
         record = self._record(ecm)
         links = record.scene.links if record is not None else ()
         return bool(links) and all(link.enable_wind for link in links)

@@ -1,4 +1,4 @@
-"""What systems ask of the physics, put into effect before each step by the rules of gz-sim's physics system.
+"""Commands of systems to the physics, carried out before each step by the rules of gz-sim's physics system.
 
 Commands to joints and velocities of links stay, as zeros, once they were given: gz-sim empties them after each step but
 does not take them back, so a joint that was given a velocity once is held at rest from the next step on, and one that

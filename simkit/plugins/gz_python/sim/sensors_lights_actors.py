@@ -52,14 +52,14 @@ class Actor(EntityHandle):
         return gz_pose(record.scene.pose_world) if record is not None else None
 
     def trajectory_pose(self, ecm: EntityView) -> Pose3d | None:
-        """What was set, seen from `pose`; None before."""
+        """Return the pose that was set, relative to `pose`; None before."""
         return self._stored(ecm, "trajectory_pose", Pose3d)
 
     def set_trajectory_pose(self, ecm: EntityView, pose: PoseLike) -> None:
         self._store(ecm, "trajectory_pose", gz_pose(simkit_pose(pose)))
 
     def world_pose(self, ecm: EntityView) -> Pose3d | None:
-        """Where it is in the world."""
+        """Return its pose in the world."""
         model = ecm.simulation.models.get(self.name(ecm) or "")
         return gz_pose(model.pose) if model is not None else None
 
@@ -217,7 +217,7 @@ class Light(EntityHandle):
     # ------------------------------------------------------------------ inside
 
     def _read(self, ecm: EntityView, name: str) -> Any:
-        """What it is like now, or as in the file where it is not simulated."""
+        """Return a property as it is now, or as in the file where the light is not simulated."""
         record, light = self._record(ecm), self._handle(ecm)
         if record is None:
             return None
@@ -227,7 +227,7 @@ class Light(EntityHandle):
         values = self._read(ecm, name)
         return float(values[index]) if values is not None else None
 
-    def _change(self, ecm: EntityView, **fields: Any) -> None:
+    def _change(self, ecm: EntityView, **fields: object) -> None:
         light = self._handle(ecm)
         if light is not None:
             light.change(replace(light.scene, **fields))

@@ -27,7 +27,7 @@ def systems_of(sim: Simulation) -> list[SystemPlugin]:
 
 
 class SystemHub:
-    """What the systems of one simulation share.
+    """State that the systems of one simulation share.
 
     Attributes:
         ecm: the entities.

@@ -1,4 +1,4 @@
-"""What hooks are told of the time, and the things gz hands them that hold nothing here."""
+"""The time of an update, as hooks of gz get it, and the event manager, which holds nothing here."""
 
 from __future__ import annotations
 

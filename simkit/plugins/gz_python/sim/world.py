@@ -37,7 +37,7 @@ class World(EntityHandle):
         return Atmosphere(air.temperature, air.temperature_gradient, air.pressure)
 
     def spherical_coordinates(self, ecm: EntityView) -> SphericalCoordinates | None:
-        """Where on its planet the origin lies; None where nothing says it."""
+        """Return the location of the origin on its planet; None where the file has none."""
         return _coordinates(ecm.simulation.site.place) if self.valid(ecm) else None
 
     def set_spherical_coordinates(self, ecm: EntityView, coordinates: SphericalCoordinates) -> None:
@@ -109,7 +109,7 @@ def world_entity(*values: Any) -> int:
 
 
 def world_pose(entity: int, ecm: EntityView) -> Pose3d:
-    """Of any entity, in the world; no rotation at the origin for what has no pose."""
+    """Return the pose of any entity in the world; the identity for what has no pose."""
     record = ecm.record(entity)
     if record is None or not record.kind or record.kind == "world":
         return Pose3d()

@@ -36,7 +36,7 @@ _SHORTEST_PERIOD = 1e-4  # [s]; in less no speed can be told
 
 
 class WheelOdometry:
-    """Where the point between two wheels is by their turning, and the mean of its speeds over the last updates.
+    """Pose of the point between two wheels from their rotation, and the mean of its speeds over the last updates.
 
     Args:
         window: updates that the twist is the mean of.
@@ -263,7 +263,7 @@ class DiffDriveController(Controller):
         return options.separation * separation.value, options.radius * left.value, options.radius * right.value
 
     def _read_multipliers(self, is_ros_1: bool) -> tuple[Parameter[float], ...]:
-        """Of the separation and of the two radii; they may be set while it runs."""
+        """Declare multipliers of the separation and of the two radii; they may be set while the simulation runs."""
         radius = self.params.number("wheel_radius_multiplier", 1.0, minimum=1e-3) if is_ros_1 else 1.0
         defaults = {
             "wheel_separation_multiplier": (1.0, "of the distance between the wheels"),

@@ -372,7 +372,7 @@ class JointTrajectoryController(Controller):
         return here.wanted or there.wanted
 
     def _is_state_due(self, now: int) -> bool:
-        """Whether somebody wants the state now."""
+        """Check whether somebody wants the state now."""
         if now < self._next_state or not self._has_subscribers():
             return False
         self._next_state = now + self._state_ns
@@ -385,7 +385,7 @@ class JointTrajectoryController(Controller):
                 publisher.publish(message)
 
     def _on_query(self, request: QueryTrajectoryState_Request) -> dict[str, object]:
-        """Where the joints are to be at a time."""
+        """Answer where the joints are to be at a time."""
         if not self._is_active:
             return {"success": False, "message": "Can't sample trajectory. Controller is not active."}
         if self._spline is None:

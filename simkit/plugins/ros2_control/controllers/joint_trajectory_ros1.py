@@ -8,7 +8,7 @@ from simkit.plugins.ros2_control.controllers.joint_trajectory import JointTrajec
 
 
 class PositionJointTrajectoryController(JointTrajectoryController):
-    """That of ROS 1 for joints that are commanded by position."""
+    """ROS 1's controller for joints that are commanded by position."""
 
     types = ("position_controllers/JointTrajectoryController",)
     default_commands: ClassVar[tuple[str, ...]] = ("position",)
@@ -18,21 +18,21 @@ class PositionJointTrajectoryController(JointTrajectoryController):
 
 
 class VelocityJointTrajectoryController(PositionJointTrajectoryController):
-    """That of ROS 1 for joints that are commanded by velocity, through PIDs."""
+    """ROS 1's controller for joints that are commanded by velocity, through PIDs."""
 
     types = ("velocity_controllers/JointTrajectoryController",)
     default_commands = ("velocity",)
 
 
 class EffortJointTrajectoryController(PositionJointTrajectoryController):
-    """That of ROS 1 for joints that are commanded by effort, through PIDs."""
+    """ROS 1's controller for joints that are commanded by effort, through PIDs."""
 
     types = ("effort_controllers/JointTrajectoryController",)
     default_commands = ("effort",)
 
 
 class PositionVelocityJointTrajectoryController(PositionJointTrajectoryController):
-    """That of ROS 1 for joints that are commanded by position and velocity."""
+    """ROS 1's controller for joints that are commanded by position and velocity."""
 
     types = ("pos_vel_controllers/JointTrajectoryController",)
     default_commands = ("position", "velocity")
