@@ -218,7 +218,7 @@ class Hardware:
         self.states.late_places = frozenset(row for rows, _ in self._deferred for row in rows.tolist())
 
     def reading(self, interface: str, joints: Sequence[str]) -> Callable[[], Vector]:
-        """Return a function that reads positions, velocities or efforts of joints, for the present model of the engine."""
+        """Return a function that reads positions, velocities or efforts of joints of the present engine model."""
         names, physics = self._sim.names, self._sim.physics
         bindings = [names.joint(self.joints[joint].scoped) for joint in joints]
         if interface == POSITION:
