@@ -98,49 +98,49 @@ class ActiveModes:
 
     Attributes:
         modes: that it is of.
-        nothing: zeros, by which commands that are not finite are found.
+        zeros: zeros; their product with the commands shows whether one is not finite.
         kp, kv: gains of the actuators [N·m/rad or N/m, N·m·s/rad or N·s/m].
-        pull: kp of the servos; 0 for the others.
+        servo_stiffness: kp of the servos; 0 for the others.
         lowest, highest: bounds of the effort [N·m or N].
         integral: ki of the file's loops, and the bounds of that part [N·m or N].
         is_position, is_servo: whether by position; whether by position or velocity.
-        is_helped, helped: whether gravity and friction are made up for; the same as 1 or 0.
-        direct: 1 where the command is an effort.
-        all_helped, all_position: whether it is so of all joints.
-        reach: how far a reference may be from its joint at most [rad or m].
-        rolling: those that are not driven by position: place, addresses, stiffness and top speed.
-        slacks, catch_up, groups: theirs, as `rolling.lead` takes them.
-        claims: the array of groups that `groups` are of.
+        is_compensated, compensation: whether gravity and friction are compensated; the same as 1 or 0.
+        effort_share: 1 where the command is an effort.
+        all_compensated, all_position: whether all joints are compensated, driven by position.
+        largest_lag: largest distance of a reference from its joint [rad or m].
+        velocity_joints: those that are not driven by position: place, addresses, stiffness and top speed.
+        slacks, catch_up_times, groups: of those joints, as `advance_references` takes them.
+        claimed_groups: the array of groups that `groups` are of.
         has_effort, has_integral: whether any joint has such a part.
-        period: that `least` and `most` are of, how far references may move in it [s].
+        period: the time in which references move by `lowest_move` to `highest_move` [s].
     """
 
     modes: Indices
-    nothing: Vector
+    zeros: Vector
     kp: Vector
     kv: Vector
-    pull: Vector
+    servo_stiffness: Vector
     lowest: Vector
     highest: Vector
     integral: tuple[Vector, Vector, Vector]
     is_position: Mask
     is_servo: Mask
-    is_helped: Mask
-    helped: Vector
-    direct: Vector
-    all_helped: bool
+    is_compensated: Mask
+    compensation: Vector
+    effort_share: Vector
+    all_compensated: bool
     all_position: bool
-    reach: Vector
-    rolling: list[tuple[int, int, int, int, float, float]]
+    largest_lag: Vector
+    velocity_joints: list[tuple[int, int, int, int, float, float]]
     slacks: list[float]
-    catch_up: list[float]
-    claims: Indices
+    catch_up_times: list[float]
+    claimed_groups: Indices
     groups: list[int]
     has_effort: bool
     has_integral: bool
     period: float = 0.0
-    least: Vector = field(default_factory=lambda: np.zeros(0))
-    most: Vector = field(default_factory=lambda: np.zeros(0))
+    lowest_move: Vector = field(default_factory=lambda: np.zeros(0))
+    highest_move: Vector = field(default_factory=lambda: np.zeros(0))
 
     @classmethod
     def of(
@@ -164,7 +164,7 @@ class ActiveModes:
         (kp, kv), bounds = loops.gains[rows, modes].T, loops.bounds[rows, modes]
         is_position = modes == POSITION_MODE
         is_servo = is_position | (modes == VELOCITY_MODE)
-        is_helped = is_servo & ~loops.is_given[rows, modes]
+        is_compensated = is_servo & ~loops.is_given[rows, modes]
         integral = loops.integral[rows, modes].T
         rolls = np.flatnonzero(~is_position)
         stiffness = np.maximum(kp[rolls], 1e-12)
@@ -172,25 +172,25 @@ class ActiveModes:
         columns = (rolls, *(address[rolls] for address in addresses), stiffness, top)
         return cls(
             modes=modes,
-            nothing=np.zeros(len(modes)),
+            zeros=np.zeros(len(modes)),
             kp=kp.copy(),
             kv=kv.copy(),
-            pull=np.where(is_servo, kp, 0.0),
+            servo_stiffness=np.where(is_servo, kp, 0.0),
             lowest=bounds[:, 0].copy(),
             highest=bounds[:, 1].copy(),
             integral=(integral[0].copy(), integral[1].copy(), integral[2].copy()),
             is_position=is_position,
             is_servo=is_servo,
-            is_helped=is_helped,
-            helped=is_helped.astype(float),
-            direct=((modes == EFFORT_MODE) | (modes == SPRING_MODE)).astype(float),
-            all_helped=bool(is_helped.all()),
+            is_compensated=is_compensated,
+            compensation=is_compensated.astype(float),
+            effort_share=((modes == EFFORT_MODE) | (modes == SPRING_MODE)).astype(float),
+            all_compensated=bool(is_compensated.all()),
             all_position=bool(is_position.all()),
-            reach=np.where(is_position, _POSITION_REACH * bounds[:, 1] / np.maximum(kp, 1e-12), np.inf),
-            rolling=list(zip(*(column.tolist() for column in columns), strict=True)),
+            largest_lag=np.where(is_position, _POSITION_REACH * bounds[:, 1] / np.maximum(kp, 1e-12), np.inf),
+            velocity_joints=list(zip(*(column.tolist() for column in columns), strict=True)),
             slacks=(bounds[rolls, 1] / stiffness).tolist(),
-            catch_up=(np.maximum(kv[rolls], 1e-12) / stiffness).tolist(),
-            claims=groups,
+            catch_up_times=(np.maximum(kv[rolls], 1e-12) / stiffness).tolist(),
+            claimed_groups=groups,
             groups=groups[rolls].tolist(),
             has_effort=bool((modes >= EFFORT_MODE).any()),
             has_integral=bool(integral[0].any()),

@@ -60,7 +60,7 @@ class ControlPlugin(ModelPlugin):
         files = [*self._read_files(params, builder, any_given=bool(given)), *self._adapted_run_files(given, params)]
         self.files = ParameterFiles(files)
         self._chosen_controllers = [(word, one) for one in params.all("controllers") for word in _split_names(one)]
-        self.hardware.holds = params.boolean("hold_joints", True)
+        self.hardware.holds_position = params.boolean("hold_joints", True)
         self.mark_ignored_elements(params)
         self.before_step_rate = self.read_rate(params, builder)
         self._report_driven_twice(builder)

@@ -216,7 +216,7 @@ class ControllerManager:
         """Has the hardware read what the active controllers need."""
         self._active_controllers = None
         active = (c.controller for c in self.controllers.values() if c.state == "active")
-        self.hardware.wants(name for controller in active for name in controller.states.names)
+        self.hardware.set_read_interfaces(name for controller in active for name in controller.states.names)
 
     def deactivate(self, name: str) -> None:
         """Takes its interfaces from an active controller."""

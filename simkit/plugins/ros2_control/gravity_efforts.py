@@ -32,8 +32,8 @@ class GravityEfforts:
     def __deepcopy__(self, memo: dict[int, object]) -> GravityEfforts:
         return self
 
-    def now(self) -> Vector:
-        """The efforts [N·m or N], shape (n,)."""
+    def efforts(self) -> Vector:
+        """Return the efforts [N·m or N], shape (n,)."""
         sim, physics = self._sim, self._sim.physics
         model, data = physics.model, physics.data
         if model is not self._model:

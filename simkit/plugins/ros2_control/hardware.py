@@ -40,24 +40,24 @@ class Hardware:
         states: read from the simulation before the controllers are updated; what no active controller reads stays.
         commands: written to the simulation after they were.
         components: as described.
-        drives: what moves the joints.
+        actuated: the joints that can be commanded, with their actuators.
         sensors: by name.
         actuators: the transmission that each belongs to, by name; their states are interfaces too.
         owners: who claims a command interface, by its name.
         springs: kp and kd by joint of controllers under whose efforts the joints are springs, by controller.
-        holds: whether a joint that nobody claims holds still, whatever interfaces it has.
+        holds_position: whether a joint that nobody claims holds still, whatever interfaces it has.
     """
 
     joints: dict[str, HardwareJoint] = field(default_factory=dict)
     states: InterfaceTable = field(default_factory=InterfaceTable)
     commands: InterfaceTable = field(default_factory=InterfaceTable)
     components: list[ComponentDescription] = field(default_factory=list)
-    drives: JointActuators = field(default_factory=JointActuators)
+    actuated: JointActuators = field(default_factory=JointActuators)
     sensors: dict[str, HardwareSensor] = field(default_factory=dict)
     actuators: dict[str, TransmissionLaw] = field(default_factory=dict)
     owners: dict[str, str] = field(default_factory=dict)
     springs: dict[str, dict[str, tuple[float, float]]] = field(default_factory=dict)
-    holds: bool = True
+    holds_position: bool = True
     _sim: Simulation = field(init=False, repr=False)
     _sources: Indices = field(default_factory=lambda: np.zeros(0, np.intp))
     _unclaimed: Indices = field(default_factory=lambda: np.zeros(0, np.intp))  # where in `_sources` there is none
@@ -106,7 +106,7 @@ class Hardware:
         """
         self._couple_mimics(builder)
         driven = [j for j in self.joints.values() if j.command_interfaces]
-        self.drives = JointActuators.prepare(builder, owner, driven, pids)
+        self.actuated = JointActuators.prepare(builder, owner, driven, pids)
         self._sources = np.full(len(driven), -1, np.intp)
 
     def _couple_mimics(self, builder: SpecBuilder) -> None:
@@ -126,7 +126,7 @@ class Hardware:
         for joint in self.joints.values():
             if math.isfinite(joint.initial):
                 joint.handle.set_position(joint.initial)
-        self.drives.load(sim)
+        self.actuated.load(sim)
         self._switch_modes()
 
     # ------------------------------------------------------------------ claims
@@ -151,32 +151,32 @@ class Hardware:
         modes = []
         springy = {name.rpartition("/")[0] for name, owner in self.owners.items() if owner in self.springs}
         for owner in dict.fromkeys(self.owners.values()):
-            self.drives.set_springs(self.springs.get(owner, {}))
-        for k, joint in enumerate(self.drives.joints):
+            self.actuated.set_springs(self.springs.get(owner, {}))
+        for k, joint in enumerate(self.actuated.joints):
             chosen = claimed.get(joint.name, "")
             self._sources[k] = self.commands.index(f"{joint.name}/{chosen}") if chosen else -1
             mode = _MODES[chosen] if chosen else self._idle_mode(joint, claimed.get(joint.leader, ""))
             modes.append(SPRING_MODE if mode == EFFORT_MODE and joint.name in springy else mode)
         self._unclaimed = np.flatnonzero(self._sources < 0)
         self._group_joints()
-        self.drives.switch(np.array(modes, np.intp))
+        self.actuated.switch(np.array(modes, np.intp))
 
     def _group_joints(self) -> None:
         """Tells the drives which joints one controller has claimed: their wheels wait for one another."""
         by_joint = {name.rpartition("/")[0]: owner for name, owner in self.owners.items()}
         numbers = {owner: k for k, owner in enumerate(dict.fromkeys(by_joint.values()), 1)}
-        claimed = [numbers.get(by_joint.get(joint.name, ""), 0) for joint in self.drives.joints]
-        self.drives.groups = np.array(claimed, np.intp)
+        claimed = [numbers.get(by_joint.get(joint.name, ""), 0) for joint in self.actuated.joints]
+        self.actuated.groups = np.array(claimed, np.intp)
 
     def _idle_mode(self, joint: HardwareJoint, of_leader: str) -> int:
         """Return the mode of a joint that no controller claims; `of_leader` is the interface of its leader."""
         if of_leader:
             return _MODES[of_leader] if of_leader in joint.command_interfaces else FREE
-        return POSITION_MODE if self.holds or POSITION in joint.command_interfaces else FREE
+        return POSITION_MODE if self.holds_position or POSITION in joint.command_interfaces else FREE
 
     # ------------------------------------------------------------------ at work
 
-    def wants(self, names: Iterable[str]) -> None:
+    def set_read_interfaces(self, names: Iterable[str]) -> None:
         """Says which state interfaces are read from now on; the others are not kept up to date."""
         self._read_interfaces = frozenset(names)
         self._model = None
@@ -189,8 +189,8 @@ class Hardware:
         values = states.values
         for rows, reading in self._plan:
             values[rows] = reading()
-        if self._deferred or states.late:
-            states.late = self._deferred.copy()
+        if self._deferred or states.deferred:
+            states.deferred = self._deferred.copy()
 
     def _bind(self) -> None:
         """Plans the readings; another engine's model has other addresses."""
@@ -215,7 +215,7 @@ class Hardware:
                     self._deferred if kind == EFFORT else self._plan
                 )  # efforts are worked out, so only when asked for
                 plan.append((rows, self.reading(kind, places)))
-        self.states.late_places = frozenset(row for rows, _ in self._deferred for row in rows.tolist())
+        self.states.deferred_places = frozenset(row for rows, _ in self._deferred for row in rows.tolist())
 
     def reading(self, interface: str, joints: Sequence[str]) -> Callable[[], Vector]:
         """Return a function that reads positions, velocities or efforts of joints of the present engine model."""
@@ -227,11 +227,11 @@ class Hardware:
         if interface == VELOCITY:
             dofs = np.array([binding.dofs[0] for binding in bindings], np.intp)
             return lambda: physics.data.qvel[dofs]
-        driven = {joint.name: k for k, joint in enumerate(self.drives.joints)}
+        driven = {joint.name: k for k, joint in enumerate(self.actuated.joints)}
         places = np.array([driven.get(joint, -1) for joint in joints], np.intp)
         if (places >= 0).all():
-            return lambda: self.drives.efforts()[places]
-        return lambda: np.append(self.drives.efforts(), 0.0)[places]  # what nobody drives gives nothing
+            return lambda: self.actuated.efforts()[places]
+        return lambda: np.append(self.actuated.efforts(), 0.0)[places]  # what nobody drives gives nothing
 
     def write(self, period: float) -> None:
         """Hands the commands to the simulation; `period`: since the last time [s]."""
@@ -239,7 +239,7 @@ class Hardware:
             commands = self.commands.values[self._sources]
             if len(self._unclaimed):
                 commands[self._unclaimed] = np.nan
-            self.drives.write(commands, period)
+            self.actuated.write(commands, period)
 
     # ------------------------------------------------------------------ state
 
@@ -247,8 +247,8 @@ class Hardware:
         """A copy of everything that changes as it runs."""
         values = self.states.values.copy(), self.commands.values.copy()
         own = (*values, dict(self.owners), self._sources.copy(), self._read_interfaces)
-        drives = self.drives
-        return own, (drives.modes.copy(), drives.targets.copy(), drives.integrals.copy())
+        actuated = self.actuated
+        return own, (actuated.modes.copy(), actuated.targets.copy(), actuated.integrals.copy())
 
     def set_state(self, state: Any) -> None:
         """Back to a state from `get_state`."""
@@ -257,7 +257,7 @@ class Hardware:
         self.owners, self._sources = dict(owners), sources.copy()
         self._unclaimed = np.flatnonzero(sources < 0)
         self._model = None
-        self.drives.modes, self.drives.targets, self.drives.integrals = (one.copy() for one in drives)
+        self.actuated.modes, self.actuated.targets, self.actuated.integrals = (one.copy() for one in drives)
         self._group_joints()
 
     def __deepcopy__(self, memo: dict[int, object]) -> Hardware:

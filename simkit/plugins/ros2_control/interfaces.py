@@ -38,24 +38,24 @@ class InterfaceTable:
     Attributes:
         names: `<joint or sensor>/<interface>`, such as `arm_1_joint/position`, in the order of the description.
         values: theirs; rad, m, rad/s, m/s, N·m, N; NaN where there is none (yet).
-        late: what is only read when somebody asks for it, such as a sensor: where it is, and what reads it.
-        late_places: all places in `values` that may be late.
+        deferred: what is only read when somebody asks for it, such as a sensor: where it is, and what reads it.
+        deferred_places: all places in `values` that may be late.
     """
 
     def __init__(self, names: Iterable[str] = ()) -> None:
         self.names: tuple[str, ...] = tuple(dict.fromkeys(names))
         self._index = {name: k for k, name in enumerate(self.names)}
         self.values: Vector = np.full(len(self.names), np.nan)
-        self.late: list[Reading] = []
-        self.late_places: frozenset[int] = frozenset()
+        self.deferred: list[Reading] = []
+        self.deferred_places: frozenset[int] = frozenset()
 
-    def catch_up(self, wanted: frozenset[int]) -> None:
+    def read_deferred(self, wanted: frozenset[int]) -> None:
         """Reads what is late and wanted."""
         now: list[Reading] = []
         later: list[Reading] = []
-        for one in self.late:
+        for one in self.deferred:
             (later if wanted.isdisjoint(one[0].tolist()) else now).append(one)
-        self.late[:] = later
+        self.deferred[:] = later
         for places, read in now:
             self.values[places] = read()
 
@@ -96,8 +96,8 @@ class InterfaceSelection:
     def values(self) -> Vector:
         """A copy of their values."""
         table = self._table
-        if table.late and not table.late_places.isdisjoint(self._places):
-            table.catch_up(self._places)
+        if table.deferred and not table.deferred_places.isdisjoint(self._places):
+            table.read_deferred(self._places)
         found: Vector = table.values[self._array_index]
         return found.copy() if self._is_view else found
 

@@ -180,10 +180,10 @@ class JointActuators:
         biases[self._ids, 1], biases[self._ids, 2] = -now.kp, -now.kv
         for loss in ("dof_damping", "dof_frictionloss"):
             losses = sim.touch(loss)
-            losses[self._dofs] = np.where(now.is_helped, 0.0, sim.original(loss)[self._dofs])
+            losses[self._dofs] = np.where(now.is_compensated, 0.0, sim.original(loss)[self._dofs])
         self._limit_efforts(now)
         # whoever commands efforts has not spoken yet: until then the joint does not fall
-        held = now.kp * self.targets + np.maximum(now.helped, now.direct) * self._gravity.now()
+        held = now.kp * self.targets + np.maximum(now.compensation, now.effort_share) * self._gravity.efforts()
         data.act[self._states[changed]] = held[changed]
         data.ctrl[self._ids[changed]] = 0.0
         sim.physics.changed(CONTROL)
@@ -199,7 +199,7 @@ class JointActuators:
     def _active_modes(self) -> ActiveModes:
         """Return the gains and bounds of the present modes."""
         cached = self._cached
-        if cached is not None and cached.modes is self.modes and cached.claims is self.groups:
+        if cached is not None and cached.modes is self.modes and cached.claimed_groups is self.groups:
             return cached
         addresses = self._ids, self._qpos, self._dofs
         self._cached = ActiveModes.of(self.modes, self.groups, self._loops, addresses, self._max_velocities)
@@ -224,44 +224,44 @@ class JointActuators:
         if self._has_mimics:  # a mimic has no command of its own
             offset = np.where(now.is_position, self._mimic_law[1], 0.0)
             wanted = np.where(self._is_leader, wanted, self._mimic_law[0] * wanted[self._leaders] + offset)
-        if wanted.dot(now.nothing) != 0.0:  # sooner found like this: 0 times what is not finite is not 0
+        if wanted.dot(now.zeros) != 0.0:  # sooner found like this: 0 times what is not finite is not 0
             wanted = np.where(np.isfinite(wanted), wanted, np.where(now.is_position, self.targets, 0.0))
-        reference, rate = self._advance_all(now, wanted, period)
-        weight = self._gravity.now()
-        state = now.pull * reference
+        reference, rate = self._move_references(now, wanted, period)
+        weight = self._gravity.efforts()
+        state = now.servo_stiffness * reference
         state += now.kv * rate
-        state += weight if now.all_helped else now.helped * weight
+        state += weight if now.all_compensated else now.compensation * weight
         if now.has_integral:
             state += self._integrate(now, reference, rate, period)
         if now.has_effort:
-            state += now.direct * wanted
+            state += now.effort_share * wanted
         if not state.dot(state) < _LARGEST_CONTROL**2:
             state = np.minimum(np.maximum(state, -_LARGEST_CONTROL), _LARGEST_CONTROL)
         data.act[self._states] = state
-        data.ctrl[self._ids] = now.pull * rate
+        data.ctrl[self._ids] = now.servo_stiffness * rate
         physics.changed(CONTROL)
 
-    def _advance_all(self, now: ActiveModes, wanted: Vector, period: float) -> tuple[Vector, Vector]:
+    def _move_references(self, now: ActiveModes, wanted: Vector, period: float) -> tuple[Vector, Vector]:
         """Return the references [rad or m] and their rates from now on [rad/s or m/s], within the limits."""
         targets = self.targets
         if period <= 0.0:
             return targets, np.zeros_like(targets)
         data = self._sim.physics.data
         if now.period != period:
-            now.period, now.most = period, self._max_velocities * period
-            now.least = -now.most
+            now.period, now.highest_move = period, self._max_velocities * period
+            now.lowest_move = -now.highest_move
         # what is blocked, or was put elsewhere, does not whip back: its reference waits where it pulls with all it has
-        place, reach = data.qpos[self._qpos], now.reach
+        place, reach = data.qpos[self._qpos], now.largest_lag
         targets = np.minimum(np.maximum(targets, place - reach), place + reach)
         move = np.minimum(np.maximum(wanted, self._position_limits[0]), self._position_limits[1])
         move -= targets
-        move = np.minimum(np.maximum(move, now.least), now.most)
+        move = np.minimum(np.maximum(move, now.lowest_move), now.highest_move)
         if now.all_position:
             self.targets = targets + move
             return targets, move / period
         led, speeds = self._advance_velocity_references(now, wanted, period)
         rate, ahead, reference = move / period, targets + move, targets
-        for (k, *_), position, speed in zip(now.rolling, led, speeds, strict=True):
+        for (k, *_), position, speed in zip(now.velocity_joints, led, speeds, strict=True):
             reference[k] = ahead[k] = position
             rate[k] = speed
         self.targets = ahead
@@ -270,12 +270,12 @@ class JointActuators:
     def _advance_velocity_references(
         self, now: ActiveModes, wanted: Vector, period: float
     ) -> tuple[list[float], list[float]]:
-        """The same of those that are not driven by position, `now.rolling`."""
+        """The same of those that are not driven by position, `now.velocity_joints`."""
         data = self._sim.physics.data
         control, place, turning = data.ctrl.item, data.qpos.item, data.qvel.item
         target, speed = self.targets.item, wanted.item
         before, led, speeds, places, turns = [], [], [], [], []
-        for k, actuator, at, dof, stiffness, top in now.rolling:  # a few, so number by number
+        for k, actuator, at, dof, stiffness, top in now.velocity_joints:  # a few, so number by number
             was, fast = control(actuator) / stiffness, speed(k)
             before.append(was)
             led.append(target(k) + was * period)
@@ -289,7 +289,7 @@ class JointActuators:
             turning=turns,
             before=before,
             slacks=now.slacks,
-            catch_up=now.catch_up,
+            catch_up=now.catch_up_times,
             groups=now.groups,
         )
 

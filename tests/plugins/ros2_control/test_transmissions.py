@@ -69,7 +69,7 @@ def test_actuators_are_state_interfaces_and_no_joints_of_joint_states(tmp_path: 
         names = [i.name for i in sim.call("/controller_manager/list_hardware_interfaces").state_interfaces]
         assert names[-3:] == ["motor/position", "motor/velocity", "motor/effort"]
         host = next(p for p in sim.structure.all_plugins() if hasattr(p, "manager"))
-        host.hardware.wants(["motor/position", "motor/effort", "j1/effort"])
+        host.hardware.set_read_interfaces(["motor/position", "motor/effort", "j1/effort"])
         host.hardware.read()
         states = host.hardware.states
         position, effort, of_joint = states.select(["motor/position", "motor/effort", "j1/effort"]).values

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 _SHORTEST_PERIOD = 1e-4  # [s]; in less no speed can be told
 
 
-class WheelOdometry:
+class RollingMeanOdometry:
     """Pose of the point between two wheels from their rotation, and the mean of its speeds over the last updates.
 
     Args:
@@ -112,7 +112,7 @@ class DiffDriveController(Controller):
         self._command, self._stamp_ns = _NO_MOTION, 0
         self._last, self._before_last = _NO_MOTION, _NO_MOTION
         self._commanded: tuple[Any, ...] | None = None  # what the wheels are told, and by which sizes
-        self._odometry = WheelOdometry(options.window)
+        self._odometry = RollingMeanOdometry(options.window)
         self._has_begun = False
         self._angles: tuple[float, float] | None = None  # of the wheels, up to which the way is reckoned
         self._reckoned_ns = self._published_ns = 0

@@ -48,7 +48,7 @@ class GravityCompensationController(Controller):
             for one in params.all(name):
                 one.mark_all_read()
         known = [self.hardware.joints[name] for name in self._joints if name in self.hardware.joints]
-        self._weights = GravityEfforts(self.sim, [joint.scoped for joint in known])
+        self._gravity = GravityEfforts(self.sim, [joint.scoped for joint in known])
 
     def command_interfaces(self) -> Sequence[str]:
         return [f"{joint}/{EFFORT}" for joint in self._joints]
@@ -63,4 +63,4 @@ class GravityCompensationController(Controller):
         velocity = self.states.values
         is_moving = np.abs(velocity) > self._tolerance
         friction = np.where(is_moving, np.copysign(self._static, velocity) + self._viscous * velocity, 0.0)
-        self.commands.values = self._gain * (self._weights.now() + friction)
+        self.commands.values = self._gain * (self._gravity.efforts() + friction)

@@ -27,7 +27,7 @@ class ImpedanceController(JointTrajectoryController):
         for one in self.params.all("robot_model_chains"):
             one.mark_all_read()
         joints = [name for name in self._group.commanded_joints if name in self.hardware.joints]
-        self._weights = GravityEfforts(self.sim, [self.hardware.joints[name].scoped for name in joints])
+        self._gravity = GravityEfforts(self.sim, [self.hardware.joints[name].scoped for name in joints])
         self.hardware.springs[self.name] = dict(zip(joints, self._springs, strict=False))
 
     def _read_gains(self) -> JointPids | None:
@@ -43,6 +43,6 @@ class ImpedanceController(JointTrajectoryController):
     def update(self, now_ns: int, period: float) -> None:
         super().update(now_ns, period)
         if self._command is not None:
-            kp, kd = self.hardware.drives.spring_gains(self._group.commanded_joints)
+            kp, kd = self.hardware.actuated.spring_gains(self._group.commanded_joints)
             position, velocity = self._command.motion[:2, self._group.places]
-            self.commands.values = kp * position + kd * velocity + self._weights.now()
+            self.commands.values = kp * position + kd * velocity + self._gravity.efforts()
