@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from collections import deque
 from dataclasses import dataclass, field
-from typing import Any, Final
+from typing import Any, ClassVar, Final
 
 from simkit import msgs
 from simkit.msgs.topics import valid_topic
 from simkit.plugins.base import ModelPlugin
-from simkit.plugins.endpoints import publishes
+from simkit.plugins.endpoints import Endpoint, publishes
 from simkit.plugins.on_demand import publish_while_subscribed
 
 _HOUR: Final = 3600.0  # [s]
@@ -110,7 +110,7 @@ class Battery(ModelPlugin):
         percent: what a full battery tells as its percentage.
     """
 
-    endpoints = (publishes("/model/{model}/battery/{battery_name}/state", STATE),)
+    endpoints: ClassVar[tuple[Endpoint, ...]] = (publishes("/model/{model}/battery/{battery_name}/state", STATE),)
     battery: str = ""
     cell: Cell
     is_drained: bool = False

@@ -6,6 +6,7 @@ the like stand for names that a run fills in, `~` for the plugin's own name.
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import Literal
 
@@ -40,6 +41,12 @@ def listens(name: str, *types: str, named_by: tuple[str, ...] = ()) -> Endpoint:
 def offers(name: str, type_name: str, *, named_by: tuple[str, ...] = ()) -> Endpoint:
     """A service."""
     return Endpoint("offers", name, (type_name,), named_by)
+
+
+def offers_all(package: str, *types: str, below: str = "") -> tuple[Endpoint, ...]:
+    """Services named after their types: `GetModelProperties` is `get_model_properties`."""
+    names = {kind: re.sub(r"(?<=[a-z])(?=[A-Z])", "_", kind).lower() for kind in types}
+    return tuple(offers(f"{below}{name}", f"{package}/srv/{kind}") for kind, name in names.items())
 
 
 def acts(name: str, type_name: str, *, named_by: tuple[str, ...] = ()) -> Endpoint:

@@ -18,8 +18,9 @@ from simkit.plugins.authoring.plugin_facts import Facts, Parameter, Service, Top
 from simkit.plugins.authoring.source_scan import scan, scan_function
 from simkit.plugins.discovery.plugin_kinds import find_plugin, plugin_kinds
 from simkit.plugins.endpoints import Endpoint
-from simkit.plugins.options import Option, Options, option_types_of
+from simkit.plugins.options import Option, Options, block, choice, option_types_of, text, texts
 from simkit.plugins.plugin_names import ENTRY_POINT_GROUP, normalise
+from simkit.runtime.engine.plugin_faults import PLUGIN_ERROR_POLICIES
 from simkit.scene import ScenePlugin
 
 _UNKNOWN = "SK-PLUGIN-070"
@@ -202,7 +203,23 @@ def _default(option: Option, fields: Mapping[str, Option]) -> Any:
     return option.default
 
 
+class _RosOptions(Options):
+    """The `<ros>` block."""
+
+    namespace: str = text()
+    remapping: tuple[str, ...] = texts()
+    argument: tuple[str, ...] = texts()
+
+
+class _CommonOptions(Options):
+    """What every plugin reads: names as of a ROS node, and what becomes of it when it raises."""
+
+    robot_namespace: str = text(element="robotNamespace")
+    ros: _RosOptions = block(_RosOptions)
+    on_error: str = choice(PLUGIN_ERROR_POLICIES)
+
+
 @functools.cache
 def common_facts() -> Facts:
     """What every plugin's file may have besides: names as of a ROS node, what becomes of it when it raises."""
-    return scan_function(Plugin._describe)
+    return Facts(tuple(_declared(_CommonOptions)))

@@ -12,7 +12,7 @@ import inspect
 import sys
 import textwrap
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import FunctionType, ModuleType
 from typing import Any, Final
 
@@ -77,7 +77,7 @@ def scan(cls: type[Any], parent: str) -> Facts:
         cls: the class.
         parent: what a plugin of it hangs on, for the names of topics.
     """
-    return _Scan(parent).run([cls, *(c for c in cls.__mro__[1:] if c not in Plugin.__mro__)])
+    return _Scan(parent).run([c for c in reversed(cls.__mro__) if c not in Plugin.__mro__])
 
 
 def scan_function(function: Any) -> Facts:
@@ -117,7 +117,10 @@ class _Scan:
             for node in ast.walk(found.node):
                 if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
                     self._call(node, node.func)
-        return Facts(merged(self._parameters), merged_topics(self._topics), tuple(dict.fromkeys(self._services)))
+        above = {p.path[:-1] for p in self._parameters}
+        # of elements that are listed and have nothing inside, the texts count
+        read = [replace(p, kind="text") if p.repeated and p.path not in above else p for p in self._parameters]
+        return Facts(merged(read), merged_topics(self._topics), tuple(dict.fromkeys(self._services)))
 
     def _call(self, node: ast.Call, method: ast.Attribute) -> None:
         name = method.attr
@@ -327,17 +330,18 @@ def _named_functions(function: _Function) -> Iterator[FunctionType]:
 def _assignments(node: ast.FunctionDef) -> Iterator[tuple[str, ast.expr]]:
     """What each local name and attribute is first set to."""
     for inner in ast.walk(node):
-        targets = inner.targets if isinstance(inner, ast.Assign) else []
-        targets = [inner.target] if isinstance(inner, (ast.AnnAssign, ast.NamedExpr)) and inner.value else targets
-        if isinstance(inner, (ast.For, ast.comprehension)) and isinstance(inner.iter, ast.Call):
-            yield ast.unparse(inner.target), inner.iter
-        for target in targets:
-            pairs = [(target, inner.value)]
-            if isinstance(target, ast.Tuple) and isinstance(inner.value, ast.Tuple):
-                pairs = list(zip(target.elts, inner.value.elts, strict=False))
-            for name, value in pairs:
-                if isinstance(name, (ast.Name, ast.Attribute)):
-                    yield ast.unparse(name), value
+        match inner:
+            case ast.Assign(targets=[ast.Tuple(elts=names)], value=ast.Tuple(elts=values)):
+                yield from ((ast.unparse(name), value) for name, value in zip(names, values, strict=False))
+            case ast.Assign(targets=targets, value=value):
+                yield from ((ast.unparse(target), value) for target in targets if not isinstance(target, ast.Tuple))
+            case ast.AnnAssign(target=target, value=ast.expr() as value) | ast.NamedExpr(target=target, value=value):
+                yield ast.unparse(target), value
+            case (
+                ast.For(target=target, iter=ast.Call() as value)
+                | ast.comprehension(target=target, iter=ast.Call() as value)
+            ):
+                yield ast.unparse(target), value
 
 
 def _constant(node: ast.expr, module: ModuleType) -> Any:

@@ -20,6 +20,7 @@ class GazeboRosCameraOptions(CameraOptions):
     min_depth: float = number(_NEAREST, "m", minimum=0, maximum=camera_settings.FARTHEST)
     max_depth: float = number(math.inf, "m", minimum=0, finite=False)
     triggered: bool = boolean()
+    trigger_topic_name: bool = without_effect(element="triggerTopicName")
 
 
 class GazeboRosCamera(CameraPlugin):

@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any, Final
+from typing import Any, ClassVar, Final
 
 import numpy as np
 
 from simkit.params import Params
 from simkit.plugins.base import Plugin, SensorPlugin
-from simkit.plugins.endpoints import publishes
+from simkit.plugins.endpoints import Endpoint, publishes
 from simkit.plugins.lookups import link_name
 from simkit.plugins.options import Options, OptionsOf, boolean, number, text, without_effect
 
@@ -66,7 +66,7 @@ class CameraOptions(Options):
 class CameraPlugin(SensorPlugin):
     """Base of the camera plugins."""
 
-    endpoints = (
+    endpoints: ClassVar[tuple[Endpoint, ...]] = (
         publishes("{camera_name}/image_raw", "sensor_msgs/msg/Image", named_by=("imageTopicName",)),
         publishes("{camera_name}/camera_info", "sensor_msgs/msg/CameraInfo", named_by=("cameraInfoTopicName",)),
     )

@@ -35,7 +35,7 @@ from simkit.plugins.drives.odometry_noise import (
     replace_planar_pose,
 )
 from simkit.plugins.drives.wheel_joints import find_wheels
-from simkit.plugins.endpoints import listens, publishes
+from simkit.plugins.endpoints import Endpoint, listens, publishes
 from simkit.plugins.joint_states import JOINT_STATE, joint_readings, joint_state_message
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import (
@@ -234,7 +234,7 @@ class GazeboRosDiffDrive(ModelPlugin):
     the odometry errs from either source, and tells the covariance that its wheels' errors add up to.
     """
 
-    endpoints = (
+    endpoints: ClassVar[tuple[Endpoint, ...]] = (
         listens("cmd_vel", *COMMAND_TYPES, named_by=("commandTopic",)),
         publishes("odom", ODOMETRY, named_by=("odometryTopic",)),
         publishes("/tf", TRANSFORMS),

@@ -8,6 +8,7 @@ from simkit.params import Params
 from simkit.plugins.base import WorldPlugin
 from simkit.plugins.classic.server_services import broadcast_states, offer_table, property_services, state_services
 from simkit.plugins.classic.state_services import STATES_RATE
+from simkit.plugins.endpoints import offers, offers_all
 from simkit.plugins.options import Options, OptionsOf, number
 
 
@@ -24,6 +25,10 @@ class GazeboRosState(WorldPlugin):
     """
 
     options = OptionsOf(GazeboRosStateOptions)
+    endpoints = (
+        *offers_all("gazebo_msgs", "GetEntityState", "SetEntityState"),
+        offers("set_joint_positions", "gazebo_msgs/srv/SetModelConfiguration"),
+    )
     filenames = ("libgazebo_ros_state.so",)
 
     def load(self, parent: Any, params: Params) -> None:
@@ -37,6 +42,11 @@ class GazeboRosProperties(WorldPlugin):
     """Offers `get_model_properties`, `get_physics_properties` and the rest in its own `<ros><namespace>`."""
 
     filenames = ("libgazebo_ros_properties.so",)
+    endpoints = offers_all(
+        "gazebo_msgs",
+        *("GetWorldProperties", "GetModelProperties", "GetJointProperties", "SetJointProperties", "GetLinkProperties"),
+        *("GetLightProperties", "SetLightProperties", "GetPhysicsProperties", "SetPhysicsProperties"),
+    )
 
     def load(self, parent: Any, params: Params) -> None:
         offer_table("", self.sim, property_services(self.sim), named=self.ros.topic)

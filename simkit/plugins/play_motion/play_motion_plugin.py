@@ -14,6 +14,7 @@ from simkit import msgs
 from simkit.diagnostics import Diagnostics, did_you_mean
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
+from simkit.plugins.endpoints import acts, offers_all
 from simkit.plugins.lookups import find_plugin_file
 from simkit.plugins.play_motion.motion import Motion, limit_violations, motion_of_message, speed_limits
 from simkit.plugins.play_motion.motion_files import MotionFile, read_motions
@@ -76,6 +77,14 @@ class PlayMotion(ModelPlugin):
         known: the motions that it knows, by key.
     """
 
+    endpoints = (
+        acts("play_motion2", ROS_2),
+        acts("play_motion2/raw", ROS_2_RAW),
+        acts("play_motion", ROS_1),
+        *offers_all("play_motion2_msgs", "ListMotions", "IsMotionReady", "IsJointListReady", below="play_motion2/"),
+        *offers_all("play_motion2_msgs", "GetMotionInfo", "AddMotion", "RemoveMotion", below="play_motion2/"),
+        *offers_all("play_motion_msgs", "ListMotions", "IsAlreadyThere", below="play_motion/"),
+    )
     filenames = ("libsimkit_play_motion.so",)
     names = ("simkit::PlayMotion",)
     drives = True

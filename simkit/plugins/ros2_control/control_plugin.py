@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final
 from simkit.diagnostics import Diagnostics, Where, did_you_mean
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
+from simkit.plugins.endpoints import offers_all
 from simkit.plugins.lookups import find_plugin_file
+from simkit.plugins.options import Options, OptionsOf, boolean, text, texts
 from simkit.plugins.ros2_control.controller_manager import ControllerManager
 from simkit.plugins.ros2_control.controller_manager_services import offer_services
 from simkit.plugins.ros2_control.hardware import Hardware
@@ -36,6 +38,15 @@ _PARAMS_FILE_HINT: Final = "--params-file FILE, params_files=[FILE] in Python"
 _ROS_1_NODE: Final = "gazebo_ros_control"
 
 
+class ControlOptions(Options):
+    """Options of the plugins that host a controller manager."""
+
+    controller_manager_name: str = text()
+    parameters: tuple[str, ...] = texts()
+    controllers: tuple[str, ...] = texts()
+    hold_joints: bool = boolean(True)
+
+
 class ControlPlugin(ModelPlugin):
     """Reads the hardware and the controllers' parameter files, and runs the manager at its rate.
 
@@ -46,6 +57,14 @@ class ControlPlugin(ModelPlugin):
         is_ros_1: whether it is ROS 1's.
     """
 
+    options = OptionsOf(ControlOptions)
+    endpoints = offers_all(
+        "controller_manager_msgs",
+        *("ListControllers", "ListControllerTypes", "LoadController", "ConfigureController", "SwitchController"),
+        *("UnloadController", "ReloadControllerLibraries", "ListHardwareComponents", "ListHardwareInterfaces"),
+        "SetHardwareComponentState",
+        below="controller_manager/",
+    )
     drives = True
     is_ros_1: ClassVar[bool] = False
     manager: ControllerManager
@@ -55,12 +74,12 @@ class ControlPlugin(ModelPlugin):
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         transmissions = transmissions_of(scene, [*scene.controls, *params.all("ros2_control")])
         self.hardware = Hardware.of(describe_hardware(scene, params), scene, params.diagnostics, transmissions)
-        self._manager_name = params.text("controller_manager_name", "") or "controller_manager"
+        self._manager_name = self.options.controller_manager_name or "controller_manager"
         given = [one.file for one in builder.parameter_files if one.is_for(scene)]
         files = [*self._read_files(params, builder, any_given=bool(given)), *self._adapted_run_files(given, params)]
         self.files = ParameterFiles(files)
         self._chosen_controllers = [(word, one) for one in params.all("controllers") for word in _split_names(one)]
-        self.hardware.holds_position = params.boolean("hold_joints", True)
+        self.hardware.holds_position = self.options.hold_joints
         self.mark_ignored_elements(params)
         self.before_step_rate = self.read_rate(params, builder)
         self._report_driven_twice(builder)

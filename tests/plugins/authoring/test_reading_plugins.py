@@ -1,4 +1,4 @@
-"""What a plugin reads and opens is found by reading its code: every branch, every loop, whatever it calls."""
+"""What a plugin reads and opens: what it declares, and what its source says literally."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from typing import Any
 import pytest
 
 import simkit
-from simkit import ModelPlugin, Params, SensorPlugin, WorldPlugin
+from simkit import ModelPlugin, Params, WorldPlugin
 from simkit.plugins.authoring.catalogue import common_facts, facts_of
 from simkit.plugins.authoring.plugin_facts import Facts, Parameter, Topic
 from simkit.plugins.discovery.gz_hooks import as_class
 from simkit.plugins.discovery.plugin_kinds import plugin_kinds
-
-_BOUNDS = {"low": -1.0, "high": 1.0}
+from simkit.plugins.endpoints import listens
+from simkit.plugins.options import Options, OptionsOf, number, texts
 
 
 def parameter(facts: Facts, name: str) -> Parameter:
@@ -28,7 +28,6 @@ def topics(facts: Facts) -> dict[str, Topic]:
 class Everything(ModelPlugin):
     def prepare(self, scene: Any, params: Params, builder: Any) -> None:
         self._joints = [element.value for element in params.all("joint")]
-        self._limits = {name: params.number(f"{name}_limit", bound) for name, bound in _BOUNDS.items()}
 
     def load(self, parent: Any, params: Params) -> None:
         self._gain = params.number("gain", 2.0, minimum=0.0, maximum=10)
@@ -51,8 +50,8 @@ class Everything(ModelPlugin):
 
 
 def read_rest(plugin: ModelPlugin, params: Params) -> None:
-    for side in ("left", "right"):
-        plugin.params.boolean(f"{side}_on", side == "left")
+    for gain in params.all("gain_of"):
+        gain.number("value", 0.0)
     general = params.number("speed", 1.0)
     params.number("turn_speed", general)
 
@@ -73,8 +72,7 @@ def test_reads_in_blocks_loops_and_other_functions_are_found() -> None:
     assert parameter(facts, "noise").kind == "block"
     assert parameter(facts, "noise/stddev").default == 0.0
     assert parameter(facts, "noise/@type").default == "none"
-    assert [parameter(facts, f"{side}_limit").default for side in ("low", "high")] == [-1.0, 1.0]
-    assert [parameter(facts, f"{side}_on").default for side in ("left", "right")] == [True, False]
+    assert parameter(facts, "gain_of").repeated and parameter(facts, "gain_of/value").kind == "number"
 
 
 def test_a_default_that_is_another_element_names_it() -> None:
@@ -116,19 +114,13 @@ def test_a_plugin_of_a_sensor_publishes_what_the_sensor_gives() -> None:
 
 class Base(WorldPlugin):
     def load(self, parent: Any, params: Params) -> None:
-        self.advertise(self.wanted(), "std_msgs/msg/Bool")
-
-    def wanted(self) -> str:
-        return self.params.text("topic", "from_base")
+        self.advertise(self.params.text("topic", "from_base"), "std_msgs/msg/Bool")
 
 
 class Derived(Base):
     def load(self, parent: Any, params: Params) -> None:
         super().load(parent, params)
         params.number("more", math.inf, finite=False)
-
-    def wanted(self) -> str:
-        return super().wanted() or "derived"
 
 
 def test_what_the_classes_above_read_is_found_too() -> None:
@@ -137,25 +129,28 @@ def test_what_the_classes_above_read_is_found_too() -> None:
     assert list(topics(facts)) == ["from_base"]
 
 
-class Endless(SensorPlugin):
+class BrakeOptions(Options):
+    force: float = number(3.0, "N", minimum=0.0)
+    wheel_names: tuple[str, ...] = texts(element="wheel", required=True)
+    weak_force: float = number(unit="N", instead="force")
+
+
+class Brake(ModelPlugin):
+    options = OptionsOf(BrakeOptions)
+    endpoints = (listens("brake/{model}", "std_msgs/msg/Bool", named_by=("topic",)),)
+
     def load(self, parent: Any, params: Params) -> None:
-        self.again(params, 0)
-
-        def inner(depth: int) -> Any:
-            return [inner(depth + 1), inner(depth - 1)]
-
-        inner(0)
-        while params.has("more"):
-            params.text("more")
-
-    def again(self, params: Params, depth: int) -> None:
-        params.text(f"level_{depth}", "")
-        self.again(params, depth + 1)
+        self._delay = params.number("delay", 0.0)  # [s]
 
 
-def test_functions_that_call_themselves_come_to_an_end() -> None:
-    names = [p.name for p in facts_of(Endless).parameters]
-    assert "level_0" in names and "more" in names and len(names) < 10
+def test_declared_options_and_endpoints_come_with_what_the_source_says() -> None:
+    facts = facts_of(Brake)
+    assert [p.name for p in facts.parameters] == ["force", "wheel", "weak_force", "delay"]
+    force, wheel, weak, delay = facts.parameters
+    assert (force.kind, force.default, force.unit, force.minimum) == ("number", 3.0, "N", 0.0)
+    assert wheel.repeated and wheel.required
+    assert (weak.default, weak.instead, delay.unit) == (3.0, ("force",), "s")
+    assert topics(facts)["brake/{model}"].elements == ("topic",)
 
 
 class GzSystem:
