@@ -13,7 +13,7 @@ from simkit import msgs
 from simkit.params import Params
 from simkit.plugins.classic.diff_drive import GazeboRosDiffDrive, read_options
 from simkit.plugins.drives.odometry import DeadReckoning, WheelOdometry, command_of, planar_covariance
-from simkit.plugins.drives.speed_limits import SpeedLimiter, speed_limits
+from simkit.plugins.drives.speed_limits import SpeedLimiter, SpeedLimitOptions, speed_limits
 
 WHEELS = {"left_joint": "l", "right_joint": "r"}
 
@@ -171,14 +171,14 @@ def test_jerk_bounds_how_fast_acceleration_grows() -> None:
 
 def test_direction_bounds_win_over_general_ones() -> None:
     params = Params.from_dict({"max_velocity": 1.0, "max_angular_velocity": 3.0, "min_velocity": -1.0})
-    linear, angular = speed_limits(params)
+    linear, angular = speed_limits(SpeedLimitOptions(params))
     assert (linear.velocity, angular.velocity) == ((-1.0, 1.0), (-1.0, 3.0))
     assert linear.acceleration == angular.jerk == (-math.inf, math.inf)
 
 
 def test_bounds_the_wrong_way_round_are_an_error() -> None:
     params = Params.from_dict({"max_acceleration": -1.0, "min_angular_velocity": 1.0, "max_jerk": 0.0})
-    speed_limits(params)
+    speed_limits(SpeedLimitOptions(params))
     assert [(d.code, d.message.split(",")[0]) for d in params.diagnostics] == [
         ("SK-PARAM-002", "found <min_angular_velocity>1.0</min_angular_velocity>"),
         ("SK-PARAM-002", "found <max_acceleration>-1.0</max_acceleration>"),

@@ -1,4 +1,8 @@
-"""Actors: people and animals that follow a script, seen by sensors and touched by nothing."""
+"""Actors: people and animals that follow a script, or a plugin, and are seen by sensors and touched by nothing.
+
+A `SceneActor` enters; a static model of links leaves, which `ActorMover` puts where the script says. Nothing here pushes
+or is pushed.
+"""
 
 from __future__ import annotations
 

@@ -1,6 +1,5 @@
-"""Help for authors of plugins: information about plugins, skeletons of new ones, reloading in a run.
+"""What helps whoever writes plugins: the catalogue behind `simkit plugin`, skeletons, reloading while a run goes on.
 
-What enters: plugin classes, the name of a new plugin or the world that needs it, and files that change. What leaves:
-the parameters and topics of a plugin, `docs/catalogue.md`, files with a new plugin and its test, and plugins that go on
-with new code. No other room imports it but the command line.
+A class, a world or a file enters; facts, Python text or a new instance leaves. Nothing here is loaded by a run, except
+to reload a plugin whose file has changed.
 """

@@ -373,6 +373,8 @@ def _is_none(node: ast.expr) -> bool:
 def _hole(node: ast.expr) -> str:
     while isinstance(node, (ast.Call, ast.Subscript)):
         node = node.func if isinstance(node, ast.Call) else node.value
+        if isinstance(node, ast.Attribute) and node.attr in ("rsplit", "split", "strip", "removeprefix"):
+            node = node.value
     word = node.attr if isinstance(node, ast.Attribute) else getattr(node, "id", "…")
     return "{" + word.strip("_").rsplit("_", 1)[-1] + "}"
 

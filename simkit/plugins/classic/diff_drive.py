@@ -116,8 +116,8 @@ class DiffDriveOptions(CommonDiffDriveOptions):
     publish_odom_tf: bool = boolean()
     publish_wheel_tf: bool = boolean()
     num_wheel_pairs: int = integer(1, minimum=1)
-    left_joints: tuple[str, ...] = texts(element="left_joint")
-    right_joints: tuple[str, ...] = texts(element="right_joint")
+    left_joints: tuple[str, ...] = texts(element="left_joint", required=True)
+    right_joints: tuple[str, ...] = texts(element="right_joint", required=True)
     wheel_separations: tuple[float, ...] = numbers("m", element="wheel_separation", minimum=1e-6)
     wheel_diameters: tuple[float, ...] = numbers("m", element="wheel_diameter", minimum=1e-6)
 
@@ -211,9 +211,6 @@ def _read_ros_1(params: Params) -> DriveSettings:
 
 def _read_pairs(given: DiffDriveOptions) -> tuple[Pair, ...]:
     count, left, right = given.num_wheel_pairs, given.left_joints, given.right_joints
-    for name, found in (("left_joint", left), ("right_joint", right)):
-        if not found:
-            given.params.text(name, required=True)
     if left and right and not len(left) == len(right) == count:
         found_text = f"found {len(left)} <left_joint> and {len(right)} <right_joint>"
         allowed = f"allowed is one of each for each of {count} <num_wheel_pairs>"

@@ -18,6 +18,7 @@ class GazeboRosImuSensorOptions(Options):
 
     topic_name: str = text(element="topicName")
     initial_orientation_as_reference_ros_1: bool = boolean(element="initialOrientationAsReference")
+    initial_orientation_as_reference: bool = boolean(instead="initial_orientation_as_reference_ros_1")
     body_name: str = text(element="bodyName")
     frame_name: str = text()
     frame_name_ros_1: str = text(element="frameName")
@@ -41,8 +42,7 @@ class GazeboRosImuSensor(SensorPlugin):
 
     def load(self, parent: Any, params: Params) -> None:
         topic = private_topic(self, "out", "topicName")
-        old = self.options.initial_orientation_as_reference_ros_1
-        from_start = params.boolean("initial_orientation_as_reference", old)
+        from_start = self.options.initial_orientation_as_reference
         body = self.options.body_name
         if not hasattr(parent, "set_orientation_reference"):
             self.refuse(parent, "imu")

@@ -113,10 +113,7 @@ class AckermannSteering(ModelPlugin):
         ]
 
     def _prepare_wheels(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        named = {f"{side} wheel": [one.value for one in params.all(f"{side}_joint")] for side in _SIDES}
-        for side in _SIDES:
-            if not named[f"{side} wheel"]:
-                params.text(f"{side}_joint", required=True)
+        named = {"left wheel": self.options.left_joint, "right wheel": self.options.right_joint}
         wheels = find_wheels(scene, named, params)
         self._driven = [[joint.scoped for joint in joints] for joints in wheels.values()]
         self._motors = [

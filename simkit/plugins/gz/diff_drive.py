@@ -77,12 +77,8 @@ class DiffDrive(ModelPlugin):
         self._canonical = scene.canonical_link
         # gz publishes at every step where the frequency is zero
         self.after_step_rate = self.options.odom_publish_frequency
-        named = [params.all("left_joint"), params.all("right_joint")]
-        for name, found in zip(("left_joint", "right_joint"), named, strict=True):
-            if not found:
-                params.text(name, required=True)
-        left, right = ([element.value for element in elements] for elements in named)
-        wheels = find_wheels(scene, {"left wheel": left, "right wheel": right}, params)
+        sides = {"left wheel": self.options.left_joint, "right wheel": self.options.right_joint}
+        wheels = find_wheels(scene, sides, params)
         self._sides = [[joint.scoped for joint in joints] for joints in wheels.values()]
         self._servos = [
             [builder.add_velocity_servo(j.scoped, max_effort=j.axes[0].effort, owner=self.name) for j in joints]

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 class JointPositionControllerOptions(JointCommandOptions):
     """Options of `JointPositionController`."""
 
+    i_gain: float = number(0.1, is_live=True)
+    d_gain: float = number(0.01, is_live=True)
     joint_index: int = integer(0, minimum=0)
     initial_position: float = number(0.0, "rad or m")
     use_velocity_commands: bool = boolean()

@@ -33,6 +33,7 @@ class LinearBatteryOptions(Options):
     battery_name: str = text(required=True)
     voltage: float = number(minimum=0.0, required=True)
     capacity: float = number(minimum=1e-12, required=True)
+    initial_charge: float = number(instead="capacity")
     smooth_current_tau: float = number(1.0)
     open_circuit_voltage_constant_coef: float = number(0.0)
     open_circuit_voltage_linear_coef: float = number(0.0)
@@ -79,7 +80,7 @@ class LinearBattery(Battery):
 
     def _read_cell(self, params: Params, voltage: float) -> Cell:
         capacity = self.options.capacity
-        charge = params.number("initial_charge", capacity)
+        charge = self.options.initial_charge
         kept = max(0.0, min(capacity, charge))
         if kept != charge:
             allowed = f"is not from 0 to {capacity:g}"

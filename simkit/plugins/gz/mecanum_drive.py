@@ -91,12 +91,12 @@ class MecanumDrive(ModelPlugin):
         self._canonical = scene.canonical_link
         # gz publishes at every step where the frequency is zero
         self.after_step_rate = self.options.odom_publish_frequency
-        named: dict[str, list[str]] = {}
-        for place in _PLACES:
-            elements = params.all(f"{place}_joint")
-            if not elements:
-                params.text(f"{place}_joint", required=True)
-            named[place.replace("_", " ") + " wheel"] = [element.value for element in elements]
+        named = {
+            "front left wheel": self.options.front_left_joint,
+            "front right wheel": self.options.front_right_joint,
+            "back left wheel": self.options.back_left_joint,
+            "back right wheel": self.options.back_right_joint,
+        }
         wheels = find_wheels(scene, named, params)
         self._joints = [[joint.scoped for joint in joints] for joints in wheels.values()]
         self._servos = [

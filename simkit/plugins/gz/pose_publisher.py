@@ -41,6 +41,7 @@ class PosePublisherOptions(Options):
     """Options of `PosePublisher`."""
 
     publish_nested_model_pose: bool = boolean()
+    publish_model_pose: bool = boolean(instead="publish_nested_model_pose")
     publish_link_pose: bool = boolean(True)
     publish_visual_pose: bool = boolean()
     publish_collision_pose: bool = boolean()
@@ -49,6 +50,7 @@ class PosePublisherOptions(Options):
     pose_type: str = choice(_TYPES, STAMPED)
     static_publisher: bool = boolean()
     update_frequency: float = number(-1.0, "Hz")
+    static_update_frequency: float = number(unit="Hz", instead="update_frequency")
     topic: str = text()
 
 
@@ -82,7 +84,7 @@ class PosePublisher(ModelPlugin):
             "collision": self.options.publish_collision_pose,
             "sensor": self.options.publish_sensor_pose,
             "nested": nested,
-            "model": params.boolean("publish_model_pose", nested),
+            "model": self.options.publish_model_pose,
         }
         self._is_vector = self.options.use_pose_vector_msg
         self._type = self.options.pose_type
@@ -90,7 +92,7 @@ class PosePublisher(ModelPlugin):
         self._rate = max(0.0, self.options.update_frequency)
         self._static_rate = self._rate
         if self._has_static:
-            self._static_rate = max(0.0, params.number("static_update_frequency", self._rate))
+            self._static_rate = max(0.0, self.options.static_update_frequency)
         path = "".join(f"/model/{name}" for name in scene.scoped.split("::"))
         self._topic = valid_topic(self.options.topic or f"{path}/pose")
         self.after_step_rate = _common_rate(self._rate, self._static_rate)
