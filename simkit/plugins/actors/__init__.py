@@ -1,7 +1,7 @@
 """Actors: people and animals that follow a script, or a plugin, and are seen by sensors and touched by nothing.
 
-A `SceneActor` enters; a static model of links leaves, which `ActorMover` puts where the script says. Nothing here pushes
-or is pushed.
+A `SceneActor` enters; a static model of links leaves, which `ActorMover` puts where the script says. Nothing here
+pushes or is pushed.
 """
 
 from __future__ import annotations
