@@ -27,9 +27,13 @@ from simkit.plugins.ros_names import RosNames
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.runtime import Simulation
-    from simkit.runtime.communication.action_server import GoalHandle
+    from simkit.runtime.communication.action_server import Action, GoalHandle
     from simkit.runtime.communication.parameter_server import Parameter
+    from simkit.runtime.communication.publisher import Listener, Publisher
+    from simkit.runtime.communication.service_server import Service
+    from simkit.runtime.communication.subscription import Subscription
     from simkit.runtime.engine.plugin_faults import PluginErrorPolicy
+    from simkit.runtime.engine.random_streams import RandomStream
     from simkit.scene import ScenePlugin
 
 T = TypeVar("T", bound="bool | int | float | str | tuple[float, ...]")
@@ -134,19 +138,21 @@ class Plugin(abc.ABC):
 
     # ------------------------------------------------------------------ what a user calls
 
-    def advertise(self, topic: str, type_name: str, *, latched: bool = False) -> Any:
+    def advertise(self, topic: str, type_name: str, *, latched: bool = False) -> Publisher:
         """A publisher on `topic` (expanded and remapped as in ROS), of a type such as `nav_msgs/msg/Odometry`."""
         with self.sim.bus.owned_by(self):
             return self.sim.bus.advertise(self.ros.topic(topic), type_name, latched=latched)
 
-    def listen(self, topic: str, types: str | Sequence[str], callback: Callable[[Any], None]) -> Any:
+    def listen(self, topic: str, types: str | Sequence[str], callback: Callable[[Any], None]) -> Listener:
         """Calls `callback(message)` between two steps for each message on `topic`; the first type is the listed one."""
         name = self.ros.topic(topic)
         guarded = self.sim.faults.guard(self, f"its callback for {name!r}", callback)
         with self.sim.bus.owned_by(self):
             return self.sim.bus.listen(name, (types,) if isinstance(types, str) else types, guarded)
 
-    def subscribe(self, topic: str, callback: Callable[[Any], None] | None = None, keep: int | None = None) -> Any:
+    def subscribe(
+        self, topic: str, callback: Callable[[Any], None] | None = None, keep: int | None = None
+    ) -> Subscription:
         """Receives what others publish on `topic` (expanded and remapped as in ROS), at the moment they do.
 
         To be used for readings; what comes in as a command is for `listen`, which takes it between two steps.
@@ -161,7 +167,7 @@ class Plugin(abc.ABC):
         with self.sim.bus.owned_by(self):
             return self.sim.subscribe(name, guarded, keep)
 
-    def offer(self, service: str, type_name: str, handler: Callable[[Any], Any]) -> Any:
+    def offer(self, service: str, type_name: str, handler: Callable[[Any], Any]) -> Service:
         """Opens a service (its name expanded and remapped as in ROS), of a type such as `std_srvs/srv/Trigger`.
 
         Args:
@@ -178,7 +184,7 @@ class Plugin(abc.ABC):
         type_name: str,
         on_goal: Callable[[GoalHandle], None],
         on_cancel: Callable[[GoalHandle], bool | None] | None = None,
-    ) -> Any:
+    ) -> Action:
         """Opens an action of a type such as `control_msgs/action/FollowJointTrajectory`.
 
         Args:
@@ -239,7 +245,7 @@ class Plugin(abc.ABC):
             on_change=on_change,
         )
 
-    def random(self, channel: str, width: int = 1) -> Any:
+    def random(self, channel: str, width: int = 1) -> RandomStream:
         """This plugin's own random stream: `.normal(index)` has `width` numbers that depend on seed, name and index."""
         owner = f"{self.scoped}::{self.name}" if self.scoped else self.name
         return self.sim.streams.stream(owner, channel, width)

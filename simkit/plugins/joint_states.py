@@ -17,6 +17,7 @@ from simkit.plugins.options import Options, OptionsOf, number, text, texts
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.runtime import Model
     from simkit.scene import SceneJoint, SceneModel
 
 JOINT_STATE = "sensor_msgs/msg/JointState"
@@ -49,7 +50,7 @@ class _JointStates(ModelPlugin):
     _joints: list[str]
     _topic: str
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         self._handles = [self.sim.joint(name) for name in self._joints]
         self._states = self.advertise(self._topic, JOINT_STATE)
 

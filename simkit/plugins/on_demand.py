@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from simkit.plugins.base import Plugin
+    from simkit.runtime import Simulation
 
 
 _NS = 1_000_000_000
@@ -48,7 +49,7 @@ class Watcher(Protocol):
         _was_heard: whether somebody heard it when that was last asked; False after `load`.
     """
 
-    sim: Any
+    sim: Simulation
     _was_heard: bool
 
     def begin(self) -> None:

@@ -28,6 +28,8 @@ from simkit.scene import Cylinder, Sphere
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.msgs import Twist, TwistStamped
+    from simkit.runtime import Model
     from simkit.scene import SceneJoint, SceneLink, SceneModel
 
 _FLOAT = "std_msgs/msg/Float32"
@@ -151,7 +153,7 @@ class GazeboRosAckermannDrive(ModelPlugin):
         joint = find_drive_joint(scene, name, "steering wheel", params)
         return joint and builder.add_position_servo(joint.scoped, max_effort=math.inf, owner=self.name)
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         self.once = OneTimeWarnings(self)
         self.before_step_rate = self.after_step_rate = self._rate
         self._axes = [JointAxis(self.sim.joint(joint.scoped)) for joint in (*self._turned, *self._wheels[2:])]
@@ -166,7 +168,7 @@ class GazeboRosAckermannDrive(ModelPlugin):
         self._distance_out = self.advertise("distance", _FLOAT) if self._tells_distance else None
         self._angle_out = self.advertise("steerangle", _FLOAT) if self._tells_angle else None
 
-    def _on_command(self, message: Any) -> None:
+    def _on_command(self, message: Twist | TwistStamped) -> None:
         command = command_of(message)
         if command is None:
             self.once.not_finite()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from simkit.plugins.options import Options, OptionsOf, blocks, number, text, vec
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.runtime import Model
     from simkit.scene import SceneModel
 
 WATER: Final = 999.1026
@@ -61,7 +62,7 @@ class BuoyancyPlugin(BuoyancyBase, ModelPlugin):
             if link is not None:
                 self._given.setdefault(link.scoped, Hull(volume, np.array(centre)))
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         self.start()
 
     def find_hulls(self) -> Mapping[str, Sequence[Hull]]:

@@ -55,6 +55,8 @@ from simkit.pose import Pose, Vector
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.msgs import Twist, TwistStamped
+    from simkit.runtime import Model
     from simkit.scene import SceneModel
 
 _ROS_1 = ("robotNamespace", "leftJoint", "rightJoint", "wheelSeparation", "wheelDiameter", "commandTopic", "updateRate")
@@ -259,7 +261,7 @@ class GazeboRosDiffDrive(ModelPlugin):
             servo = builder.add_velocity_servo(joint.scoped, max_effort=options.max_torque, owner=self.name)
             self._servos.append(servo)
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         self.once = OneTimeWarnings(self)
         options = self.options
         self.before_step_rate = self.after_step_rate = options.update_rate
@@ -283,7 +285,7 @@ class GazeboRosDiffDrive(ModelPlugin):
 
     # ------------------------------------------------------------------ commands
 
-    def _on_command(self, message: Any) -> None:
+    def _on_command(self, message: Twist | TwistStamped) -> None:
         command = command_of(message)
         if command is None:
             self.once.not_finite()

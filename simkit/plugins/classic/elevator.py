@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, Any, Final, Literal
+from typing import TYPE_CHECKING, Final, Literal
 
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
@@ -17,6 +17,8 @@ from simkit.runtime.engine.physics import CONTROL
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.msgs import String
+    from simkit.runtime import Model
     from simkit.scene import SceneJoint, SceneModel
 
 Phase = Literal["idle", "closing first", "moving", "opening", "waiting", "closing"]
@@ -87,7 +89,7 @@ class ElevatorPlugin(ModelPlugin):
         named = params.child(element)
         return find_axis_joint(scene, name, named) if named is not None else None
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         self.once = OneTimeWarnings(self)
         self._lift, self._door = (JointAxis(self.sim.joint(name)) for name in self._joints)
         self._phase: Phase = "idle"
@@ -104,7 +106,7 @@ class ElevatorPlugin(ModelPlugin):
 
     # ------------------------------------------------------------------ commands
 
-    def _on_floor(self, message: Any) -> None:
+    def _on_floor(self, message: String) -> None:
         found = _FLOOR.match(message.data)
         if found is None or len(found[0]) > 9:
             self.once.left_out("text", f"{message.data[:40]!r} is not the number of a floor; it is left out")

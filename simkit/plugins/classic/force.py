@@ -17,6 +17,8 @@ from simkit.pose import Vector, quat_rotate
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.msgs import Wrench
+    from simkit.runtime import Model
     from simkit.scene import SceneModel
 
 WRENCH: Final = "geometry_msgs/msg/Wrench"
@@ -49,14 +51,14 @@ class GazeboRosForce(ModelPlugin):
         self._topic = self.options.topic_name if is_ros_1 else "gazebo_ros_force"
         self._turns = self.options.force_frame == "link"
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         self.once = OneTimeWarnings(self)
         self._wrench = np.zeros(6)
         # what turns with the link is set anew at every step
         self.before_step_rate = None if self._turns else NEVER
         self.listen(self._topic, WRENCH, self._on_wrench)
 
-    def _on_wrench(self, message: Any) -> None:
+    def _on_wrench(self, message: Wrench) -> None:
         f, t = message.force, message.torque
         wrench = np.array((f.x, f.y, f.z, t.x, t.y, t.z), float)
         if not np.isfinite(wrench).all():

@@ -20,6 +20,7 @@ from simkit.runtime.handles.joint_mechanics import transmitted_wrench
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.runtime import Model
     from simkit.scene import SceneModel
 
 TYPE = "geometry_msgs/msg/WrenchStamped"
@@ -80,7 +81,7 @@ class GazeboRosFtSensor(ModelPlugin):
             self._joint = joint.scoped
             self._frame = joint.child_link.rsplit("::", 1)[-1]
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         self._out = self.advertise(self._topic, TYPE)
         self._stream = self.random("gaussian_noise", 6) if self._deviation > 0 else None
         self._index = 0
@@ -93,7 +94,7 @@ class GazeboRosFtSensor(ModelPlugin):
         values = np.concatenate(self._of_joint(data) if self._joint else self._of_link(data))
         self._out.publish_later(partial(self._message, self.sim.time_ns, values, self._index))
 
-    def _of_joint(self, data: Any) -> tuple[Vector, Vector]:
+    def _of_joint(self, data: mujoco.MjData) -> tuple[Vector, Vector]:
         names = self.sim.names
         joint = names.joint(self._joint)
         child = names.link(joint.scene.child_link)
@@ -103,7 +104,7 @@ class GazeboRosFtSensor(ModelPlugin):
         force, torque = transmitted_wrench(self.sim.mj_model, data, joint, origin)
         return -force @ axes, -torque @ axes
 
-    def _of_link(self, data: Any) -> tuple[Vector, Vector]:
+    def _of_link(self, data: mujoco.MjData) -> tuple[Vector, Vector]:
         model, body = self.sim.mj_model, self.sim.names.link(self._link).body
         if not body:
             return np.zeros(3), np.zeros(3)

@@ -20,6 +20,7 @@ from simkit.pose import IDENTITY, Pose
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.runtime import Model
     from simkit.scene import SceneModel
 
 _WORLD: Final = "world"
@@ -58,7 +59,7 @@ class GazeboRosHandOfGod(ModelPlugin):
         self._mass, self._inertia = (1.0, 1.0) if link is None else (link.inertial.mass, link.inertial.inertia[0])
         self._has_weight = link is not None and link.gravity
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         self.once = OneTimeWarnings(self)
         self._damping = 2.0 * np.sqrt(self._stiffness * (self._mass, self._inertia))
         self._link = self.sim.link(self._scoped)

@@ -17,6 +17,7 @@ from simkit.pose import Pose, Vector, quat_from_rpy, quat_multiply
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.runtime import Model
     from simkit.scene import SceneModel
 
 TYPE = "sensor_msgs/msg/Imu"
@@ -73,7 +74,7 @@ class GazeboRosImu(ModelPlugin):
             hint = "<simkit:gazebo_quirks>true</simkit:gazebo_quirks> in the world has it as Gazebo"
             params.diagnostics.note("SK-PLUGIN-060", message, self.where, hint)
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         self._link = self.sim.link(self._body)
         self._out = self.advertise(self._topic, TYPE) if self._topic else None
         if self._service and self.ros.topic(self._service) not in self.sim.services():

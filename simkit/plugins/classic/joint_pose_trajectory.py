@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from simkit.errors import InputError
 from simkit.params import Params
@@ -15,6 +15,7 @@ from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, OptionsOf, choice, number, text
 
 if TYPE_CHECKING:
+    from simkit.msgs import JointTrajectory
     from simkit.runtime import Joint, Link, Model
 
 TRAJECTORY: Final = "trajectory_msgs/msg/JointTrajectory"
@@ -75,7 +76,7 @@ class GazeboRosJointPoseTrajectory(ModelPlugin):
 
     # ------------------------------------------------------------------ commands
 
-    def _on_trajectory(self, message: Any) -> None:
+    def _on_trajectory(self, message: JointTrajectory) -> None:
         frame = str(message.header.frame_id).strip("/")
         link = self._reference(frame)
         if link is None and frame not in _WORLD:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simkit.diagnostics import did_you_mean
 from simkit.params import Params
@@ -12,6 +12,7 @@ from simkit.plugins.options import Options, OptionsOf, number, text
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.runtime import Model
     from simkit.scene import SceneModel
 
 
@@ -48,7 +49,7 @@ class ClassicLinearBattery(Battery):
         voltage = constant + linear * (1.0 - charge / capacity)
         self.cell = Cell(constant, linear, capacity, resistance, tau, voltage, charge)
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         self.is_drained = True
         self.open_state(parent.name)
 
@@ -70,7 +71,7 @@ class LinearBatteryConsumer(BatteryConsumer):
         find_named_link(scene, "link_name", params)
         self.battery = read_required_name(params, "battery_name")
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         self._power = self.declare("power_load", 0.0, description="what is drawn from the battery [W]")
         plugins = [p for p in self.sim.structure.all_plugins() if isinstance(p, Battery)]
         there = [p.battery for p in plugins if p.scoped == self.scoped]

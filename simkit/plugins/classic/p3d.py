@@ -21,6 +21,7 @@ from simkit.pose import Pose, Vector, quat_conjugate, quat_from_rpy, quat_multip
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.runtime import Model
     from simkit.scene import SceneModel
 
 _ROS_1 = ("robotNamespace", "bodyName", "topicName", "frameName", "gaussianNoise", "updateRate")
@@ -97,7 +98,7 @@ class GazeboRosP3D(ModelPlugin):
             params.diagnostics.warning("SK-PLUGIN-054", f"{message}; poses are the world's", self.where, hint)
         return links.get(frame, "")
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         self._link = self.sim.link(self._body)
         self._base = self.sim.link(self._reference) if self._reference else None
         self._stream = self.random("gaussian_noise", 6) if self._deviation > 0 else None

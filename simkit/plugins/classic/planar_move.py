@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -31,6 +31,8 @@ from simkit.pose import Pose, Vector, quat_from_rpy
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.msgs import Twist, TwistStamped
+    from simkit.runtime import Model
     from simkit.runtime.engine.clock import TickGrid
     from simkit.scene import SceneModel
 
@@ -165,7 +167,7 @@ class GazeboRosPlanarMove(ModelPlugin):
         canonical = next(link for link in scene.all_links() if link.scoped == scene.canonical_link)
         self._in_canonical = canonical.pose_world.inverse() @ scene.pose_world
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         self.once = OneTimeWarnings(self)
         options = self.options
         self._true = TrueMotion(parent, self.sim.link(self._canonical))
@@ -184,8 +186,8 @@ class GazeboRosPlanarMove(ModelPlugin):
 
     # ------------------------------------------------------------------ commands
 
-    def _on_command(self, message: Any) -> None:
-        twist = getattr(message, "twist", message)
+    def _on_command(self, message: Twist | TwistStamped) -> None:
+        twist: Twist = getattr(message, "twist", message)
         told = float(twist.linear.x), float(twist.linear.y), float(twist.angular.z)
         if all(map(math.isfinite, told)):
             self._told, self._told_ns = told, self.sim.time_ns

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from simkit.diagnostics import did_you_mean
 from simkit.params import Params
@@ -11,6 +11,9 @@ from simkit.plugins.base import ModelPlugin
 from simkit.plugins.classic import camera_settings
 from simkit.plugins.endpoints import publishes
 from simkit.plugins.options import Options, OptionsOf, boolean, number, text
+
+if TYPE_CHECKING:
+    from simkit.runtime import Model
 
 _STREAMS = {"color": "color", "infrared1": "ired1", "infrared2": "ired2", "depth": "depth"}
 """What the parameters of a stream begin with -> how its sensor's name ends."""
@@ -74,7 +77,7 @@ class RealSense(ModelPlugin):
     options = OptionsOf(RealSenseOptions)
     filenames = ("librealsense_gazebo_plugin.so",)
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         prefix = self.options.prefix
         near, far = camera_settings.read_depths(self.options, "range_min_depth", "range_max_depth")
         cloud = self._read_cloud(params)

@@ -45,7 +45,7 @@ class ClassicServices(WorldPlugin):
     def prepare(self, scene: SceneWorld, params: Params, builder: SpecBuilder) -> None:
         self._is_ros_1 = any(_is_of_ros_1(plugin) for plugin in _plugins(scene))
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Simulation, params: Params) -> None:
         sim = self.sim
         self.pushes: list[TimedWrench] = []
         tables = [_server_services(sim), _wrench_services(self), state_services(sim), property_services(sim)]

@@ -22,7 +22,7 @@ from simkit.sensors.environment.solar_irradiance import SolarReading, SolarView
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
-    from simkit.runtime import Light, Simulation
+    from simkit.runtime import Light, Model, Simulation
     from simkit.scene import SceneModel
 
 IMU = "sensor_msgs/msg/Imu"
@@ -101,7 +101,7 @@ class SolarSensor(ModelPlugin):
         self._options = solar_irradiance.read_solar_options(params, "position")
         self.after_step_rate = self.options.update_rate
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         self._light = _find_light(self.sim, params)
         self._link = self.sim.link(self._link_name)
         self._turn = quat_from_rpy(*self._rpy)

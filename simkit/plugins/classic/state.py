@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 from simkit.params import Params
 from simkit.plugins.base import WorldPlugin
@@ -10,6 +10,9 @@ from simkit.plugins.classic.server_services import broadcast_states, offer_table
 from simkit.plugins.classic.state_services import STATES_RATE
 from simkit.plugins.endpoints import offers, offers_all
 from simkit.plugins.options import Options, OptionsOf, number
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
 
 
 class GazeboRosStateOptions(Options):
@@ -31,7 +34,7 @@ class GazeboRosState(WorldPlugin):
     )
     filenames = ("libgazebo_ros_state.so",)
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Simulation, params: Params) -> None:
         rate = self.options.update_rate
         offer_table("", self.sim, state_services(self.sim), named=self.ros.topic)
         models, links = self.ros.topic("model_states"), self.ros.topic("link_states")
@@ -48,5 +51,5 @@ class GazeboRosProperties(WorldPlugin):
         *("GetLightProperties", "SetLightProperties", "GetPhysicsProperties", "SetPhysicsProperties"),
     )
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Simulation, params: Params) -> None:
         offer_table("", self.sim, property_services(self.sim), named=self.ros.topic)

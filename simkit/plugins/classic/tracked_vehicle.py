@@ -25,6 +25,7 @@ from simkit.scene import Cylinder, SceneJoint, SceneLink
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.runtime import Model
     from simkit.scene import SceneModel
 
 _SIDES = ("left", "right")
@@ -57,7 +58,7 @@ class _TrackedVehicle(ModelPlugin):
             for name in ("track_mu", "track_mu2")
         ]
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         self.once = OneTimeWarnings(self)
         own = valid_topic(f"/{self._namespace}") if self._namespace else ""
         self.listen(f"{own}/cmd_vel", COMMAND_TYPES, partial(self._on_command, 1.0))

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
@@ -33,6 +33,8 @@ from simkit.plugins.ros_names import is_ros_1
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.msgs import Twist, TwistStamped
+    from simkit.runtime import Model
     from simkit.scene import SceneModel
 
 _ROS_1 = frozenset(
@@ -231,7 +233,7 @@ class GazeboRosTricycleDrive(ModelPlugin):
         else:
             self._steering = builder.add_position_servo(steering.scoped, max_effort=math.inf, owner=owner)
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         self.once = OneTimeWarnings(self)
         self.before_step_rate = self.after_step_rate = self.options.rate
         steering, _, left, right = (self.sim.joint(joint.scoped) for joint in self._all)
@@ -245,7 +247,7 @@ class GazeboRosTricycleDrive(ModelPlugin):
         self.listen(self.options.command_topic, COMMAND_TYPES, self._on_command)
         self._outputs = DriveOutputs(self, self.options.told, self._all)
 
-    def _on_command(self, message: Any) -> None:
+    def _on_command(self, message: Twist | TwistStamped) -> None:
         command = command_of(message)
         if command is None:
             self.once.not_finite()

@@ -17,6 +17,7 @@ from simkit.runtime.engine.physics import CONTROL
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.runtime import Model
     from simkit.scene import SceneJoint, SceneModel
 
 _NOISE: Final = 0.02
@@ -108,7 +109,7 @@ class UnderactuatedFinger(ModelPlugin):
         one.diagnostics.warning("SK-PLUGIN-047", message, where, "all of p, i, d, i_max and i_min are needed")
         return None
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         sim = self.sim
         self._actuated = sim.joint(self._motor)
         self._counts = float(self._actuated.position)

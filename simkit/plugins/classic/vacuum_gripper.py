@@ -19,7 +19,10 @@ from simkit.plugins.ros_names import is_ros_1
 from simkit.runtime.engine.physics import STALE
 
 if TYPE_CHECKING:
+    import mujoco
+
     from simkit.compiler import SpecBuilder
+    from simkit.runtime import Model, Simulation
     from simkit.scene import SceneModel
 
 BOOL: Final = "std_msgs/msg/Bool"
@@ -88,7 +91,7 @@ class GazeboRosVacuumGripper(ModelPlugin):
         self._fixed = frozenset(fixed)
         self._own = scene.scoped.split("::")[0]
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         self._is_on = False
         self._held: dict[str, str] = {}  # scoped link -> the weld that holds it
         self._things = _GrippableLinks()
@@ -187,7 +190,7 @@ class _GrippableLinks:
     def __deepcopy__(self, memo: dict[int, Any]) -> _GrippableLinks:
         return self
 
-    def bind(self, sim: Any, own: str, fixed: frozenset[str], grippers: list[str]) -> None:
+    def bind(self, sim: Simulation, own: str, fixed: frozenset[str], grippers: list[str]) -> None:
         """Finds them in the present model."""
         if self._known is sim.structure:
             return
@@ -203,7 +206,7 @@ class _GrippableLinks:
         self._own = _frames(names, grippers)
         self._others = _frames(names, self._links)
 
-    def near(self, data: Any, reach: float) -> list[tuple[str, str]]:
+    def near(self, data: mujoco.MjData, reach: float) -> list[tuple[str, str]]:
         """Each link within reach with the first gripper link that it is near to; scoped names, gripper first."""
         if not self._links:
             return []
@@ -226,7 +229,7 @@ def _frames(names: Any, links: list[str]) -> tuple[npt.NDArray[np.intp], Numbers
     return bodies, np.array([one.offset.position for one in found]).reshape(-1, 3)
 
 
-def _origins(data: Any, bodies: npt.NDArray[np.intp], offsets: Numbers) -> Numbers:
+def _origins(data: mujoco.MjData, bodies: npt.NDArray[np.intp], offsets: Numbers) -> Numbers:
     """Origins of links in the world [m], shape (n, 3)."""
     turns = data.xmat[bodies].reshape(-1, 3, 3)
     found: Numbers = data.xpos[bodies] + np.einsum("nij,nj->ni", turns, offsets)

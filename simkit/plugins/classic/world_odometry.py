@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from simkit.pose import Pose, Vector, quat_conjugate, quat_from_rpy, quat_rotate
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.runtime import Model
     from simkit.scene import SceneModel
 
 
@@ -51,7 +52,7 @@ class GazeboWorldOdometry(ModelPlugin):
         self._topic = self.options.topic_name  # Gazebo's default
         self._rate = self.options.update_rate
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         self._link = self.sim.link(self._body)
         self._x = self.declare("x_offset", 0.0, minimum=-100, maximum=100, description="added to x [m]")
         self._y = self.declare("y_offset", 0.0, minimum=-100, maximum=100, description="added to y [m]")

@@ -137,7 +137,7 @@ class KinematicMover:
                 physics.one_shot = True
                 physics.changed_body(VELOCITY, body)
 
-    def _mobilities(self, data: Any) -> Vector:
+    def _mobilities(self, data: mujoco.MjData) -> Vector:
         """Accelerations of all degrees of freedom by unit forces on the six of each free link, shape (6, nv).
 
         What the six of one link do to another's is zero: they are in different trees.
@@ -145,7 +145,7 @@ class KinematicMover:
         mujoco.mj_solveM(self._sim.mj_model, data, self._columns, self._units)
         return self._columns
 
-    def _smooth_contacts(self, data: Any) -> frozenset[int]:
+    def _smooth_contacts(self, data: mujoco.MjData) -> frozenset[int]:
         """Lets the models slide on what is static; returns which of them something touches.
 
         What is carried presses on nothing, so nothing rubs; but the engine's friction presses by itself where something

@@ -49,7 +49,7 @@ class StaticTransforms(WorldPlugin):
 
     after_step_rate = 1.0
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Simulation, params: Params) -> None:
         self._static = self.advertise("/tf_static", TRANSFORMS, latched=True)
         self._known: tuple[str, ...] = ()
         self.after_step()

@@ -25,7 +25,7 @@ from simkit.scene import Cylinder, SceneJoint, SceneLink, SceneModel, Sphere
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
-    from simkit.runtime import Simulation
+    from simkit.runtime import Model, Simulation
 
 
 LATERAL, LONGITUDINAL = "slip_compliance_unitless_lateral", "slip_compliance_unitless_longitudinal"
@@ -110,7 +110,7 @@ class WheelSlipBase(ModelPlugin):
             taken.add(wheel.contact.link)
             self.wheels.append(wheel)
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         self.compliances = [
             (self._own(LATERAL, w, w.lateral), self._own(LONGITUDINAL, w, w.longitudinal)) for w in self.wheels
         ]
@@ -199,7 +199,7 @@ _UNSET = -1.0
 class _ClassicWheelSlip(WheelSlipBase):
     """What both know of their wheels: how they slip now."""
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         super().load(parent, params)
         self._model = parent
         down = self.sim.mj_model.opt.gravity
@@ -243,7 +243,7 @@ class GazeboRosWheelSlip(_ClassicWheelSlip):
         self._tolerance = self.options.wheel_spin_tolerance
         self._rate = self.options.publisher_update_rate
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         super().load(parent, params)
         for side, name in enumerate((LATERAL, LONGITUDINAL)):
             what = f"{'lateral' if side == 0 else 'longitudinal'} slip compliance of every wheel; negative leaves them"
@@ -283,7 +283,7 @@ class ClassicWheelSlip(_ClassicWheelSlip):
     )
     filenames = ("libWheelSlipPlugin.so",)
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         super().load(parent, params)
         prefix = f"/{parent.name}/wheel_slip"
         for side, name in enumerate(("lateral", "longitudinal")):

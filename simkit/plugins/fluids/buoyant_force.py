@@ -16,6 +16,8 @@ from simkit.plugins.fluids.submerged_volume import Solid
 from simkit.pose import Vector
 
 if TYPE_CHECKING:
+    import mujoco
+
     from simkit.runtime import Simulation
 
 _ZERO: Final = np.zeros(3)
@@ -97,7 +99,7 @@ class BuoyantForces:
     def __deepcopy__(self, memo: dict[int, Any]) -> BuoyantForces:
         return self
 
-    def _find_even(self, model: Any) -> npt.NDArray[np.bool_]:
+    def _find_even(self, model: mujoco.MjModel) -> npt.NDArray[np.bool_]:
         """Links whose centre of volume is their centre of mass."""
         middle = self._summed(self._volumes[:, None] * self._centres)
         middle /= np.maximum(self._whole[:, None], 1e-300)
@@ -110,7 +112,7 @@ class BuoyantForces:
         """Whether nothing ever changes with how the links lie."""
         return not self.fluid.heights and bool(self._is_even.all())
 
-    def lie(self, data: Any) -> Immersion:
+    def lie(self, data: mujoco.MjData) -> Immersion:
         """How everything lies, by the places in `data`."""
         if not len(self._heights):
             if self._always is None:
@@ -131,7 +133,7 @@ class BuoyantForces:
         masses = np.where(steady, self._masses(first), 0.0)
         return Immersion(low.tolist(), high.tolist(), tuple(steady.tolist()), tuple(masses.tolist()))
 
-    def _lie_few(self, data: Any) -> Immersion:
+    def _lie_few(self, data: mujoco.MjData) -> Immersion:
         heights, densities = self.fluid.heights, self.fluid.densities
         rows, places = data.xmat[self.links.bodies, 6:].tolist(), data.xpos[self.links.bodies, 2].tolist()
         low, high, steady = [], [], list(self._evens)
@@ -155,7 +157,7 @@ class BuoyantForces:
         masses: Vector = self._densities[layers] * self._whole * self._is_even
         return masses
 
-    def push(self, data: Any, lie: Immersion, gravity: Vector) -> None:
+    def push(self, data: mujoco.MjData, lie: Immersion, gravity: Vector) -> None:
         """Pushes the links that are not steady, for the next step only.
 
         Args:
@@ -168,7 +170,7 @@ class BuoyantForces:
         else:
             self.links.push(data, *self._wrenches(data, lie, gravity))
 
-    def _wrenches_few(self, data: Any, lie: Immersion, gravity: list[float]) -> dict[int, list[float]]:
+    def _wrenches_few(self, data: mujoco.MjData, lie: Immersion, gravity: list[float]) -> dict[int, list[float]]:
         """By link: force at the centre of mass [N] and torque [N·m], world frame."""
         bodies = self.links.bodies
         axes, origins, masses = data.xmat[bodies].tolist(), data.xpos[bodies].tolist(), data.xipos[bodies].tolist()
@@ -211,7 +213,7 @@ class BuoyantForces:
         share = max(mass, 1e-300)
         return mass, _moved(turned, start, (mx / share, my / share, mz / share))
 
-    def _wrenches(self, data: Any, lie: Immersion, gravity: Vector) -> tuple[Vector, Vector]:
+    def _wrenches(self, data: mujoco.MjData, lie: Immersion, gravity: Vector) -> tuple[Vector, Vector]:
         """On the links that are not steady; zero on others.
 
         Returns:

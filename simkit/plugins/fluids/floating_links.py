@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from simkit.plugins.base import NEVER, Plugin
 from simkit.plugins.fluids.buoyant_force import BuoyantForces, Fluid, Immersion
 from simkit.plugins.fluids.collision_volumes import Hull, HullFactory
 from simkit.plugins.fluids.link_forces import moving_data
 from simkit.plugins.one_time_warnings import OneTimeWarnings
+
+if TYPE_CHECKING:
+    import mujoco
 
 
 class BuoyancyBase(Plugin):
@@ -75,7 +78,7 @@ class BuoyancyBase(Plugin):
     def _bind(self) -> None:
         self._found, self._stood = BuoyantForces(self.sim, self.find_hulls(), self._fluid), None
 
-    def _stand(self, data: Any) -> Immersion:
+    def _stand(self, data: mujoco.MjData) -> Immersion:
         """Sets the forces that stand where they are others than before."""
         found = self._found
         assert found is not None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
@@ -13,7 +13,10 @@ from simkit.plugins.options import OptionsOf
 from simkit.runtime.engine.physics import CONTROL
 
 if TYPE_CHECKING:
+    import mujoco
+
     from simkit.compiler import SpecBuilder
+    from simkit.runtime import Model
     from simkit.scene import SceneModel
 
 
@@ -41,7 +44,7 @@ class LiftDragBase(ModelPlugin):
             joint = find_axis_joint(scene, self.options.control_joint_name, params.block("control_joint_name"))
             self._joint_name = "" if joint is None else joint.scoped
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         self._joint = self.sim.joint(self._joint_name) if self._joint_name else None
 
     def before_step(self) -> None:
@@ -63,7 +66,7 @@ class LiftDragBase(ModelPlugin):
         sim.physics.one_shot = True
         sim.physics.changed_body(CONTROL, body)
 
-    def _motion(self, data: Any, body: int) -> tuple[Triple, Triple, list[float]]:
+    def _motion(self, data: mujoco.MjData, body: int) -> tuple[Triple, Triple, list[float]]:
         """The centre of pressure from the centre of mass [m], its velocity through the air [m/s], the link's axes."""
         model = self.sim.mj_model
         axes: list[float] = data.xmat[body].tolist()

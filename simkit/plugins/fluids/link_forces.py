@@ -11,6 +11,8 @@ from simkit.pose import Vector
 from simkit.runtime.engine.physics import CONTROL
 
 if TYPE_CHECKING:
+    import mujoco
+
     from simkit.runtime import Simulation
 
 Three = tuple[float, float, float]
@@ -59,18 +61,18 @@ class PushedLinks:
         """Whether the engine's model is still the one that these ids are of."""
         return self._model is self._sim.mj_model
 
-    def axes(self, data: Any) -> Vector:
+    def axes(self, data: mujoco.MjData) -> Vector:
         """Rotation matrices link to world, shape (n, 3, 3)."""
         matrices: Vector = data.xmat[self.bodies].reshape(-1, 3, 3)
         return matrices
 
-    def velocities(self, data: Any) -> Vector:
+    def velocities(self, data: mujoco.MjData) -> Vector:
         """Of the link origins [m/s], world frame, shape (n, 3)."""
         motion = data.cvel[self.bodies]  # about the centre of mass of the whole tree
         found: Vector = motion[:, 3:] + cross(motion[:, :3], data.xpos[self.bodies] - data.subtree_com[self._roots])
         return found
 
-    def velocities_few(self, data: Any, places: list[list[float]]) -> list[Three]:
+    def velocities_few(self, data: mujoco.MjData, places: list[list[float]]) -> list[Three]:
         """The same in plain numbers, of links whose origins in the world are known."""
         found = []
         middles = data.subtree_com[self._roots].tolist()
@@ -80,7 +82,7 @@ class PushedLinks:
             found.append((u + (q * z - r * y), v + (r * x - p * z), w + (p * y - q * x)))
         return found
 
-    def push(self, data: Any, forces: Vector, torques: Vector | None = None) -> None:
+    def push(self, data: mujoco.MjData, forces: Vector, torques: Vector | None = None) -> None:
         """For the next step only, besides what else pushes.
 
         Args:
@@ -101,7 +103,7 @@ class PushedLinks:
         data.xfrc_applied[bodies] += wrenches
         self._tell(bodies.tolist())
 
-    def push_some(self, data: Any, wrenches: Mapping[int, Sequence[float]]) -> None:
+    def push_some(self, data: mujoco.MjData, wrenches: Mapping[int, Sequence[float]]) -> None:
         """`push` of a few: by their place among the links, force [N] and torque [N·m] in the world frame."""
         applied, told = data.xfrc_applied, []
         for place, wrench in wrenches.items():

@@ -19,6 +19,8 @@ from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import OptionsOf, block
 
 if TYPE_CHECKING:
+    import mujoco
+
     from simkit.runtime import Simulation
 
 
@@ -116,7 +118,7 @@ class WindPluginBase(WorldPlugin):
         strength = self._masses * self._field.at(data.xpos[links.bodies])
         links.push(data, (strength * air.T).T)
 
-    def _push_few(self, links: PushedLinks, data: Any) -> None:
+    def _push_few(self, links: PushedLinks, data: mujoco.MjData) -> None:
         """The same in plain numbers."""
         x, y, z = self.velocity(self.sim.tick)
         field, everywhere = self._field, None if self._field.pieces else self._field.everywhere

@@ -26,6 +26,8 @@ from simkit.plugins.options import OptionsOf, boolean, integer, number, text, te
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.msgs import Actuators, Float32, Float64, Twist, TwistStamped
+    from simkit.runtime import Model
     from simkit.scene import SceneModel
 
 _STRAIGHT = 1e-3  # rate of turning [rad/s] below which gz drives straight on
@@ -121,7 +123,7 @@ class AckermannSteering(ModelPlugin):
             for joints in wheels.values()
         ]
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         self.once = OneTimeWarnings(self)
         what = "speed of the steering per error of its angle [1/s]"
         self._gain = self.declare("steer_p_gain", 1.0, minimum=0.0, maximum=1e6, description=what)
@@ -170,17 +172,17 @@ class AckermannSteering(ModelPlugin):
 
     # ------------------------------------------------------------------ commands
 
-    def _on_command(self, message: Any) -> None:
+    def _on_command(self, message: Twist | TwistStamped) -> None:
         command = command_of(message)
         if command is None:
             self.once.not_finite()
         else:
             self._target = command
 
-    def _on_angle(self, message: Any) -> None:
+    def _on_angle(self, message: Float64 | Float32) -> None:
         self._steer(float(message.data))
 
-    def _on_actuators(self, message: Any) -> None:
+    def _on_actuators(self, message: Actuators) -> None:
         if self._number >= len(message.position):
             count = len(message.position)
             self.log.warning("a message with %d positions has none of number %d; it is left out", count, self._number)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
@@ -16,6 +16,8 @@ from simkit.plugins.options import Options, OptionsOf, texts
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.msgs import Float64
+    from simkit.runtime import Model
     from simkit.scene import SceneModel
 
 
@@ -47,13 +49,13 @@ class ApplyJointForce(ModelPlugin):
         self._scoped = found[0].scoped if found else ""
         self._written = names[0].value if names else ""
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         self.once = OneTimeWarnings(self)
         self._axis = JointAxis(self.sim.joint(self._scoped)) if self._scoped else None
         self._effort = 0.0
         self.listen(valid_topic(f"/model/{parent.name}/joint/{self._written}/cmd_force"), DOUBLE, self._on_command)
 
-    def _on_command(self, message: Any) -> None:
+    def _on_command(self, message: Float64) -> None:
         effort = float(message.data)
         if math.isfinite(effort):
             self._effort = effort

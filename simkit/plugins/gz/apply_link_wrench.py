@@ -18,6 +18,7 @@ from simkit.plugins.world.entities import RequestRefused, entity_of
 from simkit.pose import Vector
 
 if TYPE_CHECKING:
+    from simkit.msgs import Entity, EntityWrench
     from simkit.runtime import Link, Simulation
 
 ENTITY: Final = "ros_gz_interfaces/msg/Entity"
@@ -113,7 +114,7 @@ class ApplyLinkWrench(WorldPlugin):
 
     # ------------------------------------------------------------------ commands
 
-    def _on_wrench(self, message: Any) -> None:
+    def _on_wrench(self, message: EntityWrench) -> None:
         wrench = self._of(message)
         if wrench is None:
             return
@@ -124,7 +125,7 @@ class ApplyLinkWrench(WorldPlugin):
         link.apply_wrench(wrench.force, wrench.torque)
         self._say("pushes %s for one step", wrench.name)
 
-    def _on_persistent(self, message: Any) -> None:
+    def _on_persistent(self, message: EntityWrench) -> None:
         wrench = self._of(message)
         if wrench is None:
             return
@@ -132,7 +133,7 @@ class ApplyLinkWrench(WorldPlugin):
         self._say("pushes %s until it is cleared", wrench.name)
         self._stand()
 
-    def _on_clear(self, message: Any) -> None:
+    def _on_clear(self, message: Entity) -> None:
         found = self._entity(message)
         if found is None:
             return

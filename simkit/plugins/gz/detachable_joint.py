@@ -15,6 +15,7 @@ from simkit.plugins.options import Options, OptionsOf, boolean, text
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.runtime import Model
     from simkit.scene import SceneModel
 
 EMPTY: Final = "std_msgs/msg/Empty"
@@ -88,7 +89,7 @@ class DetachableJoint(ModelPlugin):
 
     _told_missing = False
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         own = f"/model/{parent.name}/detachable_joint"
         old = self.options.topic
         detach = read_topic(params, "detach_topic" if params.has("detach_topic") else "topic", f"{own}/detach")

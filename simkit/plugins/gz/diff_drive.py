@@ -38,6 +38,8 @@ _NS = 1_000_000_000
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.msgs import Bool, Twist, TwistStamped
+    from simkit.runtime import Model
     from simkit.scene import SceneModel
 
 
@@ -85,7 +87,7 @@ class DiffDrive(ModelPlugin):
             for joints in wheels.values()
         ]
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         self.once = OneTimeWarnings(self)
         model = parent.name
         link = self._canonical.rsplit("::", 1)[-1]
@@ -118,14 +120,14 @@ class DiffDrive(ModelPlugin):
         linear, angular = self._limits
         return linear.velocity, angular.velocity
 
-    def _on_command(self, message: Any) -> None:
+    def _on_command(self, message: Twist | TwistStamped) -> None:
         command = command_of(message)
         if command is None:
             self.once.not_finite()
         elif self._enabled:
             self._target, self._settled = command, False
 
-    def _on_enable(self, message: Any) -> None:
+    def _on_enable(self, message: Bool) -> None:
         self._enabled = bool(message.data)
         if not self._enabled:
             self._target, self._settled = (0.0, 0.0), False

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from simkit import msgs
 from simkit.msgs.topics import valid_topic
@@ -11,6 +11,10 @@ from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.pose import rpy_from_quat
+
+if TYPE_CHECKING:
+    from simkit.msgs import Pose, PoseArray, PoseStamped, TFMessage
+    from simkit.runtime import Model
 
 Planar = tuple[float, float, float]
 """x, y [m] and yaw [rad]."""
@@ -33,7 +37,7 @@ class DriveToPoseController(ModelPlugin):
     names = ("gz::sim::systems::DriveToPoseController",)
     drives = True
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         self.once = OneTimeWarnings(self)
         self._linear_gain = self.declare(
             "linear_p_gain", 1.0, minimum=0.0, description="speed ahead [m/s] for each metre that is left"
@@ -60,7 +64,7 @@ class DriveToPoseController(ModelPlugin):
 
     # ------------------------------------------------------------------ messages
 
-    def _on_target(self, message: Any) -> None:
+    def _on_target(self, message: PoseArray | PoseStamped | Pose | TFMessage) -> None:
         found = _first_pose(message)
         target = None if found is None else _planar(found)
         if found is None:

@@ -19,6 +19,8 @@ from simkit.plugins.options import Options, OptionsOf, number, text
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.msgs import Int32
+    from simkit.runtime import Model
     from simkit.scene import SceneModel
 
 Phase = Literal["idle", "moving", "opening", "waiting", "closing"]
@@ -93,7 +95,7 @@ class Elevator(ModelPlugin):
                 params.error("SK-PLUGIN-133", message, "give its axis <limit><upper>")
         self._joint_names = [cabin, *(f"{door}{k}" for k in range(count))]
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         self.once = OneTimeWarnings(self)
         own = f"/model/{parent.name}"
         axes = [JointAxis(self.sim.joint(name)) for name in (self._cabin, *self._doors)]
@@ -127,7 +129,7 @@ class Elevator(ModelPlugin):
 
     # ------------------------------------------------------------------ messages
 
-    def _on_command(self, message: Any) -> None:
+    def _on_command(self, message: Int32) -> None:
         target = int(message.data)
         if not 0 <= target < len(self._heights):
             top = len(self._heights) - 1

@@ -20,6 +20,7 @@ from simkit.runtime.engine.physics import STALE
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.plugins.actors.script import Floats
+    from simkit.runtime import Model, Simulation
     from simkit.scene import SceneModel
 
 _RATE: Final = 50.0  # [Hz]
@@ -73,7 +74,7 @@ class FollowActor(ModelPlugin):
             message = f"plugin {self.name!r}: <max_distance> {self._most:g} is below <min_distance> {self._least:g}"
             params.diagnostics.warning("SK-PLUGIN-135", f"{message}; it never walks", self.where)
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         scene: SceneModel = parent.scene
         assert isinstance(scene.moved_by, AnimatedActor)
         self._gait = Gait(scene.moved_by, self._animation, self._velocity, self._seconds)
@@ -165,7 +166,7 @@ class _ActorBodies:
     def __deepcopy__(self, memo: dict[int, Any]) -> _ActorBodies:
         return self
 
-    def find(self, sim: Any, links: list[str]) -> Floats:
+    def find(self, sim: Simulation, links: list[str]) -> Floats:
         if self._known[0] is not sim.structure:
             names = sim.names
             self._known = sim.structure, np.array([names.link(link).mocap for link in links], dtype=np.intp)

@@ -9,12 +9,15 @@ import traceback
 import types
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from simkit.params import Params
 from simkit.plugins.base import Plugin
 from simkit.plugins.gz_python import import_hook, simulation_context
 from simkit.plugins.joint_states import JointStatePublisher
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
 
 HOOKS: Final = ("configure", "pre_update", "update", "post_update", "reset", "shutdown")
 """What a system may have; without one of them it is none."""
@@ -169,7 +172,7 @@ def _variables(system: Any) -> dict[str, Any]:
     return {n: v for n, v in own.items() if not (n.startswith("__") or isinstance(v, _MODULE))}
 
 
-def _joint_state_publishers(sim: Any) -> frozenset[str]:
+def _joint_state_publishers(sim: Simulation) -> frozenset[str]:
     plugins = sim.structure.all_plugins()
     return frozenset(name for p in plugins if isinstance(p, JointStatePublisher) for name in p._joints)
 

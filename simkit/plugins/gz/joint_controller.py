@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simkit.params import Params
 from simkit.plugins.endpoints import listens
@@ -13,6 +13,7 @@ from simkit.plugins.options import OptionsOf, boolean, number
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.runtime import Model
     from simkit.scene import SceneModel
 
 
@@ -48,7 +49,7 @@ class JointController(JointCommander):
         super().prepare(scene, params, builder)
         self.own_topic = f"joint/{self._first}/cmd_vel"
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         super().load(parent, params)
         self._by_velocity = not self.options.use_force_commands
         self._coasts = self.options.disable_braking

@@ -12,6 +12,7 @@ from simkit.plugins.options import OptionsOf, boolean, integer, number
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.runtime import Model
     from simkit.scene import SceneModel
 
 
@@ -54,7 +55,7 @@ class JointPositionController(JointCommander):
         super().prepare(scene, params, builder)
         self.own_topic = f"joint/{self._first}/{self._index}/cmd_pos"
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         super().load(parent, params)
         self._by_velocity = self.options.use_velocity_commands
         self._fastest: Any = None

@@ -30,6 +30,8 @@ from simkit.plugins.options import Options, OptionsOf, choice, numbers, text, te
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.msgs import JointTrajectory
+    from simkit.runtime import Model
     from simkit.scene import SceneJoint, SceneModel
 
 TRAJECTORY: Final = "trajectory_msgs/msg/JointTrajectory"
@@ -128,7 +130,7 @@ class JointTrajectoryController(ControlledJoints, ModelPlugin):
         """Name of its node, for its parameters, where the file gives it none but its class."""
         return valid_topic(f"/model/{self.scoped.replace('::', '/')}/joint_trajectory_controller")
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         self.once = OneTimeWarnings(self)
         self._axes = self._read_axes(params)
         attribute = params.attribute("use_header_start_time")  # gz looks for it there, its manual has an element
@@ -185,7 +187,7 @@ class JointTrajectoryController(ControlledJoints, ModelPlugin):
 
     # ------------------------------------------------------------------ commands
 
-    def _on_trajectory(self, message: Any) -> None:
+    def _on_trajectory(self, message: JointTrajectory) -> None:
         names, points = [str(name) for name in message.joint_names], read_points(message)
         fault = trajectory_faults(names, points) if names else "it names no joints"
         if fault:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import mujoco
 import numpy as np
@@ -17,6 +17,7 @@ from simkit.plugins.options import Options, OptionsOf, number, text
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.pose import Vector
+    from simkit.runtime import Model
     from simkit.scene import SceneModel
 
 DOUBLE: Final = "std_msgs/msg/Float64"
@@ -45,7 +46,7 @@ class KineticEnergyMonitor(ModelPlugin):
         self._scoped = find_named_link(scene, "link_name", params)
         self._threshold = self.options.kinetic_energy_threshold
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         self._lost = self.advertise(read_topic(params, "topic", f"/model/{parent.name}/kinetic_energy"), DOUBLE)
         self._energy = 0.0
         self._was_heard = False

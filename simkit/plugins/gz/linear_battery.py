@@ -18,6 +18,7 @@ from simkit.plugins.options import Options, OptionsOf, boolean, number, text, te
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.pose import Vector
+    from simkit.runtime import Model
     from simkit.scene import SceneModel
 
 BOOL: Final = "std_msgs/msg/Bool"
@@ -102,7 +103,7 @@ class LinearBattery(Battery):
         where = params.block(element).where if element else self.where
         params.diagnostics.warning("SK-PLUGIN-123", f"plugin {self.name!r}: {what}", where, hint)
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         if not params.has("power_load"):
             self._warn(params, "there is no <power_load> [W]: nothing drains the battery")
         self._power = self.declare("power_load", 0.0, description="what is drawn while the battery drains [W]")

@@ -204,5 +204,5 @@ class LogPlayback(WorldPlugin):
         hint = "run the world with the same seed, or read a bag with `simkit topic echo --bag`"
         params.diagnostics.warning("SK-PLUGIN-129", message, self.where, hint)
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Simulation, params: Params) -> None:
         """Nothing to do."""

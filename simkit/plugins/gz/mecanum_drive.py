@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simkit.compiler.contact_friction import has_directional_friction
 from simkit.params import Params
@@ -24,6 +24,8 @@ from simkit.plugins.options import OptionsOf, number, text, texts
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.msgs import Twist, TwistStamped
+    from simkit.runtime import Model
     from simkit.scene import SceneJoint, SceneModel
 
 _PLACES = ("front_left", "front_right", "back_left", "back_right")
@@ -105,7 +107,7 @@ class MecanumDrive(ModelPlugin):
         ]
         _report_rubber(scene, [joint for joints in wheels.values() for joint in joints], params)
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         self.once = OneTimeWarnings(self)
         model = parent.name
         link = self._canonical.rsplit("::", 1)[-1]
@@ -123,8 +125,8 @@ class MecanumDrive(ModelPlugin):
 
     # ------------------------------------------------------------------ commands
 
-    def _on_command(self, message: Any) -> None:
-        twist = getattr(message, "twist", message)
+    def _on_command(self, message: Twist | TwistStamped) -> None:
+        twist: Twist = getattr(message, "twist", message)
         command = float(twist.linear.x), float(twist.linear.y), float(twist.angular.z)
         if not all(map(math.isfinite, command)):
             self.once.not_finite()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
@@ -26,6 +26,7 @@ from simkit.pose import IDENTITY, Pose, Vector, quat_conjugate, quat_from_rpy, q
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.runtime import Model
     from simkit.scene import SceneModel
 
 
@@ -67,7 +68,7 @@ class OdometryPublisher(ModelPlugin):
         self._offset = Pose(self.options.xyz_offset, turn)
         self._noise = self.options.gaussian_noise
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         own = f"/model/{parent.name}"
         self._frame = params.text("odom_frame", f"{parent.name}/odom")
         self._base = params.text("robot_base_frame", f"{parent.name}/base_footprint")

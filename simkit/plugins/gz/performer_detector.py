@@ -17,7 +17,7 @@ from simkit.pose import Pose, quat_rotate
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
-    from simkit.runtime import Simulation
+    from simkit.runtime import Model, Simulation
     from simkit.scene import SceneModel, SceneWorld
 
 POSE: Final = "geometry_msgs/msg/PoseStamped"
@@ -150,7 +150,7 @@ class PerformerDetector(ModelPlugin):
         element.diagnostics.warning("SK-PLUGIN-124", message, element.where)
         return None
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         self._model, self._born = parent, self.sim.tick
         topic = read_topic(params, "topic", f"/model/{parent.name}/performer_detector/status")
         self._inside: tuple[str, ...] = ()

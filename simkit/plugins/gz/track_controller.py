@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
@@ -21,6 +21,8 @@ from simkit.runtime.contact.belt import Belt, BeltMotion
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.msgs import Float64, Point, Vector3
+    from simkit.runtime import Model
     from simkit.scene import SceneModel
 
 SPEED = "std_msgs/msg/Float64"
@@ -76,7 +78,7 @@ class TrackController(ModelPlugin):
         if self.options.debug:
             params.diagnostics.note("SK-PLUGIN-100", "<debug> of a track draws nothing here", params.where)
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         self.once = OneTimeWarnings(self)
         self.before_step_rate = NEVER
         self._wanted, self._told_tick = 0.0, -1
@@ -99,7 +101,7 @@ class TrackController(ModelPlugin):
 
     # ------------------------------------------------------------------ commands
 
-    def _on_speed(self, message: Any) -> None:
+    def _on_speed(self, message: Float64) -> None:
         speed = float(message.data)
         if not math.isfinite(speed):
             self.once.not_finite()
@@ -107,7 +109,7 @@ class TrackController(ModelPlugin):
         self._wanted = speed
         self._begin()
 
-    def _on_centre(self, message: Any) -> None:
+    def _on_centre(self, message: Vector3 | Point) -> None:
         x, y, z = float(message.x), float(message.y), float(message.z)
         self._centre = (x, y, z) if all(map(math.isfinite, (x, y, z))) else None
         self._begin()

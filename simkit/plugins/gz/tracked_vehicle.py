@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simkit import msgs
 from simkit.params import Params
@@ -29,6 +29,8 @@ from simkit.plugins.options import Options, OptionsOf, block, blocks, boolean, n
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.msgs import Float64, Twist, TwistStamped
+    from simkit.runtime import Model
     from simkit.scene import SceneModel
 
 _STRAIGHT = 1e-6  # rate of turning [rad/s] below which it drives straight, and speed [m/s] below which on the spot
@@ -137,7 +139,7 @@ class TrackedVehicle(ModelPlugin):
             tracks.append(_Track(name, velocity, centre))
         return tracks
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         self.once = OneTimeWarnings(self)
         self.after_step_rate = NEVER
         model = parent.name
@@ -162,7 +164,7 @@ class TrackedVehicle(ModelPlugin):
 
     # ------------------------------------------------------------------ commands
 
-    def _on_command(self, message: Any) -> None:
+    def _on_command(self, message: Twist | TwistStamped) -> None:
         command = command_of(message)
         if command is None:
             self.once.not_finite()
@@ -170,7 +172,7 @@ class TrackedVehicle(ModelPlugin):
             self._target = command
             self._begin()
 
-    def _on_efficiency(self, message: Any) -> None:
+    def _on_efficiency(self, message: Float64) -> None:
         efficiency = float(message.data)
         if math.isfinite(efficiency) and efficiency > 0.0:
             self._efficiency = efficiency

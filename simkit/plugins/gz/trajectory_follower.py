@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
@@ -13,7 +13,9 @@ from simkit.plugins.options import Options, OptionsOf, block, boolean, number, t
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.msgs import Bool
     from simkit.pose import Pose
+    from simkit.runtime import Model
     from simkit.scene import SceneModel
 
 Point = tuple[float, float]
@@ -89,7 +91,7 @@ class TrajectoryFollower(ModelPlugin):
         self._ahead = math.radians(self.options.bearing_tolerance)
         self._stops_turning = self.options.zero_vel_on_bearing_reached
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         self.once = OneTimeWarnings(self)
         self._is_paused, self._is_held = False, False
         self._way = list(self._points)
@@ -101,7 +103,7 @@ class TrajectoryFollower(ModelPlugin):
         own = f"/model/{parent.name}/trajectory_follower/pause"
         self.listen(read_topic(params, "topic", own), BOOL, self._on_pause)
 
-    def _on_pause(self, message: Any) -> None:
+    def _on_pause(self, message: Bool) -> None:
         self._is_paused = bool(message.data)
         self._set_pace()
 

@@ -18,7 +18,8 @@ from simkit.plugins.options import Options, OptionsOf, text, texts
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
-    from simkit.runtime import Simulation
+    from simkit.msgs import Twist, TwistStamped
+    from simkit.runtime import Model, Simulation
     from simkit.scene import SceneModel
 
 Motion = tuple[Triple, Triple]
@@ -57,7 +58,7 @@ class VelocityControl(ModelPlugin):
         self._links = {link.scoped: link.pose_world for link in scene.all_links()}
         self._canonical, self._pose = scene.canonical_link, scene.pose_world
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         self.once = OneTimeWarnings(self)
         self._target: Motion = self._first
         self._link_targets: dict[str, Motion] = {}
@@ -82,7 +83,7 @@ class VelocityControl(ModelPlugin):
 
     # ------------------------------------------------------------------ commands
 
-    def _on_command(self, message: Any) -> None:
+    def _on_command(self, message: Twist | TwistStamped) -> None:
         motion = self._motion_of(message)
         if motion is not None:
             self._target = motion

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from simkit.compiler import SpecBuilder
+    from simkit.msgs import Actuators, Float64
+    from simkit.runtime import Model
     from simkit.scene import SceneModel
 
 DOUBLE: Final = "std_msgs/msg/Float64"
@@ -103,7 +105,7 @@ class JointCommander(ControlledJoints, ModelPlugin):
         self._scoped = [joint.scoped for joint in found]
         self._first = next((e.value for e in params.all("joint_name") if e.value), "")
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         self.once = OneTimeWarnings(self)
         self.axes = [JointAxis(self.sim.joint(name), self._index) for name in self._scoped]
         self._target = params.number(self.target_element, 0.0)
@@ -141,10 +143,10 @@ class JointCommander(ControlledJoints, ModelPlugin):
         else:
             self.listen(valid_topic(topic), DOUBLE, self._on_command)
 
-    def _on_command(self, message: Any) -> None:
+    def _on_command(self, message: Float64) -> None:
         self._aim(float(message.data))
 
-    def _on_actuators(self, message: Any) -> None:
+    def _on_actuators(self, message: Actuators) -> None:
         values = getattr(message, self.actuator_field)
         if self._number < len(values):
             self._aim(float(values[self._number]))

@@ -59,7 +59,7 @@ class KinematicTrees:
     hold: Vector
 
     @classmethod
-    def of(cls, model: Any, axes: Sequence[JointAxis]) -> KinematicTrees:
+    def of(cls, model: mujoco.MjModel, axes: Sequence[JointAxis]) -> KinematicTrees:
         last = {(axis.joint.scoped, axis.index): i for i, axis in enumerate(axes)}
         numbers = {tree: i for i, tree in enumerate(dict.fromkeys(int(model.dof_treeid[a.dof]) for a in axes))}
         tree_of = {key: numbers[int(model.dof_treeid[axes[i].dof])] for key, i in last.items()}
@@ -99,7 +99,7 @@ class KinematicTrees:
             hold=_HOLD * _weights(model, dofs.tolist()),
         )
 
-    def fits(self, model: Any) -> bool:
+    def fits(self, model: mujoco.MjModel) -> bool:
         """Whether the same degrees of freedom are damped as when it was made."""
         return np.array_equal(model.dof_damping > 0.0, self.damped)
 
@@ -131,7 +131,7 @@ def _padded(rows: list[list[int]]) -> tuple[Any, Any]:
     return table, np.arange(width) < np.array([[len(row)] for row in rows])
 
 
-def _weights(model: Any, dofs: Sequence[int]) -> Vector:
+def _weights(model: mujoco.MjModel, dofs: Sequence[int]) -> Vector:
     """Of all that hangs together with each joint: [N] of a slider; of a hinge [N·m] at the length of what it moves."""
     reach, found = _reaches(model), []
     for dof in dofs:
@@ -142,7 +142,7 @@ def _weights(model: Any, dofs: Sequence[int]) -> Vector:
     return np.array(found)
 
 
-def _reaches(model: Any) -> list[float]:
+def _reaches(model: mujoco.MjModel) -> list[float]:
     """How far from the frame of each body anything of it, or of what hangs on it, can be [m]."""
     own = np.linalg.norm(model.body_ipos, axis=1)
     # of a body without shape nothing but its inertia says how large it is: by the radius of gyration

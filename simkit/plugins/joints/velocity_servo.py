@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import mujoco
 import numpy as np
@@ -14,6 +14,9 @@ from simkit.plugins.joints.joint_axis import JointAxis
 from simkit.plugins.joints.kinematic_trees import Keys, KinematicTrees
 from simkit.pose import Vector
 from simkit.runtime.engine.physics import CONTROL
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
 
 _ENOUGH: Final = 3e-6
 """Of 1 + the commanded velocity [rad/s or m/s]: efforts that miss it by no more stay as they are."""
@@ -46,7 +49,7 @@ class VelocityServo:
 
     def drive(
         self,
-        sim: Any,
+        sim: Simulation,
         axes: Sequence[JointAxis],
         velocities: Sequence[float],
         layouts: dict[tuple[int, ...], KinematicTrees],
@@ -144,7 +147,7 @@ def _between(values: Vector, low: Vector, high: Vector) -> Vector:
 class _EffortTrial:
     """What the engine says of efforts in one step; all vectors are of the layout's joints (n,)."""
 
-    def __init__(self, sim: Any, layout: KinematicTrees, velocities: Sequence[float]) -> None:
+    def __init__(self, sim: Simulation, layout: KinematicTrees, velocities: Sequence[float]) -> None:
         self._sim, self.layout = sim, layout
         model, data = sim.mj_model, sim.mj_data
         self.step = float(sim.timestep)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 from simkit import msgs
 from simkit.params import Params
 from simkit.plugins.base import WorldPlugin
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
 
 TYPE = "rosgraph_msgs/msg/Clock"
 
@@ -16,7 +19,7 @@ class ClockPublisher(WorldPlugin):
 
     after_step_rate = 100.0
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Simulation, params: Params) -> None:
         self._clock = self.advertise("/clock", TYPE)
 
     def after_step(self) -> None:

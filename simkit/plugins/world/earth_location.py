@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from simkit.plugins.world.entities import RequestRefused, require_finite
 from simkit.pose import Pose, quat_from_rpy
 from simkit.scene import SphericalCoordinates
 
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+
 _MOON: Final = 1737400.0, 1737400.0  # semi-axes [m], as `<surface_model>MOON_SCS</surface_model>` has them
 _EARTH: Final = 6378137.0, 6356752.314245  # of WGS 84
 
 
-def set_world_location(sim: Any, request: Any) -> None:
+def set_world_location(sim: Simulation, request: Any) -> None:
     """Lays the world's origin somewhere else; sensors of position and field go by it from now on. Raises Refused."""
     latitude, longitude, elevation, heading = _numbers(request)
     surface = int(request.surface_model)
@@ -36,7 +39,7 @@ def set_world_location(sim: Any, request: Any) -> None:
     )
 
 
-def set_entity_location(sim: Any, handle: Any, request: Any) -> None:
+def set_entity_location(sim: Simulation, handle: Any, request: Any) -> None:
     """Puts a model or a light at a place on the planet, upright, turned by the heading about z. Raises Refused."""
     from simkit.sensors.environment.geodesy import WorldOnPlanet
 

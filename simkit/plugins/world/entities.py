@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError, PluginError
-from simkit.pose import IDENTITY, Pose
+from simkit.pose import IDENTITY, Pose, Vector
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
@@ -202,7 +202,7 @@ def pose_fields(pose: Pose) -> dict[str, Any]:
     return {"position": {"x": x, "y": y, "z": z}, "orientation": {"x": qx, "y": qy, "z": qz, "w": qw}}
 
 
-def vector_fields(vector: Sequence[float]) -> dict[str, float]:
+def vector_fields(vector: Sequence[float] | Vector) -> dict[str, float]:
     """The fields of a Vector3 or a Point message."""
     x, y, z = (float(part) for part in vector)
     return {"x": x, "y": y, "z": z}

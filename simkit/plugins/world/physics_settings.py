@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from simkit.plugins.world.entities import RequestRefused, require_finite, vector_fields, vector_of
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
 
 _SAME: Final = 1e-9  # of two step sizes, relative
 _OF_ODE: Final = (
@@ -21,7 +24,7 @@ _OF_ODE: Final = (
 )
 
 
-def set_physics(sim: Any, request: Any, *, keeps_gravity: bool = False) -> str:
+def set_physics(sim: Simulation, request: Any, *, keeps_gravity: bool = False) -> str:
     """Changes gravity and the pace; a step of another length is refused, and then nothing is changed.
 
     Args:
@@ -55,7 +58,7 @@ def set_physics(sim: Any, request: Any, *, keeps_gravity: bool = False) -> str:
     return f"not used, for the engine is another: {', '.join(given)}" if given else ""
 
 
-def _config_fields(sim: Any) -> dict[str, float]:
+def _config_fields(sim: Simulation) -> dict[str, float]:
     """The fields of an `ODEPhysics` message: what has a counterpart here, the rest zero."""
     return {
         **dict.fromkeys(_OF_ODE, 0),
@@ -66,7 +69,7 @@ def _config_fields(sim: Any) -> dict[str, float]:
     }
 
 
-def physics_fields(sim: Any) -> dict[str, Any]:
+def physics_fields(sim: Simulation) -> dict[str, Any]:
     """The fields of a `gazebo_msgs/srv/GetPhysicsProperties_Response`; of ODE's settings those with a counterpart."""
     pace = sim.pausing.pace or 0.0  # none: as fast as it goes, which is a rate of 0 in Gazebo
     return {

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Container
 from dataclasses import replace
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from simkit import msgs
 from simkit.msgs.topics import valid_topic
@@ -32,6 +32,9 @@ from simkit.plugins.world.entities import (
 )
 from simkit.plugins.world.physics_settings import set_physics
 from simkit.pose import IDENTITY, Pose
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
 
 LIGHT: Final = "ros_gz_interfaces/msg/Light"
 MATERIAL: Final = "ros_gz_interfaces/msg/MaterialColor"
@@ -64,7 +67,7 @@ class WorldServices(WorldPlugin):
 
     on_error = "stop"
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Simulation, params: Params) -> None:
         self._prefix = prefix = valid_topic(f"/world/{self.sim.world.name}")
         offer = self.sim.service_table.offer_by_default
         for short, type_name in _TABLE.items():
@@ -324,7 +327,7 @@ class WorldServices(WorldPlugin):
 _SPOT: Final = ("inner_angle", "outer_angle", "falloff")
 
 
-def _entity_description(sim: Any, kind: str, scoped: str) -> dict[str, Any]:
+def _entity_description(sim: Simulation, kind: str, scoped: str) -> dict[str, Any]:
     """A `SceneEntity`: what it is, what it is part of, where it is in the world."""
     outer = scoped.rpartition("::")[0]
     if kind == "collision":
@@ -344,7 +347,7 @@ def _entity_description(sim: Any, kind: str, scoped: str) -> dict[str, Any]:
     }
 
 
-def _joint_pose(sim: Any, scene: Any) -> Pose:
+def _joint_pose(sim: Simulation, scene: Any) -> Pose:
     """Where a joint's frame is now: it goes with its child link."""
     if scene.child_link not in sim.entities.tables["link"]:
         return scene.pose_world  # type: ignore[no-any-return]

@@ -79,7 +79,7 @@ class WorldStats(WorldPlugin):
     them.
     """
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Simulation, params: Params) -> None:
         sim, prefix = self.sim, valid_topic(f"/world/{self.sim.world.name}")
         self._wall = WallClock(sim)
         on_demand = sim.on_demand
