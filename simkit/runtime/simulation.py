@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 from simkit.errors import InputError, SimulationDiverged
 from simkit.pose import Pose, Vector
 from simkit.runtime.communication.action_server import GoalHandle
-from simkit.run_spec import RunSpec
 from simkit.runtime.communication.communication import Communication
 from simkit.runtime.communication.journal import journaled
 from simkit.runtime.communication.service_server import Service, ServiceHandler
@@ -32,6 +31,7 @@ if TYPE_CHECKING:
     import mujoco
 
     from simkit.diagnostics import Diagnostic, Diagnostics
+    from simkit.run_spec import RunSpec
     from simkit.runtime.communication.journal import Journal
     from simkit.runtime.engine.scheduler import Scheduler
     from simkit.runtime.engine.world_structure import WorldStructure
