@@ -1,4 +1,4 @@
-"""What every sensor shares: when it samples, what it keeps, what it publishes. A kind only says what it measures."""
+"""Base class of all sensors: it samples, keeps and publishes readings; a kind says what it measures."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ AnyNoiseProcess = TypeVar("AnyNoiseProcess", bound=NoiseProcess)
 
 
 class Sensor(Sampler):
-    """A sensor of a model. Derive, name `kinds`, read options in `__init__`, and say what `measure` gives.
+    """A sensor of a model. Derive, name `kinds`, read options in `__init__`, and implement `measure`.
 
     Attributes:
         kinds: `<sensor type>` names in files.
@@ -86,25 +86,25 @@ class Sensor(Sampler):
     # ------------------------------------------------------------------ what a kind says
 
     def describe(self) -> dict[str, object]:
-        """The kind's block in `inspect --json`."""
+        """Return the kind's block of `inspect --json`."""
         return {}
 
     def build(self, builder: SpecBuilder) -> None:
-        """Before the compile: adds what the kind needs to the spec."""
+        """Add what the kind needs to MuJoCo's specification, before it is compiled."""
 
     @abc.abstractmethod
     def products(self) -> dict[str, Product]:
-        """The messages it can give; the first is what `latest` shows."""
+        """Return the messages that the kind can publish; `latest` shows the first."""
 
     @abc.abstractmethod
     def default_topics(self) -> dict[str, str]:
-        """Product -> topic, as Gazebo would name it; the first is what `latest` shows."""
+        """Return the topic of each product, as Gazebo would name it; `latest` shows the first."""
 
     # ------------------------------------------------------------------ readings
 
     @property
     def topic(self) -> str:
-        """Topic of what `latest` shows."""
+        """Topic of the message that `latest` shows."""
         return next(iter(self._topics.values()), "")
 
     @property
@@ -116,7 +116,7 @@ class Sensor(Sampler):
 
     @property
     def truth(self) -> Any:
-        """The same message as it would be without noise, or None before the first."""
+        """The newest message as it would be without noise, or None before the first."""
         sample = self._sample
         if sample is None:
             return None
@@ -135,12 +135,12 @@ class Sensor(Sampler):
 
     @property
     def pose(self) -> Pose:
-        """Of the sensor in the world, now."""
+        """Pose of the sensor in the world, now."""
         data = self.sim.fresh_data()
         return Pose(data.xpos[self._body], data.xquat[self._body]) @ self._offset
 
     def set_rate(self, rate: float) -> None:
-        """Samples at `rate` [Hz] from now on, still on the grid of t = 0; 0 is every step.
+        """Sample at `rate` [Hz] from now on, still on the grid of t = 0; 0 is every step.
 
         Raises:
             ValueError: it is no number of at least 0.
@@ -154,11 +154,11 @@ class Sensor(Sampler):
         self.sim.reschedule()
 
     def optical_frames(self) -> dict[str, Pose]:
-        """Frames that messages of it name beside the sensor's, and where they are in that."""
+        """Return the poses, in the sensor's frame, of the other frames that its messages name."""
         return {}
 
     def publish_on(self, topics: Mapping[str, str]) -> None:
-        """Publishes these products on these topics, instead of on its own (what a sensor plugin does).
+        """Publish these products on these topics instead of the default ones (what a sensor plugin does).
 
         A second plugin on the same sensor adds its topics to those of the first.
 
@@ -184,10 +184,10 @@ class Sensor(Sampler):
     # ------------------------------------------------------------------ what the simulation calls
 
     def prepare(self) -> None:
-        """Once, when `sim` is known: makes the noise and whatever else the kind keeps."""
+        """Make the noise and whatever else the kind keeps; called once, when `sim` is known."""
 
     def attach(self, sim: Simulation) -> None:
-        """Once: opens topics and random streams."""
+        """Open topics and random streams; called once."""
         self.sim = sim
         options, quirks = self.timing, sim.world.gazebo_quirks
         self._times = SampleTimes(options, sim.clock, sim.streams, self.scoped, in_milliseconds=quirks)
@@ -204,7 +204,7 @@ class Sensor(Sampler):
         self.restart()
 
     def _report_timing(self, sim: Simulation) -> None:
-        """What the step makes impossible."""
+        """Report options that the length of a step makes impossible."""
         rate, jitter, step = self.update_rate, self.timing.jitter, sim.timestep
         if self._times.is_too_fast(rate):
             message = f"sensor {self.scoped!r}: {rate:g} Hz is more than the {1 / step:g} steps a second"
@@ -214,7 +214,7 @@ class Sensor(Sampler):
             sim.reports.warning("SK-SENSOR-023", f"{message} and has no effect", self.scene.where)
 
     def bind(self, compiled: Compiled) -> None:
-        """Finds itself in a compiled model, also after every change of structure."""
+        """Find the sensor in a compiled model; called again after every change of structure."""
         self._process_pending()
         for sample in self._kept_samples():
             self._finish_sample(sample)  # what is held belongs to the model before
@@ -228,9 +228,9 @@ class Sensor(Sampler):
         self._offset_rotation: Vector = self._offset.matrix
 
     def close(self) -> None:
-        """When the simulation closes."""
+        """Release what the kind holds; called when the simulation closes."""
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> Sensor:
+    def __deepcopy__(self, memo: dict[int, object]) -> Sensor:
         return self
 
     def __repr__(self) -> str:
@@ -239,13 +239,13 @@ class Sensor(Sampler):
     # ------------------------------------------------------------------ within
 
     def _make_noise(self, models: Sequence[NoiseModel], group: str) -> Noise:
-        """The noise of a few channels, one model each; for `self.noise`."""
+        """Make the noise of a few channels, one model each; for `self.noise`."""
         return self._register_noise(
             Noise([self._effective_noise(m) for m in models], *self._noise_stream_names(group), **self._noise_terms())
         )
 
     def _make_uniform_noise(self, model: NoiseModel, width: int, group: str) -> UniformNoise:
-        """The same noise on every one of many channels; for `self.noise`."""
+        """Make noise with the same model on each of many channels; for `self.noise`."""
         quirks = self.sim.world.gazebo_quirks
         model = (
             NO_NOISE if quirks and model.is_quantized else self._effective_noise(model)
@@ -272,7 +272,7 @@ class Sensor(Sampler):
         return noise
 
     def _on_rate(self, message: Any) -> None:
-        """A rate from a topic; with Gazebo's quirks it is at most the file's."""
+        """Take a rate from a topic; with Gazebo's quirks it is at most the file's."""
         rate, most = float(message.data), self.scene.rate
         refused = ""
         if not (math.isfinite(rate) and rate >= 0):
@@ -286,25 +286,25 @@ class Sensor(Sampler):
         self.sim.reports.warning("SK-SENSOR-026", message, self.scene.where)
 
     def _default_topic(self, suffix: str) -> str:
-        """`<topic>` where the file gives it, else Gazebo's."""
+        """Return `<topic>` where the file gives it, else Gazebo's default."""
         return valid_topic(self.scene.topic) if self.scene.topic else self._entity_topic(suffix)
 
     def _entity_topic(self, suffix: str) -> str:
         return entity_topic(self.sim.world.name, self.scene, suffix)
 
     def _frame_in_world(self, data: mujoco.MjData) -> tuple[Vector, Vector]:
-        """Position (3,) [m] and rotation matrix (3, 3) of the sensor."""
+        """Return the position (3,) [m] and the rotation matrix (3, 3) of the sensor in the world."""
         rotation = data.xmat[self._body].reshape(3, 3)
         return data.xpos[self._body] + rotation @ self._offset_position, rotation @ self._offset_rotation
 
     def _find_link(self, names: NameMap) -> str:
-        """The link that the sensor is on; for a joint's sensor the joint's child link."""
+        """Return the link that the sensor is on; for a joint's sensor the joint's child link."""
         parent = self.scene.parent
         return str(names.joint(parent).scene.child_link) if self.scene.on_joint else parent
 
 
 def report_once(sensor: Sensor, severity: Severity, code: str, message: str, where: Where, hint: str = "") -> None:
-    """Adds a diagnostic unless the same was said of that place already."""
+    """Add a diagnostic unless the same was reported for that place already."""
     known = chain(sensor.diagnostics, sensor.sim.reports)
     if not any(d.code == code and (d.file, d.line) == (where.file, where.line) for d in known):
         sensor.diagnostics.add(severity, code, message, where, hint)

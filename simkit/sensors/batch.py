@@ -1,4 +1,4 @@
-"""Sensors of one kind that sample together: what one call of NumPy gives for all of them is not computed one by one.
+"""Sensors of one kind that sample together, so that one call of NumPy computes the readings of all.
 
 A batch changes no bit, no order and no message. Each member samples in its own turn and takes its part of what was
 computed at the turn of the first; where somebody has written to the physics in between, it is computed anew.
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import abc
 from collections.abc import Callable, Hashable, Sequence
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 if TYPE_CHECKING:
     import mujoco
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from simkit.sensors.sampler import Sampler
 
 MIN_MEMBERS = 4
-"""So few members are as soon measured one by one."""
+"""Fewer members are measured one by one in the same time."""
 
 Member = TypeVar("Member", bound="Sampler")
 
@@ -43,7 +43,7 @@ class SensorBatch(abc.ABC, Generic[Member]):
         """Capture all members from the data, which have everything computed."""
 
     @abc.abstractmethod
-    def captured(self, place: int) -> Any:
+    def captured(self, place: int) -> object:
         """Return what `capture` would give of a member."""
 
     def publish_sample(self, member: Sampler, tick: int) -> bool:

@@ -306,7 +306,7 @@ class Noise:
         """What the first channel has besides white noise."""
         return float(self.state.constant[0])
 
-    def memory(self) -> Any:
+    def memory(self) -> object:
         return self.state
 
     def remember(self, memory: Any) -> None:

@@ -24,7 +24,7 @@ def _fields(dtype: np.dtype[Any]) -> tuple[Any, ...]:
     )
 
 
-def point_cloud(header: Any, points: Any, height: int, width: int, is_dense: bool) -> Any:
+def point_cloud(header: msgs.Header, points: Any, height: int, width: int, is_dense: bool) -> msgs.PointCloud2:
     """A cloud of `height` rows of `width` points.
 
     Args:
@@ -35,10 +35,13 @@ def point_cloud(header: Any, points: Any, height: int, width: int, is_dense: boo
     step = points.dtype.itemsize
     data = points.view(np.uint8).reshape(-1) if points.size else np.empty(0, dtype=np.uint8)
     make = msgs.type_of("sensor_msgs/msg/PointCloud2")
-    return make(header, height, width, list(_fields(points.dtype)), False, step, step * width, data, is_dense)
+    message: msgs.PointCloud2 = make(
+        header, height, width, list(_fields(points.dtype)), False, step, step * width, data, is_dense
+    )
+    return message
 
 
-def legacy_point_cloud(header: Any, places: Vector, intensities: Vector) -> Any:
+def legacy_point_cloud(header: msgs.Header, places: Vector, intensities: Vector) -> msgs.PointCloud:
     """A `sensor_msgs/msg/PointCloud`.
 
     Args:
@@ -48,4 +51,7 @@ def legacy_point_cloud(header: Any, places: Vector, intensities: Vector) -> Any:
     """
     point, channel = msgs.type_of("geometry_msgs/msg/Point32"), msgs.type_of("sensor_msgs/msg/ChannelFloat32")
     points = [point(*place) for place in places.tolist()]
-    return msgs.type_of(LEGACY_CLOUD_TYPE)(header, points, [channel("intensity", intensities.astype(np.float32))])
+    message: msgs.PointCloud = msgs.type_of(LEGACY_CLOUD_TYPE)(
+        header, points, [channel("intensity", intensities.astype(np.float32))]
+    )
+    return message

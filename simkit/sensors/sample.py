@@ -1,10 +1,13 @@
-"""What a sensor samples: a due time with what was measured then, the messages it gives, and what goes on between."""
+"""A sample of a sensor, the messages made from it, and the noise that continues from sample to sample."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
+
+if TYPE_CHECKING:
+    from simkit.runtime.engine.held_state import HeldState
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,12 +21,12 @@ class Product:
     """
 
     type_name: str
-    make: Callable[[Any, int], Any]
+    make: Callable[[Any, int], object]
     needs_reading: bool = True
 
 
 class Sample:
-    """One due time: either measured, or the physics state to measure later.
+    """One due time of a sensor: measured, or with the physics state to measure later.
 
     Attributes:
         index: 1 for the first sample.
@@ -38,23 +41,23 @@ class Sample:
     """
 
     # in the class, so that the many samples that nobody looks at are soon made
-    held: Any = None
+    held: HeldState | None = None
     raw: Any = None
     truth: Any = None
     noisy: Any = None
-    truth_message: Any = None
-    drifts: tuple[Any, ...] = ()
+    truth_message: object = None
+    drifts: tuple[object, ...] = ()
     unpublished: tuple[str, ...] = ()
     surroundings: Any = None
     work: Any = None
 
     def __init__(self, index: int, time_ns: int) -> None:
         self.index, self.time_ns = index, time_ns
-        self.messages: dict[str, Any] = {}
+        self.messages: dict[str, object] = {}
 
 
 class NoiseProcess(Protocol):
-    """What goes on from sample to sample beside the physics: noise, and whatever else a kind remembers.
+    """State that continues from sample to sample beside the physics: noise, and whatever else a kind keeps.
 
     Attributes:
         state: what of it depends on the sample; never written to, only replaced, for samples that wait keep theirs.
@@ -67,19 +70,19 @@ class NoiseProcess(Protocol):
         """Whether the state changes from sample to sample."""
 
     def evolve(self, index: int, dt: float) -> None:
-        """Moves on by `dt` [s] to sample `index`; 0 where there is no sample before it."""
+        """Advance by `dt` [s] to sample `index`; 0 where there is no sample before it."""
 
     def restart(self) -> None:
-        """Back at t = 0."""
+        """Return to t = 0."""
 
     def set_interval(self, interval: float) -> None:
-        """Says that samples are `interval` [s] apart from now on, if nothing else is known of one."""
+        """Set the time between samples [s] that is assumed where nothing else is known."""
 
-    def memory(self) -> Any:
-        """What `remember` takes back."""
+    def memory(self) -> object:
+        """Return the state, for `remember`."""
 
     def remember(self, memory: Any) -> None:
-        """Takes back what `memory` gave."""
+        """Restore the state that `memory` returned."""
 
 
 class Batch(Protocol):
@@ -88,7 +91,7 @@ class Batch(Protocol):
     def is_ready(self, member: Any, tick: int) -> bool:
         """Capture all members for a tick, once; False where the member has to do it by itself."""
 
-    def captured(self, place: int) -> Any:
+    def captured(self, place: int) -> object:
         """Return what `capture` would give of a member."""
 
     def publish_sample(self, member: Any, tick: int) -> bool:

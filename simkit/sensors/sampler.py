@@ -1,4 +1,4 @@
-"""The samples of a sensor: taken when they are due, kept until somebody looks, published when they arrive."""
+"""Samples of a sensor: taken when they are due, kept until a reader asks, published when they arrive."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def _is_always_on() -> bool:
 
 
 class Sampler(abc.ABC):
-    """What of a sensor has to do with its samples; the rest is `simkit.sensors.base.Sensor`."""
+    """Takes, keeps and publishes the samples of a sensor; the rest of a sensor is `simkit.sensors.base.Sensor`."""
 
     needs_acceleration: ClassVar[bool] = False
     reads_contacts: ClassVar[bool] = False
@@ -63,7 +63,7 @@ class Sampler(abc.ABC):
         self._is_on: Callable[[], bool] = _is_always_on
 
     def sample_only_while(self, is_on: Callable[[], bool]) -> None:
-        """Has due times give samples only while `is_on()`: there is none of a sensor without power."""
+        """Sample at due times only while `is_on()` returns true: a sensor without power has no samples."""
         self._is_on, self._selects_ticks = is_on, True
 
     def _overrides(self, method: str) -> bool:
@@ -72,55 +72,55 @@ class Sampler(abc.ABC):
     # ------------------------------------------------------------------ what a kind says
 
     @abc.abstractmethod
-    def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> Any:
-        """The reading without noise, of data with everything computed; arrays in it are never written to again."""
+    def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> object:
+        """Return the reading without noise, of data with everything computed; its arrays are never written to again."""
 
-    def capture(self, model: mujoco.MjModel, data: mujoco.MjData) -> Any:
-        """What must be taken from the data at once; `finish` makes the reading of it. As a rule that is the reading."""
+    def capture(self, model: mujoco.MjModel, data: mujoco.MjData) -> object:
+        """Take from the data what `finish` needs to make the reading; by default the reading itself."""
         return self.measure(model, data)
 
-    def capture_held(self, model: mujoco.MjModel, data: mujoco.MjData, sample: Sample) -> Any:
-        """`capture` of the physics that was held for a sample; for kinds that read more than the physics."""
+    def capture_held(self, model: mujoco.MjModel, data: mujoco.MjData, sample: Sample) -> object:
+        """Capture the physics that was held for a sample; for kinds that read more than the physics."""
         return self.capture(model, data)
 
-    def finish(self, raw: Any) -> Any:
-        """The reading without noise, of what was captured."""
+    def finish(self, raw: Any) -> object:
+        """Return the reading without noise, made from what was captured."""
         return raw
 
-    def perturb(self, reading: Any, index: int) -> Any:
-        """The reading with the noise of a sample; the same object where there is none."""
+    def perturb(self, reading: Any, index: int) -> object:
+        """Return the reading with the noise of a sample; the same object where there is no noise."""
         return reading
 
     def evolve(self, index: int, dt: float) -> None:
-        """Moves noise that has a memory on by `dt` [s] (0 at the first sample), read or not."""
+        """Advance noise that has a state by `dt` [s] (0 at the first sample), whether the sample is read or not."""
         for noise in self._noises:
             if noise.wanders:
                 noise.evolve(index, dt)
 
     def restart(self) -> None:
-        """Back at t = 0: draws what is drawn once."""
+        """Return to t = 0, and draw what is drawn once."""
         for noise in self._noises:
             noise.restart()
 
-    def memory(self) -> Any:
-        """What the kind itself remembers from sample to sample, as values of its own."""
+    def memory(self) -> object:
+        """Return the state that continues from sample to sample, as values that nobody writes to."""
         return tuple(noise.memory() for noise in self._noises)
 
     def remember(self, memory: Any) -> None:
-        """Takes back what `memory` gave."""
+        """Restore the state that `memory` returned."""
         for noise, state in zip(self._noises, memory, strict=True):
             noise.remember(state)
 
     def accepts(self, tick: int) -> bool:
-        """Whether a due time gives a sample."""
+        """Check whether there is a sample at a due tick."""
         return True
 
     def publishes(self, product: str, raw: Any) -> bool:
-        """Whether what was captured is published as `product`; `latest` and `truth` show it either way."""
+        """Check whether a capture is published as `product`; `latest` and `truth` show it either way."""
         return True
 
     @classmethod
-    def make_batches(cls, sensors: Sequence[Any]) -> None:
+    def make_batches(cls, sensors: Sequence[Sampler]) -> None:
         """Make batches of the sensors of this kind that can sample together; see `simkit.sensors.batch`."""
 
     # ------------------------------------------------------------------ what the simulation calls
@@ -133,19 +133,19 @@ class Sampler(abc.ABC):
 
     @property
     def is_read_now(self) -> bool:
-        """Whether somebody reads what is measured."""
+        """Whether a subscriber or a recorder reads the measurements."""
         if self._revision != self.sim.bus.revision:
             self._update_readers()
         return self._is_read
 
     @property
     def count(self) -> int:
-        """How many samples it has taken."""
+        """Number of samples taken."""
         self._process_pending()
         return self._index
 
     def timetable(self) -> Timetable | None:
-        """When `sample` is to be called, at the rate of the moment; None is every step."""
+        """Return the ticks at which `sample` is to be called, at the present rate; None is every step."""
         grid = self._times.grid(self.update_rate)
         if self._delayed is None or grid is None:
             self._latency_timetable = None
@@ -154,7 +154,7 @@ class Sampler(abc.ABC):
         return self._latency_timetable
 
     def sample(self, tick: int) -> None:
-        """The due tick: measures and publishes where somebody reads, else keeps the physics state."""
+        """Sample at a due tick: measure and publish where there is a reader, else keep the physics state."""
         if self._delayed is not None and not self._deliver_and_check_due(self._delayed, tick):
             return
         if self._selects_ticks and not (self._is_on() and self.accepts(tick)):
@@ -189,24 +189,24 @@ class Sampler(abc.ABC):
             self._publish(sample, wanted)
 
     def take_held(self) -> None:
-        """Captures what waits to be looked at, before the model that it belongs to is written to."""
+        """Capture the samples that are kept, before the model that they belong to is written to."""
         for sample in self._kept_samples():
             self._capture_sample(sample)
 
     def leave(self) -> None:
-        """Its model is taken away: measures what may still be looked at, and lets go of the world that it was in."""
+        """Finish the samples that are kept; called when the sensor's model is removed."""
         self._process_pending()
         for sample in self._kept_samples():
             self._finish_sample(sample)
 
     def reset(self) -> None:
-        """Back at t = 0."""
+        """Return to t = 0."""
         self._process_pending()
         self._drop_samples()
         self._index, self._time_ns = 0, -1
         self.restart()
 
-    def get_state(self) -> Any:
+    def get_state(self) -> object:
         self._process_pending()
         # a sample is only ever completed, never changed, so it may be shared
         flight = tuple(self._delayed.samples) if self._delayed is not None else ()
@@ -235,7 +235,7 @@ class Sampler(abc.ABC):
         self._newest = sample
 
     def _begin_sample(self, tick: int) -> Sample:
-        """The next sample; noise that wanders moves on to it."""
+        """Begin the next sample, and advance noise that has a state to it."""
         time_ns = self.sim.clock.time_ns(tick)
         self._index = index = self._index + 1
         if self._evolves:
@@ -246,7 +246,7 @@ class Sampler(abc.ABC):
             sample.drifts = tuple([noise.state for noise in self._wandering])
         return sample
 
-    def _capture_now(self, tick: int) -> Any:
+    def _capture_now(self, tick: int) -> object:
         """Capture the state of this tick; a member of a batch has it from there."""
         batch = self.batch
         if batch is not None:
@@ -256,13 +256,13 @@ class Sampler(abc.ABC):
         return self.capture(self.sim.mj_model, self._computed_data())
 
     def _computed_data(self) -> Any:
-        """The engine's data with what `measure` reads computed."""
+        """Return MuJoCo's data with what `measure` reads computed."""
         if self.needs_acceleration or self.reads_contacts:
             return self.sim.fresh_acceleration()
         return self.sim.fresh_data()
 
     def _update_readers(self) -> None:
-        """After a change of that: what is wanted, and whether captures may be gathered."""
+        """Find out who reads: which products are wanted, and whether captures may be gathered."""
         self._process_pending()
         self._revision = self.sim.bus.revision
         self._wanted = [end for end in self._publishers if end[1].wanted]
@@ -276,7 +276,7 @@ class Sampler(abc.ABC):
         self._patience = max(patience, default=0.0)
 
     def _process_pending(self) -> None:
-        """Makes samples of what was gathered; what nobody will look at is not published."""
+        """Make samples of the captures that were gathered; publish those that a reader keeps."""
         if self._held is not None and self._skipped:
             (tick, held), count = self._held, self._skipped
             self._skipped, self._held = 0, None
@@ -299,7 +299,7 @@ class Sampler(abc.ABC):
             noise.set_interval(self._times.nominal_interval(rate))
 
     def _kept_samples(self) -> Iterator[Sample]:
-        """Every sample that may still be looked at."""
+        """Yield every sample that may still be read."""
         if self._sample is not None:
             yield self._sample
         if self._delayed is not None:
@@ -307,13 +307,13 @@ class Sampler(abc.ABC):
                 yield sample
 
     def _drop_samples(self) -> None:
-        """Forgets them all."""
+        """Drop all samples."""
         self._sample = None
         if self._delayed is not None:
             self._delayed.samples.clear()
 
     def _deliver_and_check_due(self, flight: DelayedReadings, tick: int) -> bool:
-        """Delivers what has arrived; whether a sample is due as well."""
+        """Deliver the samples that have arrived, and check whether a sample is due as well."""
         self._deliver(flight, tick)
         return self._latency_timetable is None or self._latency_timetable.is_sample(tick)
 
@@ -326,7 +326,7 @@ class Sampler(abc.ABC):
             self._publish(sample, wanted)
 
     def _publish(self, sample: Sample, wanted: list[tuple[str, Publisher, bool]]) -> list[LazyMessage]:
-        """Hands the wanted messages out; gives those that are still to be made of the reading."""
+        """Publish the wanted messages, and return those that are still to be made from the reading."""
         put_off = []
         for product, publisher, needs_reading in wanted:
             if product in sample.unpublished:
@@ -341,19 +341,19 @@ class Sampler(abc.ABC):
         return put_off
 
     def _pending_job(self, sample: Sample) -> Any:
-        """What another thread still does with a sample; None as a rule."""
+        """Return the job of another thread that a sample waits for; None by default."""
         return None
 
-    def _message_on_demand(self, sample: Sample, product: str) -> Any:
-        """The message for somebody who looks after the sample; NOTHING where it cannot be made any more."""
+    def _message_on_demand(self, sample: Sample, product: str) -> object:
+        """Make a message after its sample was published; `NO_MESSAGE` where that is no longer possible."""
         return self._message(sample, product)
 
     def _select_products(self, sample: Sample) -> None:
-        """What of a captured sample is published."""
+        """Select the products of a captured sample that are not published."""
         sample.unpublished = tuple(product for product in self._topics if not self.publishes(product, sample.raw))
 
     def _capture_sample(self, sample: Sample) -> None:
-        """Captures what was held, once."""
+        """Capture the physics state that a sample holds, once."""
         if sample.held is not None:
             sample.raw = self.capture_held(sample.held.model, self.sim.data_of(sample.held), sample)
             sample.held = None
@@ -361,7 +361,7 @@ class Sampler(abc.ABC):
                 self._select_products(sample)
 
     def _finish_sample(self, sample: Sample) -> None:
-        """Measures what was kept, once."""
+        """Make the reading of a sample, and its noise, once."""
         if sample.held is not None:
             self._capture_sample(sample)
         if sample.raw is not None:
@@ -380,7 +380,7 @@ class Sampler(abc.ABC):
             message = sample.messages[product] = self._make_message(sample, product, sample.noisy)
         return message
 
-    def _make_message(self, sample: Sample, product: str, reading: Any) -> Any:
+    def _make_message(self, sample: Sample, product: str, reading: Any) -> object:
         make = self._products[product].make
         return (
             self._with_noise_of(sample, make, reading, sample.time_ns)
@@ -388,8 +388,8 @@ class Sampler(abc.ABC):
             else make(reading, sample.time_ns)
         )
 
-    def _with_noise_of(self, sample: Sample, make: Callable[[Any, int], Any], *what: Any) -> Any:
-        """`make(*what)` with the noise as it was at a sample."""
+    def _with_noise_of(self, sample: Sample, make: Callable[[Any, int], object], *what: Any) -> Any:
+        """Call `make(*what)` with the noise as it was at a sample."""
         now = [noise.state for noise in self._wandering]
         for noise, state in zip(self._wandering, sample.drifts, strict=True):
             noise.state = state

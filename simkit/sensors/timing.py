@@ -1,4 +1,4 @@
-"""When a sensor samples, and when its readings arrive."""
+"""Times at which a sensor samples and at which its readings arrive: rate, phase, jitter, latency."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _MILLISECOND = Fraction(1, 1000)
 
 @dataclass(frozen=True, slots=True)
 class TimingOptions:
-    """What all sensors read of their timing; all times in s.
+    """Timing options that all sensors have; all times in s.
 
     Attributes:
         phase: shift of the grid of samples.
@@ -40,7 +40,7 @@ class TimingOptions:
 
 
 def read_timing(params: Params, rate: float) -> TimingOptions:
-    """The elements of a `<sensor>` at `rate` [Hz] that say when it samples and when its readings arrive."""
+    """Read the timing elements of a `<sensor>` at `rate` [Hz]."""
     jitter = params.number("jitter", 0.0, minimum=0)
     latency = params.number("latency", 0.0, minimum=0, maximum=MAX_LATENCY)
     latency_jitter = params.number("latency_jitter", 0.0, minimum=0)
@@ -63,7 +63,7 @@ def read_timing(params: Params, rate: float) -> TimingOptions:
 
 
 class SampleTimes:
-    """The time of each sample of a sensor, whatever its rate is at the moment.
+    """Sample times of a sensor at any rate.
 
     Args:
         options: of the file.
@@ -83,25 +83,25 @@ class SampleTimes:
             self._jitter = lambda k: float(stream.uniform(k)[0])
 
     def period(self, rate: float) -> Fraction:
-        """Of a rate [Hz] on the grid, in s; 0 is every step."""
+        """Return the period [s] of a rate [Hz] on the grid; 0 is every step."""
         period = 1 / exact_rate(rate) if rate > 0 else Fraction(0)
         return period // _MILLISECOND * _MILLISECOND if self._in_milliseconds else period
 
     def is_too_fast(self, rate: float) -> bool:
-        """Whether there are fewer steps than samples asked for."""
+        """Check whether a rate [Hz] needs more samples than there are steps."""
         return rate > 0 and exact_rate(rate) * exact_fraction(self._clock.timestep) > 1
 
     def nominal_interval(self, rate: float) -> float:
-        """Mean time [s] between two samples."""
+        """Return the mean time [s] between two samples."""
         return max(float(self.period(rate)), self._clock.timestep)
 
     def grid(self, rate: float) -> Timetable | None:
-        """The ticks of a rate [Hz]; None for every step."""
+        """Return the ticks of a rate [Hz]; None for every step."""
         return self._clock.samples(SampleTiming(self.period(rate), self._phase, self._spread, self._jitter))
 
 
 class DelayedReadings:
-    """Readings on their way: measured, and not delivered yet, in the order of their arrival.
+    """Readings that were measured and are not delivered yet, in the order of their arrival.
 
     Args:
         options, clock, streams, scoped: as of `SampleTimes`; the jitter is drawn by the sample's index.
@@ -115,7 +115,7 @@ class DelayedReadings:
         self.samples: deque[tuple[int, Any]] = deque()
 
     def arrival(self, tick: int, index: int) -> int:
-        """The tick at which what is measured at `tick` as sample `index` arrives; never before an older one."""
+        """Return the tick at which sample `index`, measured at `tick`, arrives; never before an older one."""
         steps = self._steps
         if self._stream is not None:
             late = float(self._latency) + self._spread * float(self._stream.uniform(index)[0])
@@ -123,7 +123,7 @@ class DelayedReadings:
         return max(tick + steps, self.samples[-1][0]) if self.samples else tick + steps
 
     def arrived(self, tick: int) -> list[Any]:
-        """Takes out what has arrived by `tick`."""
+        """Remove and return the samples that have arrived by `tick`."""
         found = []
         while self.samples and self.samples[0][0] <= tick:
             found.append(self.samples.popleft()[1])
@@ -131,7 +131,7 @@ class DelayedReadings:
 
 
 class LatencyTimetable:
-    """When a sensor with latency has something to do: a sample is due, or one arrives.
+    """Ticks at which a sensor with latency has a sample due, or one that arrives.
 
     Args:
         grid: of the samples; None for every step.
@@ -143,11 +143,11 @@ class LatencyTimetable:
         self._grid, self._delayed, self._next_index = grid, delayed, next_index
 
     def is_sample(self, tick: int) -> bool:
-        """Whether a sample is due at a tick."""
+        """Check whether a sample is due at a tick."""
         return self._grid.next(tick - 1) == tick
 
     def next(self, tick: int) -> int:
-        """First due tick after a tick."""
+        """Return the first due tick after a tick."""
         found = self._grid.next(tick)
         for arrival, _ in self._delayed.samples:
             if arrival > tick:

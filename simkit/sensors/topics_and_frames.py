@@ -1,4 +1,4 @@
-"""Topics and frames that a sensor has where its file names none."""
+"""Default topics and frames of a sensor."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ OPTICAL_POSE = Pose.from_rpy(0.0, 0.0, 0.0, -math.pi / 2, 0.0, -math.pi / 2)
 
 
 def entity_topic(world: str, sensor: SceneSensor, suffix: str = "") -> str:
-    """`/world/<w>/model/<m>[/model/<nested>]/link/<l>/sensor/<s>[/<suffix>]`; a joint's sensor has `joint`."""
+    """Return `/world/<w>/model/<m>[/model/<nested>]/link/<l>/sensor/<s>[/<suffix>]`; a joint's sensor has `joint`."""
     *models, owner = sensor.parent.split("::")
     parts = ["world", world]
     for model in models:
@@ -24,18 +24,18 @@ def entity_topic(world: str, sensor: SceneSensor, suffix: str = "") -> str:
 
 
 def sibling_topic(topic: str, name: str) -> str:
-    """The topic beside another: `/a/image` and `camera_info` give `/a/camera_info`."""
+    """Return the topic beside another: `/a/image` and `camera_info` give `/a/camera_info`."""
     return topic.rsplit("/", 1)[0] + "/" + name
 
 
 def read_frame_id(params: Params) -> str:
-    """The frame that the sensor's block names, in today's spelling or an older one; empty where it names none."""
+    """Read the frame that the sensor's block names, in today's spelling or an older one; empty where it names none."""
     names = [params.text(element, "") for element in ("frame_id", "gz_frame_id", "ignition_frame_id")]
     return next((name for name in names if name), "")
 
 
 def check_topic(topic: str, block: Params, element: str = "topic") -> None:
-    """Reports a `<topic>`, or other element of a block, with characters that may not stand in a topic's name."""
+    """Report a `<topic>`, or another element of a block, with characters that a topic's name must not have."""
     name, found = valid_topic(topic), f"found <{element}>{topic}</{element}>"
     if topic and name == "/":
         block.block(element).error("SK-PARAM-002", f"{found}, allowed is a name with a letter or a digit")

@@ -1,4 +1,4 @@
-"""Kinds of SDF that are known and not simulated: read in full, checked, and said to give nothing.
+"""Sensor kinds of SDF that are known and not simulated: read in full, checked, and reported.
 
 Radio (`wireless_transmitter`, `wireless_receiver`), tags (`rfid`, `rfidtag`) and a Doppler velocity log (`dvl`, which
 needs water). Gazebo does not simulate the first four either; Classic did.

@@ -1,4 +1,4 @@
-"""Who sees whom: the `<visibility_mask>` of a sensor against the `<visibility_flags>` of visuals."""
+"""Which visuals a sensor sees: its `<visibility_mask>` against the `<visibility_flags>` of visuals."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ ALL_VISIBLE: Final = 0xFFFFFFFF
 
 
 def read_visibility_mask(block: Params) -> int:
-    """`<visibility_mask>`: decimal or hexadecimal, from -1 to 4294967295."""
+    """Read `<visibility_mask>`: decimal or hexadecimal, from -1 to 4294967295."""
     text = block.text("visibility_mask", str(ALL_VISIBLE))
     try:
         mask = int(text, 0) if text.isascii() and "_" not in text else -2
@@ -29,7 +29,7 @@ def read_visibility_mask(block: Params) -> int:
 
 
 def hidden_geoms(mask: int, names: NameMap) -> list[int]:
-    """Ids of the geoms of visuals that have no bit in common with a mask.
+    """Return the ids of the geoms of visuals that have no bit in common with a mask.
 
     Args:
         names: the name map of a compiled model.

@@ -141,7 +141,7 @@ def override_intrinsics(plugin: CameraPlugin, sensor: Any, *, is_ros_1: bool) ->
     is_off = bool(plugin.sim.world.gazebo_quirks)
 
     def change(model: Any) -> Any:
-        own = model.told or model
+        own = model.info_model or model
         middle = ((own.width + 1) / 2, (own.height + 1) / 2) if is_off else (own.cx, own.cy)
         return replace(
             own,
@@ -154,7 +154,7 @@ def override_intrinsics(plugin: CameraPlugin, sensor: Any, *, is_ros_1: bool) ->
 
     drawn = sensor.options.model
     told = change(drawn)
-    if told != (drawn.told or drawn):
+    if told != (drawn.info_model or drawn):
         sensor.override_camera_info(change)
     _report_difference(params, drawn, told, names)
 

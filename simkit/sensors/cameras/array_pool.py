@@ -1,4 +1,4 @@
-"""Arrays that are used again."""
+"""Arrays that are used again once no message holds them."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ _OGRE: Final = np.array(((0.0, -1.0, 0.0), (0.0, 0.0, 1.0), (-1.0, 0.0, 0.0)))
 """From the sensor's axes (forward, left, up) to those of Ogre's cameras (right, up, backward)."""
 
 
-def detections_2d(header: Any, boxes: Sequence[Box2D]) -> Any:
+def detections_2d(header: msgs.Header, boxes: Sequence[Box2D]) -> msgs.Detection2DArray:
     """A `Detection2DArray`: the label is the class, in digits, with a score of 1; the model's name is the id."""
     one, corner = msgs.type_of("vision_msgs/msg/Detection2D"), msgs.type_of("vision_msgs/msg/Point2D")
     centre, box_of = msgs.type_of("vision_msgs/msg/Pose2D"), msgs.type_of("vision_msgs/msg/BoundingBox2D")
@@ -34,10 +34,11 @@ def detections_2d(header: Any, boxes: Sequence[Box2D]) -> Any:
         middle = centre(corner((box.left + box.right) / 2, (box.top + box.bottom) / 2), 0.0)
         frame = box_of(middle, box.right - box.left, box.bottom - box.top)
         found.append(one(header, [_hypothesis(box.item.label)], frame, box.item.model))
-    return msgs.type_of(TYPE_2D)(header, found)
+    message: msgs.Detection2DArray = msgs.type_of(TYPE_2D)(header, found)
+    return message
 
 
-def detections_3d(header: Any, boxes: Sequence[Box3D], *, in_ogre_axes: bool = False) -> Any:
+def detections_3d(header: msgs.Header, boxes: Sequence[Box3D], *, in_ogre_axes: bool = False) -> msgs.Detection3DArray:
     """A `Detection3DArray` in the sensor's frame.
 
     Args:
@@ -54,7 +55,8 @@ def detections_3d(header: Any, boxes: Sequence[Box3D], *, in_ogre_axes: bool = F
         w, x, y, z = quaternion.tolist()
         frame = box_of(pose(point(*centre.tolist()), turn(x, y, z, w)), vector(*box.size.tolist()))
         found.append(one(header, [_hypothesis(box.item.label)], frame, box.item.model))
-    return msgs.type_of(TYPE_3D)(header, found)
+    message: msgs.Detection3DArray = msgs.type_of(TYPE_3D)(header, found)
+    return message
 
 
 def boxes_as_csv(message: Any) -> bytes:
@@ -74,8 +76,11 @@ def boxes_as_csv(message: Any) -> bytes:
     return ("\n".join(rows) + "\n").encode()
 
 
-def _hypothesis(label: int) -> Any:
-    return msgs.make("vision_msgs/msg/ObjectHypothesisWithPose", hypothesis={"class_id": str(label), "score": 1.0})
+def _hypothesis(label: int) -> msgs.ObjectHypothesisWithPose:
+    message: msgs.ObjectHypothesisWithPose = msgs.make(
+        "vision_msgs/msg/ObjectHypothesisWithPose", hypothesis={"class_id": str(label), "score": 1.0}
+    )
+    return message
 
 
 def draw_boxes(colours: Picture, boxes: Sequence[Box2D | Box3D], model: CameraModel, view: View) -> Picture:

@@ -92,8 +92,8 @@ class LabelledShapes:
         self.items = items
         self._geoms = [g for item in items.items for visual in item.visuals for g in visual.geoms]
         self._place = {geom: i for i, geom in enumerate(self._geoms)}
-        made = names.shared("corners of drawn shapes", dict)
-        self._corners: list[Corners] = [_cached(made, model, g) for g in self._geoms]
+        cache = names.shared("corners of drawn shapes", dict)
+        self._corners: list[Corners] = [_cached(cache, model, g) for g in self._geoms]
         frames = (names.model_frame(structure.models[item.model]) for item in items.items)
         self._frames = [(body, frame.matrix) for body, frame in frames]
         scenes = {v.scoped: v for m in structure.models.values() for link in m.all_links() for v in link.visuals}
@@ -244,10 +244,10 @@ def _box_around(item: LabelledObject, points: Vector, axes: Vector) -> Box3D:
     return Box3D(item, axes @ ((low + high) / 2), axes, high - low)
 
 
-def _cached(made: dict[int, Corners], model: mujoco.MjModel, geom: int) -> Corners:
-    if geom not in made:
-        made[geom] = geom_corners(model, geom)
-    return made[geom]
+def _cached(cache: dict[int, Corners], model: mujoco.MjModel, geom: int) -> Corners:
+    if geom not in cache:
+        cache[geom] = geom_corners(model, geom)
+    return cache[geom]
 
 
 def gazebo_boxes(
@@ -275,14 +275,14 @@ def gazebo_boxes(
         visuals = [v for v in item.visuals if is_seen[list(v.geoms)].any()]
         if visuals:
             seen[position] = visuals
-    told = [replace(item, label=seen[i][0].label) if i in seen else item for i, item in enumerate(items.items)]
+    labelled = [replace(item, label=seen[i][0].label) if i in seen else item for i, item in enumerate(items.items)]
     if shapes is None or stand is None:
-        found = visible_boxes(items.item_of.take(geoms, mode="wrap"), told)
+        found = visible_boxes(items.item_of.take(geoms, mode="wrap"), labelled)
         return [replace(box, right=box.right - 1, bottom=box.bottom - 1) for box in found]
     if kind == "3d":
-        boxes = [(told[i], shapes.box_of_cloud(i, visuals, stand)) for i, visuals in seen.items()]
+        boxes = [(labelled[i], shapes.box_of_cloud(i, visuals, stand)) for i, visuals in seen.items()]
         return [Box3D(item, box.centre, box.rotation, box.size) for item, box in boxes]
-    full = [_gazebo_full_box(told[i], visuals, shapes, stand, model, view) for i, visuals in seen.items()]
+    full = [_gazebo_full_box(labelled[i], visuals, shapes, stand, model, view) for i, visuals in seen.items()]
     return [box for box in full if box is not None]
 
 

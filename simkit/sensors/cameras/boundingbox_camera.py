@@ -1,14 +1,15 @@
-"""Bounding box cameras: a box around each labelled thing that is seen."""
+"""Bounding box cameras: a box around each labelled object in view."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import numpy.typing as npt
 
+from simkit import msgs
 from simkit.diagnostics import Diagnostics
 from simkit.sensors.base import Product
 from simkit.sensors.cameras import bounding_box_messages, image_messages, label_camera
@@ -161,7 +162,7 @@ class BoundingBoxCamera(LabelCamera):
 
     # ------------------------------------------------------------------ messages
 
-    def _boxes_message(self, reading: Boxes, time_ns: int) -> Any:
+    def _boxes_message(self, reading: Boxes, time_ns: int) -> msgs.Detection2DArray | msgs.Detection3DArray:
         if self.options.type == _SPACE:
             header = self._header(time_ns)
             space = [box for box in reading.boxes if isinstance(box, Box3D)]
@@ -169,6 +170,6 @@ class BoundingBoxCamera(LabelCamera):
         flat = [box for box in reading.boxes if isinstance(box, Box2D)]
         return bounding_box_messages.detections_2d(self._image_header(time_ns), flat)
 
-    def _image_message(self, reading: Boxes, time_ns: int) -> Any:
+    def _image_message(self, reading: Boxes, time_ns: int) -> msgs.Image:
         drawn = bounding_box_messages.draw_boxes(reading.colours, reading.boxes, self.options.model, self._drawn_view())
         return image_messages.image_message(self._image_header(time_ns), drawn, "rgb8")

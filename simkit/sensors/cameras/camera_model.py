@@ -33,7 +33,7 @@ class CameraModel:
         hfov: horizontal opening angle [rad].
         tx, ty: last column of the projection matrix [px·m].
         rectified: focal lengths and principal point [px] of the projection matrix; None has those of the intrinsics.
-        told: what `CameraInfo` says, where that is not what is drawn.
+        info_model: what `CameraInfo` says, where that is not what is drawn.
     """
 
     width: int
@@ -50,7 +50,7 @@ class CameraModel:
     ty: float = 0.0
     skew: float = 0.0
     rectified: tuple[float, float, float, float] | None = None
-    told: CameraModel | None = None
+    info_model: CameraModel | None = None
 
     @property
     def is_distorted(self) -> bool:
@@ -121,10 +121,10 @@ class CameraModel:
         It draws with `<projection>` in place of `<intrinsics>` where there is one (gz-sensors, CameraSensor.cc), leans
         skewed pixels the other way and leaves the skew out of K, and bends nothing: Ogre 2 has no such pass.
         """
-        told = replace(self, skew=0.0)
+        info_model = replace(self, skew=0.0)
         fx, fy, cx, cy = self.rectified or (self.fx, self.fy, self.cx, self.cy)
         skew = 0.0 if self.rectified else -self.skew
-        return replace(self, fx=fx, fy=fy, cx=cx, cy=cy, skew=skew, distortion=NO_DISTORTION, told=told)
+        return replace(self, fx=fx, fy=fy, cx=cx, cy=cy, skew=skew, distortion=NO_DISTORTION, info_model=info_model)
 
 
 def _directions(model: CameraModel) -> tuple[Vector, Vector]:
@@ -195,7 +195,7 @@ def _read_field_of_view(params: Params) -> float:
 
 
 def _read_projection(projection: Params, model: CameraModel) -> CameraModel:
-    """P is told as it is given; the picture is drawn by the intrinsics, which K tells."""
+    """Read P as it is given; the picture is drawn by the intrinsics, which K tells."""
     intrinsics = model.fx, model.fy, model.cx, model.cy
     names = ("p_fx", "p_fy", "p_cx", "p_cy")
     least = (1e-3, 1e-3, -_MAX_FOCAL_PIXELS, -_MAX_FOCAL_PIXELS)

@@ -1,4 +1,4 @@
-"""The reading of a camera."""
+"""Reading of a camera: colours and depths, with noise that is drawn when it is asked for."""
 
 from __future__ import annotations
 

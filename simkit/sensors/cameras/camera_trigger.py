@@ -1,4 +1,4 @@
-"""What a camera waits for that takes pictures only when it is told to."""
+"""Trigger of a camera that takes pictures only when messages call for them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A picture of all directions, put together from faces of a cube around the camera."""
+"""Picture of all directions, assembled from the faces of a cube around the camera."""
 
 from __future__ import annotations
 

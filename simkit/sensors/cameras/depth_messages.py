@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from simkit import msgs
 from simkit.sensors.cameras import image_messages
 from simkit.sensors.cameras.array_pool import ArrayPool
 from simkit.sensors.cameras.camera_model import CameraModel
@@ -44,7 +45,9 @@ class DepthClouds:
         self._spare_points = ArrayPool((*self._size, step // 4), np.float32, np.zeros)
         self._spare_colours = ArrayPool((*self._size, 4), np.uint8)
 
-    def message(self, header: Any, depths: Depths, colours: Colours, shift: Depths | None = None) -> Any:
+    def message(
+        self, header: msgs.Header, depths: Depths, colours: Colours, shift: Depths | None = None
+    ) -> msgs.PointCloud2:
         """A `PointCloud2`; infinite points keep their place.
 
         Args:
@@ -93,7 +96,7 @@ _MILLIMETRES = 1000.0
 _LARGEST_16 = 65535
 
 
-def depths_with_nan(image: Any, near: float, far: float) -> Any:
+def depths_with_nan(image: msgs.Image, near: float, far: float) -> msgs.Image:
     """A depth image [m] (`32FC1`) that is NaN where depth is not between `near` and `far`."""
     depths = image_messages.pixels_of(image).copy()
     with np.errstate(invalid="ignore"):
@@ -101,7 +104,7 @@ def depths_with_nan(image: Any, near: float, far: float) -> Any:
     return image_messages.image_message(image.header, depths, "32FC1")
 
 
-def depths_in_millimetres(image: Any, near: float, far: float) -> Any:
+def depths_in_millimetres(image: msgs.Image, near: float, far: float) -> msgs.Image:
     """A depth image [m] as `16UC1` in whole millimetres, cut; 0 where depth is not from `near` to `far` [m]."""
     depths = image_messages.pixels_of(image)
     with np.errstate(invalid="ignore"):
@@ -111,7 +114,7 @@ def depths_in_millimetres(image: Any, near: float, far: float) -> Any:
     return image_messages.image_message(image.header, np.where(seen, whole, 0).astype(np.uint16), "16UC1")
 
 
-def crop_cloud(cloud: Any, near: float, far: float) -> Any:
+def crop_cloud(cloud: msgs.PointCloud2, near: float, far: float) -> msgs.PointCloud2:
     """An organised cloud in optical axes, NaN where a point's depth is not between `near` and `far` [m]."""
     data = np.array(cloud.data, dtype=np.uint8)
     axes = _cloud_axes(cloud, data)
@@ -122,7 +125,7 @@ def crop_cloud(cloud: Any, near: float, far: float) -> Any:
     return replace(cloud, data=data, is_dense=not outside.any())
 
 
-def _cloud_axes(cloud: Any, data: npt.NDArray[np.uint8]) -> npt.NDArray[Any]:
+def _cloud_axes(cloud: msgs.PointCloud2, data: npt.NDArray[np.uint8]) -> npt.NDArray[Any]:
     """x, y and z in the bytes of a cloud, writable."""
     fields = {field.name: field for field in cloud.fields}
     assert all(fields[axis].datatype == DATATYPES["f4"] for axis in "xyz")

@@ -1,4 +1,4 @@
-"""Noise of depths that are found by triangulation, as stereo cameras and projected patterns do."""
+"""Noise of depths that a stereo camera or a projected pattern finds by triangulation."""
 
 from __future__ import annotations
 

@@ -47,16 +47,17 @@ def grey(colours: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
     return np.asarray(cv2.cvtColor(colours, cv2.COLOR_RGB2GRAY), dtype=np.uint8)
 
 
-def image_message(header: Any, pixels: npt.NDArray[Any], encoding: str) -> Any:
+def image_message(header: msgs.Header, pixels: npt.NDArray[Any], encoding: str) -> msgs.Image:
     """A message of pixels, shape (h, w) or (h, w, n), in their own byte order (little-endian)."""
     data = np.ascontiguousarray(pixels)
     height, width = data.shape[:2]
-    return msgs.type_of(IMAGE_TYPE)(
+    message: msgs.Image = msgs.type_of(IMAGE_TYPE)(
         header, height, width, encoding, 0, data.nbytes // height, data.reshape(-1).view(np.uint8)
     )
+    return message
 
 
-def colour_message(header: Any, colours: npt.NDArray[np.uint8], encoding: str) -> Any:
+def colour_message(header: msgs.Header, colours: npt.NDArray[np.uint8], encoding: str) -> msgs.Image:
     """A message of colours (h, w, 3), or of brightness (h, w) for a grey encoding.
 
     Of 16 bits, white is 65535; of floats it is 1, and one channel alone is red, as a render target of SDF's
@@ -103,7 +104,7 @@ _PIXELS: Mapping[str, tuple[str, int]] = MappingProxyType(
 )  # fmt: skip
 
 
-def pixels_of(message: Any) -> npt.NDArray[Any]:
+def pixels_of(message: msgs.Image) -> npt.NDArray[Any]:
     """The pixels of an `Image`, shape (h, w), or (h, w, n) with more channels than one."""
     kind, channels = _PIXELS.get(message.encoding, ("u1", 1))
     flat = np.asarray(message.data, dtype=np.uint8).view(kind)
@@ -123,7 +124,7 @@ class CameraInfoMaker:
     """
 
     def __init__(self, model: CameraModel, baseline: float = 0.0) -> None:
-        model = model.told or model
+        model = model.info_model or model
         self._size = model.height, model.width
         self._distortion_model = model.distortion_model
         self._d = model.coefficients
@@ -133,10 +134,10 @@ class CameraInfoMaker:
         if baseline:
             self._p[3] = -self._p[0] * baseline
 
-    def make(self, time_ns: int, frame_id: str) -> Any:
+    def make(self, time_ns: int, frame_id: str) -> msgs.CameraInfo:
         """The message of one picture."""
         height, width = self._size
-        return msgs.make(
+        message: msgs.CameraInfo = msgs.make(
             CAMERA_INFO_TYPE,
             header=msgs.header(time_ns, frame_id),
             height=height,
@@ -147,3 +148,4 @@ class CameraInfoMaker:
             r=self._r.copy(),
             p=self._p.copy(),
         )
+        return message

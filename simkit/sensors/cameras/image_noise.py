@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import threading
 from collections.abc import Iterator
+from statistics import NormalDist
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -26,8 +27,6 @@ _OGRE_EXPONENT = 2.1
 @functools.cache
 def _normal_table() -> npt.NDArray[np.float64]:
     """The standard normal's value in the middle of each of 65536 equally likely slices, scaled to variance 1."""
-    from statistics import NormalDist
-
     upper = [NormalDist().inv_cdf((i + 0.5) / _WORDS) for i in range(_WORDS // 2, _WORDS)]
     table = np.concatenate((-np.array(upper[::-1]), upper))
     table /= table.std()
@@ -84,14 +83,14 @@ class ImageNoise:
                 words = np.zeros(count, np.uint16)  # all values of the table are the same
             yield slice(first, last), words.reshape(last - first, width)
 
-    def _changes(self, shape: tuple[int, ...]) -> _BrightnessChanges:
+    def _brightness_changes(self, shape: tuple[int, ...]) -> _BrightnessChanges:
         """Of this thread, kept from picture to picture: fresh memory would take longer than what is done in it."""
         kept: dict[tuple[int, ...], _BrightnessChanges] = vars(self._own).setdefault("changes", {})
         if shape not in kept:
-            kept[shape] = _BrightnessChanges(self._steps, shape)
+            kept[shape] = _BrightnessChanges(self._step_tables, shape)
         return kept[shape]
 
-    def _fresh(self, like: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    def _output_buffer(self, like: npt.NDArray[Any]) -> npt.NDArray[Any]:
         """An array to be written to."""
         key = like.shape, like.dtype.str
         if key not in self._spares:
@@ -103,7 +102,7 @@ class ImageNoise:
         return _normal_table() * self._model.stddev + self._model.mean
 
     @functools.cached_property
-    def _steps(self) -> tuple[npt.NDArray[np.uint8], ...]:
+    def _step_tables(self) -> tuple[npt.NDArray[np.uint8], ...]:
         """What is added to a byte, for each random word: around 128 where that will do, else as it goes up and down."""
         noise = self._draw_noise()
         if self._as_ogre:
@@ -115,7 +114,7 @@ class ImageNoise:
         return np.clip(levels, 0, 255).astype(np.uint8), np.clip(-levels, 0, 255).astype(np.uint8)
 
     @functools.cached_property
-    def _lengths(self) -> npt.NDArray[np.float32]:
+    def _length_table(self) -> npt.NDArray[np.float32]:
         """What is added to a depth [m], for each random word."""
         return np.clip(self._draw_noise(), -_LONGEST, _LONGEST).astype(np.float32)
 
@@ -124,8 +123,8 @@ class ImageNoise:
         import cv2
 
         picture = np.ascontiguousarray(picture)
-        out = self._fresh(picture)
-        changes = self._changes(picture.shape)
+        out = self._output_buffer(picture)
+        changes = self._brightness_changes(picture.shape)
         for rows, words in self._strips("image", index, picture.shape):
             part, (brighter, darker) = out[rows], changes.of(words)
             cv2.add(picture[rows], changes.widened(brighter), part)
@@ -134,10 +133,10 @@ class ImageNoise:
 
     def on_depths(self, depths: npt.NDArray[np.float32], index: int) -> npt.NDArray[np.float32]:
         """Depths [m], shape (h, w), with a draw per pixel; infinite ones stay."""
-        out = self._fresh(depths)
+        out = self._output_buffer(depths)
         for rows, words in self._strips("depth", index, depths.shape):
             part = out[rows]
-            _look_up(self._lengths, words, part)
+            _look_up(self._length_table, words, part)
             np.add(part, depths[rows], out=part)
         return out
 

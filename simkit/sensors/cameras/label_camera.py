@@ -81,16 +81,16 @@ class LabelCamera(RenderedCamera):
     @property
     def items(self) -> LabelledObjects:
         """What wears which label in the sample that is measured, or was measured last."""
-        items: LabelledObjects = self._around()[0]
+        items: LabelledObjects = self._labelled_surroundings()[0]
         return items
 
     @property
     def structure(self) -> WorldStructure:
         """What was in the world at that sample."""
-        structure: WorldStructure = self._around()[1]
+        structure: WorldStructure = self._labelled_surroundings()[1]
         return structure
 
-    def _around(self) -> tuple[Any, Any]:
+    def _labelled_surroundings(self) -> tuple[Any, Any]:
         if self.surroundings is None:
             self.surroundings = self.capture_surroundings()
         found: tuple[Any, Any] = self.surroundings
@@ -135,7 +135,7 @@ class LabelCamera(RenderedCamera):
         np.copyto(kept, film.colours)
         return kept
 
-    def perturb(self, reading: Any, index: int) -> Any:
+    def perturb(self, reading: Any, index: int) -> object:
         return reading
 
     def _report_unlabelled(self, sim: Simulation) -> None:
@@ -161,10 +161,10 @@ def read_keyword(params: Params, word: Keyword) -> str:
     found = place.child(word.element)
     if found is None:
         return word.meanings[word.default]
-    asked = found.value.strip().lower()
-    if asked not in word.meanings:
+    given = found.value.strip().lower()
+    if given not in word.meanings:
         allowed: Sequence[str] = tuple(word.meanings)
         message = f"found <{word.element}>{found.value}</{word.element}>, allowed is one of {', '.join(allowed)}"
-        found.error("SK-PARAM-002", message, did_you_mean(asked, allowed))
+        found.error("SK-PARAM-002", message, did_you_mean(given, allowed))
         return word.meanings[word.default]
-    return word.meanings[asked]
+    return word.meanings[given]

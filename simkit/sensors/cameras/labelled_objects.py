@@ -1,4 +1,4 @@
-"""What a camera that tells labels sees of a world: things of one label, and which geom belongs to which of them."""
+"""Labelled objects of a world, and which geom belongs to which of them."""
 
 from __future__ import annotations
 
@@ -81,10 +81,10 @@ def find_labelled_objects(sim: Simulation, boxed: bool = False) -> LabelledObjec
             model, whichever, and takes the label 255 for the background.
     """
     quirks = bool(sim.world.gazebo_quirks)
-    worn = sim.labels.worn(nested=not quirks)
+    labels = sim.labels.worn(nested=not quirks)
     if quirks and boxed:
-        worn = {scoped: label for scoped, label in worn.items() if label != _GAZEBOS_BACKGROUND}
-    visuals = list(_drawn_visuals(sim.structure, worn))
+        labels = {scoped: label for scoped, label in labels.items() if label != _GAZEBOS_BACKGROUND}
+    visuals = list(_drawn_visuals(sim.structure, labels))
     size = int(sim.structure.compiled.model.ngeom) + 1
     label_of, instance_of, item_of = np.full(size, UNLABELLED, np.int32), np.zeros(size, np.int32), np.full(size, -1)
     items = _group_visuals(visuals, quirks and boxed)
@@ -98,7 +98,7 @@ def find_labelled_objects(sim: Simulation, boxed: bool = False) -> LabelledObjec
     return LabelledObjects(tuple(items), label_of, instance_of, item_of.astype(np.int32))
 
 
-def _drawn_visuals(structure: WorldStructure, worn: dict[str, int]) -> Iterator[DrawnVisual]:
+def _drawn_visuals(structure: WorldStructure, labels: dict[str, int]) -> Iterator[DrawnVisual]:
     """Every visual that is drawn, in document order."""
     names: NameMap = structure.compiled.names
     for model in structure.models.values():
@@ -107,7 +107,7 @@ def _drawn_visuals(structure: WorldStructure, worn: dict[str, int]) -> Iterator[
             for visual in link.visuals:
                 geoms = drawn.get(visual.scoped, ())
                 if geoms:
-                    label = worn.get(visual.scoped, UNLABELLED)
+                    label = labels.get(visual.scoped, UNLABELLED)
                     yield DrawnVisual(visual.scoped, link.scoped, model.name, geoms, label)
 
 

@@ -1,4 +1,4 @@
-"""Logical camera: which models are in its view, and where, without a picture."""
+"""Logical camera: the models in its view and their poses, without a picture."""
 
 from __future__ import annotations
 

@@ -63,11 +63,11 @@ class CameraUnit:
 
     def update_camera_info(self) -> None:
         """After a change of what `CameraInfo` says."""
-        told = self.options.model.told or self.options.model
-        if (told.tx, told.ty) == (0.0, 0.0):
-            (left, up), p = self.beside, told.projection
-            told = replace(told, tx=p[0] * left, ty=p[5] * up)
-        self.info = CameraInfoMaker(told)
+        model = self.options.model.info_model or self.options.model
+        if (model.tx, model.ty) == (0.0, 0.0):
+            (left, up), p = self.beside, model.projection
+            model = replace(model, tx=p[0] * left, ty=p[5] * up)
+        self.info = CameraInfoMaker(model)
 
     @property
     def shot(self) -> Shot:
@@ -93,7 +93,7 @@ class CameraUnit:
             colours = kept
         return CameraReading(colours, None)
 
-    def perturb(self, picture: CameraReading, index: int) -> Any:
+    def perturb(self, picture: CameraReading, index: int) -> object:
         """The picture with the noise of a sample."""
         if self.noise.is_silent:
             return picture
@@ -145,7 +145,7 @@ class MultiCamera(RenderedCamera):
 
     @property
     def reference(self) -> CameraUnit:
-        """The camera that the others of a stereo rig are told against."""
+        """The camera that the others of a stereo rig are described against."""
         return next((eye for eye in self.eyes if "left" in eye.name), self.eyes[0])
 
     def _place(self) -> None:
@@ -172,7 +172,7 @@ class MultiCamera(RenderedCamera):
     def override_camera_info(self, change: Callable[[CameraModel], CameraModel]) -> None:
         for eye in self.eyes:
             model = eye.options.model
-            eye.options = replace(eye.options, model=replace(model, told=change(model)))
+            eye.options = replace(eye.options, model=replace(model, info_model=change(model)))
             eye.update_camera_info()
 
     def set_frame_id(self, frame: str) -> None:
@@ -247,12 +247,12 @@ class MultiCamera(RenderedCamera):
     def saved_products(self) -> dict[str, str]:
         return {f"{eye.name}/image": f"{self.scoped}::{eye.name}" for eye in self.eyes if eye.options.save}
 
-    def _image_of(self, number: int, reading: Any, time_ns: int) -> Any:
+    def _image_of(self, number: int, reading: Any, time_ns: int) -> msgs.Image:
         eye = self.eyes[number]
         header = msgs.header(time_ns, self._frame_of(eye))
         return image_messages.colour_message(header, reading[number].colours, eye.options.encoding)
 
-    def _info_of(self, number: int, _: Any, time_ns: int) -> Any:
+    def _info_of(self, number: int, _: Any, time_ns: int) -> msgs.CameraInfo:
         eye = self.eyes[number]
         return eye.info.make(time_ns, self._frame_of(eye))
 
@@ -267,9 +267,9 @@ def _is_parallel(relative: Pose) -> bool:
 
 
 def _free_name(others: Sequence[CameraUnit], name: str, block: Params) -> str:
-    """The name, or another where it is taken; that is an error."""
-    taken = {eye.name for eye in others}
-    if name not in taken:
+    """The name, or another where it is used; that is an error."""
+    used = {eye.name for eye in others}
+    if name not in used:
         return name
     block.error("SK-PARAM-002", f"two cameras of a sensor are named {name!r}, allowed are different names")
     return f"{name}_{len(others)}"

@@ -108,14 +108,14 @@ class RenderedCamera(RenderedSampler):
             change: gives that camera for the one that there is.
         """
         model = self.options.model
-        self.options = replace(self.options, model=replace(model, told=change(model)))
+        self.options = replace(self.options, model=replace(model, info_model=change(model)))
         self._info = CameraInfoMaker(self.options.model, self._baseline)
 
     def transform_messages(self, product: str, change: Callable[[Any], Any]) -> None:
         """Publishes what `change` makes of each message of a product, instead of it; before the first."""
         of = self._products[product]
-        made = of.make
-        changed = replace(of, make=lambda reading, time_ns: change(made(reading, time_ns)))
+        make_message = of.make
+        changed = replace(of, make=lambda reading, time_ns: change(make_message(reading, time_ns)))
         self._products = {**self._products, product: changed}
 
     def set_frame_id(self, frame: str) -> None:
@@ -154,10 +154,10 @@ class RenderedCamera(RenderedSampler):
         render_thread.drain()
         self.finish_samples()
         super().bind(compiled)
-        self._unseen = hidden_geoms(self.options.visibility_mask, compiled.names)
+        self._hidden_geoms = hidden_geoms(self.options.visibility_mask, compiled.names)
         renderer_of(self.sim).reserve(self.options.model.width, self.options.model.height)
 
-    def develop(self, films: Iterator[Film], notes: Any) -> Any:
+    def develop(self, films: Iterator[Film], notes: Any) -> object:
         colours = next(films).colours
         assert colours is not None
         return CameraReading(self._develop_colours(colours), None)
@@ -174,12 +174,12 @@ class RenderedCamera(RenderedSampler):
         np.copyto(kept, colours)
         return kept
 
-    def perturb(self, reading: CameraReading, index: int) -> Any:
+    def perturb(self, reading: CameraReading, index: int) -> object:
         if self._noise.is_silent:
             return reading
         return NoisyCameraReading(reading, self._noise, index)
 
-    def memory(self) -> Any:
+    def memory(self) -> object:
         return self._trigger.pending if self._trigger else 0
 
     def remember(self, memory: Any) -> None:
@@ -215,7 +215,7 @@ class RenderedCamera(RenderedSampler):
 
     # ------------------------------------------------------------------ messages
 
-    def _header(self, time_ns: int) -> Any:
+    def _header(self, time_ns: int) -> msgs.Header:
         return msgs.header(time_ns, self.frame_id)
 
     def _colour_product(self) -> Product:
@@ -224,14 +224,14 @@ class RenderedCamera(RenderedSampler):
     def _info_product(self) -> Product:
         return Product(image_messages.CAMERA_INFO_TYPE, self._info_message, needs_reading=False)
 
-    def _image_header(self, time_ns: int) -> Any:
+    def _image_header(self, time_ns: int) -> msgs.Header:
         """Of images, whose axes are optical."""
         return msgs.header(time_ns, self.optical_frame_id or self.frame_id)
 
-    def _colour_message(self, reading: Any, time_ns: int) -> Any:
+    def _colour_message(self, reading: Any, time_ns: int) -> msgs.Image:
         return image_messages.colour_message(self._image_header(time_ns), reading.colours, self.options.encoding)
 
-    def _info_message(self, _: Any, time_ns: int) -> Any:
+    def _info_message(self, _: Any, time_ns: int) -> msgs.CameraInfo:
         return self._info.make(time_ns, self.optical_frame_id or self.frame_id)
 
     def _info_topic(self, beside: str) -> str:

@@ -1,4 +1,4 @@
-"""Sample by drawing: take what is to be drawn when a sample is due, draw it on the render thread, finish it later."""
+"""Sampling by drawing: compose when a sample is due, draw on the render thread, finish when it is read."""
 
 from __future__ import annotations
 
@@ -39,13 +39,13 @@ class RenderedSampler(Sensor):
 
     is_deferred = True
     options: CameraOptions
-    _unseen: Sequence[int]
+    _hidden_geoms: Sequence[int]
 
     def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
         super().__init__(scene, diagnostics)
         self._failure: RenderError | None = None
-        self._lost: RenderError | None = None  # what went wrong with a picture, perhaps on the render thread
-        self._is_called = False
+        self._picture_error: RenderError | None = None  # what went wrong with a picture, perhaps on the render thread
+        self._has_callback = False
         self.surroundings: Any = None
 
     @abc.abstractmethod
@@ -64,7 +64,7 @@ class RenderedSampler(Sensor):
         self.finish_samples()
         self.surroundings = None
 
-    def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> Any:
+    def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> object:
         self.surroundings = self.capture_surroundings()
         return render_thread.run_now(self._make_exposure(model, data)).result()
 
@@ -72,7 +72,7 @@ class RenderedSampler(Sensor):
         """Composes what is to be drawn, and has it drawn: on the render thread, unless somebody waits for it."""
         expose = self._make_exposure(model, data)
         # the first picture of all is drawn here, so that it is known at once whether there is a renderer
-        if self._is_called or not (self.sim.render_thread and gl_context.is_open()):
+        if self._has_callback or not (self.sim.render_thread and gl_context.is_open()):
             return render_thread.run_now(expose)
         return render_thread.submit(expose)
 
@@ -83,14 +83,16 @@ class RenderedSampler(Sensor):
             expose = self._make_exposure(model, data)
         return render_thread.run_now(expose)
 
-    def finish(self, raw: render_thread.RenderJob) -> Any:
+    def finish(self, raw: render_thread.RenderJob) -> object:
         return raw.result()
 
     def _make_exposure(self, model: mujoco.MjModel, data: mujoco.MjData) -> Callable[[], Any]:
         """What draws and develops the pictures of a state; it needs the state no more."""
         renderer = renderer_of(self.sim)
         smooth = self.options.anti_aliasing > 0
-        composition = renderer.compose(model, data, *self._frame_in_world(data), unseen=self._unseen, smooth=smooth)
+        composition = renderer.compose(
+            model, data, *self._frame_in_world(data), unseen=self._hidden_geoms, smooth=smooth
+        )
         return functools.partial(self._expose, renderer, composition, self.shots(), self.take_notes(model, data))
 
     def _expose(self, renderer: Renderer, composition: Composition, shots: Sequence[Shot], notes: Any) -> Any:
@@ -98,7 +100,7 @@ class RenderedSampler(Sensor):
         try:
             return self.develop(films, notes)
         except RenderError as error:
-            self._lost = error
+            self._picture_error = error
             raise
         finally:
             films.close()
@@ -118,7 +120,7 @@ class RenderedSampler(Sensor):
         return None
 
     @abc.abstractmethod
-    def develop(self, films: Iterator[Film], notes: Any) -> Any:
+    def develop(self, films: Iterator[Film], notes: Any) -> object:
         """The reading without noise, of what was drawn.
 
         Args:
@@ -135,8 +137,8 @@ class RenderedSampler(Sensor):
     def sample(self, tick: int) -> None:
         if self._failure is not None:
             return
-        if self._lost is not None:
-            self._switch_off(self._lost)
+        if self._picture_error is not None:
+            self._switch_off(self._picture_error)
             return
         try:
             super().sample(tick)
@@ -152,7 +154,7 @@ class RenderedSampler(Sensor):
     def _update_readers(self) -> None:
         super()._update_readers()
         # what has a latency is not waited for when it is taken
-        self._is_called = self._delayed is None and any(end.is_live for _, end, needs in self._wanted if needs)
+        self._has_callback = self._delayed is None and any(end.is_live for _, end, needs in self._wanted if needs)
 
     def _publish(self, sample: Sample, wanted: list[tuple[str, Publisher, bool]]) -> list[LazyMessage]:
         put_off = super()._publish(sample, wanted)
@@ -174,7 +176,7 @@ class RenderedSampler(Sensor):
             sample.work.wait()
         return super()._message(sample, product)
 
-    def _message_on_demand(self, sample: Sample, product: str) -> Any:
+    def _message_on_demand(self, sample: Sample, product: str) -> object:
         try:
             return super()._message_on_demand(sample, product)
         except RenderError:

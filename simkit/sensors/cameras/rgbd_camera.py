@@ -116,7 +116,7 @@ class RgbdCamera(RenderedCamera):
             return Shot(view), Shot(view, depth=True, sharp=True)
         return (Shot(view, depth=True),)
 
-    def develop(self, films: Iterator[Film], notes: Any) -> Any:
+    def develop(self, films: Iterator[Film], notes: Any) -> object:
         film = next(films)
         colours = _NO_COLOURS if film.colours is None else self._develop_colours(film.colours)
         if film.depths is None:
@@ -198,7 +198,7 @@ class RgbdCamera(RenderedCamera):
     def _newest_depths(self, reading: Any | None) -> Depths | None:
         return None if reading is None else reading.depths
 
-    def perturb(self, reading: CameraReading, index: int) -> Any:
+    def perturb(self, reading: CameraReading, index: int) -> object:
         if self._noise.is_silent and (self._disparity is None or self._disparity.is_silent):
             return reading
         return NoisyDepths(reading, self._noise, index, self._noisy_depths)
@@ -213,10 +213,10 @@ class RgbdCamera(RenderedCamera):
 
     # ------------------------------------------------------------------ messages
 
-    def _depth_message(self, reading: Any, time_ns: int) -> Any:
+    def _depth_message(self, reading: Any, time_ns: int) -> msgs.Image:
         return image_messages.image_message(self._image_header(time_ns), reading.depths, "32FC1")
 
-    def _cloud(self, reading: Any, time_ns: int) -> Any:
+    def _cloud(self, reading: Any, time_ns: int) -> msgs.PointCloud2:
         header = msgs.header(time_ns, self._cloud_frame)
         return self._clouds.message(header, reading.depths, self._cloud_colours(reading), self._shift(reading))
 

@@ -1,15 +1,19 @@
-"""The colours of coloured label maps: those of Gazebo, which draws them from a generator seeded with the number."""
+"""Segmentation cameras: the label, and the object of that label, at each pixel.
+
+Colours of coloured maps are Gazebo's, which draws them from a generator seeded with the number.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import numpy.typing as npt
 
+from simkit import msgs
 from simkit.diagnostics import Diagnostics
 from simkit.sensors.base import Product
 from simkit.sensors.cameras import image_messages, label_camera
@@ -39,17 +43,17 @@ def label_colours(numbers: Iterable[int]) -> dict[int, Colour]:
     with GNU's library Lehmer's generator with the factor 16807, in 256 equal parts. Where two numbers give one colour,
     the later goes on drawing.
     """
-    taken = {BACKGROUND}
+    used = {BACKGROUND}
     found: dict[int, Colour] = {}
     for number in numbers:
         if number in found:
             continue
         draws = _random_channels(number)
         colour = BACKGROUND
-        while colour in taken:
+        while colour in used:
             red, green, blue = islice(draws, 3)
             colour = red, green, blue
-        taken.add(colour)
+        used.add(colour)
         found[number] = colour
     return found
 
@@ -170,28 +174,28 @@ class SegmentationCamera(LabelCamera):
         colours = self._picture(next(films)) if self.options.save is not None else None
         return Segmentation(np.array(self.seen(next(films))), notes, colours)
 
-    def _labels_message(self, reading: Segmentation, time_ns: int) -> Any:
+    def _labels_message(self, reading: Segmentation, time_ns: int) -> msgs.Image:
         return image_messages.image_message(self._image_header(time_ns), reading.labels, "rgb8")
 
-    def _colours_message(self, reading: Segmentation, time_ns: int) -> Any:
+    def _colours_message(self, reading: Segmentation, time_ns: int) -> msgs.Image:
         return image_messages.image_message(self._image_header(time_ns), reading.coloured, "rgb8")
 
 
 def make_palette(items: LabelledObjects, kind: str) -> Palette:
-    """What is written for each geom in a semantic or panoptic map."""
+    """Return what is written for each geom in a semantic or panoptic map."""
     labels, instances = np.maximum(items.label_of, 0), items.instance_of
-    written = np.zeros((len(labels), 4), np.uint8)
+    codes = np.zeros((len(labels), 4), np.uint8)
     if kind == "semantic":
         numbers = labels
-        written[:, :3] = labels[:, None]
+        codes[:, :3] = labels[:, None]
     else:
         numbers = np.where(labels > 0, labels * 65536 + instances % 65536, 0)
-        told = np.where(labels > 0, instances, 0)
-        written[:, 0], written[:, 1], written[:, 2] = told & 255, told >> 8 & 255, labels
+        numbers = np.where(labels > 0, instances, 0)
+        codes[:, 0], codes[:, 1], codes[:, 2] = numbers & 255, numbers >> 8 & 255, labels
     found = {0: BACKGROUND, **label_colours(sorted({int(n) for n in numbers} - {0}))}
-    colours = np.zeros_like(written)
+    colours = np.zeros_like(codes)
     colours[:, :3] = [found[int(n)] for n in numbers]
-    return Palette(written.view(np.uint32)[:, 0], colours.view(np.uint32)[:, 0])
+    return Palette(codes.view(np.uint32)[:, 0], colours.view(np.uint32)[:, 0])
 
 
 def _paint(palette: npt.NDArray[np.uint32], geoms: Ids) -> Pixels:

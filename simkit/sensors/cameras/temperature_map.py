@@ -1,4 +1,4 @@
-"""What a thermal camera knows of the things around: temperatures by geom, and pictures of them."""
+"""Temperatures of all geoms of a world, and heat textures on their surfaces."""
 
 from __future__ import annotations
 
@@ -8,9 +8,13 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from simkit.compiler.meshes.companion_files import read_pixels
+from simkit.compiler.meshes.mesh_reader import load_mesh
+from simkit.compiler.shapes import textured_triangles, turn_z_to
 from simkit.diagnostics import NOWHERE, Diagnostics
 from simkit.pose import Pose, Vector
 from simkit.runtime.handles.visual_properties import HeatSignature
@@ -19,8 +23,6 @@ from simkit.sensors.cameras.rendering.view import Ids
 from simkit.sensors.rays.embree_rays import TriangleScene, has_embree
 
 if TYPE_CHECKING:
-    import mujoco
-
     from simkit.runtime import Simulation
 
 Kelvins = npt.NDArray[np.float32]
@@ -172,12 +174,12 @@ def make_temperature_map(sim: Simulation, air: float, span: float) -> Temperatur
     table[:-1] += (_brightness(model) - 0.5) * span
     is_source = np.zeros(model.ngeom + 1, np.bool_)
     surface_of = np.full(model.ngeom + 1, -1, np.int32)
-    worn = sim.temperatures.worn()
+    temperatures = sim.temperatures.worn()
     surfaces: list[HeatSurface] = []
-    for link in names.links.values() if worn else ():
+    for link in names.links.values() if temperatures else ():
         drawn = names.drawn(link.scoped)
         for visual in link.scene.visuals:
-            temperature, geoms = worn.get(visual.scoped), list(drawn.get(visual.scoped, ()))
+            temperature, geoms = temperatures.get(visual.scoped), list(drawn.get(visual.scoped, ()))
             if temperature is None or not geoms:
                 continue
             if isinstance(temperature, HeatSignature):
@@ -192,8 +194,6 @@ def make_temperature_map(sim: Simulation, air: float, span: float) -> Temperatur
 
 def _brightness(model: mujoco.MjModel) -> Vector:
     """Of each geom's colour without light, from 0 to 1 (Rec. 601); a texture counts with its mean."""
-    from mujoco import mjtTextureRole
-
     shown = model.geom_rgba[:, :3].astype(np.float64)
     material = model.geom_matid
     of_material = material >= 0
@@ -201,7 +201,7 @@ def _brightness(model: mujoco.MjModel) -> Vector:
         # what has the engine's default colour has that of its material
         plain = of_material & (model.geom_rgba == np.array(_DEFAULT, np.float32)).all(axis=1)
         shown[plain] = model.mat_rgba[material[plain], :3]
-        textures = model.mat_texid[:, int(mjtTextureRole.mjTEXROLE_RGB)]
+        textures = model.mat_texid[:, int(mujoco.mjtTextureRole.mjTEXROLE_RGB)]
         for i in np.flatnonzero(of_material).tolist():
             texture = int(textures[material[i]])
             if texture >= 0:
@@ -220,8 +220,6 @@ def _mean_colour(model: mujoco.MjModel, texture: int) -> Vector:
 
 @lru_cache(maxsize=32)
 def _load_heat_texture(path: Path) -> HeatTexture:
-    from simkit.compiler.meshes.companion_files import read_pixels
-
     red = np.ascontiguousarray(read_pixels(path)[..., 0], np.float32) / np.float32(255.0)
     return HeatTexture(np.pad(red, 1, mode="wrap"), float(red.mean(dtype=np.float64)))
 
@@ -242,9 +240,6 @@ def _make_textured_mesh(shape: Geometry) -> TexturedMesh | None:
 
 def _triangles(shape: Geometry) -> Iterator[tuple[Vector, npt.NDArray[np.int32], Vector]]:
     """Corners, faces and texture coordinates of its parts, where they have some."""
-    from simkit.compiler.meshes.mesh_reader import load_mesh
-    from simkit.compiler.shapes import textured_triangles, turn_z_to
-
     if isinstance(shape, Mesh):
         for part in [] if shape.missing else load_mesh(shape, Diagnostics(), NOWHERE):
             if part.uv is not None:
@@ -254,5 +249,5 @@ def _triangles(shape: Geometry) -> Iterator[tuple[Vector, npt.NDArray[np.int32],
         flat = np.column_stack(((uv - 0.5) * shape.size, np.zeros(4)))
         turn = Pose(quaternion=turn_z_to(shape.normal)).matrix
         yield flat @ turn.T, np.array(((0, 1, 2), (0, 2, 3)), np.int32), uv
-    elif (worn := textured_triangles(shape)) is not None and worn.uv is not None:
-        yield worn.vertices, worn.faces, worn.uv
+    elif (textured := textured_triangles(shape)) is not None and textured.uv is not None:
+        yield textured.vertices, textured.faces, textured.uv

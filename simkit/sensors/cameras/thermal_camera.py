@@ -1,4 +1,4 @@
-"""Thermal cameras: how warm what is seen at each pixel is."""
+"""Thermal cameras: the temperature at each pixel."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import numpy.typing as npt
 
+from simkit import msgs
 from simkit.diagnostics import Diagnostics
 from simkit.pose import Vector
 from simkit.scene import Atmosphere
@@ -140,7 +141,7 @@ class ThermalCamera(RenderedCamera):
             table = self._heat.table
             if self._quirks:
                 table[-1] -= self._span / 2  # the sky is black
-                table[self._heat.is_source] = self._coarse(table[self._heat.is_source])
+                table[self._heat.is_source] = self._quantise_as_gazebo(table[self._heat.is_source])
         return self._heat
 
     def take_notes(self, model: mujoco.MjModel, data: mujoco.MjData) -> ThermalState:
@@ -161,13 +162,13 @@ class ThermalCamera(RenderedCamera):
         ids = self._distorter.distort_ids(film.ids) if self._distorter else film.ids
         kelvins = notes.heat.table.take(ids, mode="wrap")
         if notes.views:
-            self._wear(kelvins, ids, notes)
+            self._apply_heat_textures(kelvins, ids, notes)
         options = self.options
         np.clip(kelvins, options.coldest, options.hottest, out=kelvins)
         return kelvins
 
-    def _wear(self, kelvins: Kelvins, ids: npt.NDArray[np.int32], notes: ThermalState) -> None:
-        """Puts pictures of temperatures on what wears them."""
+    def _apply_heat_textures(self, kelvins: Kelvins, ids: npt.NDArray[np.int32], notes: ThermalState) -> None:
+        """Replace the temperatures of pixels on surfaces that have a heat texture."""
         if self._ways is None:
             x, y = self.options.model.directions()
             ways = np.stack((np.ones_like(x), -x, -y), axis=-1).reshape(-1, 3)
@@ -175,28 +176,28 @@ class ThermalCamera(RenderedCamera):
         flat = kelvins.reshape(-1)
         for place, pixels in notes.heat.seen(ids):
             found = notes.heat.surfaces[place].temperatures(*notes.views[place], self._ways[pixels])
-            flat[pixels] = self._coarse(found) if self._quirks else found
+            flat[pixels] = self._quantise_as_gazebo(found) if self._quirks else found
 
-    def _coarse(self, kelvins: Kelvins) -> Kelvins:
-        """As Gazebo hands temperatures on: in 256 steps from 0 to the largest that a pixel can tell."""
-        full = self._largest() * self.options.resolution
+    def _quantise_as_gazebo(self, kelvins: Kelvins) -> Kelvins:
+        """Round temperatures as Gazebo does: to 256 steps from 0 to the largest value of a pixel."""
+        full = self._max_pixel_value() * self.options.resolution
         coarse: Kelvins = np.rint(np.clip(kelvins / full, 0, 1) * 255).astype(np.float32) * np.float32(full / 255)
         return coarse
 
-    def perturb(self, reading: Any, index: int) -> Any:
+    def perturb(self, reading: Any, index: int) -> object:
         if self._noise.is_silent or self._quirks:  # Gazebo adds none
             return reading
         draws = self._noise.on_depths(np.zeros_like(reading), index)
-        return reading + draws * np.float32(self._largest() * self.options.resolution)
+        return reading + draws * np.float32(self._max_pixel_value() * self.options.resolution)
 
     # ------------------------------------------------------------------ messages
 
-    def _largest(self) -> int:
+    def _max_pixel_value(self) -> int:
         return (1 << self.options.bits) - 1
 
-    def _thermal_message(self, reading: Kelvins, time_ns: int) -> Any:
+    def _thermal_message(self, reading: Kelvins, time_ns: int) -> msgs.Image:
         options = self.options
-        steps = np.clip(np.rint(reading / np.float32(options.resolution)), 0, self._largest())
+        steps = np.clip(np.rint(reading / np.float32(options.resolution)), 0, self._max_pixel_value())
         pixels = steps.astype(np.uint8 if options.bits == 8 else "<u2")
         return image_messages.image_message(self._image_header(time_ns), pixels, f"mono{options.bits}")
 
@@ -204,8 +205,8 @@ class ThermalCamera(RenderedCamera):
 def _read_bits(scene: SceneSensor, diagnostics: Diagnostics) -> int:
     """Of a pixel, by its format; 16 without one, and where it is another's, which is said."""
     image = scene.params.block("camera").block("image")
-    asked = image.text("format", "").strip()
-    if asked and asked not in _BITS_BY_FORMAT:
-        message = f"<format> {asked!r} is not used by a thermal camera: its pictures are L16, or L8"
+    pixel_format = image.text("format", "").strip()
+    if pixel_format and pixel_format not in _BITS_BY_FORMAT:
+        message = f"<format> {pixel_format!r} is not used by a thermal camera: its pictures are L16, or L8"
         diagnostics.warning("SK-SENSOR-140", message, image.block("format").where)
-    return _BITS_BY_FORMAT.get(asked, 16)
+    return _BITS_BY_FORMAT.get(pixel_format, 16)

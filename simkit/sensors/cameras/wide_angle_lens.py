@@ -1,4 +1,4 @@
-"""SDF's lens models: how far from the middle of the picture an angle off the optical axis is seen."""
+"""SDF's lens models: image radius as a function of the angle off the optical axis."""
 
 from __future__ import annotations
 
@@ -130,9 +130,11 @@ class WideAngleModel(CameraModel):
         """What gz does with the same file: it passes over `<scale_to_hfov>` and `<cutoff_angle>`, and tells the
         intrinsics of the file, or SDF's defaults, whatever the lens (gz-sensors, WideAngleCameraSensor.cc)."""
         fx, fy, cx, cy = self.given
-        told = CameraModel(self.width, self.height, fx, fy, cx, cy, self.hfov, self.near, self.far)
+        info_model = CameraModel(self.width, self.height, fx, fy, cx, cy, self.hfov, self.near, self.far)
         lens = replace(self.lens, cutoff=math.pi / 2)
-        return replace(self, lens=lens.scaled_to(self.hfov) if self.hfov / 2 <= lens.widest else lens, told=told)
+        return replace(
+            self, lens=lens.scaled_to(self.hfov) if self.hfov / 2 <= lens.widest else lens, info_model=info_model
+        )
 
 
 def read_wide_angle_model(params: Params, width: int, height: int) -> WideAngleModel:

@@ -1,16 +1,10 @@
-"""Which collision a contact sensor names.
-
-In SDF that is a collision of the sensor's own link. A robot in URDF is turned into SDF by Gazebo first: links behind
-fixed joints become part of the link that carries them, and every collision gets a new name. Files are written with
-those names, so they are understood here too, although every link stays a link (sdformat, src/parser_urdf.cc).
-"""
+"""Contact sensors: the contacts of some collisions of a link, with position, depth and force."""
 
 from __future__ import annotations
 
-import re
-from collections.abc import Collection, Iterator
+from collections.abc import Collection
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from simkit import msgs
 from simkit.diagnostics import Diagnostics, Where, did_you_mean
@@ -18,8 +12,8 @@ from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.pose import Vector
 from simkit.runtime.contact.collision_contacts import CollisionTable, collision_table, find_contacts
-from simkit.scene import SceneCollision, SceneJoint, SceneLink, SceneModel
 from simkit.sensors.base import Product, Sensor
+from simkit.sensors.devices.collision_names import find_collision
 from simkit.sensors.devices.contact_messages import contacts_message, states_message
 from simkit.sensors.devices.contact_reading import ContactReading, RawContacts
 from simkit.sensors.topics_and_frames import check_topic
@@ -29,78 +23,7 @@ if TYPE_CHECKING:
 
     from simkit.compiler import Compiled, SpecBuilder
     from simkit.compiler.name_map import NameMap
-    from simkit.scene import SceneSensor, SceneWorld
-
-
-_LUMPED_INFIX: Final = "_fixed_joint_lump__"
-_NUMBER_SUFFIX = re.compile(r"_\d+$")
-
-
-def find_collision(name: str, link: SceneLink, model: SceneModel) -> SceneCollision | None:
-    """The collision that a sensor on `link` means by `name`, or None.
-
-    Args:
-        model: the top-level model of the link.
-    """
-    for collision in link.collisions:
-        if collision.name == name or ("::" in name and f"::{collision.scoped}".endswith(f"::{name}")):
-            return collision
-    rigid = _RigidLinks(model)
-    carriers = list(rigid.carriers(link))
-    for carrier in carriers:
-        found = rigid.converted(carrier).get(name)
-        if found is not None:
-            return found
-    # the numbers count what Gazebo found on the lumped link, which a file may have wrong or from an older version
-    stem = _NUMBER_SUFFIX.sub("", name.rsplit(_LUMPED_INFIX, 1)[-1])
-    near = [c for base, c in rigid.lumped(carriers[-1]) if stem == f"{base}_collision"]
-    return near[0] if len(near) == 1 else None
-
-
-class _RigidLinks:
-    """The links of a model by the fixed joints between them."""
-
-    def __init__(self, model: SceneModel) -> None:
-        self._links = {link.scoped: link for link in model.all_links()}
-        self._above: dict[str, SceneJoint] = {}
-        self._below: dict[str, list[SceneJoint]] = {}
-        for joint in model.all_joints():
-            if joint.type == "fixed" and joint.child_link in self._links:
-                self._above.setdefault(joint.child_link, joint)
-                self._below.setdefault(joint.parent_link, []).append(joint)
-
-    def carriers(self, link: SceneLink) -> Iterator[SceneLink]:
-        """The link, the one that carries it over a fixed joint, and so on."""
-        seen: set[str] = set()
-        at: SceneLink | None = link
-        while at is not None and at.scoped not in seen:
-            seen.add(at.scoped)
-            yield at
-            above = self._above.get(at.scoped)
-            at = self._links.get(above.parent_link) if above is not None and at.name != "world" else None
-            if at is not None and at.name == "world":
-                return
-
-    def lumped(self, link: SceneLink, seen: frozenset[str] = frozenset()) -> Iterator[tuple[str, SceneCollision]]:
-        """Its collisions and those of all that it carries rigidly, in Gazebo's order, each with the base of its name.
-
-        The children come in the order of their joints' names.
-        """
-        seen |= {link.scoped}
-        for collision in link.collisions:
-            is_unnamed = re.fullmatch(rf"{re.escape(link.name)}_collision(_\d+)?", collision.name)
-            yield (link.name if is_unnamed else collision.name), collision
-        for joint in sorted(self._below.get(link.scoped, ()), key=lambda j: j.name):
-            if joint.child_link not in seen:
-                yield from self.lumped(self._links[joint.child_link], seen)
-
-    def converted(self, root: SceneLink) -> dict[str, SceneCollision]:
-        """The collisions by the names that they have in Gazebo if `root` is what carries them all."""
-        found: dict[str, SceneCollision] = {}
-        for number, (base, collision) in enumerate(self.lumped(root)):
-            name = f"{base}_collision" + (f"_{number}" if number else "")
-            found.setdefault(name if name.startswith(root.name) else f"{root.name}{_LUMPED_INFIX}{name}", collision)
-        return found
+    from simkit.scene import SceneModel, SceneSensor, SceneWorld
 
 
 CONTACTS: Final = "ros_gz_interfaces/msg/Contacts"
@@ -270,10 +193,10 @@ class Contact(Sensor):
     def finish(self, raw: RawContacts) -> ContactReading:
         return raw.reading()
 
-    def _contacts(self, reading: ContactReading, time_ns: int) -> Any:
+    def _contacts(self, reading: ContactReading, time_ns: int) -> msgs.Contacts:
         return contacts_message(reading, msgs.header(time_ns, self.frame_id), self._is_named)
 
-    def _states(self, reading: ContactReading, time_ns: int) -> Any:
+    def _states(self, reading: ContactReading, time_ns: int) -> msgs.ContactsState:
         return states_message(reading, msgs.header(time_ns, reading.frame_id))
 
 

@@ -17,16 +17,16 @@ _COLLISION = 5  # of ros_gz_interfaces/msg/Entity
 
 
 class _Types(NamedTuple):
-    vector: type[Any]
-    wrench: type[Any]
-    joint_wrench: type[Any]
-    entity: type[Any]
-    contact: type[Any]
-    contacts: type[Any]
-    state: type[Any]
-    states: type[Any]
-    string: type[Any]
-    number: type[Any]
+    vector: type[msgs.Vector3]
+    wrench: type[msgs.Wrench]
+    joint_wrench: type[msgs.JointWrench]
+    entity: type[msgs.Entity]
+    contact: type[msgs.Contact]
+    contacts: type[msgs.Contacts]
+    state: type[msgs.ContactState]
+    states: type[msgs.ContactsState]
+    string: type[msgs.String]
+    number: type[msgs.UInt32]
 
 
 @cache
@@ -50,17 +50,18 @@ def _types() -> _Types:
     )
 
 
-def contacts_message(reading: ContactReading, header: Any, is_named: bool = True) -> Any:
+def contacts_message(reading: ContactReading, header: msgs.Header, is_named: bool = True) -> msgs.Contacts:
     """`ros_gz_interfaces/msg/Contacts`: world frame; wrenches about the contact's point.
 
     Args:
         is_named: whether the collisions' names are said, and not only their ids.
     """
     types = _types()
-    return types.contacts(header, [_contact(types, pair, header, is_named) for pair in reading.pairs])
+    message: msgs.Contacts = types.contacts(header, [_contact(types, pair, header, is_named) for pair in reading.pairs])
+    return message
 
 
-def _contact(types: _Types, pair: ContactPair, header: Any, is_named: bool) -> Any:
+def _contact(types: _Types, pair: ContactPair, header: msgs.Header, is_named: bool) -> msgs.Contact:
     vector, wrench = types.vector, types.wrench
     one, other = (pair.collision1, pair.collision2) if is_named else ("", "")
     names = types.string(one), types.string(other)
@@ -70,7 +71,7 @@ def _contact(types: _Types, pair: ContactPair, header: Any, is_named: bool) -> A
         on_first = wrench(vector(fx, fy, fz), vector(tx, ty, tz))
         on_second = wrench(vector(-fx, -fy, -fz), vector(-tx, -ty, -tz))
         wrenches.append(types.joint_wrench(header, names[0], ids[0], names[1], ids[1], on_first, on_second))
-    return types.contact(
+    message: msgs.Contact = types.contact(
         types.entity(pair.ids[0], one, _COLLISION),
         types.entity(pair.ids[1], other, _COLLISION),
         [vector(*p) for p in pair.positions.tolist()],
@@ -78,19 +79,23 @@ def _contact(types: _Types, pair: ContactPair, header: Any, is_named: bool) -> A
         pair.depths,
         wrenches,
     )
+    return message
 
 
-def states_message(reading: ContactReading, header: Any) -> Any:
+def states_message(reading: ContactReading, header: msgs.Header) -> msgs.ContactsState:
     """`gazebo_msgs/msg/ContactsState`: in the frame of the reading; torques about the link's centre of mass.
 
     That is where Classic's ODE gives them (the feedback of a contact joint).
     """
     types, count = _types(), len(reading.pairs)
     states = [_state(types, pair, reading, header, f"{i + 1}/{count}") for i, pair in enumerate(reading.pairs)]
-    return types.states(header, states)
+    message: msgs.ContactsState = types.states(header, states)
+    return message
 
 
-def _state(types: _Types, pair: ContactPair, reading: ContactReading, header: Any, which: str) -> Any:
+def _state(
+    types: _Types, pair: ContactPair, reading: ContactReading, header: msgs.Header, which: str
+) -> msgs.ContactState:
     vector, wrench, axes = types.vector, types.wrench, reading.axes
 
     def vectors(rows: Vector) -> list[Any]:
@@ -101,7 +106,7 @@ def _state(types: _Types, pair: ContactPair, reading: ContactReading, header: An
     total_force, total_torque = vectors(np.stack([forces.sum(axis=0), torques.sum(axis=0)]))
     own, other, stamp = pair.collision1, pair.collision2, header.stamp
     info = f"Debug:  i: ({which})     my geom: [{own}]  other geom: [{other}]"
-    return types.state(
+    message: msgs.ContactState = types.state(
         f"{info}        time: [{stamp.sec}.{stamp.nanosec}]\n",
         own,
         other,
@@ -111,3 +116,4 @@ def _state(types: _Types, pair: ContactPair, reading: ContactReading, header: An
         vectors(pair.normals @ axes),
         pair.depths,
     )
+    return message

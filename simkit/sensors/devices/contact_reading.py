@@ -1,4 +1,4 @@
-"""What a contact sensor reads: the engine's contacts, sorted by pairs of collisions."""
+"""Reading of a contact sensor: MuJoCo's contacts, sorted by pairs of collisions."""
 
 from __future__ import annotations
 

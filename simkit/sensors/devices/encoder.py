@@ -1,4 +1,4 @@
-"""Joint encoders: where a joint stands, in counts, and how fast it moves, told from the counts or measured."""
+"""Joint encoders: position in counts, and velocity from the counts or measured."""
 
 from __future__ import annotations
 
@@ -189,11 +189,12 @@ class Encoder(Sensor):
             position = self._position_noise.apply(position, index)
         return quantise(position, self._step)
 
-    def _message_of(self, reading: JointReading, time_ns: int) -> Any:
+    def _message_of(self, reading: JointReading, time_ns: int) -> msgs.JointState:
         header = msgs.header(time_ns, self.frame_id)
         # each message its own arrays: who receives one may keep or change it
         values = reading.position.copy(), reading.velocity.copy(), np.zeros(0)
-        return msgs.type_of(TYPE)(header, list(self._names), *values)
+        message: msgs.JointState = msgs.type_of(TYPE)(header, list(self._names), *values)
+        return message
 
 
 class CountHistory:
@@ -234,7 +235,7 @@ class CountHistory:
     def set_interval(self, interval: float) -> None:
         """Its samples tell their own time."""
 
-    def memory(self) -> Any:
+    def memory(self) -> object:
         return self.state
 
     def remember(self, memory: Any) -> None:

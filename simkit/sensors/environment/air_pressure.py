@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -83,8 +83,9 @@ class AirPressure(AirSensor):
             return reading
         return float(self.noise.apply(np.array((reading,)), index)[0])
 
-    def _message_of(self, reading: float, time_ns: int) -> Any:
+    def _message_of(self, reading: float, time_ns: int) -> msgs.FluidPressure:
         variance = self.noise.variance()
         if self.sim.world.gazebo_quirks:
             variance = variance**0.25  # the root of the deviation
-        return msgs.type_of(TYPE)(msgs.header(time_ns, self.frame_id), reading, variance)
+        message: msgs.FluidPressure = msgs.type_of(TYPE)(msgs.header(time_ns, self.frame_id), reading, variance)
+        return message

@@ -1,4 +1,4 @@
-"""What sensors of the air share: the world's air column, and how high in it they are."""
+"""Base of sensors of the air: the world's air column, and the sensor's height in it."""
 
 from __future__ import annotations
 

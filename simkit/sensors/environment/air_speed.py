@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -97,5 +97,8 @@ class AirSpeed(AirSensor):
         pressure = float(self.noise.apply(np.array((reading.pressure / self._unit,)), index)[0])
         return Flow(pressure * self._unit, reading.temperature)
 
-    def _message_of(self, reading: Flow, time_ns: int) -> Any:
-        return msgs.type_of(TYPE)(msgs.header(time_ns, self.frame_id), reading.pressure, reading.temperature)
+    def _message_of(self, reading: Flow, time_ns: int) -> msgs.AirSpeed:
+        message: msgs.AirSpeed = msgs.type_of(TYPE)(
+            msgs.header(time_ns, self.frame_id), reading.pressure, reading.temperature
+        )
+        return message

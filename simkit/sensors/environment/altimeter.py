@@ -1,9 +1,9 @@
-"""Altimeter: how far it has risen since it was made, and how fast it rises."""
+"""Altimeter: height above where the sensor started, and vertical velocity."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -101,6 +101,7 @@ class Altimeter(Sensor):
         position, velocity = self.noise.apply(np.array((reading.position, reading.velocity)), index).tolist()
         return Climb(position, velocity)
 
-    def _message_of(self, reading: Climb, time_ns: int) -> Any:
+    def _message_of(self, reading: Climb, time_ns: int) -> msgs.Altimeter:
         header = msgs.header(time_ns, self.frame_id)
-        return msgs.type_of(TYPE)(header, reading.position, reading.velocity, self.reference)
+        message: msgs.Altimeter = msgs.type_of(TYPE)(header, reading.position, reading.velocity, self.reference)
+        return message

@@ -1,4 +1,4 @@
-"""Where a place of the flat world lies on its planet: latitude, longitude, height above the ellipsoid.
+"""Latitude, longitude and height above the ellipsoid of a point of the flat world.
 
 The world is the plane that touches the planet at the origin: its z is up there, and its x is turned from east by the
 heading, counter-clockwise. What is far from the origin is therefore above the surface.

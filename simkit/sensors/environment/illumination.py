@@ -1,4 +1,4 @@
-"""What a point of the world gets of one light: from where, how much, and what stands between."""
+"""Light that a point of the world receives from one lamp: direction, share, and what casts a shadow on it."""
 
 from __future__ import annotations
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -147,10 +147,11 @@ class Magnetometer(Sensor):
     def perturb(self, reading: Vector, index: int) -> Vector:
         return reading if self.noise.is_silent else self.noise.apply(reading, index)
 
-    def _message_of(self, reading: Vector, time_ns: int) -> Any:
+    def _message_of(self, reading: Vector, time_ns: int) -> msgs.MagneticField:
         field, vector = msgs.types_of(TYPE, "geometry_msgs/msg/Vector3")
         header = msgs.header(time_ns, self.frame_id)
-        return field(header, vector(*reading.tolist()), self.noise.covariance())
+        message: msgs.MagneticField = field(header, vector(*reading.tolist()), self.noise.covariance())
+        return message
 
 
 def _read_system_switch(world: SceneWorld, name: str) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -193,10 +193,10 @@ class NavSat(Sensor):
         """Of the position to east, north and up [m²], and its type."""
         return (np.zeros(9), _UNKNOWN) if self._quirks else (self.noise.covariance(), _DIAGONAL)
 
-    def _fix_of(self, reading: NavSatReading, time_ns: int) -> Any:
+    def _fix_of(self, reading: NavSatReading, time_ns: int) -> msgs.NavSatFix:
         status = msgs.type_of("sensor_msgs/msg/NavSatStatus")(status=_STATUS_FIX, service=_SERVICE_GPS)
         covariance, kind = self._covariance()
-        return msgs.type_of(FIX)(
+        message: msgs.NavSatFix = msgs.type_of(FIX)(
             header=msgs.header(time_ns, self.frame_id),
             status=status,
             latitude=math.degrees(reading.latitude),
@@ -205,16 +205,18 @@ class NavSat(Sensor):
             position_covariance=covariance,
             position_covariance_type=kind,
         )
+        return message
 
-    def _velocity_of(self, reading: NavSatReading, time_ns: int) -> Any:
+    def _velocity_of(self, reading: NavSatReading, time_ns: int) -> msgs.Vector3Stamped:
         vector = msgs.type_of("geometry_msgs/msg/Vector3")(*reading.velocity.tolist())
-        return msgs.type_of(VELOCITY)(msgs.header(time_ns, self.frame_id), vector)
+        message: msgs.Vector3Stamped = msgs.type_of(VELOCITY)(msgs.header(time_ns, self.frame_id), vector)
+        return message
 
-    def _gps_fix_of(self, reading: NavSatReading, time_ns: int) -> Any:
+    def _gps_fix_of(self, reading: NavSatReading, time_ns: int) -> msgs.GPSFix:
         east, north, up = reading.velocity.tolist()
         covariance, kind = self._covariance()
         level, plumb, flat, climb = (math.sqrt(self.noise.variance(channel)) for channel in (0, 2, 3, 5))
-        return msgs.make(
+        message: msgs.GPSFix = msgs.make(
             GPS,
             header=msgs.header(time_ns, self.frame_id),
             status={
@@ -238,6 +240,7 @@ class NavSat(Sensor):
             position_covariance=covariance,
             position_covariance_type=kind,
         )
+        return message
 
 
 def _normalised(angle: float) -> float:

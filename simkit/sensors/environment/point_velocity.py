@@ -1,4 +1,4 @@
-"""How fast a point of a body moves."""
+"""Velocity of a point of a body."""
 
 from __future__ import annotations
 

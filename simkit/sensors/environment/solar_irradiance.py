@@ -1,10 +1,10 @@
-"""What a solar sensor and a solar panel get of a light: direction, validity, shadow, irradiance, power."""
+"""Light at a solar sensor or a solar panel: direction, validity, shadow, irradiance, power."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -205,7 +205,7 @@ class SolarView:
             return self.options.irradiance
         return STANDARD_IRRADIANCE if state.irradiance is None else state.irradiance
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> SolarView:
+    def __deepcopy__(self, memo: dict[int, object]) -> SolarView:
         return self
 
 

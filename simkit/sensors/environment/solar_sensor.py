@@ -167,7 +167,7 @@ class SolarSensor(Sensor):
         super().restart()
         self._motions.clear()
 
-    def memory(self) -> Any:
+    def memory(self) -> object:
         return super().memory(), tuple(self._motions)
 
     def remember(self, memory: Any) -> None:
@@ -202,7 +202,7 @@ class SolarSensor(Sensor):
         light = reading.irradiance, reading.power
         return SolarReading(orientation, reading.is_valid, reading.shadow, reading.incidence, *light)
 
-    def _message_of(self, reading: SolarReading, time_ns: int) -> Any:
+    def _message_of(self, reading: SolarReading, time_ns: int) -> msgs.Imu:
         imu, vector, quaternion = msgs.types_of(TYPE, "geometry_msgs/msg/Vector3", "geometry_msgs/msg/Quaternion")
         w, x, y, z = (1.0, 0.0, 0.0, 0.0)
         covariance = np.zeros(9)
@@ -219,7 +219,8 @@ class SolarSensor(Sensor):
         none = np.zeros(9), np.zeros(9)
         none[0][0] = none[1][0] = -1.0
         still = vector(0.0, 0.0, 0.0), vector(0.0, 0.0, 0.0)
-        return imu(header, quaternion(x, y, z, w), covariance, still[0], none[0], still[1], none[1])
+        message: msgs.Imu = imu(header, quaternion(x, y, z, w), covariance, still[0], none[0], still[1], none[1])
+        return message
 
     # ------------------------------------------------------------------ truth
 

@@ -29,12 +29,12 @@ class Imu(ImuMeasurement):
     def default_topics(self) -> dict[str, str]:
         return {"imu": self._default_topic("imu")}
 
-    def _message_of(self, reading: ImuReading, time_ns: int) -> Any:
+    def _message_of(self, reading: ImuReading, time_ns: int) -> msgs.Imu:
         imu, vector, quaternion = msgs.types_of(*TYPES)
         of_orientation, of_rate, of_force = self.covariances()
         w, x, y, z = reading.orientation if self.options.enable_orientation else NO_ROTATION
         rx, ry, rz, fx, fy, fz = reading.motion
-        return imu(
+        message: msgs.Imu = imu(
             msgs.header(time_ns, self.frame_id),
             quaternion(x, y, z, w),
             of_orientation,
@@ -43,3 +43,4 @@ class Imu(ImuMeasurement):
             vector(fx, fy, fz),
             of_force,
         )
+        return message

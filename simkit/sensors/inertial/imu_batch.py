@@ -1,4 +1,4 @@
-"""Many inertial measurement units at once, to the same bits as one by one."""
+"""Measure many inertial units at once, to the same bits as one by one."""
 
 from __future__ import annotations
 
@@ -91,13 +91,13 @@ class ImuBatch(SensorBatch[ImuMeasurement]):
             publisher.publish(message)
         return True
 
-    def _message(self, place: int) -> Any:
+    def _message(self, place: int) -> msgs.Imu:
         make, vector, quaternion, header, time = msgs.types_of(*_TYPES)
         frame, (of_orientation, of_rate, of_force), has_attitude = self._message_constants[place]
         w, x, y, z, rx, ry, rz, fx, fy, fz = self._rows[place]
         if not has_attitude:
             w, x, y, z = 1.0, 0.0, 0.0, 0.0
-        return make(
+        message: msgs.Imu = make(
             header(time(*self._clock), frame),
             quaternion(x, y, z, w),
             of_orientation,
@@ -106,6 +106,7 @@ class ImuBatch(SensorBatch[ImuMeasurement]):
             vector(fx, fy, fz),
             of_force,
         )
+        return message
 
     # ------------------------------------------------------------------ the arithmetic
 

@@ -1,4 +1,4 @@
-"""Measure like an inertial unit: everything in the sensor's own frame, at the sensor's own place."""
+"""Measurements of an inertial unit: orientation, rate and specific force in the sensor's own frame, with noise."""
 
 from __future__ import annotations
 
@@ -206,7 +206,7 @@ class ImuMeasurement(Sensor):
             )
         return ImuReading(orientation, motion)
 
-    def memory(self) -> Any:
+    def memory(self) -> object:
         return super().memory(), self.reference
 
     def remember(self, memory: Any) -> None:

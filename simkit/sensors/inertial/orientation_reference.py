@@ -1,4 +1,4 @@
-"""What an IMU's orientation is measured against: the words of `<orientation_reference_frame>`, made into a rotation."""
+"""Frame that an IMU's orientation is measured against: `<orientation_reference_frame>` as a rotation."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a preset is: the published numbers of a device, in the words of an SDF file."""
+"""A preset: the published numbers of a device, as elements of an SDF file."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Puts a preset's numbers under what the file says of a sensor: the file wins, element by element."""
+"""Add a preset's numbers as defaults to a sensor of a file: the file wins, element by element."""
 
 from __future__ import annotations
 

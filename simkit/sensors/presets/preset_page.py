@@ -1,4 +1,4 @@
-"""Presets in words: the table of all, and one of them."""
+"""Presets as text: the page of all, and one of them."""
 
 from __future__ import annotations
 

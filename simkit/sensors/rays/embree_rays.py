@@ -10,7 +10,6 @@ import functools
 import importlib
 import math
 from collections.abc import Iterator
-from typing import Any
 
 import mujoco
 import numpy as np
@@ -138,7 +137,7 @@ class TriangleBody:
     """
 
     def __init__(
-        self, model: mujoco.MjModel, carrier: int, body: int, geoms: Ids, scenes: dict[Any, TriangleScene]
+        self, model: mujoco.MjModel, carrier: int, body: int, geoms: Ids, scenes: dict[object, TriangleScene]
     ) -> None:
         self.carrier, self.body, self.geoms = carrier, body, geoms
         parts = [triangles_of(model, int(geom)) for geom in geoms]
@@ -196,7 +195,7 @@ class MovingBodies:
                 yield self._bodies[i], some
 
 
-def _geometry_key(model: mujoco.MjModel, geom: int) -> tuple[Any, ...]:
+def _geometry_key(model: mujoco.MjModel, geom: int) -> tuple[object, ...]:
     """What the triangles of a geom follow from."""
     kind, data = int(model.geom_type[geom]), int(model.geom_dataid[geom])
     size = model.geom_size[geom].tobytes() if kind == BOX else b""
@@ -205,8 +204,6 @@ def _geometry_key(model: mujoco.MjModel, geom: int) -> tuple[Any, ...]:
 
 def triangles_of(model: mujoco.MjModel, geom: int) -> tuple[Vector, Faces]:
     """Vertices [m], shape (n, 3), and faces, shape (m, 3), of a geom in its body's frame."""
-    import mujoco
-
     kind = int(model.geom_type[geom])
     if kind == MESH:
         mesh = int(model.geom_dataid[geom])

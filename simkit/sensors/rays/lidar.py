@@ -64,7 +64,7 @@ class Lidar(LidarMeasurement):
 
     # ------------------------------------------------------------------ messages
 
-    def _scan_message(self, reading: LidarReading, time_ns: int) -> Any:
+    def _scan_message(self, reading: LidarReading, time_ns: int) -> msgs.LaserScan:
         """All rays of a planar lidar; of several layers the middle one."""
         o, n = self.options, self.options.horizontal.samples
         first = o.vertical.samples // 2 * n
@@ -73,7 +73,7 @@ class Lidar(LidarMeasurement):
         else:
             intensities = reading.intensities[first : first + n].astype(np.float32)
             np.maximum(intensities, self.min_intensity, out=intensities)
-        return msgs.type_of(SCAN)(
+        message: msgs.LaserScan = msgs.type_of(SCAN)(
             msgs.header(time_ns, self.frame_id),
             o.horizontal.low,
             o.horizontal.high,
@@ -85,8 +85,9 @@ class Lidar(LidarMeasurement):
             reading.ranges[first : first + n].astype(np.float32),
             intensities,
         )
+        return message
 
-    def _organised_cloud(self, reading: LidarReading, time_ns: int) -> Any:
+    def _organised_cloud(self, reading: LidarReading, time_ns: int) -> msgs.PointCloud2:
         """Every ray, layer by layer from the lowest; rays without a reading are not finite."""
         height, width = self.options.vertical.samples, self.options.horizontal.samples
         points = np.empty(self._fan.count, dtype=_RING_POINT)
@@ -95,7 +96,7 @@ class Lidar(LidarMeasurement):
         dense = bool(np.isfinite(reading.ranges).all())
         return point_cloud(msgs.header(time_ns, self.frame_id), points, height, width, dense)
 
-    def _cloud_of_hits(self, reading: LidarReading, time_ns: int) -> Any:
+    def _cloud_of_hits(self, reading: LidarReading, time_ns: int) -> msgs.PointCloud2:
         """Only rays with a reading, in one row."""
         hit = np.flatnonzero(np.isfinite(reading.ranges))
         points = np.empty(len(hit), dtype=_POINT)
@@ -109,7 +110,7 @@ class Lidar(LidarMeasurement):
             points[name] = places[:, axis]
         points["intensity"] = np.maximum(reading.intensities[which], self.min_intensity)
 
-    def _velodyne_cloud(self, reading: LidarReading, time_ns: int) -> Any:
+    def _velodyne_cloud(self, reading: LidarReading, time_ns: int) -> msgs.PointCloud2:
         """Points within `cloud_range`, layer by layer from the lowest, or every ray, not a number where it has none."""
         height, width = self.options.vertical.samples, self.options.horizontal.samples
         low, high = self.cloud_range
@@ -124,13 +125,13 @@ class Lidar(LidarMeasurement):
             points[axis][~wanted] = np.nan
         return point_cloud(msgs.header(time_ns, self.frame_id), points, height, width, bool(wanted.all()))
 
-    def _old_cloud(self, reading: LidarReading, time_ns: int) -> Any:
+    def _old_cloud(self, reading: LidarReading, time_ns: int) -> msgs.PointCloud:
         hit = np.flatnonzero(np.isfinite(reading.ranges))
         places = self._directions[hit] * reading.ranges[hit, None]
         intensities = np.maximum(reading.intensities[hit], self.min_intensity)
         return legacy_point_cloud(msgs.header(time_ns, self.frame_id), places, intensities)
 
-    def _block_cloud(self, reading: LidarReading, time_ns: int) -> Any:
+    def _block_cloud(self, reading: LidarReading, time_ns: int) -> msgs.PointCloud:
         """Every ray, layer by layer from the lowest; one without a reading ends at the limit that it passed."""
         places = self._directions * np.clip(reading.ranges, *self._limits)[:, None]
         intensities = np.maximum(reading.intensities, self.min_intensity)
@@ -139,10 +140,10 @@ class Lidar(LidarMeasurement):
             intensities = intensities + reading.scatter[:, 3]
         return legacy_point_cloud(msgs.header(time_ns, self.frame_id), places, intensities)
 
-    def _range_message(self, reading: LidarReading, time_ns: int) -> Any:
+    def _range_message(self, reading: LidarReading, time_ns: int) -> msgs.Range:
         """The nearest of all rays."""
         o = self.options
-        return msgs.make(
+        message: msgs.Range = msgs.make(
             RANGE,
             header=msgs.header(time_ns, self.frame_id),
             radiation_type=self.radiation,
@@ -151,6 +152,7 @@ class Lidar(LidarMeasurement):
             max_range=o.range_max,
             range=float(reading.ranges.min()),
         )
+        return message
 
     def _view_of_rays(self) -> float:
         o = self.options

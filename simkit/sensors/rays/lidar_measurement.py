@@ -1,4 +1,4 @@
-"""Measure like a lidar: cast the rays, tell ranges and intensities, add noise."""
+"""Measurements of a lidar: cast its rays, find ranges and intensities, add noise."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a file says of a lidar."""
+"""Options of a lidar's block in a file."""
 
 from __future__ import annotations
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Sequence
-from typing import Any
 
 import mujoco
 import numpy as np
@@ -182,7 +181,7 @@ class ReducedModelCaster:
         return any(reaches_plane(rays, point, normal) for point, normal in self._planes)
 
 
-def _compile_reduced_model(model: mujoco.MjModel, geoms: Ids, carriers: Ids) -> tuple[Any, Any]:
+def _compile_reduced_model(model: mujoco.MjModel, geoms: Ids, carriers: Ids) -> tuple[mujoco.MjModel, mujoco.MjData]:
     reduced = mujoco.MjModel.from_xml_string(_reduced_mjcf(model, geoms, carriers))
     data = mujoco.MjData(reduced)
     mujoco.mj_kinematics(reduced, data)

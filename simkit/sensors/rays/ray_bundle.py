@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -31,7 +30,7 @@ class RayBundle:
     directions: Vector
     start: float
     reach: float
-    limit: Any
+    limit: npt.NDArray[np.uint64]
     axis: Vector
     lowest: float
     highest: float
@@ -51,6 +50,6 @@ def reaches_plane(rays: RayBundle, point: Sequence[float], normal: Sequence[floa
     return bool(0.0 <= height <= fall * (1 + 1e-9) + 1e-9)
 
 
-def finite_limit_bits(reach: float) -> Any:
+def finite_limit_bits(reach: float) -> npt.NDArray[np.uint64]:
     """The bits of the longest finite distance that counts, for comparing many at once."""
     return np.array(min(reach, float(np.finfo(np.float64).max))).view(np.uint64)

@@ -1,4 +1,4 @@
-"""What a fan of rays can meet at all: what stays above or below it wherever the joints are need not be looked at.
+"""Geoms that a fan of rays can meet: a geom that stays above or below it at all joint positions is left out.
 
 A sensor's own robot is tied to it by joints. What no joint moves against the sensor keeps its place in the fan's frame;
 what hinges and ball joints move stays within a sphere around the first of them, whose radius grows along the chain.

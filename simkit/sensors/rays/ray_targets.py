@@ -1,15 +1,15 @@
-"""What rays can hit: the geoms that a kind of sensor sees, sorted by how they are traced."""
+"""Geoms that rays can hit, sorted by how they are traced."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
-from simkit.sensors.rays.embree_rays import TriangleBody, has_embree
+from simkit.sensors.rays.embree_rays import TriangleBody, TriangleScene, has_embree
 from simkit.sensors.rays.geom_types import BOX, PLANE, SHAPES, SUPPORTED, TRIANGLES, Ids
 from simkit.sensors.rays.mujoco_rays import ReducedModelCaster, WholeModelCaster
 
@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     import mujoco
 
     from simkit.compiler.name_map import NameMap
+
+Key = TypeVar("Key")
 
 MAX_MOVING_BODIES: Final = 64
 """So many moving bodies at most are looked through one after the other for every ray."""
@@ -60,7 +62,7 @@ class RayTargets:
                 if link and names.links[link].scene.sensors:
                     self.carriers[i] = self._carrier(self._carrier_by_link, link, 0)
 
-    def _carrier(self, known: dict[Any, int], key: Any, body: int) -> int:
+    def _carrier(self, known: dict[Key, int], key: Key, body: int) -> int:
         if key not in known:
             known[key] = len(self.bodies)
             self.bodies.append(body)
@@ -149,7 +151,7 @@ class RayTargets:
 
     def _triangle_bodies(self, which: Ids) -> list[TriangleBody]:
         carriers = self.carriers[which]
-        scenes: dict[Any, Any] = {}
+        scenes: dict[object, TriangleScene] = {}
         return [
             TriangleBody(self.model, int(c), self.bodies[c], self.geoms[which[carriers == c]], scenes)
             for c in np.unique(carriers)

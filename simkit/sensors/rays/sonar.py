@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -156,9 +156,9 @@ class Sonar(Sensor):
         low, high = self.options.range_min, self.options.range_max
         return SonarReading(min(max(value, low), high), reading.hit)
 
-    def _message_of(self, reading: SonarReading, time_ns: int) -> Any:
+    def _message_of(self, reading: SonarReading, time_ns: int) -> msgs.Range:
         o = self.options
-        return msgs.make(
+        message: msgs.Range = msgs.make(
             TYPE,
             header=msgs.header(time_ns, self.frame_id),
             radiation_type=ULTRASOUND,
@@ -168,6 +168,7 @@ class Sonar(Sensor):
             range=reading.range,
             variance=min(self.noise.variance(), _MAX_RANGE),
         )
+        return message
 
 
 def cone_directions(half_angle: float, axis: tuple[float, float, float]) -> Vector:

@@ -1,4 +1,4 @@
-"""The one OpenGL context of the process: which library gives it is decided before OpenGL is touched."""
+"""The one OpenGL context of the process; its library is chosen before OpenGL is touched."""
 
 from __future__ import annotations
 
@@ -14,10 +14,14 @@ import threading
 import weakref
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from simkit.errors import RenderError
+from simkit.runtime.engine.step_loop import stop_other_loops
 from simkit.sensors.cameras.rendering import render_thread
+
+if TYPE_CHECKING:
+    import mujoco
 
 _HINT = "on Debian and Ubuntu: apt install libegl1 libgl1-mesa-dri (or libosmesa6); `simkit doctor` says more"
 _OFF = {"disable", "disabled", "off", "false", "0"}
@@ -41,7 +45,7 @@ _FORKED = (
 class GpuMemoryHolder(Protocol):
     """Something that holds memory of the graphics library, which is given back before the library goes."""
 
-    def uploaded(self) -> Sequence[Any]:
+    def uploaded(self) -> Sequence[mujoco.MjrContext]:
         """Return the MuJoCo contexts that it holds."""
 
     def free(self) -> None:
@@ -83,8 +87,6 @@ class _ProcessContext:
 
     def close(self) -> None:
         """Free everything at exit, before the libraries go: a context freed later writes to the terminal."""
-        from simkit.runtime.engine.step_loop import stop_other_loops  # loads MuJoCo
-
         stop_other_loops()  # or their cameras would find the context gone
         render_thread.end()
         with self.lock:  # a thread that still runs draws to the end, and nothing more
@@ -189,8 +191,8 @@ def _egl_problem() -> str:
     if not query or not display_of:
         return "the EGL library knows no devices"
     devices, count = (ctypes.c_void_p * 16)(), ctypes.c_int32()
-    asked = ctypes.CFUNCTYPE(ctypes.c_uint32, ctypes.c_int32, ctypes.c_void_p, ctypes.c_void_p)(query)
-    if not asked(16, devices, ctypes.byref(count)) or count.value < 1:
+    query_devices = ctypes.CFUNCTYPE(ctypes.c_uint32, ctypes.c_int32, ctypes.c_void_p, ctypes.c_void_p)(query)
+    if not query_devices(16, devices, ctypes.byref(count)) or count.value < 1:
         return "no EGL device (no driver is installed)"
     get = ctypes.CFUNCTYPE(ctypes.c_void_p, ctypes.c_uint32, ctypes.c_void_p, ctypes.c_void_p)(display_of)
     egl.eglInitialize.argtypes = [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p]

@@ -1,8 +1,6 @@
-"""A model in the memory of the graphics library."""
+"""MuJoCo model in the memory of the graphics library."""
 
 from __future__ import annotations
-
-from typing import Any
 
 import mujoco
 
@@ -18,8 +16,8 @@ class GpuModel:
 
     def __init__(self, quality: Quality) -> None:
         self._quality = quality
-        self._model: Any = None
-        self._contexts: dict[bool, Any] = {}
+        self._model: mujoco.MjModel | None = None
+        self._contexts: dict[bool, mujoco.MjrContext] = {}
         self._width = self._height = 16
 
     def reserve(self, width: int, height: int) -> None:
@@ -31,7 +29,7 @@ class GpuModel:
                     for context in self._contexts.values():
                         mujoco.mjr_resizeOffscreen(self._width, self._height, context)
 
-    def context_of(self, model: mujoco.MjModel, smooth: bool) -> Any:
+    def context_of(self, model: mujoco.MjModel, smooth: bool) -> mujoco.MjrContext:
         """The engine's handle of the model; uploads one that is not the last one."""
         if model is not self._model:
             self.free()
@@ -43,7 +41,7 @@ class GpuModel:
             self._contexts[smooth] = context
         return self._contexts[smooth]
 
-    def contexts(self) -> list[Any]:
+    def contexts(self) -> list[mujoco.MjrContext]:
         """The engine's handles that are there; needs no context."""
         return list(self._contexts.values())
 
@@ -54,7 +52,7 @@ class GpuModel:
             context.free()
 
 
-def _upload(model: mujoco.MjModel, quality: Quality, smooth: bool) -> Any:
+def _upload(model: mujoco.MjModel, quality: Quality, smooth: bool) -> mujoco.MjrContext:
     own = model.vis.quality
     kept = own.offsamples, own.shadowsize, own.numslices, own.numstacks
     own.offsamples, own.shadowsize = quality.samples if smooth else 0, quality.shadow_map

@@ -1,4 +1,4 @@
-"""Which lights a picture has, and from where their shadows are drawn."""
+"""Lights of a picture, and where their shadow maps are drawn from."""
 
 from __future__ import annotations
 

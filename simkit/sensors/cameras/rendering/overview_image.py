@@ -1,4 +1,4 @@
-"""A view of a simulation from outside."""
+"""Picture of a simulation from outside, without a camera of its own."""
 
 from __future__ import annotations
 

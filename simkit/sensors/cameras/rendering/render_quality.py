@@ -1,4 +1,4 @@
-"""How the pictures of a world are drawn: its quality, and what is around the things in it."""
+"""Quality of the pictures of a world, and its surroundings."""
 
 from __future__ import annotations
 

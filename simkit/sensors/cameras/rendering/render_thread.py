@@ -25,17 +25,17 @@ def defer_interrupts() -> Iterator[ReceivedSignals]:
     Amid a call of the graphics library it would come out as a fault of that, which ctypes makes of every exception
     there, and amid a wait for a lock as one that nobody holds.
     """
-    heard: ReceivedSignals = []
+    received: ReceivedSignals = []
     before = signal.getsignal(signal.SIGINT)
     if threading.current_thread() is not threading.main_thread() or not callable(before):
-        yield heard
+        yield received
         return
-    signal.signal(signal.SIGINT, lambda number, frame: heard.append((number, frame)))
+    signal.signal(signal.SIGINT, lambda number, frame: received.append((number, frame)))
     try:
-        yield heard
+        yield received
     finally:
         signal.signal(signal.SIGINT, before)
-        for number, frame in heard:
+        for number, frame in received:
             before(number, frame)
 
 
@@ -53,9 +53,9 @@ class RenderJob:
 
     __slots__ = ("_do", "_done", "_error", "_owner", "_result", "is_at_once")
 
-    def __init__(self, do: Callable[[], Any], is_at_once: bool = False) -> None:
+    def __init__(self, do: Callable[[], object], is_at_once: bool = False) -> None:
         self.is_at_once = is_at_once
-        self._do: Callable[[], Any] | None = do
+        self._do: Callable[[], object] | None = do
         self._owner, self._done = _thread, threading.Event()
         self._result: Any = None
         self._error: BaseException | None = None
@@ -70,8 +70,8 @@ class RenderJob:
             if self._owner is not _thread:
                 raise RenderError("this process was forked while the picture was being drawn", "SK-RENDER-011")
             while not self._done.is_set():
-                with defer_interrupts() as heard:
-                    while not heard and not self._done.wait(_WAIT_INTERVAL):
+                with defer_interrupts() as received:
+                    while not received and not self._done.wait(_WAIT_INTERVAL):
                         pass
 
     def result(self) -> Any:
@@ -132,8 +132,8 @@ class _RenderThread:
         """Until something is no more; an interrupt is heard meanwhile."""
         goes_on = True
         while goes_on:
-            with defer_interrupts() as heard, self._changed:
-                while (goes_on := is_so()) and not heard:
+            with defer_interrupts() as received, self._changed:
+                while (goes_on := is_so()) and not received:
                     self._changed.wait(_WAIT_INTERVAL)
 
     def end(self) -> None:
@@ -169,14 +169,14 @@ class _RenderThread:
 _thread = _RenderThread()
 
 
-def submit(do: Callable[[], Any]) -> RenderJob:
+def submit(do: Callable[[], object]) -> RenderJob:
     """Has the render thread do something after all that was submitted before; waits while too much is waiting."""
     work = RenderJob(do)
     _thread.submit(work)
     return work
 
 
-def run_now(do: Callable[[], Any]) -> RenderJob:
+def run_now(do: Callable[[], object]) -> RenderJob:
     """Does something here, after all that was submitted before."""
     _thread.drain()
     work = RenderJob(do, is_at_once=True)

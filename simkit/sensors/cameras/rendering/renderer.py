@@ -6,7 +6,7 @@ import contextlib
 import logging
 import weakref
 from collections.abc import Callable, Generator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
@@ -184,7 +184,7 @@ class Renderer:
         """Says that nothing more is drawn of it."""
         self._composer.give_back(composition)
 
-    def uploaded(self) -> list[Any]:
+    def uploaded(self) -> list[mujoco.MjrContext]:
         """What it holds in the memory of the graphics library."""
         return self._uploads.contexts()
 
@@ -231,7 +231,7 @@ class Renderer:
         if depths.flat[empty] == 0:
             self._background_colour = colours.reshape(-1, 3)[empty].copy()
 
-    def _buffer(self, width: int, height: int) -> tuple[Any, tuple[Colours, Depths]]:
+    def _buffer(self, width: int, height: int) -> tuple[mujoco.MjrRect, tuple[Colours, Depths]]:
         size = (width, height)
         if size not in self._buffers:
             self._rectangles[size] = mujoco.MjrRect(0, 0, width, height)

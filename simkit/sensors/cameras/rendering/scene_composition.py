@@ -1,4 +1,4 @@
-"""What is drawn of one state: taken from the engine without OpenGL, so that it can be drawn elsewhere and later."""
+"""Scene of one physics state, taken from MuJoCo without OpenGL, so that another thread can draw it later."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import threading
 from bisect import bisect_left
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any, Final
+from typing import Final
 
 import mujoco
 import numpy as np
@@ -66,8 +66,8 @@ class Composer:
         self._option = visuals_only_options()
         self._aside = mujoco.MjvCamera()
         self._turn = threading.Lock()
-        self._scenes: list[Any] = []
-        self._scenes_model: Any = None
+        self._scenes: list[mujoco.MjvScene] = []
+        self._scenes_model: mujoco.MjModel | None = None
 
     def compose(
         self,
@@ -107,7 +107,7 @@ class Composer:
             ):
                 self._scenes.append(composition.scene)
 
-    def _spare_scene(self, model: mujoco.MjModel) -> Any:
+    def _spare_scene(self, model: mujoco.MjModel) -> mujoco.MjvScene:
         """A list of shapes to be filled."""
         with self._turn:
             if model is not self._scenes_model:
@@ -116,7 +116,7 @@ class Composer:
                 return self._scenes.pop()
         return self._fresh_scene(model, _SPARE)
 
-    def _fresh_scene(self, model: mujoco.MjModel, more: int) -> Any:
+    def _fresh_scene(self, model: mujoco.MjModel, more: int) -> mujoco.MjvScene:
         scene = mujoco.MjvScene(model, model.ngeom + model.nflex + model.nskin + more)
         scene.flags[:] = 0
         scene.flags[self._flags] = 1
@@ -150,7 +150,7 @@ def _scene_index(scene: mujoco.MjvScene, geom: int) -> list[int]:
     return [place] if is_there else []
 
 
-def visuals_only_options() -> Any:
+def visuals_only_options() -> mujoco.MjvOption:
     """Options of the engine that draw what cameras see, and nothing else."""
     option = mujoco.MjvOption()
     option.flags[:] = 0

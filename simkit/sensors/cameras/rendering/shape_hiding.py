@@ -1,4 +1,4 @@
-"""What of a composition is drawn for a view, and how: shapes out of sight, glass, plain colours."""
+"""Hide shapes of a composition for one view: out of sight, transparent, or in plain colours."""
 
 from __future__ import annotations
 

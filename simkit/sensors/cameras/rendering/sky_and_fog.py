@@ -1,4 +1,4 @@
-"""What is behind everything: a colour or a sky, drawn where nothing else is. And fog, which is in between."""
+"""Background of a picture, which is a colour or a sky, and fog."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What can be seen through: drawn after all else and the backdrop, from the back to the front, each once.
+"""Draw transparent shapes after everything else, from the back to the front, each once.
 
 The engine draws such shapes twice, from the front and from the back, so that what is half opaque hides three quarters;
 and before anything is behind them where there is only background.
@@ -57,7 +57,7 @@ def draw_transparent(scene: mujoco.MjvScene, context: mujoco.MjrContext, places:
         GL.glDisable(GL.GL_LIGHT0 + light)
 
 
-def _draw(gl: Any, geom: Any, context: mujoco.MjrContext) -> None:
+def _draw(gl: Any, geom: mujoco.MjvGeom, context: mujoco.MjrContext) -> None:
     rgba, both = np.asarray(geom.rgba), gl.GL_FRONT_AND_BACK
     gl.glColor4fv(rgba)
     gl.glMaterialfv(both, gl.GL_EMISSION, (*(float(geom.emission) * rgba[:3]), 1.0))
@@ -65,16 +65,16 @@ def _draw(gl: Any, geom: Any, context: mujoco.MjrContext) -> None:
     gl.glMaterialfv(both, gl.GL_SPECULAR, (geom.specular, geom.specular, geom.specular, 1.0))
     pose = np.eye(4, dtype=np.float32)
     pose[:3, :3], pose[:3, 3] = np.asarray(geom.mat).reshape(3, 3), geom.pos
-    worn = _bind_texture(gl, geom, context)
+    enabled = _bind_texture(gl, geom, context)
     gl.glPushMatrix()
     gl.glMultMatrixf(np.ascontiguousarray(pose.T))
     _call(gl, geom, context)
     gl.glPopMatrix()
-    for switch in worn:
+    for switch in enabled:
         gl.glDisable(switch)
 
 
-def _call(gl: Any, geom: Any, context: mujoco.MjrContext) -> None:
+def _call(gl: Any, geom: mujoco.MjvGeom, context: mujoco.MjrContext) -> None:
     """The shape itself, in its own frame."""
     kind, size, builtin = int(geom.type), [float(s) for s in geom.size], int(context.baseBuiltin)
     if kind == _KINDS.mjGEOM_PLANE:
@@ -99,7 +99,7 @@ def _call(gl: Any, geom: Any, context: mujoco.MjrContext) -> None:
         gl.glCallList(builtin + _BUILTIN[kind])
 
 
-def _bind_texture(gl: Any, geom: Any, context: mujoco.MjrContext) -> tuple[Any, ...]:
+def _bind_texture(gl: Any, geom: mujoco.MjvGeom, context: mujoco.MjrContext) -> tuple[Any, ...]:
     """Lets the shape wear its material's picture; what has to be switched off again."""
     role = int(mujoco.mjtTextureRole.mjTEXROLE_RGB)
     number = int(context.mat_texid.reshape(-1, int(mujoco.mjtTextureRole.mjNTEXROLE))[geom.matid, role])

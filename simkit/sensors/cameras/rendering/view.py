@@ -1,4 +1,4 @@
-"""What a camera looks through, where it looks from, and what is read of a picture."""
+"""View frustum, shot and film: what a picture shows and what is read from it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What lies outside a view: the engine sends every shape through the whole of OpenGL, in sight or not."""
+"""Find shapes outside a view, which MuJoCo would send through the whole of OpenGL."""
 
 from __future__ import annotations
 
