@@ -22,7 +22,7 @@ from simkit.plugins.discovery.scene_instances import (
     report_unread,
 )
 from simkit.pose import Pose
-from simkit.run_spec import LoadOptions, RunSpec
+from simkit.run_spec import LoadOptions, PluginErrorPolicy, RunSpec
 from simkit.scene import Mesh, Scene, SceneModel, SceneWorld
 
 if TYPE_CHECKING:
@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     from simkit.loaders.spawn_option import SpawnedModel
     from simkit.plugins.ros2_control.run_parameter_files import ParameterFileArgument, RunParameterFile
     from simkit.runtime import Simulation
-    from simkit.runtime.engine.plugin_faults import PluginErrorPolicy
 
 Source = str | os.PathLike[str]
 # what the engine says of a world that lacks its faulty parts

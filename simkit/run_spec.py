@@ -12,10 +12,10 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Final, Literal, Protocol, TypedDict
+from typing import Any, Final, Literal, Protocol, TypedDict, cast
 
 FilePath = str | os.PathLike[str]
-OnError = Literal["stop", "disable"]
+PluginErrorPolicy = Literal["stop", "disable"]
 """What becomes of a plugin that raises: the run ends, or it goes on without the plugin."""
 
 NO_FILE_POSITION: Final = ""
@@ -117,7 +117,7 @@ class SpawnRequest(Protocol):
     @property
     def source(self) -> FilePath: ...
     @property
-    def place(self) -> Sequence[float] | None: ...
+    def place(self) -> tuple[float, ...] | None: ...
     @property
     def name(self) -> str | None: ...
 
@@ -139,7 +139,7 @@ class LoadOptions(SourceOptions, total=False):
     strict: bool
     sleep: bool
     render_thread: bool | None
-    on_error: OnError | None
+    on_error: PluginErrorPolicy | None
 
 
 class LoadArguments(LoadOptions, total=False):
@@ -239,16 +239,19 @@ class RunSpec:
 
     def load_arguments(self) -> LoadArguments:
         """Return the keyword arguments of `simkit.load` for `source`."""
-        arguments: LoadArguments = {
-            "seed": self.seed,
-            "overrides": self.overrides,
-            "spawn": self.spawn,
-            "plugins": self.plugins,
-            **self.options,
-        }
-        if self.change_world is not None:
-            arguments["change_world"] = self.change_world
-        return arguments
+        arguments = LoadArguments(
+            seed=self.seed,
+            overrides=self.overrides,
+            spawn=self.spawn,
+            plugins=self.plugins,
+            change_world=self.change_world,
+        )
+        return cast(LoadArguments, {**arguments, **self.options})
+
+    def source_options(self) -> SourceOptions:
+        """Return the options that say how the world's file is read, those that are given."""
+        names = SourceOptions.__optional_keys__
+        return cast(SourceOptions, {name: value for name, value in self.options.items() if name in names})
 
     @property
     def longest(self) -> float:

@@ -33,7 +33,7 @@ from simkit.cli.terminal.options import (
 )
 from simkit.cli.terminal.output import print_diagnostics, print_status, report_errors
 from simkit.cli.terminal.teleop import KEY_TIMEOUT
-from simkit.run_spec import Check, OnError, Recording, RunSpec
+from simkit.run_spec import Check, PluginErrorPolicy, Recording, RunSpec
 
 _TIME = re.compile(r"(\d+\.?\d*|\.\d+)\s*(s|ms|min|)")
 _UNITS = {"": 1.0, "s": 1.0, "ms": 1e-3, "min": 60.0}
@@ -210,7 +210,7 @@ def run(
     )
 
 
-def _on_error(word: str | None) -> OnError | None:
+def _on_error(word: str | None) -> PluginErrorPolicy | None:
     """The word as one of those that are allowed."""
     if word not in (None, "stop", "disable"):
         raise typer.BadParameter(f"{word!r} is not stop or disable", param_hint="--on-plugin-error")

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import cast
 
-from simkit.cli.terminal.options import SourceOptions
 from simkit.cli.terminal.teleop import KEY_TIMEOUT
-from simkit.run_spec import LoadOptions, RunSpec
+from simkit.run_spec import LoadOptions, PluginErrorPolicy, RunSpec, SourceOptions
 
 
 @dataclass(frozen=True)
@@ -40,16 +39,19 @@ class RunDisplay:
 
 
 def load_options(
-    source: SourceOptions, plugin_paths: Sequence[Path] = (), params_files: Sequence[str] = (), **more: Any
+    source: SourceOptions,
+    plugin_paths: Sequence[Path] = (),
+    params_files: Sequence[str] = (),
+    *,
+    on_error: PluginErrorPolicy | None = None,
+    strict: bool = False,
 ) -> LoadOptions:
     """Return the options of a command that say how a world is loaded; those that were not given are not in it."""
-    given: Mapping[str, Any] = {
-        **source,
-        "plugin_paths": tuple(plugin_paths),
-        "params_files": tuple(params_files),
-        **more,
-    }
-    return LoadOptions(**{name: value for name, value in given.items() if value and value != "auto"})  # type: ignore[typeddict-item]
+    options = LoadOptions(
+        plugin_paths=tuple(plugin_paths), params_files=tuple(params_files), on_error=on_error, strict=strict
+    )
+    given = {**source, **options}
+    return cast(LoadOptions, {name: value for name, value in given.items() if value and value != "auto"})
 
 
 def scenario_spec(

@@ -26,13 +26,13 @@ from simkit.plugins.ros_names import RosNames
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.run_spec import PluginErrorPolicy
     from simkit.runtime import Simulation
     from simkit.runtime.communication.action_server import Action, GoalHandle
     from simkit.runtime.communication.parameter_server import Parameter
     from simkit.runtime.communication.publisher import Listener, Publisher
     from simkit.runtime.communication.service_server import Service
     from simkit.runtime.communication.subscription import Subscription
-    from simkit.runtime.engine.plugin_faults import PluginErrorPolicy
     from simkit.runtime.engine.random_streams import RandomStream
     from simkit.scene import ScenePlugin
 

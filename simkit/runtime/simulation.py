@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from simkit.errors import InputError, SimulationDiverged
 from simkit.pose import Pose, Vector
+from simkit.run_spec import PluginErrorPolicy, RunSpec
 from simkit.runtime.communication.action_server import GoalHandle
 from simkit.runtime.communication.communication import Communication
 from simkit.runtime.communication.journal import journaled
@@ -14,7 +15,7 @@ from simkit.runtime.communication.service_server import Service, ServiceHandler
 from simkit.runtime.communication.topic_bus import Callback, CallbackErrorPolicy, Subscription, TopicBus
 from simkit.runtime.engine.clock import Clock
 from simkit.runtime.engine.engine import Engine
-from simkit.runtime.engine.plugin_faults import PluginErrorPolicy, add_driver_hints
+from simkit.runtime.engine.plugin_faults import add_driver_hints
 from simkit.runtime.engine.snapshot import Snapshot, Stateful
 from simkit.runtime.engine.step_tasks import fill_schedule
 from simkit.runtime.handles.joint import Joint

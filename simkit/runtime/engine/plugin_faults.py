@@ -12,16 +12,16 @@ import traceback
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from types import CodeType, FrameType, TracebackType
-from typing import TYPE_CHECKING, Any, Final, Literal, Protocol
+from typing import TYPE_CHECKING, Any, Final, Protocol
 
 from simkit.errors import InputError, PluginError, SimkitError, SimulationDiverged
+from simkit.run_spec import PluginErrorPolicy
 
 if TYPE_CHECKING:
     from simkit.runtime.engine.engine_state import EngineState
     from simkit.runtime.engine.world_structure import WorldStructure
 
 
-PluginErrorPolicy = Literal["stop", "disable"]
 PLUGIN_ERROR_POLICIES: Final[tuple[PluginErrorPolicy, ...]] = ("stop", "disable")
 
 

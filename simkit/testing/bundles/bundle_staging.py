@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from simkit.diagnostics import Diagnostics
 from simkit.errors import InputError, SimkitError
-from simkit.run_spec import RunSpec
+from simkit.run_spec import RunSpec, SourceOptions
 from simkit.testing.bundles.manifest import PackedModel
 from simkit.testing.bundles.packed_world import load_packed_world, model_hash, packed_run_spec
 
@@ -110,13 +110,14 @@ class WorldStager:
             elif not Path(source).is_absolute() and (spec.folder / source).exists():
                 source = spec.folder / source
             (self._stage / target).parent.mkdir(parents=True, exist_ok=True)
-            options = {
+            options: SourceOptions = {
+                "resource_paths": paths,
                 "package_paths": spec.options.get("package_paths", {}),
                 "xacro_args": spec.options.get("xacro_args", {}),
                 "base": base,
             }
             try:
-                main, _ = vendor(str(source), self._stage / target, describe, resource_paths=paths, **options)
+                main, _ = vendor(str(source), self._stage / target, describe, **options)
             except InputError as error:
                 raise InputError(f"{UNPACKED} {_source_text(source)} cannot be packed: {error}", UNPACKED) from None
         return f"{target}/{main.as_posix()}"

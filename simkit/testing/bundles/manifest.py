@@ -7,10 +7,10 @@ import math
 import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass, field
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, cast
 
 from simkit.errors import InputError, SimkitError
-from simkit.run_spec import LoadOptions, RunSpec
+from simkit.run_spec import LoadOptions, PluginErrorPolicy, RunSpec
 
 if TYPE_CHECKING:
     from simkit.testing.conditions import CheckResult
@@ -138,8 +138,8 @@ class Manifest:
     def run_spec(self) -> RunSpec:
         """Seed, overrides and options of the run; its files are where the bundle is extracted."""
         options: LoadOptions = {"base": self.base, "sleep": self.sleep}
-        if self.on_error == "stop" or self.on_error == "disable":
-            options["on_error"] = self.on_error
+        if self.on_error in ("stop", "disable"):
+            options["on_error"] = cast(PluginErrorPolicy, self.on_error)
         return RunSpec(self.world, seed=self.seed, name=self.name, overrides=self.overrides, options=options)
 
     def text(self) -> str:

@@ -9,11 +9,11 @@ import tempfile
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, cast
 
 from simkit.child_process import ChildProcesses, ProcessResult
 from simkit.errors import InputError
-from simkit.run_spec import RunSpec
+from simkit.run_spec import LoadOptions, RunSpec
 from simkit.testing.certify.child_run import ChildRequest
 from simkit.testing.certify.child_run import run_child as run_here
 from simkit.testing.certify.outcome import STACK_FILE, CodePosition, RunOutcome, read_pickle, write_pickle
@@ -142,7 +142,9 @@ def _with_absolute_paths(scenario: RunSpec) -> RunSpec:
         options["params_files"] = [_absolute_file(g) for g in ([given] if isinstance(given, (str, Path)) else given)]
     spawn = tuple(_absolute_file(text, ":") for text in scenario.spawn)
     folder, file = scenario.folder.absolute(), scenario.file and scenario.file.absolute()
-    return replace(scenario, world=source, options=options, spawn=spawn, folder=folder, file=file, plugins=())
+    return replace(
+        scenario, world=source, options=cast(LoadOptions, options), spawn=spawn, folder=folder, file=file, plugins=()
+    )
 
 
 def _absolute_file(text: Any, mark: str = "=") -> Any:

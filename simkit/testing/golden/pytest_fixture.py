@@ -11,12 +11,12 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, cast
 
 import pytest
 
 from simkit.errors import InputError
-from simkit.run_spec import RunSpec, Tolerance
+from simkit.run_spec import LoadOptions, RunSpec, Tolerance
 from simkit.testing.golden.compare.difference import Explanation, Verdict
 from simkit.testing.run_record.record import RunRecord
 
@@ -318,7 +318,7 @@ def _with_arguments(scenario: RunSpec, given: dict[str, Any], is_open: bool) -> 
     for key in _SCENARIO_ARGUMENTS:
         if key in own:
             own[key] = (own[key],) if isinstance(own[key], str) else tuple(own[key])
-    return replace(scenario, **own, options={**scenario.options, **given})
+    return replace(scenario, **own, options=cast(LoadOptions, {**scenario.options, **given}))
 
 
 def _topic_patterns(patterns: str | Sequence[str] | None) -> tuple[str, ...] | None:

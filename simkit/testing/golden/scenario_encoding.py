@@ -7,9 +7,9 @@ import os
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, fields
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, cast
 
-from simkit.run_spec import Check, RunSpec, Tolerance
+from simkit.run_spec import Check, LoadOptions, RunSpec, Tolerance
 
 _PATH_OPTIONS: Final = ("resource_paths", "plugin_paths", "params_files")
 _LONG_TEXT: Final = 2000
@@ -99,7 +99,7 @@ def decode_scenario(plain: Mapping[str, Any], folder: Path) -> RunSpec:
     given["plugins"] = tuple(map(str, plain.get("plugins", ())))
     file = Path(place(plain["file"])) if plain.get("file") else None
     world = "" if isinstance(plain["world"], Mapping) else str(plain["world"])
-    return RunSpec(world, options=options, folder=folder, file=file, **given)
+    return RunSpec(world, options=cast(LoadOptions, options), folder=folder, file=file, **given)
 
 
 def is_long_text(world: str) -> bool:

@@ -116,7 +116,9 @@ def load_python_scenario(file: Path, diagnostics: Diagnostics) -> RunSpec:
         problem("SK-SCEN-003", message, where)
     diagnostics.raise_if_errors()
     folder = file.parent if found.folder == Path() else found.folder
-    return replace(found, folder=folder, file=file, spawn=tuple(resolve_spawn_file(folder, one) for one in found.spawn))
+    return replace(
+        found, folder=folder, file=file, spawn=tuple(resolve_spawn_file(folder, str(one)) for one in found.spawn)
+    )
 
 
 def _error_line(error: BaseException, file: Path) -> int | None:

@@ -8,11 +8,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import fields
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, cast
 
 from simkit.diagnostics import Diagnostics, Where
 from simkit.errors import InputError, LoadError
-from simkit.run_spec import Check, CheckKind, RunSpec, Tolerance
+from simkit.run_spec import Check, CheckKind, LoadOptions, RunSpec, Tolerance
 from simkit.testing.scenarios.python_file import load_python_scenario
 from simkit.testing.scenarios.yaml_document import Document, ValueReader, resolve_spawn_file
 
@@ -82,9 +82,8 @@ def _check_world(scenario: RunSpec, diagnostics: Diagnostics) -> None:
 
     if not scenario.world:
         return
-    options = {key: value for key, value in scenario.options.items() if key in _READING_KEYS}
     try:
-        read_scene(scenario.source, **options)
+        read_scene(scenario.source, **scenario.source_options())
     except LoadError as error:
         diagnostics.extend(error.diagnostics)
     except InputError as error:
@@ -137,7 +136,7 @@ class ScenarioReader(ValueReader):
             timeout=self._number("timeout", None, above=0.0),
             wall_timeout=wall,
             checks=tuple(check for key, kind in _CHECKS.items() for check in self._checks(key, kind)),
-            options=self._options(),
+            options=cast(LoadOptions, self._options()),
             folder=self._document.path.parent,
             file=self._document.path,
         )
