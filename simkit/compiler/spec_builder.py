@@ -6,46 +6,36 @@ import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import Any
 
 import mujoco
 
 from simkit.compiler.assets import Assets
 from simkit.compiler.bodies import remove_split_body
-from simkit.compiler.engine_options import apply_options, apply_size, choose_islands, set_extent
-from simkit.compiler.first_state import (
-    add_idle_armature,
-    apply_velocity_decay,
-    check_derived_numbers,
-    place_followers,
-    report_overlaps,
-)
-from simkit.compiler.inertia_repair import restore_file_inertias
+from simkit.compiler.engine_options import apply_options
+from simkit.compiler.first_state import place_followers, report_overlaps
 from simkit.compiler.kinematic_tree import WORLD
-from simkit.compiler.lights import add_light, refine_for_lamps, report_light, report_lights
+from simkit.compiler.lights import add_light, report_light, report_lights
 from simkit.compiler.mjcf_attachment import (
     adopt_settings,
-    assign_geom_groups,
     attach_model,
     attach_world,
     detach_model,
     is_expected_warning,
     models_of_own_file,
-    silence_engine_warnings,
     without_attached,
 )
+from simkit.compiler.model_compilation import compile_spec, finish_model
 from simkit.compiler.model_writer import ModelWriter
 from simkit.compiler.name_map import ActuatorRef, JointBinding, LightBinding, ModelRecord, NameMap, lookup
 from simkit.compiler.self_collision import FIRST_OWN_BIT, PAIRS_MOST
-from simkit.compiler.servos import add_actuator, add_armature, add_drive_armature, tune_servos
+from simkit.compiler.servos import add_actuator, add_armature, add_drive_armature
+from simkit.compiler.state_transfer import transfer_state
 from simkit.diagnostics import Diagnostics
 from simkit.pose import Pose
 from simkit.scene import SceneJoint, SceneModel, SceneWorld
 
 FileFinder = Callable[[str, Path | None], Path | None]
-
-MOST_MOVING: Final = 10_000
-"""Links; the engine's compiler takes time in proportion to their square, 7 s for 4000 that are free."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,14 +171,8 @@ class SpecBuilder:
     def _joints_of(self, model: SceneModel) -> list[SceneJoint]:
         """The model's joints and those joints of the world that tie it to the world alone."""
         own = {link.scoped for link in model.all_links()} | {WORLD}
-        return [
-            *model.all_joints(),
-            *(
-                j
-                for j in self.world.joints
-                if {j.parent_link, j.child_link} <= own and {j.parent_link, j.child_link} != {WORLD}
-            ),
-        ]
+        ends = ((joint, {joint.parent_link, joint.child_link}) for joint in self.world.joints)
+        return [*model.all_joints(), *(joint for joint, links in ends if links <= own and links != {WORLD})]
 
     def _join_models(self, only: set[str] | None = None) -> None:
         """Joints of the world between two models, as constraints; `only` some of them by name."""
@@ -365,21 +349,19 @@ class SpecBuilder:
 
     def compile(self) -> Compiled:
         """The model with its first state. Raises LoadError when MuJoCo refuses it."""
-        self._before()
         with warnings.catch_warnings(record=True) as said:
             warnings.simplefilter("always")
-            try:
-                with silence_engine_warnings():
-                    model = self.spec.compile()
-            except ValueError as problem:
-                self._refused(problem)
-            compiled = self._finished(model, None)
-            report_lights(compiled.model, self.diagnostics, self.world.where)
-            report_overlaps(compiled.model, compiled.names, self.diagnostics, self.world.where)
+            model = compile_spec(self.spec, self.world, list(self.records.values()), self.diagnostics)
+            self._finish(model)
+            names = NameMap.of(self.records.values(), model)
+            data = mujoco.MjData(model)
+            place_followers(data, names.joints.values())
+            report_lights(model, self.diagnostics, self.world.where)
+            report_overlaps(model, names, self.diagnostics, self.world.where)
         for text in dict.fromkeys(str(w.message) for w in said):
             if not is_expected_warning(text):
                 self.diagnostics.warning("SK-PHYS-025", f"the engine warns: {text}", self.world.where)
-        return compiled
+        return Compiled(model, data, names, self)
 
     def recompile(self, compiled: Compiled, data: mujoco.MjData) -> Compiled:
         """The model after a change; what stays keeps its state bit for bit, in new model and data objects.
@@ -391,18 +373,15 @@ class SpecBuilder:
         Raises:
             LoadError: MuJoCo refuses the changed model.
         """
-        from simkit.compiler.state_transfer import transfer_state
-
-        self._before()
-        try:
-            with silence_engine_warnings():
-                model = self.spec.compile()
-        except ValueError as problem:
-            self._refused(problem)
+        model = compile_spec(self.spec, self.world, list(self.records.values()), self.diagnostics)
         fresh = mujoco.MjData(model)
         transfer_state(compiled.model, data, model, fresh)
         model.opt.gravity[:] = compiled.model.opt.gravity
-        return self._finished(model, fresh)
+        self._finish(model)
+        return Compiled(model, fresh, NameMap.of(self.records.values(), model), self)
+
+    def _finish(self, model: mujoco.MjModel) -> None:
+        finish_model(self.spec, model, self.world, list(self.records.values()), self.diagnostics)
 
     def copy(self) -> SpecBuilder:
         """An independent builder with the same content: change it, and this one stays what it was."""
@@ -416,40 +395,3 @@ class SpecBuilder:
         other._names = None
         other._cut = list(self._cut)
         return other
-
-    def _before(self) -> None:
-        moving = sum(not link.static for r in self.records.values() for link in r.links.values())
-        if moving > MOST_MOVING:
-            self.diagnostics.error(
-                "SK-PHYS-029",
-                f"there are {moving} moving links; at most {MOST_MOVING} are compiled, which takes the engine a minute",
-                self.world.where,
-                "make what never moves <static>",
-            )
-            self.diagnostics.raise_if_errors()
-        colliding = sum(not o.is_visual for r in self.records.values() for o in r.geoms.values())
-        apply_size(self.spec, colliding)
-        if self.world.mjcf is None:
-            choose_islands(self.spec, sum(len(r.root_bodies) for r in self.records.values()))
-
-    def _refused(self, problem: ValueError) -> Any:
-        self.diagnostics.error("SK-PHYS-023", f"MuJoCo refuses the model: {problem}", self.world.where)
-        self.diagnostics.raise_if_errors()
-        raise AssertionError("unreachable")
-
-    def _finished(self, model: mujoco.MjModel, data: mujoco.MjData | None) -> Compiled:
-        restore_file_inertias(model, {name: exact for r in self.records.values() for name, exact in r.exact.items()})
-        check_derived_numbers(model, self.diagnostics, self.world.where)
-        set_extent(model)
-        if self.world.mjcf is None:
-            refine_for_lamps(model)
-        records = list(self.records.values())
-        assign_geom_groups(model, records)
-        apply_velocity_decay(model, records)
-        add_idle_armature(self.spec, model, records, self.diagnostics)
-        tune_servos(self.spec, model, [ref for r in records for ref in r.actuators])
-        names = NameMap.of(records, model)
-        if data is None:
-            data = mujoco.MjData(model)
-            place_followers(data, names.joints.values())
-        return Compiled(model, data, names, self)

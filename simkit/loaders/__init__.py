@@ -8,8 +8,14 @@ from functools import lru_cache
 from pathlib import Path
 
 from simkit.diagnostics import Diagnostics, Where, did_you_mean
-from simkit.loaders.resources.bundled_models import turtlebot3_name
+from simkit.loaders.resources.bundled_models import (
+    bundled_names,
+    find_bundled_model,
+    find_bundled_world,
+    turtlebot3_name,
+)
 from simkit.loaders.resources.loader import Loader, LoadRequest, MeshReader, MjcfParser
+from simkit.loaders.resources.model_folder import model_file
 from simkit.loaders.resources.paths import access_problem, sibling_names
 from simkit.loaders.resources.resolver import Resolver
 from simkit.loaders.resources.xml_reader import ALLOWED_FORMATS, Document, foreign_root_hint, parse_file, parse_text
@@ -89,13 +95,13 @@ def find_document(
     xacro_args: Mapping[str, str] | None = None,
 ) -> tuple[Document | None, bool]:
     """The parsed file that a source means, and whether it was expanded from xacro; None with an error recorded."""
-    document = _document(source, resolver, diagnostics)
+    document = _document(source, diagnostics)
     if document is None or not needs_expansion(document):
         return document, False
     return expand(document, resolver.around(document.folder), dict(xacro_args or {}), diagnostics), True
 
 
-def _document(source: str | os.PathLike[str], resolver: Resolver, diagnostics: Diagnostics) -> Document | None:
+def _document(source: str | os.PathLike[str], diagnostics: Diagnostics) -> Document | None:
     if isinstance(source, str) and "<" in source:
         root = parse_text(source, diagnostics)
         return None if root is None else Document(root, None, source.encode())
@@ -109,8 +115,8 @@ def _document(source: str | os.PathLike[str], resolver: Resolver, diagnostics: D
         return None
     if path.is_dir():
         found = Diagnostics()
-        model = resolver.model_file(path, Where(str(path)), found)
-        if model is None and (bundled := resolver.find_world(str(source)) or resolver.find_model(str(source))):
+        model = model_file(path, Where(str(path)), found)
+        if model is None and (bundled := find_bundled_world(str(source)) or find_bundled_model(str(source))):
             return parse_file(bundled, diagnostics)  # a folder that happens to have the name, such as a golden run
         diagnostics.extend(found)
         return None if model is None else parse_file(model, diagnostics)
@@ -118,10 +124,10 @@ def _document(source: str | os.PathLike[str], resolver: Resolver, diagnostics: D
         name = turtlebot3_name(str(source), diagnostics)
         if name is None:
             return None
-        bundled = resolver.find_world(name) or resolver.find_model(name)
+        bundled = find_bundled_world(name) or find_bundled_model(name)
         if bundled is None:
             near = sibling_names(path)
-            near += resolver.bundled_names()
+            near += bundled_names()
             diagnostics.error("SK-LOAD-002", "no such file", Where(str(path)), did_you_mean(path.name, near))
             return None
         path = bundled

@@ -16,6 +16,7 @@ from simkit.diagnostics import Diagnostics
 from simkit.errors import InputError
 from simkit.loaders import Document, Resolver, find_document
 from simkit.loaders.resources.bundled_models import turtlebot3_uri
+from simkit.loaders.resources.model_folder import model_file
 from simkit.loaders.resources.xml_reader import parse_file
 from simkit.params import Params
 from simkit.writers.asset_folder import companion_files
@@ -202,7 +203,7 @@ class WorldCollector:
         if not path.is_dir():
             return self._collect_file(path)
         if parent == "include" or element.name == "include":
-            file = self.resolver.model_file(path, element.where, self.diagnostics)
+            file = model_file(path, element.where, self.diagnostics)
             return None if file is None else self._collect_model(path, file)
         return self._collect_folder(path) if "://" in reference or "/" in reference else None
 

@@ -363,7 +363,7 @@ def test_a_thousand_million_copies_are_refused(count):
 
 
 def test_more_moving_bodies_than_the_engine_compiles_in_a_minute_are_refused(monkeypatch):
-    monkeypatch.setattr("simkit.compiler.spec_builder.MOST_MOVING", 50)
+    monkeypatch.setattr("simkit.compiler.model_compilation.MOST_MOVING", 50)
     box = "<box><size>1 1 1</size></box><distribution><type>random</type></distribution>"
     assert errors(WORLD.format(COPIES.format(60, box))) == ["SK-PHYS-029"]
 

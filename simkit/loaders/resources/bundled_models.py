@@ -1,15 +1,70 @@
-"""Models that every world may name without a file: the ground plane, the sun, and the chosen TurtleBot3."""
+"""Models and worlds that simkit brings: by bare name, the chosen TurtleBot3, the ground plane and the sun."""
 
 from __future__ import annotations
 
 import os
+from functools import lru_cache
+from pathlib import Path
 from urllib.parse import unquote
 
 from simkit.diagnostics import Diagnostics, Where, did_you_mean
+from simkit.loaders.resources.model_folder import model_file
 
 MODELS = ("burger", "waffle", "waffle_pi")
 _URI = "model://turtlebot3"
 _DEFAULT = "waffle"
+
+
+@lru_cache(maxsize=1)
+def _package_folder() -> Path:
+    return Path(__file__).resolve().parents[2]
+
+
+def bundled_folders(kind: str) -> list[Path]:
+    """The folders `assets` or `worlds` that travel with simkit, beside or inside the package."""
+    package = _package_folder()
+    return [folder for folder in (package / kind, package.parent / kind) if folder.is_dir()]
+
+
+def is_bare_name(name: str) -> bool:
+    """Whether a text may be the name of a bundled model or package: no path, no pattern."""
+    return 0 < len(name) < 200 and not set(name) & set("/\\*?[]<>:") and not name.startswith(".")
+
+
+def find_bundled_model(name: str) -> Path | None:
+    """The SDF or URDF file of a bundled model, by its bare name; None when there is none."""
+    if not is_bare_name(name):
+        return None
+    for bundle in bundled_folders("assets"):
+        for folder in (bundle / name, *sorted(bundle.glob(f"*/{name}")), *sorted(bundle.glob(f"*/models/{name}"))):
+            found = model_file(folder, Where(str(folder)), Diagnostics()) if folder.is_dir() else None
+            if found is not None:
+                return found
+        for suffix in ("sdf", "urdf", "xacro"):
+            spelt = name if name.endswith(f".{suffix}") else f"{name}.{suffix}"
+            below = [file for pattern in ("*", "*/urdf") for file in sorted(bundle.glob(f"{pattern}/{spelt}"))]
+            for file in (bundle / spelt, *below):
+                if file.is_file():
+                    return file
+    return None
+
+
+def find_bundled_world(name: str) -> Path | None:
+    """The file of a bundled world, by its bare name; None when there is none."""
+    if not is_bare_name(name):
+        return None
+    for bundle in bundled_folders("worlds"):
+        for spelt in (name, f"{name}.sdf", f"{name}.world"):
+            if (bundle / spelt).is_file():
+                return bundle / spelt
+    return None
+
+
+def bundled_names() -> list[str]:
+    """Bare names of the worlds and models that simkit brings."""
+    worlds = [p.stem for bundle in bundled_folders("worlds") for p in bundle.glob("*.sdf")]
+    models = [p.parent.name for bundle in bundled_folders("assets") for p in bundle.glob("**/model.config")]
+    return sorted({*worlds, *models})
 
 
 def turtlebot3_uri(uri: str, where: Where, diagnostics: Diagnostics) -> str | None:

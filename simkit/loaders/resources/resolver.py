@@ -6,12 +6,12 @@ import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from copy import copy
 from dataclasses import replace
-from functools import lru_cache
 from itertools import chain
 from pathlib import Path
 from urllib.parse import unquote
 
 from simkit.diagnostics import Diagnostic, Diagnostics, Where, did_you_mean
+from simkit.loaders.resources.bundled_models import bundled_folders, is_bare_name
 from simkit.loaders.resources.paths import (
     absolute_path,
     first_existing,
@@ -27,7 +27,6 @@ from simkit.loaders.resources.paths import (
     sibling_names,
 )
 from simkit.loaders.resources.ros_packages import enclosing_package, package_folders
-from simkit.params import Params
 
 _SEARCH_VARIABLES = (
     "SIMKIT_RESOURCE_PATH",
@@ -40,7 +39,6 @@ _SEARCH_VARIABLES = (
 _CACHE_VARIABLES = ("GZ_FUEL_CACHE_PATH", "IGN_FUEL_CACHE_PATH")
 _NOT_HERE = frozenset(("SK-URI-001", "SK-URI-002", "SK-URI-009"))
 _PATH_HINT = "name the folder that holds it with --resource-path or SIMKIT_RESOURCE_PATH"
-NEWEST_SDF = (1, 12)
 
 
 class Resolver:
@@ -166,7 +164,7 @@ class Resolver:
 
     def find_package(self, name: str, relative_to: Path | None) -> tuple[Path | None, list[Path]]:
         """The folder of a ROS package, and every place looked in; what is found may be read from then on."""
-        if not _bare(name):
+        if not is_bare_name(name):
             return None, []
         around = [absolute_path(f) for f in (relative_to, self.base) if f is not None]
         tried = list(package_folders(name, self.packages, around, self.paths, self._below, self._near))
@@ -300,115 +298,6 @@ class Resolver:
     def _siblings(self, relative_to: Path | None) -> Iterable[str]:
         for root in (*self.paths, *([relative_to.parent] if relative_to else [])):
             yield from (name for name in sibling_names(root / "any") if is_folder(root / name))
-
-    # ------------------------------------------------------------------ models
-
-    def model_file(self, folder: Path, where: Where, diagnostics: Diagnostics) -> Path | None:
-        """The file of a model folder: the highest version up to 1.12 listed in `model.config`, else `model.sdf`.
-
-        In a folder without either: its robot in URDF, or its one model in MuJoCo's own format.
-        """
-        from simkit.loaders.resources.xml_reader import parse_file
-
-        for manifest in (folder / "model.config", folder / "manifest.xml"):
-            if not is_file(manifest):
-                continue
-            document = parse_file(manifest, diagnostics)
-            if document is None:
-                return None
-            listed = _listed_files(document.root)
-            for _, name in sorted(listed, key=lambda item: item[0], reverse=True):
-                if is_file(folder / name) and not leaves_folder(name):
-                    return folder / name
-            names = ", ".join(name for _, name in listed) or "none"
-            if is_file(folder / "model.sdf"):
-                return folder / "model.sdf"
-            diagnostics.error("SK-URI-005", f"{manifest} lists no SDF file that exists (listed: {names})", where)
-            return None
-        for name in ("model.sdf", f"{folder.name}.sdf", "model.urdf", f"{folder.name}.urdf"):
-            if is_file(folder / name):
-                return folder / name
-        models = _mjcf_models(folder)
-        if len(models) == 1:
-            return models[0]
-        held = f"; of {', '.join(m.name for m in models[:8])} none is named {folder.name}.xml" if models else ""
-        diagnostics.error("SK-URI-005", f"the folder {folder} has neither model.config nor model.sdf{held}", where)
-        return None
-
-    def find_model(self, name: str) -> Path | None:
-        """The SDF or URDF file of a bundled model, by its bare name; None when there is none."""
-        if not _bare(name):
-            return None
-        for bundle in bundled_folders("assets"):
-            for folder in (bundle / name, *sorted(bundle.glob(f"*/{name}")), *sorted(bundle.glob(f"*/models/{name}"))):
-                found = self.model_file(folder, Where(str(folder)), Diagnostics()) if folder.is_dir() else None
-                if found is not None:
-                    return found
-            for suffix in ("sdf", "urdf", "xacro"):
-                spelt = name if name.endswith(f".{suffix}") else f"{name}.{suffix}"
-                below = [file for pattern in ("*", "*/urdf") for file in sorted(bundle.glob(f"{pattern}/{spelt}"))]
-                for file in (bundle / spelt, *below):
-                    if file.is_file():
-                        return file
-        return None
-
-    def find_world(self, name: str) -> Path | None:
-        """The file of a bundled world, by its bare name; None when there is none."""
-        if not _bare(name):
-            return None
-        for bundle in bundled_folders("worlds"):
-            for spelt in (name, f"{name}.sdf", f"{name}.world"):
-                if (bundle / spelt).is_file():
-                    return bundle / spelt
-        return None
-
-    def bundled_names(self) -> list[str]:
-        """Bare names of the worlds and models that simkit brings."""
-        worlds = [p.stem for bundle in bundled_folders("worlds") for p in bundle.glob("*.sdf")]
-        models = [p.parent.name for bundle in bundled_folders("assets") for p in bundle.glob("**/model.config")]
-        return sorted({*worlds, *models})
-
-
-def _mjcf_models(folder: Path) -> list[Path]:
-    """What may be the model of a folder in MuJoCo's own format: the one of its name, else all but the scenes."""
-    try:
-        files = sorted(f for f in folder.glob("*.xml") if f.name not in ("package.xml", "manifest.xml") and is_file(f))
-    except OSError:
-        return []
-    named = [f for f in files if f.stem in (folder.name, "model")]
-    return named[:1] or [f for f in files if not f.stem.startswith("scene")] or files
-
-
-@lru_cache(maxsize=1)
-def _package() -> Path:
-    return Path(__file__).resolve().parents[2]
-
-
-def bundled_folders(kind: str) -> list[Path]:
-    """The folders `assets` or `worlds` that travel with simkit, beside or inside the package."""
-    package = _package()
-    return [folder for folder in (package / kind, package.parent / kind) if folder.is_dir()]
-
-
-def sdf_version(text: str) -> tuple[int, int] | None:
-    """`"1.6"` as (1, 6); None where it is no version."""
-    parts = text.strip().split(".")
-    if len(parts) < 2 or not all(is_small_integer(p) for p in parts[:2]):
-        return None
-    return int(parts[0]), int(parts[1])
-
-
-def _listed_files(root: Params) -> list[tuple[tuple[int, int], str]]:
-    found = []
-    for element in root.all("sdf"):
-        version = sdf_version(element.attribute("version", "1.0")) or (1, 0)
-        if version <= NEWEST_SDF and element.value:
-            found.append((version, element.value))
-    return found + [((0, 0), element.value) for element in root.all("urdf") if element.value]
-
-
-def _bare(name: str) -> bool:
-    return 0 < len(name) < 200 and not set(name) & set("/\\*?[]<>:") and not name.startswith(".")
 
 
 def _fuel_caches() -> list[Path]:

@@ -6,6 +6,7 @@ from functools import partial
 
 from simkit.diagnostics import did_you_mean
 from simkit.loaders.resources.bundled_models import builtin_model, turtlebot3_uri
+from simkit.loaders.resources.model_folder import model_file
 from simkit.loaders.resources.xml_reader import parse_text
 from simkit.loaders.sdf.entity_names import read_name
 from simkit.loaders.sdf.experimental_params import BLOCK, apply_changes
@@ -114,7 +115,7 @@ def _open_include(uri: str, include: Params, file: SdfFile, workspace: Workspace
             return None if root is None else workspace.file(root, None, (*file.chain, uri))
         path = resolver.resolve(uri, place.where, diagnostics, file.folder)
     if path is not None and path.is_dir():
-        path = resolver.model_file(path, place.where, diagnostics)
+        path = model_file(path, place.where, diagnostics)
     if path is None:
         return None
     workspace.places[uri, file.folder] = path

@@ -1,0 +1,70 @@
+"""The model file of a folder: what `model.config` lists, or the one robot in it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from simkit.diagnostics import Diagnostics, Where
+from simkit.loaders.resources.paths import is_file, is_small_integer, leaves_folder
+from simkit.loaders.resources.xml_reader import parse_file
+from simkit.params import Params
+
+NEWEST_SDF = (1, 12)
+
+
+def model_file(folder: Path, where: Where, diagnostics: Diagnostics) -> Path | None:
+    """The file of a model folder: the highest version up to 1.12 listed in `model.config`, else `model.sdf`.
+
+    In a folder without either: its robot in URDF, or its one model in MuJoCo's own format.
+    """
+    for manifest in (folder / "model.config", folder / "manifest.xml"):
+        if not is_file(manifest):
+            continue
+        document = parse_file(manifest, diagnostics)
+        if document is None:
+            return None
+        listed = _listed_files(document.root)
+        for _, name in sorted(listed, key=lambda item: item[0], reverse=True):
+            if is_file(folder / name) and not leaves_folder(name):
+                return folder / name
+        names = ", ".join(name for _, name in listed) or "none"
+        if is_file(folder / "model.sdf"):
+            return folder / "model.sdf"
+        diagnostics.error("SK-URI-005", f"{manifest} lists no SDF file that exists (listed: {names})", where)
+        return None
+    for name in ("model.sdf", f"{folder.name}.sdf", "model.urdf", f"{folder.name}.urdf"):
+        if is_file(folder / name):
+            return folder / name
+    models = _mjcf_models(folder)
+    if len(models) == 1:
+        return models[0]
+    held = f"; of {', '.join(m.name for m in models[:8])} none is named {folder.name}.xml" if models else ""
+    diagnostics.error("SK-URI-005", f"the folder {folder} has neither model.config nor model.sdf{held}", where)
+    return None
+
+
+def sdf_version(text: str) -> tuple[int, int] | None:
+    """`"1.6"` as (1, 6); None where it is no version."""
+    parts = text.strip().split(".")
+    if len(parts) < 2 or not all(is_small_integer(p) for p in parts[:2]):
+        return None
+    return int(parts[0]), int(parts[1])
+
+
+def _listed_files(root: Params) -> list[tuple[tuple[int, int], str]]:
+    found = []
+    for element in root.all("sdf"):
+        version = sdf_version(element.attribute("version", "1.0")) or (1, 0)
+        if version <= NEWEST_SDF and element.value:
+            found.append((version, element.value))
+    return found + [((0, 0), element.value) for element in root.all("urdf") if element.value]
+
+
+def _mjcf_models(folder: Path) -> list[Path]:
+    """What may be the model of a folder in MuJoCo's own format: the one of its name, else all but the scenes."""
+    try:
+        files = sorted(f for f in folder.glob("*.xml") if f.name not in ("package.xml", "manifest.xml") and is_file(f))
+    except OSError:
+        return []
+    named = [f for f in files if f.stem in (folder.name, "model")]
+    return named[:1] or [f for f in files if not f.stem.startswith("scene")] or files
