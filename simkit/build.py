@@ -5,38 +5,35 @@ from __future__ import annotations
 import gc
 import os
 from collections.abc import Callable, Container, Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from simkit.diagnostics import Diagnostics, Where, follows_from
-from simkit.errors import InputError, LoadError, SimkitError
+from simkit.diagnostics import Diagnostics, Where
+from simkit.errors import InputError, LoadError, PluginError
 from simkit.loaders import Resolver, load_scene
+from simkit.loaders.spawn_option import SpawnedModel, add_spawned_models
 from simkit.mujoco_import import import_mujoco
-from simkit.plugins.discovery.scene_instances import (
-    add_python_plugins,
-    make_model_parts,
-    make_world_parts,
-    report_unread,
-)
+from simkit.plugins.discovery.builtin_plugins import add_actor_models, apply_scene_plugins
+from simkit.plugins.discovery.scene_instances import make_model_parts, report_unread
+from simkit.plugins.discovery.world_instances import find_more_problems, make_all_parts
 from simkit.pose import Pose
 from simkit.run_spec import LoadOptions, PluginErrorPolicy, RunSpec
-from simkit.scene import Mesh, Scene, SceneModel, SceneWorld
+from simkit.scene import Mesh, Scene, SceneModel, SceneSensor, SceneWorld
+from simkit.scene.overrides import apply_overrides
+from simkit.sensors import sensor_kinds
+from simkit.sensors.cameras.rendering.render_thread import usable_cores
+from simkit.sensors.presets.preset_defaults import add_preset_defaults
+from simkit.writers.description import describe_scene
 
 if TYPE_CHECKING:
     from simkit.compiler.mjcf_parser import MjcfParser
-    from simkit.loaders.spawn_option import SpawnedModel
     from simkit.plugins.ros2_control.run_parameter_files import ParameterFileArgument, RunParameterFile
     from simkit.runtime import Simulation
 
 Source = str | os.PathLike[str]
-# what the engine says of a world that lacks its faulty parts
-_ENGINE_CODES = frozenset(("SK-PHYS-023", "SK-PHYS-025", "SK-PHYS-028"))
-
-_MAX_MODELS_SEARCHED = 5000
-"""Models of a faulty world that are built to find more faults: the engine takes minutes for 20 000."""
 
 
 @contextmanager
@@ -114,28 +111,28 @@ def load(
     import_mujoco()
     from simkit.compiler import SpecBuilder
     from simkit.runtime import Simulation, WorldStructure
-    from simkit.sensors.cameras.rendering.render_thread import usable_cores
 
     diagnostics = Diagnostics()
     resolver = Resolver([Path(p) for p in resource_paths], package_paths=package_paths)
+
+    def find_file(uri: str, folder: Path | None) -> Path | None:
+        return resolver.search(uri, folder)[0]
+
     scene = _scene(source, resolver, diagnostics, xacro_args, base, overrides, spawn)
     world = scene.world if sleep else _without_sleep(scene.world)
-    if world.actors:
-        from simkit.plugins.actors.actor_model import with_actors
-
-        world = with_actors(world, lambda uri, folder: resolver.search(uri, folder)[0], diagnostics)
+    world = add_actor_models(world, find_file, diagnostics)
     if change_world is not None and not diagnostics.has_errors:
         world = change_world(world)
     allowed = [Path(p) for p in plugin_paths]
     given = _read_parameter_files(params_files, resolver, diagnostics)
     if diagnostics.has_errors:
-        _find_more_problems(world, diagnostics, allowed, resolver)
+        find_more_problems(world, diagnostics, allowed, find_file)
     diagnostics.raise_if_errors()
     builder = SpecBuilder(world, diagnostics)
-    builder.find_file = lambda uri, folder: resolver.search(uri, folder)[0]
+    builder.find_file = find_file
     builder.parameter_files = given
     builder.files_read += [one.file.path for one in given]
-    parts = _all_parts(world, builder, diagnostics, allowed, plugins)
+    parts = make_all_parts(world, builder, diagnostics, allowed, plugins)
     if given and not diagnostics.has_errors:  # a plugin whose parameters are at fault is not among the parts
         from simkit.plugins.ros2_control.control_plugin import report_unused_parameter_files
 
@@ -182,25 +179,6 @@ def _read_parameter_files(
     return read_run_parameter_files(named, lambda uri: resolver.search(uri, None)[0], diagnostics)
 
 
-def _all_parts(
-    world: SceneWorld, builder: Any, diagnostics: Diagnostics, allowed: Sequence[Path], plugins: Sequence[Any]
-) -> dict[str, Any]:
-    """The sensors and plugins of every model, of the world (under no name), and those made in Python."""
-    parts: dict[str, Any] = {}
-    try:
-        for model in world.models:
-            parts[model.name] = make_model_parts(model, builder, diagnostics, allowed)
-        parts[""] = make_world_parts(world, builder, diagnostics, allowed)
-        add_python_plugins(parts, plugins, world, builder, diagnostics)
-    except Exception:
-        # What was left out for its own fault (a joint without a direction) may be asked for here.
-        diagnostics.raise_if_errors()
-        raise
-    if diagnostics.has_errors:
-        _load_sound_parts(world, builder, parts, diagnostics)
-    return parts
-
-
 def describe(
     source: Source,
     *,
@@ -214,13 +192,18 @@ def describe(
     Raises:
         LoadError: the file has errors.
     """
-    from simkit.writers.description import describe_scene
-
     diagnostics = Diagnostics()
     resolver = Resolver([Path(p) for p in resource_paths], missing_meshes=True, package_paths=package_paths)
     scene = _scene(source, resolver, diagnostics, xacro_args, base, ())
     diagnostics.raise_if_errors()
-    return describe_scene(scene, diagnostics)
+    return describe_scene(scene, diagnostics, describe_sensor)
+
+
+def describe_sensor(named: SceneSensor, diagnostics: Diagnostics) -> tuple[SceneSensor, dict[str, Any] | None]:
+    """A sensor with the defaults of its preset, and its options as plain data; None where its kind is not simulated."""
+    sensor = add_preset_defaults(named, diagnostics)
+    kind = sensor_kinds().get(sensor.kind)
+    return sensor, None if kind is None else kind(sensor, diagnostics).describe()
 
 
 def check(
@@ -234,7 +217,6 @@ def check(
 ) -> Diagnostics:
     """Every problem of a file, also of compiling it and of loading its plugins; never raises for one."""
     from simkit.compiler.lint import lint_world
-    from simkit.errors import PluginError
 
     diagnostics = Diagnostics()
     try:
@@ -281,17 +263,12 @@ def _scene(
         mjcf_parser=_mjcf_parser,
     )
     if spawn:
-        from simkit.loaders.spawn_option import add_spawned_models
-
         scene = add_spawned_models(scene, spawn, resolver, diagnostics, _spawned_reader(resolver), xacro_args)
-    from simkit.plugins.gz.sensors import with_sensors_colours
-    from simkit.scene.overrides import apply_overrides
-
     if overrides:
         diagnostics.raise_if_errors()
     of_scene = [text for text in overrides if text.startswith("scene.")]
     scene = apply_overrides(scene, [text for text in overrides if text not in of_scene])
-    return apply_overrides(with_sensors_colours(scene), of_scene)
+    return apply_overrides(apply_scene_plugins(scene), of_scene)
 
 
 def _spawned_reader(resolver: Resolver) -> Any:
@@ -325,44 +302,6 @@ def _without_sleep(world: SceneWorld) -> SceneWorld:
     return replace(world, physics=replace(world.physics, sleep=False))
 
 
-def _find_more_problems(
-    world: SceneWorld, diagnostics: Diagnostics, plugin_paths: Sequence[Path], resolver: Resolver
-) -> None:
-    """What else is wrong with a file that has errors: it is built without its faulty parts, as far as that goes.
-
-    So everything comes in one pass: meshes, inertias, and what plugins find in `prepare` and `load`. What only follows
-    from an error that is said already (a plugin's joint that was left out because of its own fault) is dropped.
-    """
-    from simkit.compiler import SpecBuilder
-
-    if len(world.models) > _MAX_MODELS_SEARCHED:
-        return
-    before = tuple(diagnostics)
-    try:
-        builder = SpecBuilder(world, diagnostics)
-        builder.find_file = lambda uri, folder: resolver.search(uri, folder)[0]
-        parts = {m.name: make_model_parts(m, builder, diagnostics, plugin_paths) for m in world.models}
-        parts[""] = make_world_parts(world, builder, diagnostics, plugin_paths)
-        _load_sound_parts(world, builder, parts, diagnostics)
-    except Exception:  # noqa: BLE001 - on a file with errors anything may be missing; what was found by then counts
-        pass
-    diagnostics.drop(d for d in tuple(diagnostics)[len(before) :] if d.code in _ENGINE_CODES or follows_from(d, before))
-
-
-def _load_sound_parts(world: SceneWorld, builder: Any, parts: dict[str, Any], diagnostics: Diagnostics) -> None:
-    """What the sound parts of a faulty world say when they are compiled and loaded; nobody steps it."""
-    from simkit.runtime import Simulation, WorldStructure
-
-    before = tuple(diagnostics)
-    with suppress(SimkitError, ValueError, KeyError, AttributeError, TypeError):
-        compiled = builder.compile()
-        structure = WorldStructure(builder, compiled, {m.name: m for m in world.models}, frozenset(), parts)
-        with suppress(LoadError), Simulation(world, structure, diagnostics, 0, _unused_callback, _unused_callback):
-            pass  # what is wrong with a plugin is said once all of them have been loaded
-        report_unread(parts.values())
-    diagnostics.drop(d for d in tuple(diagnostics)[len(before) :] if d.code in _ENGINE_CODES)
-
-
 def read_scene(
     source: Source,
     *,
@@ -390,10 +329,6 @@ def _sdf_of(world: SceneWorld) -> str:
     from simkit.writers.sdf_world import sdf_text
 
     return sdf_text(Scene(worlds=(world,)), Diagnostics())
-
-
-def _unused_callback(*_: Any, **__: Any) -> Any:
-    """Stands for what a simulation that nobody steps never asks for."""
 
 
 def _model_to_spawn(

@@ -7,6 +7,7 @@ import math
 
 import pytest
 
+from simkit.build import describe_sensor
 from simkit.diagnostics import Diagnostics
 from simkit.loaders import Resolver, load_scene
 from simkit.writers.description import describe_scene
@@ -20,7 +21,7 @@ MODEL = """<sdf version="1.9"><model name="m"><link name="a"/><link name="b"><in
 def described(text: str) -> dict:
     diagnostics = Diagnostics()
     scene = load_scene(text, resolver=Resolver(), diagnostics=diagnostics)
-    return describe_scene(scene, diagnostics, lambda sensor, found: {"block": sensor.kind})
+    return describe_scene(scene, diagnostics, lambda sensor, found: (sensor, {"block": sensor.kind}))
 
 
 def test_a_bare_model_is_plain_data_with_totals():
@@ -82,7 +83,7 @@ def test_a_kind_that_nothing_simulates_shows_its_camera_and_its_scan():
       <sensor name="old" type="odd_lidar"><ray><scan><horizontal><samples>5</samples><min_angle>-1</min_angle>
         <max_angle>1</max_angle></horizontal></scan><range><min>0.1</min><max>inf</max></range></ray></sensor>
       </link></model></sdf>"""
-    found = describe_scene(load_scene(text, resolver=Resolver(), diagnostics=diagnostics), diagnostics)
+    found = describe_scene(load_scene(text, resolver=Resolver(), diagnostics=diagnostics), diagnostics, describe_sensor)
     eye, old = found["model"]["links"][0]["sensors"]
     assert eye["camera"] == {"width": 640, "height": 480, "hfov": 2.0, "near": 0.2, "far": 9.0}
     scan = {"h_samples": 5, "h_min": -1.0, "h_max": 1.0, "v_samples": 1, "v_min": 0.0, "v_max": 0.0}

@@ -36,33 +36,26 @@ _SAME_KIND = {
     "segmentation": "segmentation_camera",
     "boundingbox": "boundingbox_camera",
 }
-SensorBlock = Callable[[SceneSensor, Diagnostics], Block]
+SensorReader = Callable[[SceneSensor, Diagnostics], tuple[SceneSensor, Block | None]]
+"""Gives a sensor with the defaults of its preset, and its options as plain data; None where its kind is unknown."""
 
 
-def describe_scene(scene: Scene, diagnostics: Diagnostics, sensor_block: SensorBlock | None = None) -> Block:
+def describe_scene(scene: Scene, diagnostics: Diagnostics, read_sensor: SensorReader) -> Block:
     """The scene as a dict that JSON can hold.
 
     Args:
         scene: what was loaded.
         diagnostics: what loading found; options of sensors that cannot be read are added.
-        sensor_block: gives the block of a sensor's own options; None for that of the registered kinds.
+        read_sensor: reads the options of a sensor.
     """
-    block = sensor_block or _registered_block
-    worlds = [_world(w, diagnostics, block) for w in scene.worlds]
-    model = None if scene.model is None else _model(scene.model, diagnostics, block)
+    worlds = [_world(w, diagnostics, read_sensor) for w in scene.worlds]
+    model = None if scene.model is None else _model(scene.model, diagnostics, read_sensor)
     return {
         "worlds": worlds,
         "model": model,
         "totals": _totals(scene),
         "diagnostics": [d.as_dict() for d in diagnostics],
     }
-
-
-def _registered_block(sensor: SceneSensor, diagnostics: Diagnostics) -> Block:
-    from simkit.sensors import sensor_kinds
-
-    kind = sensor_kinds().get(sensor.kind)
-    return _block_of_unknown(sensor) if kind is None else kind(sensor, diagnostics).describe()
 
 
 def _block_of_unknown(sensor: SceneSensor) -> Block:
@@ -98,7 +91,7 @@ def _sweep(prefix: str, block: Params, samples: int) -> Block:
     }
 
 
-def _world(world: SceneWorld, diagnostics: Diagnostics, block: SensorBlock) -> Block:
+def _world(world: SceneWorld, diagnostics: Diagnostics, read_sensor: SensorReader) -> Block:
     return {
         "name": world.name,
         "gravity": list(world.gravity),
@@ -110,15 +103,15 @@ def _world(world: SceneWorld, diagnostics: Diagnostics, block: SensorBlock) -> B
             "max_step_size": world.physics.max_step_size,
             "real_time_factor": world.physics.real_time_factor,
         },
-        "models": [_model(m, diagnostics, block) for m in world.models],
+        "models": [_model(m, diagnostics, read_sensor) for m in world.models],
         "lights": [_light(light) for light in world.lights],
         "frames": [_frame(f) for f in world.frames],
-        "joints": [_joint(j, diagnostics, block) for j in world.joints],
+        "joints": [_joint(j, diagnostics, read_sensor) for j in world.joints],
         "plugins": [_plugin(p) for p in world.plugins],
     }
 
 
-def _model(model: SceneModel, diagnostics: Diagnostics, block: SensorBlock) -> Block:
+def _model(model: SceneModel, diagnostics: Diagnostics, read_sensor: SensorReader) -> Block:
     return {
         "name": model.name,
         "scoped": model.scoped,
@@ -126,15 +119,15 @@ def _model(model: SceneModel, diagnostics: Diagnostics, block: SensorBlock) -> B
         "static_effective": model.static,
         "canonical_link_resolved": model.canonical_link.removeprefix(f"{model.scoped}::"),
         "pose_world": model.pose_world.as_list(),
-        "links": [_link(link, diagnostics, block) for link in model.links],
-        "joints": [_joint(j, diagnostics, block) for j in model.joints],
+        "links": [_link(link, diagnostics, read_sensor) for link in model.links],
+        "joints": [_joint(j, diagnostics, read_sensor) for j in model.joints],
         "frames": [_frame(f) for f in model.frames],
         "plugins": [_plugin(p) for p in model.plugins],
-        "models": [_model(m, diagnostics, block) for m in model.models],
+        "models": [_model(m, diagnostics, read_sensor) for m in model.models],
     }
 
 
-def _link(link: SceneLink, diagnostics: Diagnostics, block: SensorBlock) -> Block:
+def _link(link: SceneLink, diagnostics: Diagnostics, read_sensor: SensorReader) -> Block:
     return {
         "name": link.name,
         "pose_world": link.pose_world.as_list(),
@@ -143,7 +136,7 @@ def _link(link: SceneLink, diagnostics: Diagnostics, block: SensorBlock) -> Bloc
         "inertia_com_linkframe": list(link.inertial.inertia),
         "collisions": [_shape(c) for c in link.collisions],
         "visuals": [_shape(v) for v in link.visuals],
-        "sensors": [_sensor(s, diagnostics, block) for s in link.sensors],
+        "sensors": [_sensor(s, diagnostics, read_sensor) for s in link.sensors],
         "lights": [_light(light) for light in link.lights],
     }
 
@@ -165,21 +158,19 @@ def _plain(value: Any) -> Any:
     return str(value) if isinstance(value, Path) else value
 
 
-def _sensor(named: SceneSensor, diagnostics: Diagnostics, block: SensorBlock) -> Block:
-    from simkit.sensors.presets.preset_defaults import add_preset_defaults
-
-    sensor = add_preset_defaults(named, diagnostics)
+def _sensor(named: SceneSensor, diagnostics: Diagnostics, read_sensor: SensorReader) -> Block:
+    sensor, own = read_sensor(named, diagnostics)
     return {
         "name": sensor.name,
         "type": _SAME_KIND.get(sensor.kind, sensor.kind),
         "update_rate": sensor.rate,
         "topic": sensor.topic,
         "pose_world": sensor.pose_world.as_list(),
-        **block(sensor, diagnostics),
+        **(_block_of_unknown(sensor) if own is None else own),
     }
 
 
-def _joint(joint: SceneJoint, diagnostics: Diagnostics, block: SensorBlock) -> Block:
+def _joint(joint: SceneJoint, diagnostics: Diagnostics, read_sensor: SensorReader) -> Block:
     mimic = next((a.mimic for a in joint.axes if a.mimic is not None), None)
     return {
         "name": joint.name,
@@ -189,7 +180,7 @@ def _joint(joint: SceneJoint, diagnostics: Diagnostics, block: SensorBlock) -> B
         "pose_world": joint.pose_world.as_list(),
         "axes": [_axis(a) for a in joint.axes],
         "mimic": None if mimic is None else _mimic(mimic),
-        "sensors": [_sensor(s, diagnostics, block) for s in joint.sensors],
+        "sensors": [_sensor(s, diagnostics, read_sensor) for s in joint.sensors],
     }
 
 

@@ -10,20 +10,25 @@ from typing import TYPE_CHECKING, Any
 from simkit.diagnostics import Diagnostics, did_you_mean
 from simkit.errors import SimkitError
 from simkit.params import Params
+from simkit.plugins.discovery.attachment import Attachment, attach_plugins
+from simkit.plugins.discovery.builtin_plugins import plugins_of_every_world
+from simkit.plugins.discovery.plugin_kinds import find_plugin
 from simkit.scene import SceneJoint, SceneLink, SceneModel, ScenePlugin, SceneSensor, SceneWorld
+from simkit.sensors import sensor_kinds
+from simkit.sensors.presets.preset_defaults import add_preset_defaults
+from simkit.sensors.unsimulated_kinds import report_sensors_without_model, report_unsimulated
 
 if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
     from simkit.plugins.base import ParentKind, Plugin
-    from simkit.plugins.discovery.attachment import Attachment
     from simkit.runtime import SensorsAndPlugins
 
 
 def make_model_parts(
-    model: SceneModel, builder: Any, diagnostics: Diagnostics, plugin_paths: Sequence[Path]
+    model: SceneModel, builder: SpecBuilder, diagnostics: Diagnostics, plugin_paths: Sequence[Path]
 ) -> SensorsAndPlugins:
     """Sensors and plugins of a model, in document order."""
     from simkit.runtime import SensorsAndPlugins
-    from simkit.sensors.presets.preset_defaults import add_preset_defaults
 
     parts = SensorsAndPlugins()
     found: list[_PluginSite] = []
@@ -90,28 +95,16 @@ def _document_order(one: _PluginSite, places: Mapping[str, tuple[_DocumentPositi
 
 
 def make_world_parts(
-    world: SceneWorld, builder: Any, diagnostics: Diagnostics, plugin_paths: Sequence[Path]
+    world: SceneWorld, builder: SpecBuilder, diagnostics: Diagnostics, plugin_paths: Sequence[Path]
 ) -> SensorsAndPlugins:
-    from simkit.plugins.classic.server_services import ClassicServices
-    from simkit.plugins.discovery.attachment import Attachment
-    from simkit.plugins.drives.robot_transforms import StaticTransforms
-    from simkit.plugins.world.clock import ClockPublisher
-    from simkit.plugins.world.world_services import WorldServices
-    from simkit.plugins.world.world_statistics import WorldStats
     from simkit.runtime import SensorsAndPlugins
-    from simkit.sensors.unsimulated_kinds import report_sensors_without_model
 
     parts = SensorsAndPlugins()
     report_sensors_without_model(world, diagnostics)
     for plugin in world.plugins:
         one = _PluginSite(plugin, "world", world, "", lambda sim: sim)
         _add_plugin(parts, one, ((False, plugin.where.serial),), builder, diagnostics, plugin_paths)
-    actors: tuple[Plugin, ...] = ()
-    if world.actors:
-        from simkit.plugins.actors import ActorMover
-
-        actors = (ActorMover(),)
-    first, last = (ClockPublisher(), StaticTransforms(), *actors), (WorldStats(), WorldServices(), ClassicServices())
+    first, last = plugins_of_every_world(world)
     for rank, instance in (*((0, one) for one in first), *((2, one) for one in last)):
         hung = Attachment(instance, "", "", world, lambda sim: sim)
         _add_python_plugin(parts, hung, rank, builder, diagnostics)
@@ -122,18 +115,16 @@ def add_python_plugins(
     parts: Mapping[str, SensorsAndPlugins],
     made: Iterable[Any],
     world: SceneWorld,
-    builder: Any,
+    builder: SpecBuilder,
     diagnostics: Diagnostics,
 ) -> None:
     """Adds plugins made in Python to the parts of what they hang on."""
-    from simkit.plugins.discovery.attachment import attach_plugins
-
     for hung in attach_plugins(made, world, diagnostics):
         _add_python_plugin(parts[hung.top], hung, 1, builder, diagnostics)
 
 
 def _add_python_plugin(
-    parts: SensorsAndPlugins, hung: Attachment, rank: int, builder: Any, diagnostics: Diagnostics
+    parts: SensorsAndPlugins, hung: Attachment, rank: int, builder: SpecBuilder, diagnostics: Diagnostics
 ) -> None:
     from simkit.runtime.engine.world_structure import FROM_PYTHON
 
@@ -145,9 +136,6 @@ def _add_python_plugin(
 
 
 def _make_sensor(scene: SceneSensor, diagnostics: Diagnostics) -> Any | None:
-    from simkit.sensors import sensor_kinds
-    from simkit.sensors.unsimulated_kinds import report_unsimulated
-
     kinds = sensor_kinds()
     if scene.kind not in kinds:
         if report_unsimulated(scene, diagnostics):
@@ -170,11 +158,10 @@ def _add_plugin(
     parts: SensorsAndPlugins,
     one: _PluginSite,
     place: _DocumentPosition,
-    builder: Any,
+    builder: SpecBuilder,
     diagnostics: Diagnostics,
     plugin_paths: Sequence[Path],
 ) -> None:
-    from simkit.plugins.discovery.plugin_kinds import find_plugin
     from simkit.runtime.engine.world_structure import FROM_FILE
 
     plugin, scene = one.plugin, one.scene
@@ -207,7 +194,9 @@ def _make_plugin(cls: type[Plugin], plugin: ScenePlugin) -> Plugin:
     return made
 
 
-def _prepare_plugin(instance: Plugin, scene: Any, params: Params, builder: Any, diagnostics: Diagnostics) -> None:
+def _prepare_plugin(
+    instance: Plugin, scene: Any, params: Params, builder: SpecBuilder, diagnostics: Diagnostics
+) -> None:
     """Lets a plugin prepare the spec, and notes which servos and motors it adds."""
     from simkit.runtime.engine.plugin_faults import call_plugin
 
