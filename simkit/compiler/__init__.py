@@ -1,4 +1,9 @@
-"""Scenes into MuJoCo models: the one place where the physics engine's model is built."""
+"""Compiler: a `Scene` becomes a MuJoCo model.
+
+A scene enters, then what sensors and plugins add through `SpecBuilder`; an `MjModel` with its first state and the map
+of names leaves. `MjSpec` is made in this room only. Nothing here steps a simulation or knows a kind of sensor or
+plugin.
+"""
 
 from simkit.mujoco_import import mujoco  # noqa: F401, I001  (before any module imports MuJoCo by itself)
 from simkit.compiler import geom_groups

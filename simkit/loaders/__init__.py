@@ -1,4 +1,10 @@
-"""Files into a `Scene`: XML ends in this package."""
+"""Loaders: files and XML text become a `Scene`.
+
+A path, a bundled name or XML text enters, with a `Resolver` for what it names; a `Scene` leaves, and a diagnostic for
+every mistake. XML ends in this room. No loader imports MuJoCo, builds a model or raises for a user's mistake:
+MuJoCo's parser, which MJCF needs, and the reader of meshes are passed in. `sdf` knows no other format; `urdf` and
+`mjcf` use its readers, and all of them what is in `resources`.
+"""
 
 from __future__ import annotations
 

@@ -1,6 +1,7 @@
-"""What a file means once resolved: plain frozen data, no XML, no physics engine.
+"""Scene: what a file means once resolved, as frozen data.
 
-Every pose is resolved, every default of the format is filled in, every list is a list.
+Loaders make it, and the compiler, the writers and `inspect` read it. Every pose is resolved, every default of the
+format is filled in, every list is a list. No XML, no MuJoCo, and nothing that runs.
 """
 
 from simkit.scene.actuation import Calibration, Safety, Transmission, TransmissionEnd

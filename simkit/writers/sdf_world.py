@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
@@ -21,12 +20,11 @@ from simkit.scene import (
     SceneLink,
     SceneModel,
     SceneWorld,
-    SphericalCoordinates,
 )
 from simkit.scene.simkit_elements import written_name
-from simkit.scene.world import Fog
 from simkit.writers import sdf_elements as parts
-from simkit.writers.sdf_elements import Place, changed_element, optional_number_element, text_element
+from simkit.writers.sdf_elements import Place, changed_element, text_element
+from simkit.writers.sdf_world_settings import physics_element, scene_element, spherical_coordinates_element
 from simkit.writers.xml_text import document, element, numbers, pose
 
 _WORLD = "world"
@@ -71,7 +69,7 @@ class _Writer:
             "world",
             "",
             [
-                *_physics(world),
+                physics_element(world),
                 text_element("gravity", world.gravity),
                 text_element("magnetic_field", world.magnetic_field),
                 element("wind", "", [text_element("linear_velocity", world.wind)]) if any(world.wind) else None,
@@ -85,9 +83,11 @@ class _Writer:
                     ],
                     type="adiabatic",
                 ),
-                None if world.spherical_coordinates is None else _coordinates(world.spherical_coordinates),
+                None
+                if world.spherical_coordinates is None
+                else spherical_coordinates_element(world.spherical_coordinates),
                 changed_element("gazebo_quirks", world.gazebo_quirks, False),
-                _surroundings(world),
+                scene_element(world),
                 *(parts.plugin(p) for p in world.plugins),
                 *(parts.light(li, li.pose_world) for li in world.lights),
                 *(self.frame(f, IDENTITY, "", _links_of(world.models)) for f in world.frames),
@@ -309,66 +309,6 @@ def _world_joint(model: SceneModel, canonical: str) -> Iterable[Params]:
     while name in taken:
         name += "_"
     return (element("joint", "", ends, name=name, type="fixed"),)
-
-
-def _physics(world: SceneWorld) -> list[Params]:
-    physics = world.physics
-    children = [
-        text_element("max_step_size", physics.max_step_size),
-        text_element("real_time_factor", physics.real_time_factor),
-        None if physics.contact_law == "simkit" else text_element("simkit:contact_law", physics.contact_law),
-        None if physics.max_contacts == 20 else text_element("max_contacts", str(physics.max_contacts)),
-    ]
-    return [element("physics", "", children, name="default", type="ode")]
-
-
-def _surroundings(world: SceneWorld) -> Params:
-    around = world.surroundings
-    return element(
-        "scene",
-        "",
-        [
-            text_element("ambient", around.ambient),
-            text_element("background", around.background),
-            text_element("shadows", around.shadows),
-            text_element("grid", around.grid),
-            element("sky") if around.sky else None,
-            None if around.fog is None else _fog(around.fog),
-            changed_element("quality", world.quality, "fast"),
-        ],
-    )
-
-
-def _fog(fog: Fog) -> Params:
-    return element(
-        "fog",
-        "",
-        [
-            text_element("color", fog.colour),
-            text_element("type", fog.type),
-            text_element("start", fog.start),
-            text_element("end", fog.end),
-            text_element("density", fog.density),
-        ],
-    )
-
-
-def _coordinates(place: SphericalCoordinates) -> Params:
-    custom = place.surface == "CUSTOM_SURFACE"
-    return element(
-        "spherical_coordinates",
-        "",
-        [
-            text_element("surface_model", place.surface),
-            optional_number_element("surface_axis_equatorial", place.equatorial if custom else None),
-            optional_number_element("surface_axis_polar", place.polar if custom else None),
-            text_element("world_frame_orientation", "ENU"),
-            text_element("latitude_deg", math.degrees(place.latitude)),
-            text_element("longitude_deg", math.degrees(place.longitude)),
-            text_element("elevation", place.elevation),
-            text_element("heading_deg", math.degrees(place.heading)),
-        ],
-    )
 
 
 def _name_inside(scoped: str, model: str) -> str:

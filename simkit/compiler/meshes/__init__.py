@@ -1,1 +1,5 @@
-"""Mesh files: read into triangles, made into what collides, and kept in the cache."""
+"""Mesh files: read into triangles, made into convex bodies that collide, and kept in a cache.
+
+A mesh file and its companions enter; `MeshPart`s in metres and convex bodies leave. Files come from anywhere, so
+sizes, depths and references are bounded. MuJoCo is not used here.
+"""

@@ -1,4 +1,8 @@
-"""xacro: files with macros and expressions, expanded before any other loader sees them."""
+"""xacro: files with macros and expressions, expanded before any other loader sees them.
+
+A document enters; one of plain elements leaves, each with the file and line that it was written in. Expressions compute
+and do nothing else; every step, text, list and number is bounded, and files are read inside the resource folders alone.
+"""
 
 from __future__ import annotations
 
