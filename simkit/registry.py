@@ -9,11 +9,11 @@ import pkgutil
 import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from functools import cached_property
-from importlib.metadata import EntryPoint, entry_points
+from functools import cached_property, lru_cache
+from importlib.metadata import EntryPoint, EntryPoints, entry_points
 from pathlib import Path
 from types import MappingProxyType, ModuleType
-from typing import Any, Generic, TypeVar
+from typing import Generic, TypeVar
 
 T = TypeVar("T")
 
@@ -22,16 +22,15 @@ _TEXT = re.compile(r"""#[^\n]*|"(?P<one>[^"\\\n]+)"|'(?P<two>[^'\\\n]+)'""")
 _OUTER = "\nclass ", "\ndef ", "\nasync def "
 
 
-_entry_points_cache: dict[tuple[tuple[str, int], ...], Any] = {}
-
-
 def entry_points_of(group: str) -> list[EntryPoint]:
     """The entry points of a group. To read them all takes 20 ms: they are kept until a folder of `sys.path` changes."""
     state = tuple((folder, _folder_time(Path(folder))) for folder in sys.path)
-    if state not in _entry_points_cache:
-        _entry_points_cache.clear()
-        _entry_points_cache[state] = entry_points()
-    return list(_entry_points_cache[state].select(group=group))
+    return list(_all_entry_points(state).select(group=group))
+
+
+@lru_cache(maxsize=1)
+def _all_entry_points(_state: tuple[tuple[str, int], ...]) -> EntryPoints:
+    return entry_points()
 
 
 def _folder_time(folder: Path) -> int:

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
+import mujoco
+
+from simkit.compiler.geom_groups import COLLISION, COLLISION_CONTACT, COLLISION_RAY, DRAWN_COLLISION
 from simkit.diagnostics import did_you_mean
 from simkit.pose import IDENTITY, Pose
 from simkit.scene import SceneJoint, SceneLight, SceneLink, SceneModel
-
-if TYPE_CHECKING:
-    import mujoco
 
 T = TypeVar("T")
 
@@ -294,8 +294,6 @@ class NameMap:
         return canonical.body, canonical.offset @ canonical.scene.pose_world.inverse() @ model.pose_world
 
     def _id(self, kind: str, name: str) -> int:
-        import mujoco
-
         if self._model is None:
             raise KeyError(f"{name!r} has no id before the compile")
         number = int(mujoco.mj_name2id(self._model, getattr(mujoco.mjtObj, f"mjOBJ_{kind}"), name))
@@ -320,10 +318,6 @@ class NameMap:
         return names
 
     def _bind(self, records: list[ModelRecord], model: mujoco.MjModel) -> None:
-        import mujoco
-
-        from simkit.compiler.geom_groups import COLLISION, COLLISION_CONTACT, COLLISION_RAY, DRAWN_COLLISION
-
         def number(kind: mujoco.mjtObj, name: str) -> int:
             return int(mujoco.mj_name2id(model, kind, name))
 
@@ -364,8 +358,6 @@ class NameMap:
             self.lights[scoped] = replace(light, id=number(mujoco.mjtObj.mjOBJ_LIGHT, scoped))
 
     def _bound_joint(self, joint: JointBinding, model: mujoco.MjModel) -> JointBinding:
-        import mujoco
-
         ids = tuple(int(mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, n)) for n in joint.joint_names)
         dofs: list[int] = []
         for i in ids:

@@ -5,6 +5,7 @@ of heights.
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -300,8 +301,6 @@ def heightmap_rows(shape: Heightmap) -> Floats:
     Raises:
         MeshFileError: the file is no such image, or too large; its size is known before anything is unpacked.
     """
-    import warnings
-
     from PIL import Image
 
     try:

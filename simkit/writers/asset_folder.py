@@ -8,6 +8,8 @@ import shutil
 from dataclasses import dataclass
 from pathlib import Path
 
+from simkit.compiler.meshes.mesh_part import MeshFileError
+from simkit.compiler.meshes.mesh_reader import SUFFIXES, convert_file
 from simkit.diagnostics import Diagnostics
 from simkit.scene import Scene
 from simkit.writers.atomic_output import AtomicOutput
@@ -76,9 +78,6 @@ class AssetFolder:
 
 def companion_files(file: Path) -> list[Path]:
     """Files that a mesh names and that are there: materials, buffers, pictures; none for other files."""
-    from simkit.compiler.meshes.mesh_part import MeshFileError
-    from simkit.compiler.meshes.mesh_reader import SUFFIXES, convert_file
-
     if file.suffix.lower() not in SUFFIXES:
         return []
     try:

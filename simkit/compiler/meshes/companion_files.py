@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import os
+import warnings
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Final
@@ -141,8 +142,6 @@ def read_pixels(source: bytes | Path) -> Pixels:
     Raises:
         MeshFileError: it is none, or it is too large; the size is known before anything is unpacked.
     """
-    import warnings
-
     from PIL import Image
 
     try:

@@ -6,6 +6,7 @@ file's axes stay as they are (y up), as in Gazebo. All other formats are in metr
 
 from __future__ import annotations
 
+import io
 import math
 from functools import lru_cache
 from pathlib import Path
@@ -133,8 +134,6 @@ def _read(suffix: str, content: bytes, companions: Companions) -> list[MeshPart]
 
 
 def _with_trimesh(suffix: str, content: bytes) -> list[MeshPart]:
-    import io
-
     import trimesh
 
     header = content[:65536].split(b"end_header")[0] if suffix == ".ply" else content[:200]

@@ -9,7 +9,7 @@ import pytest
 import simkit
 from simkit.compiler.lint.time_step import rate_pattern
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 INERTIAL = "<inertial><mass>{0}</mass><inertia><ixx>{1}</ixx><iyy>{1}</iyy><izz>{1}</izz></inertia></inertial>"
 BOX = "<collision name='c'><geometry><box><size>{0} {0} {0}</size></box></geometry></collision>"
 

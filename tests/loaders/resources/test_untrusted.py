@@ -18,7 +18,7 @@ import pytest
 import simkit
 from simkit.loaders.resources.bounded_file import read_bounded
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 WIDE = int(os.environ.get("SIMKIT_WIDEST", "200000"))  # elements beside each other; a million take 20 s a format
 SECONDS = 60  # on a busy machine; nearly all take one
 LARGEST = 2 << 30  # [bytes]
