@@ -172,10 +172,10 @@ def script_items(path: Path) -> list[JsonObject]:
             found.append((node_value(node), where))
         except NotYaml as error:
             raise _script_error(where, f"is not YAML: {error!s:.200}") from None
-    return placed_items(found)
+    return validate_items(found)
 
 
-def placed_items(items: Iterable[tuple[object, str]]) -> list[JsonObject]:
+def validate_items(items: Iterable[tuple[object, str]]) -> list[JsonObject]:
     """The mappings of commands, each with its place under "where"; what is wrong in any world is told.
 
     Args:
@@ -184,10 +184,10 @@ def placed_items(items: Iterable[tuple[object, str]]) -> list[JsonObject]:
     Raises:
         InputError: SK-CLI-011 with a line for every one that is no command.
     """
-    return _collect(_with_places, items)
+    return _collect(_validate_item, items)
 
 
-def _with_places(written: tuple[object, str]) -> JsonObject:
+def _validate_item(written: tuple[object, str]) -> JsonObject:
     item, where = written
     if not isinstance(item, dict):
         raise _script_error(where, f"found {item!r:.60}, allowed is {{at, topic, message}}")

@@ -131,7 +131,7 @@ class NodeNames:
 
     def __init__(self, sim: Simulation, clients: Iterable[ClientConnection]) -> None:
         self._world = "/" + _name_part(sim.world.name)
-        self._nodes = {
+        self._nodes: dict[int, str] = {
             id(p.owner): node for node, found in sim.parameters.items() for p in found.values() if p.owner is not None
         }
         self._clients = {id(end): peer.node for peer in clients for end in peer.publishers.values()}

@@ -17,7 +17,7 @@ Reader = Callable[[bytes, int], Any]
 
 
 @cache
-def reader_of(type_name: str) -> Reader:
+def message_reader(type_name: str) -> Reader:
     """Return a function that decodes a message from CDR at a position in some bytes.
 
     Whatever it raises means that it is none of this type, and messages are those that `simkit.msgs.deserialize` makes.

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Final
 from simkit import msgs
 from simkit.bridges.live import socket_files
 from simkit.bridges.live.connection import ClientConnection
-from simkit.bridges.live.message_reader import reader_of
+from simkit.bridges.live.message_reader import message_reader
 from simkit.bridges.live.protocol import ANSWER, ASK, NUMBER, PROTOCOL, TELL, BadFrame, JsonObject, read_json_frame
 from simkit.bridges.live.requests import REQUESTS, Request, RequestRefused, Response
 from simkit.bridges.live.topic_feed import TopicFeeds
@@ -185,7 +185,7 @@ class Server:
         if publisher is None:
             raise BadFrame("a message of no publisher")
         try:
-            message = reader_of(publisher.type_name)(body, 4)
+            message = message_reader(publisher.type_name)(body, 4)
         except Exception as error:  # noqa: BLE001 - bytes from outside may lead a reader anywhere
             raise BadFrame(f"what was sent on {publisher.topic!r} is no {publisher.type_name}: {error!r}") from None
         publisher.publish(message)

@@ -12,7 +12,7 @@ from simkit import msgs
 _FOREVER = {"sec": 9223372036, "nsec": 854775807}
 
 
-def profile(latched: bool) -> dict[str, object]:
+def qos_profile(latched: bool) -> dict[str, object]:
     """Return the profile of a publisher: reliable; transient local where the last message is kept (`/tf_static`)."""
     return {
         "history": "keep_last",
@@ -27,7 +27,7 @@ def profile(latched: bool) -> dict[str, object]:
     }
 
 
-def as_yaml(profiles: list[dict[str, object]]) -> str:
+def qos_profiles_yaml(profiles: list[dict[str, object]]) -> str:
     """The text that belongs into a channel's metadata."""
     import yaml
 
@@ -100,7 +100,7 @@ class McapBag:
                 text = msgs.definition(type_name).encode()
                 schema = self._schemas[type_name] = self._writer.register_schema(type_name, "ros2msg", text)
             metadata = {
-                "offered_qos_profiles": as_yaml([profile(latched)]),
+                "offered_qos_profiles": qos_profiles_yaml([qos_profile(latched)]),
                 "topic_type_hash": msgs.rihs(type_name),
             }
             number = self._writer.register_channel(topic, "cdr", schema, metadata)
@@ -181,7 +181,7 @@ class Rosbag2Folder(McapBag):
                         "name": channel.topic,
                         "type": channel.type_name,
                         "serialization_format": "cdr",
-                        "offered_qos_profiles": [profile(channel.latched)],
+                        "offered_qos_profiles": [qos_profile(channel.latched)],
                         "type_description_hash": msgs.rihs(channel.type_name),
                     },
                     "message_count": channel.count,

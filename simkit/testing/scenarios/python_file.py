@@ -67,13 +67,13 @@ def _validate_numbers(label: str, of: Any, **may_be_none: bool) -> Iterator[str]
 
 
 def _validate_commands(commands: Any) -> Iterator[str]:
-    from simkit.recording.commands import placed_items
+    from simkit.recording.commands import validate_items
 
     if not isinstance(commands, (tuple, list)) or not all(isinstance(one, Mapping) for one in commands):
         yield _problem("commands", commands, "a tuple of mappings with at, topic and message")
         return
     try:
-        placed_items((dict(one), f"commands[{number}]") for number, one in enumerate(commands))
+        validate_items((dict(one), f"commands[{number}]") for number, one in enumerate(commands))
     except InputError as error:
         yield from (line.replace(f" {error.code}", "", 1) for line in str(error).splitlines())
 

@@ -159,7 +159,7 @@ class ScenarioReader(ValueReader):
         return found
 
     def _commands(self) -> tuple[Mapping[str, Any], ...]:
-        from simkit.recording.commands import placed_items, script_items
+        from simkit.recording.commands import script_items, validate_items
 
         value = self._said.get("commands", ())
         try:
@@ -167,7 +167,7 @@ class ScenarioReader(ValueReader):
                 return tuple(script_items(self._document.path.parent / value))
             if isinstance(value, (list, tuple)):
                 places = [str(self._document.where("commands", number)) for number in range(len(value))]
-                return tuple(placed_items(zip(value, places, strict=True)))
+                return tuple(validate_items(zip(value, places, strict=True)))
         except InputError as error:
             for line in str(error).splitlines():
                 place, _, message = line.partition(f": {error.code} ")

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from simkit import msgs
-from simkit.bridges.live.message_reader import reader_of
+from simkit.bridges.live.message_reader import message_reader
 
 FIXED = [
     "geometry_msgs/msg/Twist",
@@ -42,7 +42,7 @@ def test_numbers_are_those_that_rosbags_reads(type_name: str, is_little: bool) -
     size = len(msgs.serialize(msgs.make(type_name))) - 4
     for _ in range(20):
         data = bytes((0, is_little, 0, 0)) + source.randbytes(size) + bytes(source.randrange(4))
-        read = reader_of(type_name)(b"before" + data, 6)
+        read = message_reader(type_name)(b"before" + data, 6)
         usual = store.deserialize_cdr(data, type_name)
         assert type(read) is type(usual)
         assert repr(read) == repr(usual)  # of NaN too
@@ -52,7 +52,7 @@ def test_numbers_are_those_that_rosbags_reads(type_name: str, is_little: bool) -
 @pytest.mark.parametrize("type_name", OTHERS)
 def test_messages_of_other_sizes_are_read_too(type_name: str) -> None:
     data = msgs.serialize(msgs.make(type_name))
-    assert repr(reader_of(type_name)(b"1234" + data, 4)) == repr(msgs.deserialize(data, type_name))
+    assert repr(message_reader(type_name)(b"1234" + data, 4)) == repr(msgs.deserialize(data, type_name))
 
 
 @pytest.mark.parametrize("type_name", [*FIXED, *OTHERS])
@@ -62,12 +62,12 @@ def test_what_rosbags_refuses_is_refused(type_name: str) -> None:
         with pytest.raises(Exception) as usual:
             store.deserialize_cdr(data, type_name)
         with pytest.raises(type(usual.value)) as found:
-            reader_of(type_name)(b"1234" + data, 4)
+            message_reader(type_name)(b"1234" + data, 4)
         assert str(found.value) == str(usual.value)
 
 
 def test_nothing_is_shared_between_two_messages() -> None:
     data = msgs.serialize(msgs.make("geometry_msgs/msg/Twist", linear={"x": 1.0}))
-    first, second = (reader_of("geometry_msgs/msg/Twist")(data, 0) for _ in range(2))
+    first, second = (message_reader("geometry_msgs/msg/Twist")(data, 0) for _ in range(2))
     first.linear.x = 2.0
     assert (second.linear.x, struct.unpack_from("<d", data, 4)[0], np.sign(first.linear.x)) == (1.0, 1.0, 1.0)

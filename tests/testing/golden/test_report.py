@@ -13,7 +13,7 @@ from report_samples import CAMERA, SCAN, difference, failing, passing, record
 
 from simkit.testing.golden.compare.difference import Cause, Comparison, Explanation, Verdict
 from simkit.testing.golden.report import junit_cases, text_report, write_html
-from simkit.testing.golden.report.html import page
+from simkit.testing.golden.report.html import report_page
 from simkit.testing.run_record.record import Column
 
 NASTY = "</title><script>alert('\"&\x00\u202e')</script>"
@@ -26,7 +26,7 @@ def words_of(element: etree._Element) -> str:
 
 
 def tree(*verdicts: Verdict) -> etree._Element:
-    return etree.fromstring(page(verdicts).encode())
+    return etree.fromstring(report_page(verdicts).encode())
 
 
 # ---------------------------------------------------------------------- text
@@ -167,7 +167,7 @@ def test_numbers_that_are_none_and_lists_of_other_lengths_are_drawn_or_left_out(
     assert pictures is not None
     pictures.small = pictures.small[:, ::2]
     pictures.encoding = "mono8"
-    text = page([verdict])
+    text = report_page([verdict])
     etree.fromstring(text.encode())
     assert "NaN" not in text
     assert "nan" not in re.sub(r"base64,[^\"]*", "", text)
@@ -178,7 +178,7 @@ def test_streams_without_a_message_and_differences_of_unknown_fields_do_no_harm(
     for stream in verdict.run.streams.values():
         stream.times_ns = stream.times_ns[:0]
     verdict.comparison.differences.append(difference("/odom", "nobody.knows", "value", "/odom.nobody.knows differs"))
-    etree.fromstring(page([verdict]).encode())
+    etree.fromstring(report_page([verdict]).encode())
 
 
 def test_a_page_of_many_long_runs_stays_small() -> None:
@@ -190,7 +190,7 @@ def test_a_page_of_many_long_runs_stays_small() -> None:
             odom.times_ns = np.arange(200_000) * 5_000_000
             odom.columns["pose.pose.position.x"] = Column(np.random.default_rng(number).normal(size=200_000))
         verdicts.append(verdict)
-    text = page(verdicts)
+    text = report_page(verdicts)
     assert len(text) < 6_000_000
     assert text.count("<figure>") <= 80
     assert "run 29" in text

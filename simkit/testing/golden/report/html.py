@@ -92,10 +92,10 @@ def write_html(path: str | os.PathLike[str], verdicts: Iterable[Verdict], *, ble
     Raises:
         InputError: SK-CLI-016 the file cannot be written.
     """
-    write_atomically(path, page(list(verdicts), bless=bless).encode())
+    write_atomically(path, report_page(list(verdicts), bless=bless).encode())
 
 
-def page(verdicts: Sequence[Verdict], *, bless: str = _BLESS) -> str:
+def report_page(verdicts: Sequence[Verdict], *, bless: str = _BLESS) -> str:
     """Return the page as text: HTML that is XML too."""
     ordered = sorted(verdicts, key=lambda verdict: verdict.passed)
     failed = sum(not verdict.passed for verdict in verdicts)
