@@ -30,7 +30,7 @@ from simkit.writers.description import describe_scene
 
 if TYPE_CHECKING:
     from simkit.compiler.mjcf_parser import MjcfParser
-    from simkit.plugins.ros2_control.run_parameter_files import ParameterFileArgument, RunParameterFile
+    from simkit.plugins.run_parameter_files import ParameterFileArgument, RunParameterFile
     from simkit.runtime import Simulation
 
 Source = str | os.PathLike[str]
@@ -134,7 +134,7 @@ def load(
     builder.files_read += [one.file.path for one in given]
     parts = make_all_parts(world, builder, diagnostics, allowed, plugins)
     if given and not diagnostics.has_errors:  # a plugin whose parameters are at fault is not among the parts
-        from simkit.plugins.ros2_control.control_plugin import report_unused_parameter_files
+        from simkit.plugins.run_parameter_files import report_unused_parameter_files
 
         report_unused_parameter_files(
             given, [plugin for one in parts.values() for plugin, _ in one.plugins], world, diagnostics
@@ -174,7 +174,7 @@ def _read_parameter_files(
     """The parameter files that a run is given."""
     if not named:
         return ()
-    from simkit.plugins.ros2_control.run_parameter_files import read_run_parameter_files
+    from simkit.plugins.run_parameter_files import read_run_parameter_files
 
     return read_run_parameter_files(named, lambda uri: resolver.search(uri, None)[0], diagnostics)
 

@@ -77,6 +77,7 @@ class Plugin(abc.ABC):
     option_types: ClassVar[tuple[type[Options], ...]] = ()
     endpoints: ClassVar[tuple[Endpoint, ...]] = ()
     drives: ClassVar[bool] = False  # whether it moves joints of its model; on a static one it is left out
+    reads_parameter_files: ClassVar[bool] = False  # whether it reads those of `params_files`
 
     before_step_rate: float | None = None
     after_step_rate: float | None = None

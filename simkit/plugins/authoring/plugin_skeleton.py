@@ -48,6 +48,7 @@ _OWN = frozenset(
         "after_step_rate",
         "lets_sleep",
         "drives",
+        "reads_parameter_files",
         "has_hook",
     ]
 )

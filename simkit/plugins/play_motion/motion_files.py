@@ -17,7 +17,7 @@ from typing import Final
 
 from simkit.diagnostics import Diagnostic, Diagnostics, Where, did_you_mean
 from simkit.plugins.play_motion.motion import Motion, motion_fault, point_rows
-from simkit.plugins.ros2_control.parameter_files import Entry, ParameterFile, read_parameter_file
+from simkit.plugins.ros_parameter_files import Entry, ParameterFile, read_parameter_file
 
 _KEYS: Final = ("joints", "positions", "times_from_start", "points", "meta")
 _POINT_KEYS: Final = ("positions", "velocities", "time_from_start")

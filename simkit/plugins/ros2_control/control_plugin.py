@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Final
 
-from simkit.diagnostics import Diagnostics, Where, did_you_mean
+from simkit.diagnostics import did_you_mean
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.endpoints import offers_all
@@ -17,20 +17,18 @@ from simkit.plugins.ros2_control.hardware import Hardware
 from simkit.plugins.ros2_control.hardware_description import describe_hardware
 from simkit.plugins.ros2_control.hardware_joint import PidGains, read_pid_gains
 from simkit.plugins.ros2_control.interfaces import POSITION, VELOCITY
-from simkit.plugins.ros2_control.parameter_block import ParameterBlock
 from simkit.plugins.ros2_control.parameter_file_checks import report_high_rates, report_unused_parameters
-from simkit.plugins.ros2_control.parameter_files import ParameterFiles, read_parameter_file
-from simkit.plugins.ros2_control.run_parameter_files import adapt_to_manager
+from simkit.plugins.ros2_control.parameter_file_namespaces import adapt_to_manager
 from simkit.plugins.ros2_control.transmissions import transmissions_of
 from simkit.plugins.ros_names import RosNames
+from simkit.plugins.ros_parameter_block import ParameterBlock
+from simkit.plugins.ros_parameter_files import ParameterFiles, read_parameter_file
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
-    from simkit.plugins.base import Plugin
-    from simkit.plugins.ros2_control.parameter_files import ParameterFile
-    from simkit.plugins.ros2_control.run_parameter_files import RunParameterFile
+    from simkit.plugins.ros_parameter_files import ParameterFile
     from simkit.runtime import Model
-    from simkit.scene import SceneModel, SceneWorld
+    from simkit.scene import SceneModel
 
 UPDATE_RATE: Final = 100.0
 """[Hz] of a controller manager whose file says nothing."""
@@ -66,6 +64,7 @@ class ControlPlugin(ModelPlugin):
         below="controller_manager/",
     )
     drives = True
+    reads_parameter_files = True
     is_ros_1: ClassVar[bool] = False
     manager: ControllerManager
     hardware: Hardware
@@ -300,31 +299,3 @@ class GazeboRosControl(ControlPlugin):
         """One set of gains is for whichever interface the joint has."""
         interfaces = self.hardware.joints[joint].command_interfaces
         return {name: gains for name in (POSITION, VELOCITY) if name in interfaces}
-
-
-def report_unused_parameter_files(
-    given: Iterable[RunParameterFile], plugins: Iterable[Plugin], world: SceneWorld, diagnostics: Diagnostics
-) -> None:
-    """Warn about parameter files of a run that no control plugin reads.
-
-    Args:
-        given: the files.
-        plugins: all plugins of the world.
-        world: the world with its models.
-        diagnostics: gets the warnings.
-    """
-    models = [model for top in world.models for model in top.all_models()]
-    with_hosts = {plugin.scoped for plugin in plugins if isinstance(plugin, ControlPlugin)}
-    hosts = [model for model in models if model.scoped in with_hosts]
-    for one in given:
-        if any(one.is_for(model) for model in hosts):
-            continue
-        name, where = one.file.path.name, Where(str(one.file.path), 1)
-        if one.model and not any(one.is_for(model) for model in models):
-            message = f"{name} is for the model {one.model!r}, which is not there; a model spawned later reads it"
-            hint = did_you_mean(one.model, [m.name for m in models])
-        else:
-            owner = f"model {one.model!r}" if one.model else "no model"
-            message = f"{name} has nobody who reads it: {owner} has {'no' if one.model else 'a'} control plugin"
-            hint = "a robot needs libgazebo_ros_control.so, libgazebo_ros2_control.so or gz_ros2_control"
-        diagnostics.warning("SK-CONTROL-060", message, where, hint)

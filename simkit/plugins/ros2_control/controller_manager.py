@@ -11,7 +11,7 @@ from simkit.diagnostics import Diagnostics, Where, did_you_mean
 from simkit.params import Params
 from simkit.plugins.ros2_control.controller import Controller, ControllerEndpoints
 from simkit.plugins.ros2_control.hardware import Hardware
-from simkit.plugins.ros2_control.parameter_files import Entry, ParameterFiles
+from simkit.plugins.ros_parameter_files import Entry, ParameterFiles
 from simkit.registry import discover
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from simkit.params import Params
-from simkit.plugins.ros2_control.parameter_block import read_numbers
+from simkit.plugins.ros_parameter_block import read_numbers
 from simkit.pose import Vector
 
 _INFINITY = math.inf

@@ -13,8 +13,8 @@ from simkit.params import Params
 from simkit.plugins.ros2_control.hardware import Hardware
 from simkit.plugins.ros2_control.interfaces import EFFORT, POSITION, VELOCITY, array_index
 from simkit.plugins.ros2_control.joint_pids import JointPids
-from simkit.plugins.ros2_control.parameter_block import read_names
 from simkit.plugins.ros2_control.trajectory import Setpoint
+from simkit.plugins.ros_parameter_block import read_names
 from simkit.pose import Vector
 
 if TYPE_CHECKING:

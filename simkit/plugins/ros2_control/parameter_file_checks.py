@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Final
 
 from simkit.diagnostics import Diagnostics, Where, did_you_mean
-from simkit.plugins.ros2_control.parameter_files import Entry, ParameterFile, node_matches
+from simkit.plugins.ros_parameter_files import Entry, ParameterFile, node_matches
 
 if TYPE_CHECKING:
     from simkit.plugins.ros2_control.controller_manager import ControllerManager

@@ -9,7 +9,7 @@ import numpy as np
 
 from simkit.plugins.ros2_control.controller import Controller
 from simkit.plugins.ros2_control.interfaces import EFFORT, POSITION, VELOCITY
-from simkit.plugins.ros2_control.parameter_block import read_names
+from simkit.plugins.ros_parameter_block import read_names
 from simkit.pose import Vector
 
 COMMANDS: Final = "std_msgs/msg/Float64MultiArray"

@@ -9,7 +9,7 @@ import numpy as np
 
 from simkit import msgs
 from simkit.plugins.ros2_control.controller import Controller
-from simkit.plugins.ros2_control.parameter_block import read_numbers
+from simkit.plugins.ros_parameter_block import read_numbers
 
 IMU: Final = "sensor_msgs/msg/Imu"
 _PARTS: Final = (

@@ -16,7 +16,7 @@ from simkit.params import Params
 from simkit.plugins.ros2_control.controller import Controller
 from simkit.plugins.ros2_control.interfaces import EFFORT, POSITION, VELOCITY
 from simkit.plugins.ros2_control.joint_pids import JointPids
-from simkit.plugins.ros2_control.parameter_block import read_names
+from simkit.plugins.ros_parameter_block import read_names
 from simkit.pose import Vector
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ import pytest
 
 from simkit.diagnostics import Diagnostics
 from simkit.params import Params
-from simkit.plugins.ros2_control.parameter_files import ParameterFile, ParameterFiles, node_matches, read_parameter_file
+from simkit.plugins.ros_parameter_files import ParameterFile, ParameterFiles, node_matches, read_parameter_file
 
 
 def read(folder: Path, text: str) -> tuple[ParameterFile | None, Diagnostics]:

@@ -17,7 +17,7 @@ import yaml
 
 from simkit.diagnostics import Diagnostics, Where, did_you_mean
 from simkit.params import Params
-from simkit.plugins.ros2_control.parameter_block import Form, ParameterBlock
+from simkit.plugins.ros_parameter_block import Form, ParameterBlock
 
 PARAMETERS: Final = "ros__parameters"
 _MOST_NODES: Final = 100_000  # of one file: anchors that are used again and again make much out of little

@@ -9,8 +9,8 @@ import pytest
 from simkit.diagnostics import Diagnostics
 from simkit.params import Params
 from simkit.plugins.ros2_control.diff_drive_options import read_drive_options
-from simkit.plugins.ros2_control.parameter_files import ParameterFiles, read_parameter_file
 from simkit.plugins.ros2_control.trajectory_options import read_timeout
+from simkit.plugins.ros_parameter_files import ParameterFiles, read_parameter_file
 
 
 def node(folder: Path, text: str) -> tuple[Params, Diagnostics]:
