@@ -58,7 +58,7 @@ class _Function:
     node: ast.FunctionDef
     module: ModuleType
     lines: list[str]
-    names: dict[str, ast.expr] = field(default_factory=dict)
+    assignments: dict[str, ast.expr] = field(default_factory=dict)
 
     @property
     def blocks(self) -> frozenset[str]:
@@ -111,7 +111,7 @@ class _Scan:
                 waiting += _named_functions(found)
         for found in functions.values():
             for name, value in _assignments(found.node):
-                (self._attributes if name.startswith("self.") else found.names).setdefault(name, value)
+                (self._attributes if name.startswith("self.") else found.assignments).setdefault(name, value)
         for found in functions.values():
             self._function = found
             for node in ast.walk(found.node):
@@ -256,7 +256,7 @@ class _Scan:
 
     def _assigned(self, node: ast.expr) -> ast.expr | None:
         if isinstance(node, ast.Name):
-            return self._function.names.get(node.id)
+            return self._function.assignments.get(node.id)
         if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "self":
             return self._attributes.get(f"self.{node.attr}")
         return None
@@ -274,8 +274,8 @@ class _Scan:
             own = self._attributes.get(f"self.{node.attr}")
             if own is not None and depth < _DEEPEST:
                 return self._value(own, depth + 1)
-        if isinstance(node, ast.Name) and node.id in self._function.names and depth < _DEEPEST:
-            return self._value(self._function.names[node.id], depth + 1)
+        if isinstance(node, ast.Name) and node.id in self._function.assignments and depth < _DEEPEST:
+            return self._value(self._function.assignments[node.id], depth + 1)
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in _READERS:
             return self._value(node.args[1], depth + 1) if len(node.args) > 1 else _hole(node)
         known = _constant(node, self._function.module)
