@@ -5,5 +5,5 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-for folder in ("plugins", "sensors"):
+for folder in ("plugins/worlds", "sensors"):
     sys.path.insert(0, str(Path(__file__).parents[1] / folder))

@@ -187,7 +187,7 @@ class GazeboRosPlanarMove(ModelPlugin):
     # ------------------------------------------------------------------ commands
 
     def _on_command(self, message: Twist | TwistStamped) -> None:
-        twist: Twist = getattr(message, "twist", message)
+        twist: Any = getattr(message, "twist", message)
         told = float(twist.linear.x), float(twist.linear.y), float(twist.angular.z)
         if all(map(math.isfinite, told)):
             self._told, self._told_ns = told, self.sim.time_ns

@@ -126,7 +126,7 @@ class MecanumDrive(ModelPlugin):
     # ------------------------------------------------------------------ commands
 
     def _on_command(self, message: Twist | TwistStamped) -> None:
-        twist: Twist = getattr(message, "twist", message)
+        twist: Any = getattr(message, "twist", message)
         command = float(twist.linear.x), float(twist.linear.y), float(twist.angular.z)
         if not all(map(math.isfinite, command)):
             self.once.not_finite()

@@ -271,7 +271,7 @@ def test_it_is_the_same_in_another_process() -> None:
         "from test_joint_controller import cart\n"
         "sim = cart(0.1); sim.publish('/wheels', {'data': 3.0}); sim.step(80); print(sim.mj_data.qpos.tobytes().hex())"
     )
-    folders = [str(folder) for folder in Path(__file__).parents[:2]]
+    folders = [str(Path(__file__).parent), str(Path(__file__).parents[1] / "worlds")]
     seen = {
         subprocess.run(
             [sys.executable, "-c", script, *folders],

@@ -5,5 +5,5 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-for folder in ("plugins", "sensors", "plugins/ros2_control", "plugins/play_motion", "testing/certify"):
+for folder in ("plugins/worlds", "sensors", "plugins/ros2_control", "plugins/play_motion", "testing/certify"):
     sys.path.insert(0, str(Path(__file__).parents[2] / folder))
