@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
@@ -187,7 +187,7 @@ class GazeboRosPlanarMove(ModelPlugin):
     # ------------------------------------------------------------------ commands
 
     def _on_command(self, message: Twist | TwistStamped) -> None:
-        twist: Any = getattr(message, "twist", message)
+        twist = cast("Twist", getattr(message, "twist", message))
         told = float(twist.linear.x), float(twist.linear.y), float(twist.angular.z)
         if all(map(math.isfinite, told)):
             self._told, self._told_ns = told, self.sim.time_ns

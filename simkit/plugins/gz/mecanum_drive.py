@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from simkit.compiler.contact_friction import has_directional_friction
 from simkit.params import Params
@@ -126,7 +126,7 @@ class MecanumDrive(ModelPlugin):
     # ------------------------------------------------------------------ commands
 
     def _on_command(self, message: Twist | TwistStamped) -> None:
-        twist: Any = getattr(message, "twist", message)
+        twist = cast("Twist", getattr(message, "twist", message))
         command = float(twist.linear.x), float(twist.linear.y), float(twist.angular.z)
         if not all(map(math.isfinite, command)):
             self.once.not_finite()
