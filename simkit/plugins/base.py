@@ -142,14 +142,17 @@ class Plugin(abc.ABC):
     def advertise(self, topic: str, type_name: str, *, latched: bool = False) -> Publisher:
         """A publisher on `topic` (expanded and remapped as in ROS), of a type such as `nav_msgs/msg/Odometry`."""
         with self.sim.bus.owned_by(self):
-            return self.sim.bus.advertise(self.ros.topic(topic), type_name, latched=latched)
+            publisher: Publisher = self.sim.bus.advertise(self.ros.topic(topic), type_name, latched=latched)
+        return publisher
 
     def listen(self, topic: str, types: str | Sequence[str], callback: Callable[[Any], None]) -> Listener:
         """Calls `callback(message)` between two steps for each message on `topic`; the first type is the listed one."""
         name = self.ros.topic(topic)
         guarded = self.sim.faults.guard(self, f"its callback for {name!r}", callback)
         with self.sim.bus.owned_by(self):
-            return self.sim.bus.listen(name, (types,) if isinstance(types, str) else types, guarded)
+            kinds = (types,) if isinstance(types, str) else types
+            listener: Listener = self.sim.bus.listen(name, kinds, guarded)
+        return listener
 
     def subscribe(
         self, topic: str, callback: Callable[[Any], None] | None = None, keep: int | None = None
@@ -196,7 +199,8 @@ class Plugin(abc.ABC):
             on_cancel: called with a goal that is to be cancelled; gives False to go on. Without it, nothing is.
         """
         with self.sim.bus.owned_by(self):
-            return self.sim.action_table.act(self.ros.topic(action), type_name, on_goal, on_cancel)
+            opened: Action = self.sim.action_table.act(self.ros.topic(action), type_name, on_goal, on_cancel)
+        return opened
 
     def declare(
         self,
@@ -249,7 +253,8 @@ class Plugin(abc.ABC):
     def random(self, channel: str, width: int = 1) -> RandomStream:
         """This plugin's own random stream: `.normal(index)` has `width` numbers that depend on seed, name and index."""
         owner = f"{self.scoped}::{self.name}" if self.scoped else self.name
-        return self.sim.streams.stream(owner, channel, width)
+        stream: RandomStream = self.sim.streams.stream(owner, channel, width)
+        return stream
 
     @property
     def period(self) -> float:
