@@ -37,7 +37,7 @@ class _Wrench:
     torque: tuple[float, float, float]
 
 
-class ApplyLinkWrenchPersistentOptions(Options):
+class PersistentWrenchOptions(Options):
     """The `<persistent>` block."""
 
     entity_name: str = text(required=True)
@@ -50,7 +50,7 @@ class ApplyLinkWrenchOptions(Options):
     """Options of `ApplyLinkWrench`."""
 
     verbose: bool = boolean(True)
-    persistent: tuple[ApplyLinkWrenchPersistentOptions, ...] = blocks(ApplyLinkWrenchPersistentOptions)
+    persistent: tuple[PersistentWrenchOptions, ...] = blocks(PersistentWrenchOptions)
     topic: str = text()
     topic_persistent: str = text()
     topic_clear: str = text()
@@ -71,17 +71,18 @@ class ApplyLinkWrench(WorldPlugin):
     def load(self, parent: Simulation, params: Params) -> None:
         self.once = OneTimeWarnings(self)
         self._verbose = self.options.verbose
-        self._persistent = [w for e in params.all("persistent") if (w := self._read(e)) is not None]
+        self._persistent = [w for one in self.options.persistent if (w := self._read(one)) is not None]
         self._stand()
         base = f"/world/{parent.world.name}/wrench"
         self.listen(read_topic(params, "topic", base), ENTITY_WRENCH, self._on_wrench)
         self.listen(read_topic(params, "topic_persistent", f"{base}/persistent"), ENTITY_WRENCH, self._on_persistent)
         self.listen(read_topic(params, "topic_clear", f"{base}/clear"), ENTITY, self._on_clear)
 
-    def _read(self, element: Params) -> _Wrench | None:
+    def _read(self, options: PersistentWrenchOptions) -> _Wrench | None:
+        element = options.params
         name = read_required_name(element, "entity_name")
-        kind = element.choice("entity_type", tuple(_TYPES), "link" if element.has("entity_type") else "")
-        force, torque = (element.vector3(n, (0.0, 0.0, 0.0)) for n in ("force", "torque"))
+        force, torque = options.force, options.torque
+        kind = options.entity_type if element.has("entity_type") else ""
         if not name or kind not in _TYPES:
             if kind not in _TYPES and not element.has("entity_type"):
                 element.error("SK-PARAM-001", "<persistent> needs <entity_type>: model or link")

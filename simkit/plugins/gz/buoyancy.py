@@ -20,25 +20,25 @@ WATER: Final = 1000.0
 """[kg/m³]"""
 
 
-class BuoyancyDensityChangeOptions(Options):
+class DensityChangeOptions(Options):
     """The `<density_change>` block."""
 
-    above_depth: float = number(minimum=-1000000000.0, maximum=1000000000.0, required=True)
-    density: float = number(minimum=0.0, maximum=1000000000.0, required=True)
+    above_depth: float = number(minimum=-1e9, maximum=1e9, required=True)
+    density: float = number(minimum=0.0, maximum=1e9, required=True)
 
 
-class BuoyancyGradedBuoyancyOptions(Options):
+class GradedBuoyancyOptions(Options):
     """The `<graded_buoyancy>` block."""
 
-    density_change: tuple[BuoyancyDensityChangeOptions, ...] = blocks(BuoyancyDensityChangeOptions)
-    default_density: float = number(1000.0, minimum=0.0, maximum=1000000000.0)
+    density_change: tuple[DensityChangeOptions, ...] = blocks(DensityChangeOptions)
+    default_density: float = number(WATER, "kg/m³", minimum=0.0, maximum=1e9)
 
 
 class BuoyancyOptions(Options):
     """Options of `Buoyancy`."""
 
-    graded_buoyancy: BuoyancyGradedBuoyancyOptions = block(BuoyancyGradedBuoyancyOptions)
-    uniform_fluid_density: float = number(1000.0, minimum=0.0, maximum=1000000000.0)
+    graded_buoyancy: GradedBuoyancyOptions = block(GradedBuoyancyOptions)
+    uniform_fluid_density: float = number(WATER, "kg/m³", minimum=0.0, maximum=1e9)
     enable: tuple[str, ...] = texts()
 
 
@@ -72,28 +72,23 @@ class Buoyancy(BuoyancyBase, WorldPlugin):
         }
 
     def _read(self, params: Params) -> Fluid:
-        graded = params.child("graded_buoyancy")
+        graded = self.options.graded_buoyancy
         if params.has("uniform_fluid_density"):
-            if graded is not None:
-                graded.mark_all_read()
+            if graded.is_given:
+                graded.params.mark_all_read()
                 message = "found both <uniform_fluid_density> and <graded_buoyancy>: the former is used, as in Gazebo"
-                params.diagnostics.warning("SK-PLUGIN-111", message, graded.where)
-            return Fluid((_density(params, "uniform_fluid_density"),))
-        if graded is None:
+                params.diagnostics.warning("SK-PLUGIN-111", message, graded.params.where)
+            return Fluid((self.options.uniform_fluid_density,))
+        if not graded.is_given:
             message = f"plugin {self.name!r} says nothing of the fluid: water of {WATER:g} kg/m³ is everywhere"
             hint = "<uniform_fluid_density> or <graded_buoyancy>"
             params.diagnostics.warning("SK-PLUGIN-114", message, self.where, hint)
             return Fluid((WATER,))
         layers: dict[float, float] = {}
-        for change in graded.all("density_change"):
-            height = change.number("above_depth", required=True, minimum=-1e9, maximum=1e9)
-            layers[height] = _density(change, "density", required=True)
+        for change in graded.density_change:
+            layers[change.above_depth] = change.density
         heights = tuple(sorted(layers))
-        return Fluid((_density(graded, "default_density"), *(layers[h] for h in heights)), heights)
-
-
-def _density(params: Params, name: str, required: bool = False) -> float:
-    return params.number(name, None if required else WATER, required=required, minimum=0, maximum=1e9)
+        return Fluid((graded.default_density, *(layers[h] for h in heights)), heights)
 
 
 def _scopes(link: str) -> list[str]:

@@ -35,30 +35,30 @@ class Performer:
     half: tuple[float, float, float]
 
 
-class PerformersBoxOptions(Options):
+class BoxOptions(Options):
     """The `<box>` block."""
 
     size: tuple[float, float, float] = vector3(required=True)
 
 
-class PerformersGeometryOptions(Options):
+class BoxGeometryOptions(Options):
     """The `<geometry>` block."""
 
-    box: PerformersBoxOptions = block(PerformersBoxOptions)
+    box: BoxOptions = block(BoxOptions)
 
 
-class PerformersPerformerOptions(Options):
+class PerformerOptions(Options):
     """The `<performer>` block."""
 
     name: str = text(element="@name")
     ref: str = text(required=True)
-    geometry: PerformersGeometryOptions = block(PerformersGeometryOptions)
+    geometry: BoxGeometryOptions = block(BoxGeometryOptions)
 
 
 class PerformersOptions(Options):
     """Options of `Performers`."""
 
-    performer: tuple[PerformersPerformerOptions, ...] = blocks(PerformersPerformerOptions)
+    performer: tuple[PerformerOptions, ...] = blocks(PerformerOptions)
     level: tuple[str, ...] = texts()
 
 
@@ -72,12 +72,12 @@ class Performers(WorldPlugin):
     def prepare(self, scene: SceneWorld, params: Params, builder: SpecBuilder) -> None:
         self.performers: tuple[Performer, ...] = ()
         models = [model.name for model in scene.models]
-        for element in params.all("performer"):
-            name = element.attribute("name")
+        for options in self.options.performer:
+            element, name = options.params, options.name
             model = read_required_name(element, "ref")
-            size = element.block("geometry").block("box").vector3("size", required=True)
+            size = options.geometry.box.size
             if min(size) <= 0.0:
-                if element.block("geometry").block("box").has("size"):
+                if options.geometry.box.params.has("size"):
                     element.error("SK-PARAM-002", f"found a <box> of {size}, allowed are lengths above 0")
                 continue
             if model and model not in models:
@@ -94,19 +94,7 @@ class Performers(WorldPlugin):
         """Nothing to do."""
 
 
-class PerformerDetectorBoxOptions(Options):
-    """The `<box>` block."""
-
-    size: tuple[float, float, float] = vector3(required=True)
-
-
-class PerformerDetectorGeometryOptions(Options):
-    """The `<geometry>` block."""
-
-    box: PerformerDetectorBoxOptions = block(PerformerDetectorBoxOptions)
-
-
-class PerformerDetectorHeaderDataOptions(Options):
+class HeaderDataOptions(Options):
     """The `<header_data>` block."""
 
     key: str = text()
@@ -116,9 +104,9 @@ class PerformerDetectorHeaderDataOptions(Options):
 class PerformerDetectorOptions(Options):
     """Options of `PerformerDetector`."""
 
-    geometry: PerformerDetectorGeometryOptions = block(PerformerDetectorGeometryOptions)
+    geometry: BoxGeometryOptions = block(BoxGeometryOptions)
     pose: Pose = pose()
-    header_data: tuple[PerformerDetectorHeaderDataOptions, ...] = blocks(PerformerDetectorHeaderDataOptions)
+    header_data: tuple[HeaderDataOptions, ...] = blocks(HeaderDataOptions)
     topic: str = text()
 
 
@@ -133,21 +121,19 @@ class PerformerDetector(ModelPlugin):
     names = ("gz::sim::systems::PerformerDetector",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        box = params.block("geometry").block("box")
-        size = box.vector3("size", required=True)
+        box, size = self.options.geometry.box.params, self.options.geometry.box.size
         if box.has("size") and min(size) <= 0.0:
             box.error("SK-PARAM-002", f"found a <box> of {size}, allowed are lengths above 0")
         self._half = size[0] / 2, size[1] / 2, size[2] / 2
         self._offset = self.options.pose.position
         self._is_centred = not self._offset.any()
-        self._data = [pair for element in params.all("header_data") if (pair := self._read_data(element)) is not None]
+        self._data = [pair for data in self.options.header_data if (pair := self._read_data(data)) is not None]
 
-    def _read_data(self, element: Params) -> tuple[str, str] | None:
-        key, value = element.text("key", ""), element.text("value", "")
-        if key and value:
-            return key, value
+    def _read_data(self, data: HeaderDataOptions) -> tuple[str, str] | None:
+        if data.key and data.value:
+            return data.key, data.value
         message = f"plugin {self.name!r}: <header_data> without a <key> and a <value> is not used"
-        element.diagnostics.warning("SK-PLUGIN-124", message, element.where)
+        data.params.diagnostics.warning("SK-PLUGIN-124", message, data.params.where)
         return None
 
     def load(self, parent: Model, params: Params) -> None:

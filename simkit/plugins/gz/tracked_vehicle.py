@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
@@ -47,16 +48,8 @@ class _Track:
     centre_topic: str
 
 
-class TrackedVehicleLeftTrackOptions(Options):
-    """The `<left_track>` block."""
-
-    link: str = text(required=True)
-    velocity_topic: str = text()
-    center_of_rotation_topic: str = text()
-
-
-class TrackedVehicleRightTrackOptions(Options):
-    """The `<right_track>` block."""
+class TrackOptions(Options):
+    """A `<left_track>` or `<right_track>` block."""
 
     link: str = text(required=True)
     velocity_topic: str = text()
@@ -67,8 +60,8 @@ class TrackedVehicleOptions(Options):
     """Options of `TrackedVehicle`."""
 
     body_link: str = text(required=True)
-    left_track: tuple[TrackedVehicleLeftTrackOptions, ...] = blocks(TrackedVehicleLeftTrackOptions)
-    right_track: tuple[TrackedVehicleRightTrackOptions, ...] = blocks(TrackedVehicleRightTrackOptions)
+    left_track: tuple[TrackOptions, ...] = blocks(TrackOptions)
+    right_track: tuple[TrackOptions, ...] = blocks(TrackOptions)
     tracks_separation: float = number(1.0, "m", minimum=1e-6)
     steering_efficiency: float = number(0.5, minimum=1e-6)
     tracks_height: float = number(0.2, "m", minimum=1e-6)
@@ -114,7 +107,10 @@ class TrackedVehicle(ModelPlugin):
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         own = params.has("body_link")
         self._body = find_named_link(scene, "body_link", params) if own else scene.canonical_link
-        self._sides = [self._read_side(f"{side}_track", scene, params) for side in _SIDES]
+        self._sides = [
+            self._read_side("left_track", self.options.left_track, scene),
+            self._read_side("right_track", self.options.right_track, scene),
+        ]
         self._separation = self.options.tracks_separation
         self._efficiency = self.options.steering_efficiency
         _ = self.options.tracks_height  # gz's odometry divides by it and multiplies again
@@ -123,13 +119,12 @@ class TrackedVehicle(ModelPlugin):
         if self.options.debug:
             params.diagnostics.note("SK-PLUGIN-100", "<debug> of a tracked vehicle draws nothing here", params.where)
 
-    def _read_side(self, element: str, scene: SceneModel, params: Params) -> list[_Track]:
-        found = params.all(element)
+    def _read_side(self, element: str, found: Sequence[TrackOptions], scene: SceneModel) -> list[_Track]:
         if not found:
-            params.text(element, required=True)
+            self.params.text(element, required=True)
         tracks = []
-        for one in found:
-            name = one.text("link", required=True)
+        for options in found:
+            one, name = options.params, options.link
             named = one.child("link")
             if named is not None and name:
                 find_link(scene, name, named)
