@@ -79,7 +79,7 @@ class Spawner:
             if not isinstance(source, SceneModel):
                 scene = self.load_model(source, found, name=name, pose=pose, taken=models)
             builder.add_model(scene)
-            models[scene.name], parts[scene.name] = scene, self._made(scene, builder, found)
+            models[scene.name], parts[scene.name] = scene, self._make(scene, builder, found)
             names.append(scene.name)
         compiled = builder.recompile(old.compiled, engine.mj_data)
         self.switch(WorldStructure(builder, compiled, models, old.movable, parts))
@@ -100,7 +100,7 @@ class Spawner:
         top, shell, scoped = sensor_attachment.build_sensor_model(old, name, read)
         before = self.snapshots.take()
         builder = old.builder.copy()
-        parts = self._made(shell, builder, found)
+        parts = self._make(shell, builder, found)
         if not parts.sensors:
             raise LoadError(tuple(found))
         compiled = builder.recompile(old.compiled, engine.mj_data)
@@ -110,7 +110,7 @@ class Spawner:
         self._start_or_restore([parts], found, before)
         return scoped
 
-    def _made(self, scene: SceneModel, builder: Any, found: Diagnostics) -> SensorsAndPlugins:
+    def _make(self, scene: SceneModel, builder: Any, found: Diagnostics) -> SensorsAndPlugins:
         """The parts of what comes while it runs; they are called after all that is there already."""
         parts = self._make_parts(scene, builder, found)
         self._spawned += 1
@@ -235,13 +235,13 @@ class Spawner:
         engine.structure = structure
         physics.rebind(compiled.model, compiled.data)
         physics.sleep.restrict(bodies_kept_awake(structure))
-        physics.hears_controls = any(n.mjcf for m in structure.models.values() for n in m.all_models())
+        physics.checks_controls = any(n.mjcf for m in structure.models.values() for n in m.all_models())
         handles.bind(structure)
         handles.labels.bind(structure)
         handles.temperatures.bind(structure)
         engine.friction.bind(compiled, [plugin for part in structure.parts.values() for plugin, _ in part.plugins])
         engine.fast_body_warnings.names = compiled.names
-        physics.fast_bodies.tell = engine.fast_body_warnings
+        physics.fast_bodies.on_approach = engine.fast_body_warnings
         engine.wrenches.push(are_applied=True)
         self._communication.set_active(engine.faults.living(structure))
         for sensor in structure.all_sensors():

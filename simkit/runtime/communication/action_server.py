@@ -99,8 +99,8 @@ class GoalHandle:
         """Tells how far it is, by a message or a dict of its fields; nobody, once it has ended."""
         if self.is_done:
             return
-        self.feedback = self._made(feedback, "Feedback")
-        self._tell(self._on_feedback, self.feedback, "feedback")
+        self.feedback = self._as_message(feedback, "Feedback")
+        self._notify(self._on_feedback, self.feedback, "feedback")
 
     def succeed(self, result: Any = None, reason: str = "") -> None:
         """Ends it well."""
@@ -117,11 +117,11 @@ class GoalHandle:
     def _end(self, status: GoalStatus, result: Any, reason: str) -> None:
         if self.is_done:
             raise ActionError(f"goal {self.id} of {self._action.name!r} has ended already ({self.status.name})")
-        self.result = None if status is GoalStatus.REJECTED else self._made(result, "Result")
+        self.result = None if status is GoalStatus.REJECTED else self._as_message(result, "Result")
         self.status, self.reason = status, reason
-        self._tell(self._on_done, self, "get_result")
+        self._notify(self._on_done, self, "get_result")
 
-    def _tell(self, callback: Callable[[Any], None] | None, what: Any, part: str) -> None:
+    def _notify(self, callback: Callable[[Any], None] | None, what: Any, part: str) -> None:
         """Calls the one who sent it back; what they raise is not the plugin's fault."""
         if callback is None:
             return
@@ -133,7 +133,7 @@ class GoalHandle:
             topic, now = f"{self._action.name}/_action/{part}", self._action.engine.time
             raise SubscriberError(topic, callback_name(callback), now, repr(error)) from error
 
-    def _made(self, value: Any, part: str) -> Any:
+    def _as_message(self, value: Any, part: str) -> Any:
         wanted = f"{self._action.type_name}_{part}"
         if value is None or isinstance(value, Mapping):
             return msgs.make(wanted, **(value or {}))

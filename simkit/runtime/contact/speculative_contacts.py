@@ -85,12 +85,12 @@ class FastBodyDetector:
     Attributes:
         closing: speed [m/s] with which each geom may still close once it has been stopped, the last for no geom;
             so a body that is stopped ahead of a wall gets there.
-        tell: is given what cannot be helped, at each look that finds something; it may change no state.
+        on_approach: is given what cannot be helped, at each look that finds something; it may change no state.
     """
 
     def __init__(self, model: mujoco.MjModel) -> None:
         self.model = model
-        self.tell: Callable[[list[FastApproach]], None] | None = None
+        self.on_approach: Callable[[list[FastApproach]], None] | None = None
         step = float(model.opt.timestep)
         self._window = window_length(step)
         # so long a body goes on into a soft contact, and twice as long into one that bounces
@@ -182,7 +182,7 @@ class FastBodyDetector:
         keep = np.array([not cleared[int(bodies[a]), int(bodies[b])] for a, b in zip(one, other, strict=True)], bool)
         if not keep.any():
             return False
-        if self.tell is not None:
+        if self.on_approach is not None:
             self._find_helpless(scratch, one[keep], other[keep], both[keep], all_linear)
         return True
 
@@ -258,8 +258,8 @@ class FastBodyDetector:
             thick = 2.0 * float(min(half[one[i]], half[other[i]]))
             enough = float(together[i]) / speed * (1.0 / _GROWTH if field else most)
             found.append(FastApproach(int(one[i]), int(other[i]), speed, thick, enough, field))
-        if found and self.tell is not None:
-            self.tell(found)
+        if found and self.on_approach is not None:
+            self.on_approach(found)
 
     def _is_on_course(self, scratch: Any, one: Any, other: Any, linear: Floats) -> npt.NDArray[np.bool_]:
         """Check whether straight on, within a window, the sphere around the one meets the box around the other."""

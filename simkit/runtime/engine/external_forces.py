@@ -51,7 +51,7 @@ class PersistentWrenches:
             for name, wrench in wrenches.items():
                 if name in links and links[name].body > 0:
                     total[links[name].body] = total.get(links[name].body, 0.0) + np.asarray(wrench, float)
-        self._engine.physics.stand(total, are_applied=are_applied)
+        self._engine.physics.set_persistent_wrenches(total, are_applied=are_applied)
 
 
 Velocity = tuple[float, float, float]

@@ -34,8 +34,8 @@ class ForwardPass(PhysicsState):
 
     def fresh(self) -> mujoco.MjData:
         """The data with a forward pass of the state at this tick."""
-        if self.hears_controls:
-            self._hear_controls()
+        if self.checks_controls:
+            self._check_controls()
         if self.stage:
             self._forward()
         return self.data
@@ -55,7 +55,7 @@ class ForwardPass(PhysicsState):
 
     def _update_velocities(self) -> None:
         if not self._is_analysed:
-            self._analyse_again()
+            self._analyse_if_changed()
         model, data, shaper = self.model, self.data, self._acting_shaper
         if self.tick >= self._fast_until:
             self._look_for_fast()
@@ -119,7 +119,7 @@ class ForwardPass(PhysicsState):
             mj_forward_skip(model, data, _AFTER_VELOCITIES, 1)
         self.stage = FRESH
 
-    def _hear_controls(self) -> None:
+    def _check_controls(self) -> None:
         """Notices controls that were written to the engine's data directly."""
         if not np.array_equal(self._controls, self.data.ctrl):
             self._controls[:] = self.data.ctrl
@@ -140,8 +140,8 @@ class ForwardPass(PhysicsState):
 
     def hold(self) -> HeldState:
         """The state of this tick, with the forces of the step that led to it, shared by all who ask at it."""
-        if self.hears_controls:
-            self._hear_controls()
+        if self.checks_controls:
+            self._check_controls()
         if self._held is None or self._held.tick != self.tick:
             values, data = np.empty(self._held_size), self.data
             if self.shows_applied and self._has_passed():
@@ -162,20 +162,20 @@ class ForwardPass(PhysicsState):
 
     def data_of(self, held: HeldState) -> mujoco.MjData:
         """An `MjData` with forward pass and accelerations of a held state: a second one, unless it is that of now."""
-        if self.hears_controls:  # those of the held state are others then
-            self._hear_controls()
+        if self.checks_controls:  # those of the held state are others then
+            self._check_controls()
         if self._held is held and held.tick == self.tick and not (self.sleep.watches or self.shows_applied):
             return self.fresh_accelerations()  # nothing was written since: the step goes on from it
-        if self._second is None or (self._second_of is not None and self._second_of.model is not held.model):
-            self._second = mujoco.MjData(held.model)
-            self._second_of = None
-        if self._second_of is not held:
-            self._second_of = None
-            mujoco.mj_setState(held.model, self._second, held.values, INTEGRATION_STATE)
-            self._forward_held(held, self._second)
-            mujoco.mj_rnePostConstraint(held.model, self._second)
-            self._second_of = held
-        return self._second
+        if self._reader_data is None or (self._reader_state is not None and self._reader_state.model is not held.model):
+            self._reader_data = mujoco.MjData(held.model)
+            self._reader_state = None
+        if self._reader_state is not held:
+            self._reader_state = None
+            mujoco.mj_setState(held.model, self._reader_data, held.values, INTEGRATION_STATE)
+            self._forward_held(held, self._reader_data)
+            mujoco.mj_rnePostConstraint(held.model, self._reader_data)
+            self._reader_state = held
+        return self._reader_data
 
     def _forward_held(self, held: HeldState, data: mujoco.MjData) -> None:
         """Make the forward pass of a held state as the step did."""

@@ -41,7 +41,7 @@ def reset_models(engine: Engine, models: Collection[Stateful], loaded: Snapshot)
     data.mocap_pos[:], data.mocap_quat[:] = fresh.mocap_pos, fresh.mocap_quat
     data.ctrl[:], data.eq_active[:] = fresh.ctrl, fresh.eq_active
     data.qacc_warmstart[:] = data.qfrc_applied[:] = 0.0
-    data.xfrc_applied[:] = engine.physics.standing
+    data.xfrc_applied[:] = engine.physics.persistent_wrenches
     _copy_joints(first, first_data, model, data)
     _copy_rows(mujoco.mjtObj.mjOBJ_ACTUATOR, first, first_data.ctrl, model, data.ctrl)
     _copy_activations(first, first_data, model, data)

@@ -118,17 +118,17 @@ class Physics(ForwardPass):
         if sleep.wants_all_awake:
             self.fresh()
         if sleep.is_drowsy:
-            sleep.open_eyes()
+            sleep.let_fall_asleep()
             self._steps(1)
-            sleep.close_eyes()
+            sleep.keep_awake()
             count -= 1
         if count:
             self._steps(count)
         sleep.settle()
 
     def _steps(self, count: int) -> None:
-        if self.hears_controls:
-            self._hear_controls()
+        if self.checks_controls:
+            self._check_controls()
         integrate, has_shaper = self._integrate, self._acting_shaper is not None
         if integrate is None:
             mj_step(self.model, self.data, count)
@@ -136,7 +136,7 @@ class Physics(ForwardPass):
             self.tick += count
             return
         if not self._is_analysed:
-            self._analyse_again()
+            self._analyse_if_changed()
         end, is_corrected = self.tick + count, self.free_motion is not None
         while self.tick < end:
             if is_corrected or has_shaper or self._uses_law or self._probes or self.tick >= self._until:
@@ -194,9 +194,9 @@ class Physics(ForwardPass):
 
     def _clear_one_shot(self) -> None:
         self.last_applied[:] = self.data.qfrc_applied
-        self.last_pushed[:] = self.data.xfrc_applied - self.standing
+        self.last_pushed[:] = self.data.xfrc_applied - self.persistent_wrenches
         self.data.qfrc_applied[:] = 0
-        self.data.xfrc_applied[:] = self.standing
+        self.data.xfrc_applied[:] = self.persistent_wrenches
         self.one_shot = False
 
     def _tune(self, chunk: int, wall: float) -> None:

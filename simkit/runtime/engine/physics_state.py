@@ -54,7 +54,7 @@ class StepWindow(NamedTuple):
 
 
 class PhysicsState:
-    """`MjModel` and `MjData`, the tick they stand at, and what of them is up to date.
+    """`MjModel` and `MjData`, the tick that they belong to, and what of them is up to date.
 
     Args:
         model, data: of MuJoCo.
@@ -93,15 +93,15 @@ class PhysicsState:
         self.one_shot = False
         self.last_applied = np.zeros(model.nv)
         self.last_pushed = np.zeros((model.nbody, 6))
-        self.standing = np.zeros((model.nbody, 6))
+        self.persistent_wrenches = np.zeros((model.nbody, 6))
         self.shows_applied = True
         self._accelerations_tick = -1
         self._held: HeldState | None = None
         self._held_size = mujoco.mj_stateSize(model, INTEGRATION_STATE)
-        self._second: mujoco.MjData | None = None
-        self._second_of: HeldState | None = None
+        self._reader_data: mujoco.MjData | None = None
+        self._reader_state: HeldState | None = None
         self._warnings = data.warning.number
-        self.hears_controls = False  # whether the user may write to `data.ctrl` without a word
+        self.checks_controls = False  # whether the user may write to `data.ctrl` without a word
         self._controls = data.ctrl.copy()
         self._integrate = _INTEGRATORS.get(int(model.opt.integrator))
         self._has_stages = model.opt.integrator == mujoco.mjtIntegrator.mjINT_RK4
@@ -114,13 +114,13 @@ class PhysicsState:
         self.free_motion = FreeMotionIntegrator.of(model) if is_implicit and not has_engine_contacts(model) else None
         self._analysed, self._is_analysed = _step_fields(model), True
 
-    def _analyse_again(self) -> None:
+    def _analyse_if_changed(self) -> None:
         """Do it once more if a field was written to that it depends on, so that it follows from the present model."""
         self._is_analysed = True
         if _step_fields(self.model) != self._analysed:
-            tell = self.fast_bodies.tell
+            on_approach = self.fast_bodies.on_approach
             self._analyse()
-            self.fast_bodies.tell = tell
+            self.fast_bodies.on_approach = on_approach
 
     # ------------------------------------------------------------------ writing
 
@@ -138,23 +138,25 @@ class PhysicsState:
 
     def changed_body(self, stage: int, body: int) -> None:
         """The same of one body, which wakes where it sleeps."""
-        self.changed(STALE if self.sleep.watches and self.sleep.rouse(body) else stage)
+        self.changed(STALE if self.sleep.watches and self.sleep.wake(body) else stage)
 
-    def stand(self, wrenches: Mapping[int, npt.NDArray[np.float64]], *, are_applied: bool = False) -> None:
+    def set_persistent_wrenches(
+        self, wrenches: Mapping[int, npt.NDArray[np.float64]], *, are_applied: bool = False
+    ) -> None:
         """Wrenches (force, torque) on bodies that hold until they are set anew; all others are let go.
 
         Args:
             are_applied: the data have them already (a restored state).
         """
-        before = self.standing
-        self.standing = np.zeros_like(before)
+        before = self.persistent_wrenches
+        self.persistent_wrenches = np.zeros_like(before)
         for body, wrench in wrenches.items():
-            self.standing[body] = wrench
+            self.persistent_wrenches[body] = wrench
             if are_applied and not self.data.xfrc_applied[body].any():
                 self.data.xfrc_applied[body] = wrench  # a link that came back by its name
         if not are_applied:
-            self.data.xfrc_applied += self.standing - before
-            for changed in np.flatnonzero((self.standing != before).any(axis=1)):
+            self.data.xfrc_applied += self.persistent_wrenches - before
+            for changed in np.flatnonzero((self.persistent_wrenches != before).any(axis=1)):
                 self.changed_body(CONTROL, int(changed))
 
     def changed_surface(self) -> None:
@@ -166,12 +168,12 @@ class PhysicsState:
     def changed_model(self) -> None:
         """Says that the model itself is about to be written to: everything wakes."""
         self.sleep.wake_all()
-        self._second, self._is_analysed = None, False
+        self._reader_data, self._is_analysed = None, False
         self.changed(STALE)
 
     def changed_lights(self) -> None:
         """Says that lights of the model moved: where bodies may sleep, the engine computes those of the world once."""
-        self._second = None
+        self._reader_data = None
         options = self.model.opt
         flags = options.enableflags
         options.enableflags = flags & ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)

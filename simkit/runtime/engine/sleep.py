@@ -139,18 +139,18 @@ class Sleep:
         distance: Floats = np.maximum.reduceat(np.abs(a - b), self._starts)
         return distance
 
-    def open_eyes(self) -> None:
+    def let_fall_asleep(self) -> None:
         """Before the step in which the engine puts to sleep what is ready."""
         self._model.opt.sleep_tolerance = _LEAST_SPEED
 
-    def close_eyes(self) -> None:
+    def keep_awake(self) -> None:
         """After that step."""
         self._model.opt.sleep_tolerance = _NO_SPEED
         self.is_drowsy = False
 
     # ------------------------------------------------------------------ waking
 
-    def rouse(self, body: int) -> bool:
+    def wake(self, body: int) -> bool:
         """Says that something of a body is set; True where it slept, so that positions must be computed anew."""
         tree = int(self._model.body_treeid[body])
         if tree < 0 or not self._may[tree]:

@@ -119,7 +119,7 @@ class StepLoop:
             stop = min(self._target, before.next, sense.next, after.next)
             has_every = bool(before.every or after.every or sense.every)
             if has_every and stop - tick > 1 and not commands.inbox:
-                self._walk(stop - 1)
+                self._run_single_steps(stop - 1)
                 continue
             if commands.inbox:
                 commands.deliver_inputs()
@@ -153,7 +153,7 @@ class StepLoop:
             if self._is_outdated:
                 self._refill()
 
-    def _walk(self, stop: int) -> None:
+    def _run_single_steps(self, stop: int) -> None:
         """Up to the tick `stop`, through steps at which only what runs at every step is due."""
         physics, commands, program = self._physics, self._commands, _OPEN_LOOPS
         before, after = self.scheduler.before.every, [*self.scheduler.sense.every, *self.scheduler.after.every]

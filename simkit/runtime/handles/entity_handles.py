@@ -42,7 +42,7 @@ class EntityHandles:
         self.labels, self.temperatures = Labels(self), Temperatures(self)
         self.exact_limits: list[Joint] = []
         engine.velocity_limit = self._velocity_limit
-        self._made: dict[int, tuple[Any, Model, dict[str, Light]]] = {}
+        self._by_scene: dict[int, tuple[Any, Model, dict[str, Light]]] = {}
         self._world_lights: dict[str, Light] | None = None
         self._world_joints: dict[str, Joint] | None = None
         self.models: dict[str, Model] = {}
@@ -52,21 +52,21 @@ class EntityHandles:
         """Binds every handle of what is there now; the others say that they were removed."""
         if self._world_joints is None:
             self._world_joints = {j.name: Joint(self, j) for j in self._world.joints}
-        for _, model, lights in self._made.values():
+        for _, model, lights in self._by_scene.values():
             for handle in (*model.everything(), *lights.values()):
-                handle._there = False
+                handle._is_present = False
         self.models = {name: self._model_handles(scene)[0] for name, scene in structure.models.items()}
         tables: dict[str, dict[str, Any]] = {k: {} for k in ("model", "link", "joint", "light", "sensor")}
         names = structure.compiled.names
         for model in self.models.values():
             for handle in model.everything():
-                handle._there = True
+                handle._is_present = True
                 if isinstance(handle, (Link, Joint)):
                     handle._bind(names)
                 tables[type(handle).__name__.lower()][handle.scoped] = handle
         for name, joint in self._world_joints.items():
-            joint._there = joint.scoped in names.joints
-            if joint._there:
+            joint._is_present = joint.scoped in names.joints
+            if joint._is_present:
                 joint._bind(names)
                 tables["joint"][name] = joint
         tables["sensor"] = {s.scoped: s for s in structure.all_sensors()}
@@ -77,18 +77,18 @@ class EntityHandles:
         for scene in structure.models.values():
             lights = self._lights(scene)
             for light in lights.values():
-                light._there = True
+                light._is_present = True
             tables["light"].update(lights)
 
     def forget(self, living: Iterable[SceneModel]) -> None:
         """Lets go of the handles of models that nothing brings back any more."""
         there = {id(scene) for scene in living}
-        self._made = {key: made for key, made in self._made.items() if key in there}
+        self._by_scene = {key: made for key, made in self._by_scene.items() if key in there}
 
     def _model_handles(self, scene: SceneModel) -> tuple[Model, dict[str, Light]]:
-        if id(scene) not in self._made:
-            self._made[id(scene)] = (scene, Model(self, scene), {})
-        return self._made[id(scene)][1:]
+        if id(scene) not in self._by_scene:
+            self._by_scene[id(scene)] = (scene, Model(self, scene), {})
+        return self._by_scene[id(scene)][1:]
 
     def _lights(self, scene: SceneModel) -> dict[str, Light]:
         lights = self._model_handles(scene)[1]

@@ -22,16 +22,16 @@ class Handle:
     def __init__(self, handles: EntityHandles, name: str, scoped: str) -> None:
         self._handles, self._engine, self._physics = handles, handles.engine, handles.engine.physics
         self.name, self.scoped = name, scoped
-        self._there = True
+        self._is_present = True
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Any:
         return self
 
     def __repr__(self) -> str:
-        return f"<{type(self).__name__} {self.scoped!r}{'' if self._there else ' (removed)'}>"
+        return f"<{type(self).__name__} {self.scoped!r}{'' if self._is_present else ' (removed)'}>"
 
     def _check(self) -> None:
-        if not self._there:
+        if not self._is_present:
             raise InputError(f"{type(self).__name__.lower()} {self.scoped!r} was removed", "SK-NAME-002")
 
 

@@ -26,7 +26,7 @@ class Visual(Handle):
         self.scene, self.link = scene, link
 
     def __repr__(self) -> str:
-        return f"<Visual {self.scoped!r}{'' if self.link._there else ' (removed)'}>"
+        return f"<Visual {self.scoped!r}{'' if self.link._is_present else ' (removed)'}>"
 
     @property
     def geoms(self) -> tuple[int, ...]:

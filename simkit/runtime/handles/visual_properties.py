@@ -28,12 +28,12 @@ class VisualProperty(MutableMapping[str, Value], abc.ABC):
     along; snapshots and reset bring back what was.
 
     Attributes:
-        wearers: kinds of entities that may have one, besides visuals.
+        entity_kinds: kinds of entities that may have one, besides visuals.
         read_by: attribute of the sensors that measure it; what they hold is measured before a change.
         state: all of them; never written to, only replaced, so that whoever worked something out of it knows.
     """
 
-    wearers: ClassVar[tuple[str, ...]] = ("model",)
+    entity_kinds: ClassVar[tuple[str, ...]] = ("model",)
     read_by: ClassVar[str] = ""
 
     def __init__(self, handles: EntityHandles) -> None:
@@ -71,7 +71,7 @@ class VisualProperty(MutableMapping[str, Value], abc.ABC):
     def __deepcopy__(self, memo: dict[int, object]) -> Self:
         return self
 
-    def worn(self, *, nested: bool = True) -> dict[str, Value]:
+    def by_visual(self, *, nested: bool = True) -> dict[str, Value]:
         """The value of every visual that has one, by scoped name, in document order.
 
         Args:
@@ -112,13 +112,13 @@ class VisualProperty(MutableMapping[str, Value], abc.ABC):
 
     def _find(self, scoped: str) -> None:
         handles = self._handles
-        known = {name: handle for kind in self.wearers for name, handle in handles.tables[kind].items()}
+        known = {name: handle for kind in self.entity_kinds for name, handle in handles.tables[kind].items()}
         if scoped in known:
             return
         try:
             handles.find_visual(scoped)
         except KeyError:
-            look_up({**known, **handles.visuals()}, scoped, f"{', '.join(self.wearers)} or visual")
+            look_up({**known, **handles.visuals()}, scoped, f"{', '.join(self.entity_kinds)} or visual")
 
     def _change(self, values: dict[str, Value]) -> None:
         """Samples that wait to be looked at are measured with the values of their time."""
@@ -177,7 +177,7 @@ class Temperatures(VisualProperty[Temperature]):
     is removed takes them along; snapshots and reset bring back what was.
     """
 
-    wearers = ("model", "link")
+    entity_kinds = ("model", "link")
     read_by = "reads_temperatures"
 
     def checked(self, value: Temperature) -> Temperature:

@@ -81,7 +81,7 @@ def find_labelled_objects(sim: Simulation, boxed: bool = False) -> LabelledObjec
             model, whichever, and takes the label 255 for the background.
     """
     quirks = bool(sim.world.gazebo_quirks)
-    labels = sim.labels.worn(nested=not quirks)
+    labels = sim.labels.by_visual(nested=not quirks)
     if quirks and boxed:
         labels = {scoped: label for scoped, label in labels.items() if label != _GAZEBOS_BACKGROUND}
     visuals = list(_drawn_visuals(sim.structure, labels))

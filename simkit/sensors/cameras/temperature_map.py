@@ -174,7 +174,7 @@ def make_temperature_map(sim: Simulation, air: float, span: float) -> Temperatur
     table[:-1] += (_brightness(model) - 0.5) * span
     is_source = np.zeros(model.ngeom + 1, np.bool_)
     surface_of = np.full(model.ngeom + 1, -1, np.int32)
-    temperatures = sim.temperatures.worn()
+    temperatures = sim.temperatures.by_visual()
     surfaces: list[HeatSurface] = []
     for link in names.links.values() if temperatures else ():
         drawn = names.drawn(link.scoped)

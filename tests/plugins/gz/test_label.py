@@ -27,7 +27,7 @@ def model(name: str = "m", more: str = "", on_visual: str = "", on_link: str = "
 def worn(*parts: str, quirks: bool = False) -> dict[str, int]:
     top = "<gazebo_quirks>true</gazebo_quirks>" if quirks else ""
     with simkit.load(world(top, *parts)) as sim:
-        return sim.labels.worn(nested=not quirks)
+        return sim.labels.by_visual(nested=not quirks)
 
 
 def codes(*parts: str) -> list[tuple[str, str]]:
@@ -71,7 +71,7 @@ def test_an_include_labels_what_it_brings(tmp_path: Path) -> None:
     include = f"<include><uri>thing.sdf</uri><name>t</name>{label(66)}</include>"
     (tmp_path / "world.sdf").write_text(world(include))
     with simkit.load(tmp_path / "world.sdf") as sim:
-        assert sim.labels.worn() == {"t::l::a": 66, "t::l::b": 66}
+        assert sim.labels.by_visual() == {"t::l::a": 66, "t::l::b": 66}
 
 
 def test_a_robot_in_urdf_has_labels_too() -> None:
@@ -81,7 +81,7 @@ def test_a_robot_in_urdf_has_labels_too() -> None:
       <joint name="j" type="fixed"><parent link="base"/><child link="arm"/></joint>
       <gazebo>{label(4)}</gazebo><gazebo reference="arm"><visual>{label(5)}</visual></gazebo></robot>"""
     with simkit.load(robot) as sim:
-        assert sorted(sim.labels.worn().values()) == [4, 5]
+        assert sorted(sim.labels.by_visual().values()) == [4, 5]
         assert not [d for d in sim.diagnostics if "plugin" in d.message]
 
 
@@ -115,7 +115,7 @@ def test_labels_come_and_go_with_their_models() -> None:
         sim.spawn(f'<sdf version="1.9">{model("b")}</sdf>')
         assert dict(sim.labels) == {"a": 1}, "another model of that name has no label"
         sim.restore(both)
-        assert sim.labels.worn() == {"a::l::a": 1, "a::l::b": 1, "b::l::a": 3, "b::l::b": 2}
+        assert sim.labels.by_visual() == {"a::l::a": 1, "a::l::b": 1, "b::l::a": 3, "b::l::b": 2}
         sim.restore(before)
         assert dict(sim.labels) == {"a": 1}
 
@@ -124,12 +124,12 @@ def test_a_program_may_change_them_and_a_reset_brings_the_files_back() -> None:
     with simkit.load(world(model("a", label(1)))) as sim:
         sim.labels["a::l::b"] = 9
         sim.labels["a"] = 2
-        assert sim.labels.worn() == {"a::l::a": 2, "a::l::b": 9}
+        assert sim.labels.by_visual() == {"a::l::a": 2, "a::l::b": 9}
         kept = sim.snapshot()
         del sim.labels["a"]
-        assert sim.labels.worn() == {"a::l::b": 9}
+        assert sim.labels.by_visual() == {"a::l::b": 9}
         sim.restore(kept)
-        assert sim.labels.worn() == {"a::l::a": 2, "a::l::b": 9}
+        assert sim.labels.by_visual() == {"a::l::a": 2, "a::l::b": 9}
         sim.reset()
         assert dict(sim.labels) == {"a": 1}
 

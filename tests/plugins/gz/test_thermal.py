@@ -34,7 +34,7 @@ def warnings(sim: Any) -> list[str]:
 def test_a_visual_gets_the_temperature_that_hangs_on_it() -> None:
     with simkit.load(world(thermal(KELVIN.format(310.5)))) as sim:
         assert dict(sim.temperatures) == {"m::l::v": 310.5}
-        assert sim.temperatures.worn() == {"m::l::v": 310.5}
+        assert sim.temperatures.by_visual() == {"m::l::v": 310.5}
         assert not warnings(sim)
 
 
@@ -57,9 +57,9 @@ def test_a_link_and_a_model_warm_what_has_no_temperature_of_its_own() -> None:
 
     on = [thermal(KELVIN.format(t)) for t in (2, 3, 4)]
     with simkit.load(parts(*on)) as sim:
-        assert sim.temperatures.worn() == {"m::l::v": 1, "m::l::w": 2, "m::n::k::v": 4}
+        assert sim.temperatures.by_visual() == {"m::l::v": 1, "m::l::w": 2, "m::n::k::v": 4}
     with simkit.load(parts("", on[1], "")) as sim:
-        assert sim.temperatures.worn() == {"m::l::v": 1, "m::l::w": 3, "m::n::k::v": 3}
+        assert sim.temperatures.by_visual() == {"m::l::v": 1, "m::l::w": 3, "m::n::k::v": 3}
 
 
 def test_with_gazebos_quirks_only_visuals_are_warm() -> None:
