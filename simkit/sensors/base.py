@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from simkit.compiler.name_map import NameMap
     from simkit.diagnostics import Severity
     from simkit.runtime import Simulation
+    from simkit.runtime.engine.random_streams import RandomStreams
     from simkit.scene import SceneSensor
 
 __all__ = ["Product", "Sample", "Sensor"]
@@ -252,7 +253,7 @@ class Sensor(Sampler):
         )  # Gazebo has none of it on rays
         return self._register_noise(UniformNoise(model, width, *self._noise_stream_names(group), **self._noise_terms()))
 
-    def _noise_stream_names(self, group: str) -> tuple[Any, str, str]:
+    def _noise_stream_names(self, group: str) -> tuple[RandomStreams, str, str]:
         return self.sim.streams, self.scoped, group
 
     def _noise_terms(self) -> dict[str, Any]:

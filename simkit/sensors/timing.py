@@ -7,10 +7,11 @@ from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simkit.params import Params
 from simkit.runtime.engine.clock import Clock, SampleTiming, exact_fraction, exact_rate
+from simkit.sensors.sample import Sample
 
 if TYPE_CHECKING:
     from simkit.runtime.engine.random_streams import RandomStreams
@@ -112,7 +113,7 @@ class DelayedReadings:
         self._spread = options.latency_jitter
         self._stream = streams.stream(scoped, "latency") if options.latency_jitter > 0 else None
         self._steps = clock.ticks_to_cover(self._latency)
-        self.samples: deque[tuple[int, Any]] = deque()
+        self.samples: deque[tuple[int, Sample]] = deque()
 
     def arrival(self, tick: int, index: int) -> int:
         """Return the tick at which sample `index`, measured at `tick`, arrives; never before an older one."""
@@ -122,7 +123,7 @@ class DelayedReadings:
             steps = max(0, math.ceil(late / self._clock.timestep))
         return max(tick + steps, self.samples[-1][0]) if self.samples else tick + steps
 
-    def arrived(self, tick: int) -> list[Any]:
+    def arrived(self, tick: int) -> list[Sample]:
         """Remove and return the samples that have arrived by `tick`."""
         found = []
         while self.samples and self.samples[0][0] <= tick:

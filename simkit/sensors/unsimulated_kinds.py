@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from simkit.diagnostics import Diagnostics
 from simkit.params import Params
@@ -165,7 +165,7 @@ def _read_tag(params: Params) -> None:
         params.child(name)
 
 
-UNSIMULATED_READERS: Final[Mapping[str, Callable[[Params], Any]]] = MappingProxyType(
+UNSIMULATED_READERS: Final[Mapping[str, Callable[[Params], object]]] = MappingProxyType(
     {
         "rfid": _read_tag,
         "rfidtag": _read_tag,

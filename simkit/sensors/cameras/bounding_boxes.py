@@ -4,9 +4,9 @@ a world asks for them.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -20,8 +20,9 @@ from simkit.sensors.cameras.shape_corners import CUBE, Corners, geom_corners
 if TYPE_CHECKING:
     import mujoco
 
-    from simkit.compiler import Compiled
+    from simkit.compiler import Compiled, LinkBinding
     from simkit.runtime.engine.world_structure import WorldStructure
+    from simkit.scene import SceneVisual
 
 
 _PARTS_OF_EDGE = 16  # that an edge is bent in by a lens
@@ -146,7 +147,7 @@ class LabelledShapes:
         return Box3D(item, centre, rotation, high - low)
 
     def _own_box(
-        self, visual: DrawnVisual, model: mujoco.MjModel, link: Any, scenes: Any
+        self, visual: DrawnVisual, model: mujoco.MjModel, link: LinkBinding, scenes: Mapping[str, SceneVisual]
     ) -> tuple[int, Pose, Vector, Vector]:
         """Of a visual: the number of a geom, the visual's frame in that geom's, its lowest and highest corner there."""
         in_body = link.offset @ scenes[visual.scoped].pose_link

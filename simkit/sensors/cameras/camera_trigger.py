@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from simkit.runtime.communication.topic_bus import TopicBus
@@ -33,7 +33,7 @@ class Trigger:
         """
         bus.listen(topic, types, self._on_message)
 
-    def _on_message(self, _: Any) -> None:
+    def _on_message(self, _: object) -> None:
         self.pending = self.pending + 1 if self.counts else 1
 
     def take(self) -> bool:

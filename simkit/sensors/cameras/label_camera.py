@@ -67,7 +67,7 @@ class LabelCamera(RenderedCamera):
     def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
         super().__init__(scene, diagnostics)
         self._items: LabelledObjects | None = None
-        self._items_of: tuple[Any, Any] = (None, None)
+        self._items_of: tuple[object, object] = (None, None)
         image = scene.params.block("camera").block("image")
         if self.options.encoding != "rgb8":
             message = f"<format> {image.text('format')!r} is not used by a {scene.kind}: its pictures are R8G8B8"
@@ -81,19 +81,17 @@ class LabelCamera(RenderedCamera):
     @property
     def items(self) -> LabelledObjects:
         """What wears which label in the sample that is measured, or was measured last."""
-        items: LabelledObjects = self._labelled_surroundings()[0]
-        return items
+        return self._labelled_surroundings()[0]
 
     @property
     def structure(self) -> WorldStructure:
         """What was in the world at that sample."""
-        structure: WorldStructure = self._labelled_surroundings()[1]
-        return structure
+        return self._labelled_surroundings()[1]
 
-    def _labelled_surroundings(self) -> tuple[Any, Any]:
+    def _labelled_surroundings(self) -> tuple[LabelledObjects, WorldStructure]:
         if self.surroundings is None:
             self.surroundings = self.capture_surroundings()
-        found: tuple[Any, Any] = self.surroundings
+        found: tuple[LabelledObjects, WorldStructure] = self.surroundings
         return found
 
     def capture_surroundings(self) -> tuple[LabelledObjects, WorldStructure]:
@@ -135,7 +133,7 @@ class LabelCamera(RenderedCamera):
         np.copyto(kept, film.colours)
         return kept
 
-    def perturb(self, reading: Any, index: int) -> object:
+    def perturb(self, reading: object, index: int) -> object:
         return reading
 
     def _report_unlabelled(self, sim: Simulation) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -183,15 +183,21 @@ class LogicalCamera(Sensor):
 
     # ------------------------------------------------------------------ messages
 
-    def _pose_message(self, pose: Pose) -> Any:
+    def _pose_message(self, pose: Pose) -> msgs.Pose:
         w, x, y, z = pose.quaternion.tolist()
-        return self._pose_type(self._point_type(*pose.position.tolist()), self._quaternion_type(x, y, z, w))
+        point, quaternion = self._point_type(*pose.position.tolist()), self._quaternion_type(x, y, z, w)
+        message: msgs.Pose = self._pose_type(point, quaternion)
+        return message
 
-    def _image_message(self, reading: LogicalImage, time_ns: int) -> Any:
+    def _image_message(self, reading: LogicalImage, time_ns: int) -> msgs.LogicalCameraImage:
         models = [self._model_type(name, self._pose_message(pose)) for name, pose in reading.models]
-        return self._image_type(msgs.header(time_ns, self.frame_id), self._pose_message(reading.pose), models)
+        message: msgs.LogicalCameraImage = self._image_type(
+            msgs.header(time_ns, self.frame_id), self._pose_message(reading.pose), models
+        )
+        return message
 
-    def _frustum_message(self, _: Any, time_ns: int) -> Any:
+    def _frustum_message(self, _: object, time_ns: int) -> msgs.LogicalCameraSensor:
         o = self.options
         header = msgs.header(time_ns, self.frame_id)
-        return self._frustum_type(header, o.near, o.far, o.horizontal_fov, o.aspect_ratio)
+        message: msgs.LogicalCameraSensor = self._frustum_type(header, o.near, o.far, o.horizontal_fov, o.aspect_ratio)
+        return message

@@ -132,7 +132,7 @@ class MultiCamera(RenderedCamera):
     def _report_shared(self, scene: SceneSensor) -> None:
         """Warns of what is one for all cameras of a sensor, and differs between these."""
         options = [eye.options for eye in self.eyes]
-        differ: dict[str, set[Any]] = {
+        differ: dict[str, set[object]] = {
             "<visibility_mask>": {o.visibility_mask for o in options},
             "<anti_aliasing>": {o.anti_aliasing > 0 for o in options},
             "<trigger_topic>": {o.trigger_topic for o in options if o.triggered},
@@ -214,10 +214,10 @@ class MultiCamera(RenderedCamera):
     def shots(self) -> Sequence[Shot]:
         return tuple(eye.shot for eye in self.eyes)
 
-    def develop(self, films: Iterator[Film], notes: Any) -> tuple[CameraReading, ...]:
+    def develop(self, films: Iterator[Film], notes: object) -> tuple[CameraReading, ...]:
         return tuple(eye.develop(next(films)) for eye in self.eyes)
 
-    def perturb(self, reading: Any, index: int) -> tuple[Any, ...]:
+    def perturb(self, reading: Any, index: int) -> tuple[object, ...]:
         return tuple(eye.perturb(picture, index) for eye, picture in zip(self.eyes, reading, strict=True))
 
     # ------------------------------------------------------------------ messages
@@ -252,7 +252,7 @@ class MultiCamera(RenderedCamera):
         header = msgs.header(time_ns, self._frame_of(eye))
         return image_messages.colour_message(header, reading[number].colours, eye.options.encoding)
 
-    def _info_of(self, number: int, _: Any, time_ns: int) -> msgs.CameraInfo:
+    def _info_of(self, number: int, _: object, time_ns: int) -> msgs.CameraInfo:
         eye = self.eyes[number]
         return eye.info.make(time_ns, self._frame_of(eye))
 

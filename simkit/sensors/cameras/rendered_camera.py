@@ -231,7 +231,7 @@ class RenderedCamera(RenderedSampler):
     def _colour_message(self, reading: Any, time_ns: int) -> msgs.Image:
         return image_messages.colour_message(self._image_header(time_ns), reading.colours, self.options.encoding)
 
-    def _info_message(self, _: Any, time_ns: int) -> msgs.CameraInfo:
+    def _info_message(self, _: object, time_ns: int) -> msgs.CameraInfo:
         return self._info.make(time_ns, self.optical_frame_id or self.frame_id)
 
     def _info_topic(self, beside: str) -> str:

@@ -116,7 +116,7 @@ class RgbdCamera(RenderedCamera):
             return Shot(view), Shot(view, depth=True, sharp=True)
         return (Shot(view, depth=True),)
 
-    def develop(self, films: Iterator[Film], notes: Any) -> object:
+    def develop(self, films: Iterator[Film], notes: object) -> object:
         film = next(films)
         colours = _NO_COLOURS if film.colours is None else self._develop_colours(film.colours)
         if film.depths is None:

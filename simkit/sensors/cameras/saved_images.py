@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from simkit import msgs
 from simkit.params import Params
 from simkit.runtime.communication.publisher import Publisher, TopicSides
 from simkit.runtime.communication.subscription import TopicReaders
@@ -125,7 +126,7 @@ def _write(path: Path, data: bytes) -> None:
         raise
 
 
-def encode_png(message: Any, far: float | None = None) -> bytes:
+def encode_png(message: msgs.Image, far: float | None = None) -> bytes:
     """An `Image` message as a PNG: 8 or 16 bits as they are, a Bayer image as its mosaic.
 
     Depths (`32FC1` in metres) become shades of grey, from white at 0 to black at `far` [m], as in Gazebo; without it

@@ -81,7 +81,7 @@ class ThermalCamera(RenderedCamera):
         resolution = _COARSE if bits == 8 else _FINE
         self.options = extend_options(self.options, ThermalOptions, bits=bits, resolution=resolution)
         self._heat: TemperatureMap | None = None
-        self._heat_of: tuple[Any, Any] = (None, None)
+        self._heat_of: tuple[object, object] = (None, None)
 
     def describe(self) -> dict[str, object]:
         """Temperatures in K."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simkit.params import Params
 from simkit.sensors.cameras import image_messages
@@ -43,7 +43,7 @@ class WideAngleCamera(Camera):
             self._cube = CubeMap(model)
         return self._cube.shots
 
-    def develop(self, films: Iterator[Film], notes: Any) -> CameraReading:
+    def develop(self, films: Iterator[Film], notes: object) -> CameraReading:
         assert self._cube is not None
         colours = self._cube.develop(films, self._spare_colours.take())
         return CameraReading(

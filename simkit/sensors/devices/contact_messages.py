@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -98,7 +98,7 @@ def _state(
 ) -> msgs.ContactState:
     vector, wrench, axes = types.vector, types.wrench, reading.axes
 
-    def vectors(rows: Vector) -> list[Any]:
+    def vectors(rows: Vector) -> list[msgs.Vector3]:
         return [vector(*row) for row in rows.tolist()]
 
     forces = pair.forces @ axes

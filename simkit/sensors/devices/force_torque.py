@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -108,7 +108,7 @@ class ForceTorque(Sensor):
         # for Gazebo's formula: the joint frame in the child link's body
         self._joint_frame = self._link.offset @ joint.pose_child
         self._is_turned = not np.array_equal(self._axes_turn, np.eye(3))
-        self._viewed: Any = None
+        self._viewed: mujoco.MjData | None = None
 
     def products(self) -> dict[str, Product]:
         return {"forcetorque": Product(TYPE, self._message_of)}
@@ -157,7 +157,8 @@ class ForceTorque(Sensor):
         values = self.noise.apply(np.concatenate((reading.force, reading.torque)), index)
         return Wrench(values[:3], values[3:])
 
-    def _message_of(self, reading: Wrench, time_ns: int) -> Any:
+    def _message_of(self, reading: Wrench, time_ns: int) -> msgs.WrenchStamped:
         stamped, wrench, vector = msgs.types_of(*_TYPES)
         force, torque = vector(*reading.force.tolist()), vector(*reading.torque.tolist())
-        return stamped(msgs.header(time_ns, self.frame_id), wrench(force, torque))
+        message: msgs.WrenchStamped = stamped(msgs.header(time_ns, self.frame_id), wrench(force, torque))
+        return message

@@ -101,7 +101,7 @@ class SolarSensor(Sensor):
     def products(self) -> dict[str, Product]:
         number, truth_value, text = msgs.types_of(NUMBER, "std_msgs/msg/Bool", "std_msgs/msg/String")
 
-        def part(make: Callable[[Any], Any], of: Callable[[SolarReading], Any]) -> Callable[[Any, int], Any]:
+        def part(make: Callable[[Any], object], of: Callable[[SolarReading], object]) -> Callable[[Any, int], object]:
             return lambda reading, _: make(of(reading))
 
         return {

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from simkit import msgs
 from simkit.pose import Vector
 from simkit.sensors.batch import SensorBatch, form_batches
+from simkit.sensors.bias_drift import NoiseInterval, NoiseState
 from simkit.sensors.inertial.imu_measurement import ImuMeasurement
 from simkit.sensors.inertial.inertial_kinematics import sensor_motion
 from simkit.sensors.sample import Sample
@@ -55,8 +56,8 @@ class ImuBatch(SensorBatch[ImuMeasurement]):
         self._is_silent, self._is_white = first.noise.is_silent, first.noise._white is not None
         self._normals, self._first_index, self._seed = np.empty((0, 0, 0)), 0, self.sim.seed
         self._index = -1
-        self._constants_of: Any = None
-        self._states: list[Any] = []
+        self._constants_of: NoiseInterval | None = None
+        self._states: list[NoiseState] = []
         self._message_constants: list[tuple[str, tuple[Vector, ...], bool]] = []
 
     def capture_all(self, data: mujoco.MjData) -> None:

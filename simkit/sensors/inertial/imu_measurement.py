@@ -159,7 +159,7 @@ class ImuMeasurement(Sensor):
         self._arm: tuple[float, ...] = tuple(self._offset_position.tolist())
         self._mount: QuaternionTuple = tuple(self._offset.quaternion.tolist())
         self._rotation: tuple[float, ...] = tuple(self._offset_rotation.reshape(9).tolist())
-        self._viewed: Any = None
+        self._viewed: mujoco.MjData | None = None
 
     # ------------------------------------------------------------------ measuring
 

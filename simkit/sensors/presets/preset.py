@@ -78,7 +78,7 @@ def _outline_items(settings: Settings) -> list[str]:
     return ["/".join(of_these) + text for text, of_these in names.items()]
 
 
-def format_value(value: Any) -> str:
+def format_value(value: object) -> str:
     """A value as a file would have it: a number with all its digits, `true` or `false`."""
     if isinstance(value, bool):
         return str(value).lower()

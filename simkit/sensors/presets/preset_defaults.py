@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simkit.diagnostics import Diagnostics, Where, did_you_mean
 from simkit.params import Params
 from simkit.sensors.presets import find, normalise_name, presets
-from simkit.sensors.presets.preset import Preset, format_value, outline
+from simkit.sensors.presets.preset import Preset, Settings, format_value, outline
 
 if TYPE_CHECKING:
     from simkit.scene import SceneSensor
@@ -42,7 +42,7 @@ def add_preset_defaults(sensor: SceneSensor, diagnostics: Diagnostics) -> SceneS
     preset = _find_preset(sensor, element, diagnostics)
     if preset is None:
         return sensor
-    given: dict[str, Any] = {}
+    given: dict[str, object] = {}
     params = _Merge(element.where, sensor.params.diagnostics).merged(sensor.params, preset.elements, given)
     for child in ("preset", "update_rate"):
         params.child(child)
@@ -85,7 +85,7 @@ class _Merge:
     def __init__(self, where: Where, diagnostics: Diagnostics) -> None:
         self._where, self._diagnostics = where, diagnostics
 
-    def merged(self, owner: Params, settings: Mapping[str, Any], given: dict[str, Any]) -> Params:
+    def merged(self, owner: Params, settings: Settings, given: dict[str, object]) -> Params:
         """A copy of `owner` with what it does not say itself; what was taken goes into `given`."""
         children = list(owner.children)
         attributes = dict(owner.attributes)
@@ -96,7 +96,7 @@ class _Merge:
                 continue
             at = _find_child_index(children, name)
             if isinstance(value, Mapping):
-                below: dict[str, Any] = {}
+                below: dict[str, object] = {}
                 mine = children[at] if at is not None else self._element(name)
                 block = self.merged(mine, value, below)
                 if at is None:
@@ -123,7 +123,7 @@ def _find_child_index(children: list[Params], name: str) -> int | None:
     return None
 
 
-def _missing_settings(block: Params, settings: Mapping[str, Any]) -> Mapping[str, Any]:
+def _missing_settings(block: Params, settings: Settings) -> Settings:
     """What a block of the file may take from a preset: nothing if it is a noise that is to be none."""
     said = {c.name for c in block.children} | {f"@{a}" for a in block.attributes}
     if block.name == "noise" and "none" in {block.attributes.get("type"), *(c.value for c in block.children)}:

@@ -37,7 +37,7 @@ def _make_preset(fields: dict[str, Any]) -> Preset:
 
 def _expand_axes(settings: Settings) -> Settings:
     """Give each axis of `xyz` and `xy` the settings that they have in common."""
-    expanded: dict[str, Any] = {}
+    expanded: dict[str, object] = {}
     for key, value in settings.items():
         value = _expand_axes(value) if isinstance(value, dict) else value
         for name in key if key in _AXES else (key,):
