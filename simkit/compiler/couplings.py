@@ -69,8 +69,8 @@ class Couplings:
         Returns:
             Names of the constraints that stand for it.
         """
-        first = self._turning(joint, joint.parent_link, 0)
-        second = self._turning(joint, joint.child_link, 1)
+        first = self._gear_hinge(joint, joint.parent_link, 0)
+        second = self._gear_hinge(joint, joint.child_link, 1)
         if first is None or second is None:
             self.diagnostics.warning(
                 "SK-PHYS-021",
@@ -82,13 +82,13 @@ class Couplings:
         name = f"{joint.scoped}#gear"
         ratio = -joint.gearbox_ratio * first[1] * second[1]
         self.couple(name, second[0], first[0], 0.0, ratio)
-        self._follow(first[2], Follower(second[0], ratio))
+        self._add_follower(first[2], Follower(second[0], ratio))
         self.diagnostics.note(
             "SK-PHYS-009", f"gearbox {joint.scoped} is a stiff constraint between two joints", joint.where
         )
         return (name,)
 
-    def _turning(self, joint: SceneJoint, link: str, axis: int) -> tuple[str, float, JointBinding] | None:
+    def _gear_hinge(self, joint: SceneJoint, link: str, axis: int) -> tuple[str, float, JointBinding] | None:
         """The hinge between reference and `link`, the sign of its angle along the gearbox' axis, its binding."""
         for other in self.record.joints.values():
             ends = {other.scene.parent_link, other.scene.child_link}
@@ -109,21 +109,21 @@ class Couplings:
         """Couples every axis with a `<mimic>` to the axis at the head of its chain of leaders."""
         wanted = {(j.scoped, i): (j, a.mimic) for j in joints for i, a in enumerate(j.axes) if a.mimic is not None}
         for (scoped, axis), (joint, _) in wanted.items():
-            law = self._head(joint, axis, wanted)
+            law = self._first_leader(joint, axis, wanted)
             if law is None:
                 continue
             leader, of, ratio, offset = law
             follower = self.record.joints[scoped].joint_names[axis]
             self.couple(f"{scoped}#mimic{axis}", follower, leader.joint_names[of], offset, ratio)
-            self._follow(leader, Follower(follower, ratio, offset=offset, axis=of))
+            self._add_follower(leader, Follower(follower, ratio, offset=offset, axis=of))
 
     def tie(self, follower: str, leader: str, ratio: float, offset: float) -> None:
         """Has one joint of one axis follow another, by their scoped names: follower = offset + ratio · leader."""
         ahead, behind = self.record.joints[leader], self.record.joints[follower].joint_names[0]
         self.couple(f"{follower}#mimic0", behind, ahead.joint_names[0], offset, ratio)
-        self._follow(ahead, Follower(behind, ratio, offset=offset))
+        self._add_follower(ahead, Follower(behind, ratio, offset=offset))
 
-    def _head(
+    def _first_leader(
         self, joint: SceneJoint, axis: int, wanted: dict[tuple[str, int], tuple[SceneJoint, Mimic]]
     ) -> tuple[JointBinding, int, float, float] | None:
         """The axis that leads in the end, with ratio and offset of the whole chain; None, reported, without one."""
@@ -166,7 +166,7 @@ class Couplings:
         )
         return None
 
-    def _follow(self, leader: JointBinding, follower: Follower) -> None:
+    def _add_follower(self, leader: JointBinding, follower: Follower) -> None:
         current = self.record.joints[leader.scoped]
         self.record.joints[leader.scoped] = replace(current, followers=(*current.followers, follower))
 

@@ -107,7 +107,7 @@ class GeomWriter:
         elif isinstance(shape, Polyline):
             self._outlines(place, owner, collision, shape, contact)
         else:
-            parts = self._parts(shape, collision.where)
+            parts = self._visual_parts(shape, collision.where)
             if parts:
                 self._mesh_collision(place, owner, collision, parts, contact)
 
@@ -194,32 +194,34 @@ class GeomWriter:
         primitive = primitive_of(shape, True) if worn is None else None
         pose = visual.pose_link
         if isinstance(shape, Heightmap):
-            self._heightmap(place, owner, pose, shape, visual.where, self._drawn(visual, None, pixels))
+            self._heightmap(place, owner, pose, shape, visual.where, self._visual_settings(visual, None, pixels))
         elif primitive is None:
-            for part in self._parts(shape, visual.where) if worn is None else [worn]:
-                self._part(place, owner, visual, part, pixels)
+            for part in self._visual_parts(shape, visual.where) if worn is None else [worn]:
+                self._add_visual_part(place, owner, visual, part, pixels)
         else:
             size, kind = primitive.size, primitive.type
             if isinstance(shape, Plane) and not place.fixed:
                 size, kind = (size[0], size[1], 1e-4), mujoco.mjtGeom.mjGEOM_BOX
                 pixels = None
-            drawn = self._drawn(visual, None, pixels)
+            drawn = self._visual_settings(visual, None, pixels)
             self._add(place, owner, pose @ primitive.pose, type=kind, size=size, **drawn)
             if kind == mujoco.mjtGeom.mjGEOM_PLANE and visual.material is not None and visual.material.double_sided:
                 self._add(place, owner, pose @ primitive.pose @ _OVER, type=kind, size=size, **drawn)
 
-    def _part(self, place: GeomParent, owner: GeomOwner, visual: SceneVisual, part: MeshPart, pixels: Any) -> None:
+    def _add_visual_part(
+        self, place: GeomParent, owner: GeomOwner, visual: SceneVisual, part: MeshPart, pixels: Any
+    ) -> None:
         """Triangles of one material: the file's material wins over the mesh's own."""
         if not has_area(part, LEAST_AREA):
             name = f" ({part.name})" if part.name else ""
             text = f"{_collision_title(visual.geometry)}: a part{name} whose triangles have no area is not drawn"
             report_once(self.diagnostics, "note", "SK-MESH-013", text, visual.where)
             return
-        look = self._drawn(visual, part, pixels if part.uv is not None else None)
-        mesh = self._surface(visual, part, self.assets.has_texture(look["material"]))
+        look = self._visual_settings(visual, part, pixels if part.uv is not None else None)
+        mesh = self._surface_mesh(visual, part, self.assets.has_texture(look["material"]))
         self._add(place, owner, visual.pose_link, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=mesh, **look)
 
-    def _surface(self, visual: SceneVisual, part: MeshPart, is_textured: bool) -> str:
+    def _surface_mesh(self, visual: SceneVisual, part: MeshPart, is_textured: bool) -> str:
         """The name of a part's triangles as the visual wears them."""
         if visual.material is None or not (is_textured or visual.material.double_sided):
             return self.assets.part(part, is_textured)
@@ -231,7 +233,7 @@ class GeomWriter:
             vertices, uv = np.vstack([vertices, vertices]), None if uv is None else np.vstack([uv, uv])
         return self.assets.surface(vertices, faces, uv)
 
-    def _drawn(self, visual: SceneVisual, part: MeshPart | None, pixels: Any) -> dict[str, Any]:
+    def _visual_settings(self, visual: SceneVisual, part: MeshPart | None, pixels: Any) -> dict[str, Any]:
         """Settings of a drawn geom; `pixels` is the file's texture where it can be worn."""
         look = geom_colours(visual, part)
         if visual.material is None and part is not None:
@@ -270,7 +272,7 @@ class GeomWriter:
         )
         return False
 
-    def _parts(self, shape: Geometry, where: Where) -> list[MeshPart]:
+    def _visual_parts(self, shape: Geometry, where: Where) -> list[MeshPart]:
         if isinstance(shape, Mesh):
             return [] if shape.missing else load_mesh(shape, self.diagnostics, where)
         if isinstance(shape, Cone):

@@ -124,11 +124,11 @@ class JointWriter:
 
     # ------------------------------------------------------------------ in the tree
 
-    def hang(self, body: Any, link: SceneLink, edge: TreeEdge) -> None:
+    def add_tree_joint(self, body: Any, link: SceneLink, edge: TreeEdge) -> None:
         """Adds the joint by which `link` hangs in the tree to its body."""
         joint = edge.joint
-        names, followers = self._move(body, joint, link.pose_world, edge.is_reversed)
-        self._note(
+        names, followers = self._add_motions(body, joint, link.pose_world, edge.is_reversed)
+        self._bind(
             replace(
                 self._binding(joint),
                 joint_names=names,
@@ -139,23 +139,23 @@ class JointWriter:
             )
         )
 
-    def floating(self, joint: SceneJoint) -> None:
+    def bind_floating(self, joint: SceneJoint) -> None:
         """A floating joint: it binds nothing, and reads and sets how its child stands to its parent."""
         child, parent = (self.record.links.get(n) for n in (joint.child_link, joint.parent_link))
         is_reversed = not (child and child.free_joint) and bool(parent and parent.free_joint)
         free = parent if is_reversed else child
         if free is not None and free.free_joint:
             binding = replace(self._binding(joint), joint_names=(free.free_joint,), free=free.scoped)
-            self._note(replace(binding, is_reversed=is_reversed))
+            self._bind(replace(binding, is_reversed=is_reversed))
             return
         self.diagnostics.warning(
             "SK-JOINT-005",
             f"floating joint {joint.scoped} can be read but not set: another joint holds {joint.child_link}",
             joint.where,
         )
-        self._note(self._binding(joint))
+        self._bind(self._binding(joint))
 
-    def unmoving(self, joint: SceneJoint, is_expected: bool = True) -> None:
+    def bind_static(self, joint: SceneJoint, is_expected: bool = True) -> None:
         """Notes a joint between links that never move: it is there by name and has no degree of freedom."""
         if not is_expected and joint.type != "fixed":
             self.diagnostics.warning(
@@ -164,9 +164,11 @@ class JointWriter:
                 "which are both static: it never moves",
                 joint.where,
             )
-        self._note(self._binding(joint))
+        self._bind(self._binding(joint))
 
-    def _move(self, body: Any, joint: SceneJoint, at: Pose, is_reversed: bool) -> tuple[Any, tuple[Follower, ...]]:
+    def _add_motions(
+        self, body: Any, joint: SceneJoint, at: Pose, is_reversed: bool
+    ) -> tuple[Any, tuple[Follower, ...]]:
         """Adds the motions of a joint to a body that stands `at` a pose in the world.
 
         Turned round, the body is the file's parent: the same motions in the other order and direction.
@@ -254,29 +256,29 @@ class JointWriter:
 
     # ------------------------------------------------------------------ loops
 
-    def close(self, joint: SceneJoint) -> None:
+    def add_loop_joint(self, joint: SceneJoint) -> None:
         """A joint that closes a loop: it moves a twin of its child link, and a weld holds the twin on the link.
 
         So the joint has a coordinate, limits, dynamics and drives like any other. The twin has a part of the link's
         mass, which the link gives up.
         """
-        is_reversed = self._body(joint.child_link) == WORLD
+        is_reversed = self._body_name(joint.child_link) == WORLD
         moved, under = (joint.parent_link, joint.child_link) if is_reversed else (joint.child_link, joint.parent_link)
         carrier = self.carriers.get(moved, moved)
         at, twin = self._body_pose(carrier), f"{joint.scoped}#twin"
         has_motion = bool(_KINDS.get(joint.type))
         pose = self._body_pose(under).inverse() @ at
-        body = add_split_body(self.spec, twin, self._body(carrier), self._body(under), pose, has_motion)
-        if self._body(under) == WORLD:
+        body = add_split_body(self.spec, twin, self._body_name(carrier), self._body_name(under), pose, has_motion)
+        if self._body_name(under) == WORLD:
             self.record.root_bodies.append(twin)
-        names, followers = self._move(body, joint, at, is_reversed)
+        names, followers = self._add_motions(body, joint, at, is_reversed)
         weld, thread = f"{joint.scoped}#loop", f"{joint.scoped}#thread"
         anchor = at.inverse() @ joint.pose_world
-        self.couplings.weld(weld, twin, self._body(carrier), anchor.position, damping=LOOP_DAMPING)
+        self.couplings.weld(weld, twin, self._body_name(carrier), anchor.position, damping=LOOP_DAMPING)
         self.diagnostics.note(
             "SK-PHYS-020", f"joint {joint.scoped} closes a loop: it is held by a constraint", joint.where
         )
-        self._note(
+        self._bind(
             replace(
                 self._binding(joint),
                 joint_names=names,
@@ -290,15 +292,15 @@ class JointWriter:
             )
         )
 
-    def gear(self, joint: SceneJoint) -> None:
+    def add_gearbox(self, joint: SceneJoint) -> None:
         """A gearbox, as a constraint between two joints."""
         names = self.couplings.gear(joint)
-        self._note(replace(self._binding(joint), equalities=names))
+        self._bind(replace(self._binding(joint), equalities=names))
 
-    def tie(self, name: str, parent: str, child: str, active: bool) -> None:
+    def add_weld(self, name: str, parent: str, child: str, active: bool) -> None:
         """A weld between two links as they stand in the file, without a joint."""
         anchor = self._body_pose(parent).inverse() @ self.links[child].pose_world
-        self.couplings.weld(name, self._body(child), self._body(parent), anchor.position, active)
+        self.couplings.weld(name, self._body_name(child), self._body_name(parent), anchor.position, active)
 
     # ------------------------------------------------------------------ bindings
 
@@ -307,7 +309,7 @@ class JointWriter:
         binding = self.record.links.get(link)
         return self.links[link].pose_world @ binding.offset.inverse() if binding else IDENTITY
 
-    def _body(self, link: str) -> str:
+    def _body_name(self, link: str) -> str:
         binding = self.record.links.get(link)
         return binding.body_name if binding else WORLD
 
@@ -322,7 +324,7 @@ class JointWriter:
             pose_parent=parent.pose_world.inverse() @ joint.pose_world if parent else joint.pose_world,
         )
 
-    def _note(self, binding: JointBinding) -> None:
+    def _bind(self, binding: JointBinding) -> None:
         self.record.joints[binding.scoped] = binding
 
 

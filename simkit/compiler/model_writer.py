@@ -49,38 +49,38 @@ class ModelWriter:
                 self._static_link(link)
         for joint in joints:
             if {joint.parent_link, joint.child_link} <= static | {WORLD}:
-                self.joints.unmoving(joint, is_expected=model.static)
+                self.joints.bind_static(joint, is_expected=model.static)
         joints = [j for j in joints if not {j.parent_link, j.child_link} <= static | {WORLD}]
         tree = plan_tree(moving, joints, static)
         if tree.depth > DEEPEST:
-            self._too_deep(tree)
+            self._report_depth(tree)
             return
         self.joints.carriers = tree.carriers
         self._bodies(tree)
         for joint in tree.loops:
-            self.joints.close(joint)
+            self.joints.add_loop_joint(joint)
         for joint in tree.constraints:
-            self.joints.gear(joint)
+            self.joints.add_gearbox(joint)
         self.joints.couplings.mimics(joints)
         exclude_self_collisions(self.spec, self.record, moving, joints)
 
     def join(self, joints: list[SceneJoint], links: Mapping[str, LinkBinding]) -> None:
         """Adds joints between models as constraints."""
-        self._know(links)
+        self._bind_links(links)
         for joint in joints:
             ends = {joint.parent_link, joint.child_link}
             if not ends <= {WORLD, *links}:
                 continue
             if all(end == WORLD or links[end].static for end in ends):
-                self.joints.unmoving(joint, is_expected=False)
+                self.joints.bind_static(joint, is_expected=False)
             elif joint.type == "floating":
-                self.joints.floating(joint)
+                self.joints.bind_floating(joint)
             elif joint.type == "gearbox":
-                self.joints.gear(joint)
+                self.joints.add_gearbox(joint)
             else:
-                self.joints.close(joint)
+                self.joints.add_loop_joint(joint)
                 self._exclude(joint, links)
-        self._forget(links)
+        self._unbind_links(links)
 
     def _exclude(self, joint: SceneJoint, links: Mapping[str, LinkBinding]) -> None:
         """Links across a joint never touch; of a static link that cannot be told from the rest of the world."""
@@ -92,15 +92,15 @@ class ModelWriter:
     def weld(self, name: str, parent: str, child: str, links: Mapping[str, LinkBinding], active: bool) -> None:
         """Adds a weld between two links, of this model or of others."""
         known = dict(self.record.links)
-        self._know(links)
-        self.joints.tie(name, parent, child, active)
-        self._forget({n: b for n, b in links.items() if n not in known})
+        self._bind_links(links)
+        self.joints.add_weld(name, parent, child, active)
+        self._unbind_links({n: b for n, b in links.items() if n not in known})
 
-    def _know(self, links: Mapping[str, LinkBinding]) -> None:
+    def _bind_links(self, links: Mapping[str, LinkBinding]) -> None:
         self.joints.links = {n: b.scene for n, b in links.items()}
         self.record.links.update(links)
 
-    def _forget(self, links: Mapping[str, LinkBinding]) -> None:
+    def _unbind_links(self, links: Mapping[str, LinkBinding]) -> None:
         for name in links:
             self.record.links.pop(name, None)
 
@@ -116,7 +116,7 @@ class ModelWriter:
             binding = replace(binding, body_name=link.scoped, offset=IDENTITY)
             self.record.root_bodies.append(link.scoped)
         self.record.links[link.scoped] = binding
-        self._fill(GeomParent(body, binding.offset, True, 0.0, link.scoped), link)
+        self._add_contents(GeomParent(body, binding.offset, True, 0.0, link.scoped), link)
 
     def _bodies(self, tree: KinematicTree) -> None:
         model = self.record.scene
@@ -141,19 +141,19 @@ class ModelWriter:
             else:
                 pose, above = self.joints.links[parent].pose_world.inverse() @ link.pose_world, bodies[parent]
             body = bodies[link.scoped] = add_body(above, link, pose, inertials.get(link.scoped), needs_mass=needs_mass)
-            free_joint = self._free(body, link) if is_free else ""
+            free_joint = self._add_free_joint(body, link) if is_free else ""
             binding = LinkBinding(link.scoped, link.scoped, IDENTITY, link, model.scoped, False, free_joint=free_joint)
             if not is_free and (link.kinematic or any(link.velocity_decay)):
-                self._only_when_free(link)
+                self._report_kinematic(link)
             self.record.links[link.scoped] = binding
             mass = tree.masses[tree.root_of(link.scoped)]
-            self._fill(GeomParent(body, IDENTITY, False, mass, link.scoped, turning_axis(link, tree)), link)
+            self._add_contents(GeomParent(body, IDENTITY, False, mass, link.scoped, turning_axis(link, tree)), link)
         for link in tree.order:
             edge = tree.edges.get(link.scoped)
             if edge is not None:
-                self.joints.hang(bodies[link.scoped], link, edge)
+                self.joints.add_tree_joint(bodies[link.scoped], link, edge)
         for joint in tree.floating:
-            self.joints.floating(joint)
+            self.joints.bind_floating(joint)
 
     def _inertials(self, tree: KinematicTree, free: set[str]) -> dict[str, BodyInertia]:
         """Mass and inertia of every link that has any, as the compiler takes them; exact ones go to the record."""
@@ -173,7 +173,7 @@ class ModelWriter:
         self.record.exact = {name: (w.mass, w.exact) for name, w in written.items() if w.exact is not None}
         return written
 
-    def _free(self, body: Any, link: SceneLink) -> str:
+    def _add_free_joint(self, body: Any, link: SceneLink) -> str:
         """Lets a link move freely; returns the name of the joint."""
         name = f"{link.scoped}#free"
         joint = body.add_freejoint(name=name)
@@ -193,7 +193,7 @@ class ModelWriter:
             )
         return name
 
-    def _only_when_free(self, link: SceneLink) -> None:
+    def _report_kinematic(self, link: SceneLink) -> None:
         if link.kinematic:
             self.diagnostics.warning(
                 "SK-PHYS-012",
@@ -208,7 +208,7 @@ class ModelWriter:
                 "<dynamics><damping> of the joint slows it down",
             )
 
-    def _too_deep(self, tree: KinematicTree) -> None:
+    def _report_depth(self, tree: KinematicTree) -> None:
         """An error instead of a model; its links and joints are noted, for whoever looks for them meanwhile."""
         last = self.joints.links[tree.deepest]
         self.diagnostics.error(
@@ -221,7 +221,7 @@ class ModelWriter:
                 link.scoped, WORLD, link.pose_world, link, self.record.scene.scoped, True
             )
         for joint in (*(e.joint for e in tree.edges.values()), *tree.loops, *tree.constraints, *tree.floating):
-            self.joints.unmoving(joint)
+            self.joints.bind_static(joint)
 
     def _needs_mass(self, link: SceneLink, tree: KinematicTree, is_free: bool) -> bool:
         """Whether a link has to weigh something: it moves by itself, and no link that is one with it has mass.
@@ -261,7 +261,7 @@ class ModelWriter:
                 stack += tree.children.get(name, ())
         return False
 
-    def _fill(self, place: GeomParent, link: SceneLink) -> None:
+    def _add_contents(self, place: GeomParent, link: SceneLink) -> None:
         for collision in link.collisions:
             self.geoms.collision(place, collision)
         for visual in link.visuals:

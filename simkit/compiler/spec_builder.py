@@ -117,11 +117,11 @@ class SpecBuilder:
             links = len(list(model.all_links()))
             if links * (links - 1) // 2 > PAIRS_MOST:  # else nobody wants it, and there may be thousands of models
                 record.own_bit = self._free_bit()
-            self._write(record)
+            self._write_model(record)
         if movable:
-            self._join_again(model)
+            self._rejoin_model(model)
 
-    def _write(self, record: ModelRecord) -> None:
+    def _write_model(self, record: ModelRecord) -> None:
         """Writes a model, then those nested in it that have a specification of their own, then what joins them."""
         model = record.scene
         joints = self._joints_of(model)
@@ -184,7 +184,7 @@ class SpecBuilder:
             writer.join(rest, {n: b for r in self.records.values() for n, b in r.links.items()})
             self._names = None
 
-    def _join_again(self, model: SceneModel) -> None:
+    def _rejoin_model(self, model: SceneModel) -> None:
         """Ties a model that was written anew to the others as before."""
         own = {link.scoped for link in model.all_links()}
         cut, self._cut = self._cut, []

@@ -45,13 +45,13 @@ class AssetFolder:
             root = Path(os.path.commonpath([file.parent, *(c.parent for c in beside)]))
             if any(root in c.parents and len(c.relative_to(root).parts) > 4 for c in (file, *beside)):
                 root, beside = file.parent, []
-            slot = self._slot(root)
+            slot = self._free_place(root)
             for source in (file, *beside):
                 self._copy(source, self.folder / slot / source.relative_to(root))
             self._placed[file] = f"{self.folder.name}/{slot}/{file.relative_to(root).as_posix()}"
         return self._placed[file]
 
-    def _slot(self, root: Path) -> str:
+    def _free_place(self, root: Path) -> str:
         """A folder of its own for each place that files come from, named after it."""
         if root not in self._slots:
             generic = {"meshes", "mesh", "visual", "collision", "textures", "materials"}

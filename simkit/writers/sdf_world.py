@@ -199,7 +199,7 @@ class _Writer:
             "",
             [
                 pose(here.inverse() @ link.pose_world),
-                parts.inertial(self._allowed(link)),
+                parts.inertial(self._written_inertia(link)),
                 changed_element("gravity", link.gravity, True),
                 changed_element("kinematic", link.kinematic, False),
                 changed_element("self_collide", link.self_collide, False),
@@ -249,7 +249,7 @@ class _Writer:
             type=joint.type,
         )
 
-    def _allowed(self, link: SceneLink) -> Inertial:
+    def _written_inertia(self, link: SceneLink) -> Inertial:
         """The link's inertia; the nearest that SDF takes where it has a negative moment."""
         found = repair_inertia(link.inertial)
         if link.inertial.mass <= 0 or found.old[0] >= -1e-15:

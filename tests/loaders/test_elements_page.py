@@ -45,7 +45,7 @@ def asked(load, write, monkeypatch) -> dict[str, set[str]]:
         found[place] |= element.asked | {f"@{name}" for name in element.attributes_asked}
         for child in element.children:
             if child.was_read and ELEMENTS.row(place, child.name):
-                visit(child, ELEMENTS.inside(place, child.name))
+                visit(child, ELEMENTS.content_place(place, child.name))
 
     for root in roots:
         visit(root, "sdf")

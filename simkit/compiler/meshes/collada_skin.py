@@ -140,11 +140,11 @@ class _SkinFile(ColladaFile):
             skin = None if controller is None else controller.find("{*}skin")
             geometry = None if skin is None else self._target(skin, "source")
             if geometry is not None and geometry.tag.endswith("geometry"):
-                self._hang(skin, geometry, instance, found)
+                self._bind_geometry(skin, geometry, instance, found)
         return {place: tuple(parts) for place, parts in found.items()}
 
-    def _hang(self, skin: Any, geometry: Any, instance: Any, found: dict[int, list[MeshPart]]) -> None:
-        places, inverses, held = self._held(skin)
+    def _bind_geometry(self, skin: Any, geometry: Any, instance: Any, found: dict[int, list[MeshPart]]) -> None:
+        places, inverses, held = self._vertex_bones(skin)
         shape = skin.find("{*}bind_shape_matrix")
         bind = np.eye(4) if shape is None else np.array([float(v) for v in shape.text.split()]).reshape(4, 4)
         bound = {
@@ -170,7 +170,7 @@ class _SkinFile(ColladaFile):
                 )  # fmt: skip
                 found.setdefault(places[local], []).append(piece)
 
-    def _held(self, skin: Any) -> tuple[list[int], Floats, Any]:
+    def _vertex_bones(self, skin: Any) -> tuple[list[int], Floats, Any]:
         """Places of the skin's joints among the bones, their inverse bind matrices, and who holds each vertex."""
         inputs = {e.get("semantic"): self._target(e, "source") for e in skin.iterfind("{*}joints/{*}input")}
         names = next(iter(inputs["JOINT"].iterfind("{*}Name_array")), None)
@@ -193,9 +193,9 @@ class _SkinFile(ColladaFile):
             if count:
                 held[i] = max(0, joint[start + int(np.argmax(strong[start : start + count]))])
             start += count
-        return places, inverses, self._thinned(places, held)
+        return places, inverses, self._merge_light_bones(places, held)
 
-    def _thinned(self, places: list[int], held: Any) -> Any:
+    def _merge_light_bones(self, places: list[int], held: Any) -> Any:
         """Bones that hold hardly anything give it to the nearest bone above them that the skin knows."""
         share = np.bincount(held, minlength=len(places)) / max(1, len(held))
         local = {place: i for i, place in enumerate(places)}

@@ -92,7 +92,7 @@ class _FileGatherer:
         self.strips = False
 
     def bundle(self, root: Params) -> GatheredFile:
-        whole = self._expanded(root, self.folder, 0)
+        whole = self._with_includes(root, self.folder, 0)
         self._settings(whole)
         self._assets(whole)
         first = len(self.shared.lines)
@@ -111,14 +111,14 @@ class _FileGatherer:
 
     # ------------------------------------------------------------------ includes
 
-    def _expanded(self, element: Params, folder: Path | None, depth: int) -> Params:
+    def _with_includes(self, element: Params, folder: Path | None, depth: int) -> Params:
         """A copy of an element with what it includes in place of the includes."""
         children: list[Params] = []
         for child in element.children:
             if child.name == "include":
                 children += self._included(child, folder, depth)
             else:
-                children.append(self._expanded(child, folder, depth))
+                children.append(self._with_includes(child, folder, depth))
         self.shared.count += 1
         if self.shared.count == MOST_ELEMENTS * 10:
             self.shared.diagnostics.error("SK-MJCF-005", f"more than {self.shared.count} elements", element.where)
@@ -148,7 +148,7 @@ class _FileGatherer:
         document = parse_file(path, diagnostics)
         if document is None:
             return []
-        whole = self._expanded(document.root, path.parent, depth + 1)
+        whole = self._with_includes(document.root, path.parent, depth + 1)
         model = document.root.attribute("model") if document.root.name == "mujoco" else ""
         if not whole.children:
             diagnostics.error("SK-MJCF-006", f"{name} holds nothing to include", include.where)

@@ -152,7 +152,7 @@ class Resolver:
         diagnostics: Diagnostics,
         relative_to: Path | None,
     ) -> None:
-        near = did_you_mean(name, self._siblings(relative_to)) if scheme in ("model", "package") else ""
+        near = did_you_mean(name, self._nearby_names(relative_to)) if scheme in ("model", "package") else ""
         if scheme == "package":
             folder, tried = self.find_package(name, relative_to)
             if folder is None:
@@ -180,27 +180,31 @@ class Resolver:
         if len(uri) > 4096 or "\0" in uri or any(len(part.encode(errors="replace")) > 255 for part in uri.split("/")):
             return None, []  # no file has such a name
         if uri.startswith(("http://", "https://")):
-            return first_existing(self._fuel(uri))
+            return first_existing(self._fuel_candidates(uri))
         uri = package_uri(uri)
         scheme, separator, rest = uri.partition("://")
         if not separator:
-            return self._path(unquote(uri) if not self._exists(uri, relative_to) else uri, relative_to)
+            return self._search_path(unquote(uri) if not self._exists(uri, relative_to) else uri, relative_to)
         rest = unquote(rest)
         if scheme == "file":
-            return self._path(rest, relative_to)
+            return self._search_path(rest, relative_to)
         if scheme not in ("model", "package"):
             return None, []
         if leaves_folder(rest):
             return None, None
-        named = self._named(rest, relative_to)
+        named = self._model_candidates(rest, relative_to)
         if scheme == "model":
-            return first_existing(chain(named, self._packaged(rest, relative_to)))
-        return first_existing(chain(self._packaged(rest, relative_to), named, self._renamed(rest, relative_to)))
+            return first_existing(chain(named, self._package_candidates(rest, relative_to)))
+        return first_existing(
+            chain(
+                self._package_candidates(rest, relative_to), named, self._renamed_checkout_candidates(rest, relative_to)
+            )
+        )
 
     def _exists(self, text: str, relative_to: Path | None) -> bool:
         return relative_to is not None and is_existing(relative_to / text)
 
-    def _named(self, rest: str, relative_to: Path | None) -> Iterator[Path]:
+    def _model_candidates(self, rest: str, relative_to: Path | None) -> Iterator[Path]:
         """Candidates for `model://name/...`: in each folder, and a folder that itself has that name."""
         name, _, inside = rest.strip("/").partition("/")
         for root in self.paths:
@@ -220,14 +224,14 @@ class Resolver:
             yield bundle / name / inside
             yield from sorted(bundle.glob(f"*/{name}/")) if not inside and name.replace("_", "").isalnum() else ()
 
-    def _packaged(self, rest: str, relative_to: Path | None) -> Iterator[Path]:
+    def _package_candidates(self, rest: str, relative_to: Path | None) -> Iterator[Path]:
         """Candidates for `package://name/...` in the package of that name."""
         name, _, inside = rest.strip("/").partition("/")
         around = [absolute_path(f) for f in (relative_to, self.base) if f is not None]
         for place in package_folders(name, self.packages, around, self.paths, self._below, self._near):
             yield place / inside
 
-    def _renamed(self, rest: str, relative_to: Path | None) -> Iterator[Path]:
+    def _renamed_checkout_candidates(self, rest: str, relative_to: Path | None) -> Iterator[Path]:
         """`package://name/a/b` below the folders above the file: a checkout whose folder has another name."""
         inside = rest.strip("/").partition("/")[2]
         if relative_to is None or "/" not in inside or enclosing_package(absolute_path(relative_to)) is not None:
@@ -237,7 +241,7 @@ class Resolver:
             if len(ancestor.parts) > 3 and ancestor != Path.home():
                 yield ancestor / inside
 
-    def _moved(self, path: Path, relative_to: Path | None) -> Path | None:
+    def _find_relocated(self, path: Path, relative_to: Path | None) -> Path | None:
         """An absolute path of another machine: its end below a package that is here."""
         parts = path.parts
         for position in range(len(parts) - 2, 0, -1):
@@ -248,7 +252,7 @@ class Resolver:
                     return folder.joinpath(*parts[position + 1 :])
         return None
 
-    def _path(self, text: str, relative_to: Path | None) -> tuple[Path | None, list[Path] | None]:
+    def _search_path(self, text: str, relative_to: Path | None) -> tuple[Path | None, list[Path] | None]:
         """A plain path: absolute, or relative to the file's folder, then to each resource folder.
 
         An absolute one that is not here, as `$(find pkg)` leaves them on another machine, is looked for in its package.
@@ -265,7 +269,7 @@ class Resolver:
             limits += [*self.packages.values(), *self._found.values()]
             kept = [c for c in candidates if any(c == limit or limit in c.parents for limit in limits)]
             if not any(is_existing(c) for c in kept) and Path(text).is_absolute() and ".." not in Path(text).parts:
-                moved = self._moved(Path(text), relative_to)
+                moved = self._find_relocated(Path(text), relative_to)
                 if moved is not None:
                     return moved, [moved]
             if candidates and not kept:
@@ -273,7 +277,7 @@ class Resolver:
             candidates = kept
         return first_existing(candidates)
 
-    def _fuel(self, uri: str) -> Iterator[Path]:
+    def _fuel_candidates(self, uri: str) -> Iterator[Path]:
         """Candidates for a Fuel URL in Gazebo's caches, then a folder of that name in the resource folders."""
         server, _, rest = unquote(uri).partition("://")[2].partition("/")
         parts = [p for p in rest.split("/") if p]
@@ -295,7 +299,7 @@ class Resolver:
         for root in self.paths:
             yield from (root / spelt / inside for spelt in dict.fromkeys((name, name.replace(" ", "_").lower())))
 
-    def _siblings(self, relative_to: Path | None) -> Iterable[str]:
+    def _nearby_names(self, relative_to: Path | None) -> Iterable[str]:
         for root in (*self.paths, *([relative_to.parent] if relative_to else [])):
             yield from (name for name in sibling_names(root / "any") if is_folder(root / name))
 

@@ -95,7 +95,7 @@ class Schema:
         """The row of a child (or `@attribute`) at a place."""
         return self.rows.get(f"{place}/{name}")
 
-    def read_at(self, place: str) -> dict[str, str]:
+    def read_elements(self, place: str) -> dict[str, str]:
         """Every element at a place that a reader asks for, and the place of its content."""
         if place not in self._read_at:
             rows = {name: self.row(place, name) for name in self._elements.get(place, ()) if ":" not in name}
@@ -103,7 +103,7 @@ class Schema:
             self._read_at[place] = {name: row.like or f"{place}/{name}" for name, row in read.items()}
         return self._read_at[place]
 
-    def inside(self, place: str, name: str) -> str:
+    def content_place(self, place: str, name: str) -> str:
         """The place of a child's content."""
         row = self.row(place, name)
         return row.like if row is not None and row.like else f"{place}/{name}"
@@ -124,7 +124,7 @@ class Schema:
         """Whether unknown names are not this schema's to judge."""
         return place in self._open
 
-    def homes(self, name: str) -> list[str]:
+    def places_with(self, name: str) -> list[str]:
         """Places that have an element of this name."""
         return [place for place, names in self._children.items() if name in names]
 

@@ -106,7 +106,7 @@ class Scope:
         if frames is None:
             owner = f"{asker.kind} {asker.name!r}: " if asker else ""
             place = where if asker is None or where is not NOWHERE else asker.where
-            self.unknown(path, owner + "the frame", place)
+            self.report_unknown(path, owner + "the frame", place)
             return IDENTITY
         pose = IDENTITY
         for frame in frames:
@@ -125,7 +125,7 @@ class Scope:
             if one.resolved is not None or one.scope is None:
                 continue
             if ready:
-                one.resolved = self._resolved(one)
+                one.resolved = self._resolved_pose(one)
             elif id(one) in begun:
                 text = f"the pose of {one.kind} {one.scoped!r} depends on itself"
                 self.diagnostics.error("SK-SDF-005", text, one.pose_where or one.where)
@@ -136,7 +136,7 @@ class Scope:
                 waiting.extend((needed, False) for needed in _required_frames(one))
         return frame.resolved or IDENTITY
 
-    def _resolved(self, frame: Frame) -> Pose:
+    def _resolved_pose(self, frame: Frame) -> Pose:
         """The pose of a frame whose every need is resolved."""
         assert frame.scope is not None
         base = frame.relative_to or frame.default_base
@@ -150,18 +150,18 @@ class Scope:
     def body(self, path: str, where: Where, owner: str) -> Frame | None:
         """The link (or the world) that a named frame moves with; None, with an error recorded, where there is none."""
         seen: dict[int, Frame] = {}
-        found = self._followed(path, where, owner, seen)
+        found = self._follow_attachment(path, where, owner, seen)
         for frame in seen.values():
             frame.carrier, frame.adrift = found, found is None
         return found
 
-    def _followed(self, path: str, where: Where, owner: str, seen: dict[int, Frame]) -> Frame | None:
+    def _follow_attachment(self, path: str, where: Where, owner: str, seen: dict[int, Frame]) -> Frame | None:
         """`body`, noting every frame on the way."""
         scope: Scope = self
         while True:
             frames = scope.chain(path)
             if frames is None:
-                scope.unknown(path, f"{owner}: the frame", where)
+                scope.report_unknown(path, f"{owner}: the frame", where)
                 return None
             frame = frames[-1] if frames else None
             if frame is not None and frame.adrift:
@@ -187,7 +187,7 @@ class Scope:
             if frame is not None:
                 seen[id(frame)] = frame
 
-    def unknown(self, path: str, what: str, where: Where, code: str = "SK-SDF-004") -> None:
+    def report_unknown(self, path: str, what: str, where: Where, code: str = "SK-SDF-004") -> None:
         """Records that a name is unknown, with the closest one."""
         hint = ""
         if self.hints < _MOST_HINTS and len(self.names) <= _MOST_NAMES:

@@ -108,7 +108,7 @@ def _joint_link(part: NamedElement, which: str, workspace: Workspace) -> Frame |
         return Frame(WORLD, WORLD, WORLD)
     frames = part.scope.chain(name)
     if frames is None:
-        part.scope.unknown(name, what, place.where)
+        part.scope.report_unknown(name, what, place.where)
         return None
     if frames and frames[-1] is part.frame:
         diagnostics.error("SK-SDF-007", f"{what} is the joint itself", place.where)
@@ -216,7 +216,7 @@ def _mimic(part: NamedElement, element: Params) -> Mimic | None:
     leader = block.attribute("joint")
     frames = part.scope.chain(leader)
     if not leader or not frames or frames[-1].kind != "joint":
-        part.scope.unknown(leader, f"joint {part.name!r} mimics a joint that", block.where)
+        part.scope.report_unknown(leader, f"joint {part.name!r} mimics a joint that", block.where)
         return None
     return Mimic(
         joint=frames[-1].scoped,

@@ -183,7 +183,7 @@ def _choose_canonical(draft: ModelDraft, element: Params, workspace: Workspace) 
     wanted = element.attribute("canonical_link")
     frames = scope.chain(wanted) if wanted else None
     if wanted and (not frames or frames[-1].kind != "link"):
-        scope.unknown(wanted, f"model {draft.source.name!r}: the canonical link", element.where)
+        scope.report_unknown(wanted, f"model {draft.source.name!r}: the canonical link", element.where)
     elif wanted:
         scope.canonical = wanted
     if not scope.canonical and draft.links:

@@ -34,7 +34,7 @@ class _Region:
     kind: str
     size: tuple[float, float, float]
 
-    def drawn(self, count: int, stream: np.random.Generator) -> Points:
+    def random_points(self, count: int, stream: np.random.Generator) -> Points:
         """Points at random; in a cylinder as many near the axis as far from it, which is Gazebo's rule."""
         numbers: Points = stream.random((count, 3))
         if self.kind == "box":
@@ -92,7 +92,7 @@ def _points(population: Params, name: str, stream: str, pose: Pose) -> Points | 
             return None
         return _turn_points(_line(region.size, count, "xyz".index(kind[-1])), pose, corner)
     generator = _random_stream(stream)
-    points = region.drawn(count, generator) if kind == "random" else _evenly_spread(region, count, generator)
+    points = region.random_points(count, generator) if kind == "random" else _evenly_spread(region, count, generator)
     return _turn_points(points, pose, corner)
 
 
@@ -147,7 +147,7 @@ def _line(size: tuple[float, float, float], count: int, axis: int) -> Points:
 
 def _evenly_spread(region: _Region, count: int, stream: np.random.Generator) -> Points:
     """Evenly spread places: the means of as many clusters of points drawn from the region (Lloyd's algorithm)."""
-    cloud = region.drawn(max(_SAMPLES, 4 * count), stream)
+    cloud = region.random_points(max(_SAMPLES, 4 * count), stream)
     centres = cloud[:count].copy()
     if count > 500:  # clusters of four points say no more than the points do
         return centres

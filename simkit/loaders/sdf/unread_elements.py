@@ -62,7 +62,7 @@ class _UnreadReport:
                 self._attributes(element, place)
             if element.value and elements.elements(place) and not elements.has_text(place):
                 self.warn("SK-SDF-038", element.where, partial(_of_text, element, place))
-        read, inside = elements.read_at(place), (*above, place)
+        read, inside = elements.read_elements(place), (*above, place)
         for child in element.children:
             known = read.get(child.name)
             if known is not None and child.was_read:
@@ -128,7 +128,9 @@ def _hint(child: Params, element: Params, place: str, above: Iterable[str]) -> s
     """Where an unknown element belongs, or which name was meant."""
     if child.name in sdf_elements().attributes(place):
         return f"it is an attribute: <{element.name} {child.name}={child.value!r}>"
-    homes = [h for h in sdf_elements().homes(child.name) if (row := sdf_elements().row(h, child.name)) and row.use.read]
+    homes = [
+        h for h in sdf_elements().places_with(child.name) if (row := sdf_elements().row(h, child.name)) and row.use.read
+    ]
     inside = [home for home in homes if home.rpartition("/")[0] == place or home in _content(place)]
     outside = [home for home in homes if home in above]
     for home in (*inside, *reversed(outside)):

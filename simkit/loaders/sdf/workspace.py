@@ -248,6 +248,6 @@ def local_pose(element: Params, scope: Scope, owner: Frame, what: str) -> Pose:
         return pose
     frames = scope.chain(base)
     if frames is None:
-        scope.unknown(base, f"{what}: the frame", pose_location(element))
+        scope.report_unknown(base, f"{what}: the frame", pose_location(element))
         return pose
     return scope.resolve(owner).inverse() @ scope.pose_of(base) @ pose

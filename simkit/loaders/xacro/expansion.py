@@ -84,7 +84,7 @@ class _Expansion:
         engine.filestack = [str(self.document.path or (self.folder or Path.cwd()) / "text.xacro")]
         engine.macrostack = []
         try:
-            engine.eval_all(top.documentElement, engine.Table(), engine.Table(self._names()))
+            engine.eval_all(top.documentElement, engine.Table(), engine.Table(self._global_names()))
         except RecursionError:
             self._fail("SK-XACRO-003", "the expansion is nested too deeply; a macro or an include calls itself")
             return None
@@ -138,17 +138,17 @@ class _Expansion:
         self._known: set[str] = set()
         self._macros: set[str] = set()
         engine.re_macro_arg = MACRO_ARGUMENT
-        engine.warning = engine.message = engine.error = lambda *args, **_: self._said(args)
+        engine.warning = engine.message = engine.error = lambda *args, **_: self._report_message(args)
         engine.print_location = lambda *_: None
         engine.eval_text = self._text
         engine.parse = self._parse
         engine.get_include_files = self._include_files
         engine.substitution_args_context = {"arg": self.arguments}
         for name in ("check_attrs", "reqd_attrs"):
-            setattr(engine, name, self._noting_place(getattr(engine, name)))
+            setattr(engine, name, self._with_place(getattr(engine, name)))
         self._count_work(engine.eval_all, engine.handle_macro_call)
 
-    def _noting_place(self, original: Any) -> Any:
+    def _with_place(self, original: Any) -> Any:
         def call(tag: Any, *args: Any) -> Any:
             self.where = place_of(tag) if place_of(tag) is not NOWHERE else self.where
             found = original(tag, *args)
@@ -164,13 +164,13 @@ class _Expansion:
         """Bounds on elements, and the place of each one that is being expanded."""
 
         def visit(node: Any, macros: Any, symbols: Any) -> None:
-            self._enter(node, 1)
+            self._enter_element(node, 1)
             eval_all(node, macros, symbols)
 
         def call(node: Any, macros: Any, symbols: Any) -> bool:
             if not node.tagName.startswith("xacro:"):
                 return False
-            self._enter(node, _CALL)
+            self._enter_element(node, _CALL)
             if node.tagName != "xacro:call":
                 self._count_body(node.tagName[6:], macros, symbols)
             self.calls.append((node.tagName[6:], self.where))
@@ -181,7 +181,7 @@ class _Expansion:
         self.engine.eval_all = visit
         self.engine.handle_macro_call = call
 
-    def _enter(self, node: Any, elements: int) -> None:
+    def _enter_element(self, node: Any, elements: int) -> None:
         where = place_of(node)
         self.where = self.where if where is NOWHERE else where
         self.expanded += elements
@@ -200,20 +200,20 @@ class _Expansion:
         if self.copied > MAX_COPIED:
             raise BoundError(f"macros bring more than {MAX_COPIED} elements")
 
-    def _said(self, args: tuple[Any, ...]) -> None:
+    def _report_message(self, args: tuple[Any, ...]) -> None:
         """What the file, or xacro about the file, wants to tell."""
         self.diagnostics.warning("SK-XACRO-005", "xacro: " + " ".join(map(str, args)), self.where)
 
     # ------------------------------------------------------------------ files
 
-    def _here(self) -> Path | None:
+    def _current_folder(self) -> Path | None:
         """The folder of the file that is being expanded."""
         return Path(self.engine.filestack[-1]).parent
 
     def _include_files(self, spec: str, symbols: Any) -> list[str]:
         text = str(self._text(spec, symbols))
         if re.search(r"[*?\[]", text):
-            return self.files.several(text, self._here())
+            return self.files.find_pattern(text, self._current_folder())
         return [text]
 
     def _parse(self, _text: Any, filename: str) -> Any:
@@ -221,19 +221,19 @@ class _Expansion:
             raise BoundError(f"files include one another more than {MAX_FILES_DEEP} deep: {filename}")
         self.engine.filestack.pop()
         try:
-            path = self.files.path(filename, self._here())
+            path = self.files.find_file(filename, self._current_folder())
         except MissingError as error:
             raise self.engine.XacroException(str(error), exc=_MissingFile(error)) from error
         self.engine.filestack.append(str(path))
-        root = self.files.read(path)
+        root = self.files.read_xml(path)
         if not root.name:
             raise ExpansionError(f"{path} is empty")
         return to_document(root)
 
     def _yaml(self, filename: str) -> Any:
-        path = self.files.path(str(filename), self._here())
+        path = self.files.find_file(str(filename), self._current_folder())
         evaluator = Evaluator({}, self.budget)
-        content = self.files.yaml(path, evaluator.run, self.budget)
+        content = self.files.read_yaml(path, evaluator.run, self.budget)
         return self.engine.YamlListWrapper.wrap(content)
 
     # ------------------------------------------------------------------ texts
@@ -278,7 +278,7 @@ class _Expansion:
         words = text.split()
         name, rest = (words[0], words[1:]) if words else ("", [])
         if name == "find" and len(rest) == 1:
-            return self.files.package(rest[0], self._here())
+            return self.files.package_folder(rest[0], self._current_folder())
         if name == "arg" and len(rest) == 1:
             return self._argument(rest[0])
         if name == "env" and len(rest) == 1:
@@ -288,9 +288,9 @@ class _Expansion:
         if name == "optenv" and rest:
             return os.environ.get(rest[0], " ".join(rest[1:]))
         if name in ("dirname", "cwd") and not rest:
-            return str(self._here() if name == "dirname" else Path.cwd())
+            return str(self._current_folder() if name == "dirname" else Path.cwd())
         if name == "eval" and rest:
-            return Evaluator({**_literals(self.arguments), **self._names()}, self.budget).run(text[4:])
+            return Evaluator({**_literals(self.arguments), **self._global_names()}, self.budget).run(text[4:])
         known = ("find", "arg", "env", "optenv", "dirname", "cwd", "eval")
         raise ExpansionError(f"$({text}) is not known, known are {', '.join(known)}")
 
@@ -301,7 +301,7 @@ class _Expansion:
             raise ExpansionError(f"the argument {name!r} has no value (there are: {known}); {given}")
         return self.arguments[name]
 
-    def _names(self) -> dict[str, Any]:
+    def _global_names(self) -> dict[str, Any]:
         """What every expression can use: xacro's own names."""
         evaluator = Evaluator({}, self.budget)
         space = self.engine.NameSpace
@@ -309,7 +309,7 @@ class _Expansion:
         spaces = {"python": space(), "math": space(), "xacro": space()}
         own = {
             "load_yaml": Function(self._yaml),
-            "abs_filename": Function(lambda spec: str((self._here() or Path.cwd()) / str(spec))),
+            "abs_filename": Function(lambda spec: str((self._current_folder() or Path.cwd()) / str(spec))),
             "dotify": Function(self.engine.YamlDictWrapper),
             "arg": Function(self._argument),
             "tokenize": Function(tokenize),
@@ -317,20 +317,20 @@ class _Expansion:
             "print_location": Function(lambda: ""),
         }
         for said in ("message", "warning", "error"):
-            own[said] = Function(self._told)
+            own[said] = Function(self._print_message)
         for name, table in (("python", python), ("math", mathematics), ("xacro", own)):
             dict.update(spaces[name], table)
         direct = {name: python[name] for name in direct_names()}
         commands = {
-            "find": Function(lambda name: self.files.package(str(name), self._here())),
+            "find": Function(lambda name: self.files.package_folder(str(name), self._current_folder())),
             "env": Function(lambda name: self._command(f"env {name}", None)),
             "optenv": Function(lambda name, default="": os.environ.get(str(name), default)),
         }
         shared = {name: own[name] for name in ("load_yaml", "abs_filename", "dotify", "arg")}
         return {**mathematics, **direct, **shared, **commands, **spaces, "true": True, "false": False}
 
-    def _told(self, *args: Any, **_: Any) -> str:
-        self._said(args)
+    def _print_message(self, *args: Any, **_: Any) -> str:
+        self._report_message(args)
         return ""
 
     def _fatal(self, *args: Any) -> None:

@@ -46,7 +46,7 @@ class FileAccess:
         self.resolver, self.diagnostics, self._where = resolver, diagnostics, where
         self._packages: dict[str, str] = {}
 
-    def path(self, text: str, folder: Path | None) -> Path:
+    def find_file(self, text: str, folder: Path | None) -> Path:
         """The file that a text names, seen from a folder."""
         found = Diagnostics()
         path = self.resolver.resolve(text, self._where(), found, folder)
@@ -57,7 +57,7 @@ class FileAccess:
             raise MissingError(f"{text} is a folder, a file is needed")
         raise MissingError(said.message if said else f"{text} is not found", said.hint if said else "")
 
-    def several(self, pattern: str, folder: Path | None) -> list[str]:
+    def find_pattern(self, pattern: str, folder: Path | None) -> list[str]:
         """The files that a pattern (`*.xacro`) names, in order."""
         head, _, last = pattern.rpartition("/")
         if any(c in head for c in "*?[") or (folder is None and not head):
@@ -70,9 +70,9 @@ class FileAccess:
         names = sorted(p for p in base.glob(last) if p.is_file())
         if len(names) > MAX_ITEMS:
             raise MissingError(f"{pattern} names more than {MAX_ITEMS} files")
-        return [str(self.path(str(name), folder)) for name in names]
+        return [str(self.find_file(str(name), folder)) for name in names]
 
-    def read(self, path: Path) -> Params:
+    def read_xml(self, path: Path) -> Params:
         """The root element of an included file."""
         found = Diagnostics()
         document = parse_file(path, found)
@@ -83,7 +83,7 @@ class FileAccess:
             raise ExpansionError(f"{path}{place}: {said.message if said else 'cannot be read'}")
         return document.root
 
-    def package(self, name: str, folder: Path | None) -> str:
+    def package_folder(self, name: str, folder: Path | None) -> str:
         """The folder of a package; where it is not here, `package://name`, with a note, for those who need no file."""
         if name not in self._packages:
             found, tried = self.resolver.find_package(name, folder)
@@ -97,7 +97,7 @@ class FileAccess:
                 )
         return self._packages[name]
 
-    def yaml(self, path: Path, evaluate: Callable[[str], Any], budget: Budget) -> Any:
+    def read_yaml(self, path: Path, evaluate: Callable[[str], Any], budget: Budget) -> Any:
         """The content of a YAML file; `!degrees` and the like are understood, aliases are bounded."""
         import yaml
 
