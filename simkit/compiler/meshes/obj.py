@@ -1,4 +1,8 @@
-"""Wavefront OBJ with its MTL materials: one part for each group (`o`, `g`) and material."""
+"""Wavefront OBJ with its MTL materials: one part for each group (`o`, `g`) and material.
+
+trimesh's reader does not hold the bounds on hostile files, so ours stays: it takes vertices of two numbers, raises
+IndexError where a face names a vertex that is not there, and limits neither the faces nor the files that are named.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""STL: triangles without names, units or colours."""
+"""STL: triangles without names, units or colours.
+
+trimesh's reader does not hold the bounds on hostile files, so ours stays: a file that is cut short becomes an empty
+scene without a word, and its errors name arrays instead of what is wrong with the file.
+"""
 
 from __future__ import annotations
 
