@@ -10,7 +10,7 @@ from simkit.runtime.contact.speculative_contacts import FastBodyWarnings
 from simkit.runtime.engine.engine_state import EngineState
 from simkit.runtime.engine.external_forces import PersistentWrenches, Wind
 from simkit.runtime.engine.physics_state import CONTROL
-from simkit.runtime.engine.plugin_faults import PluginErrorPolicy, PluginFaults
+from simkit.runtime.engine.plugin_faults import PluginFaults
 from simkit.runtime.engine.random_streams import RandomStreams
 from simkit.runtime.engine.step_loop import CommandSource, ScheduleFiller, StepLoop
 from simkit.runtime.engine.velocity_servos import VelocityServos
@@ -18,6 +18,7 @@ from simkit.runtime.engine.velocity_servos import VelocityServos
 if TYPE_CHECKING:
     from simkit.compiler import ActuatorRef
     from simkit.diagnostics import Diagnostics
+    from simkit.run_spec import PluginErrorPolicy
     from simkit.runtime.engine.clock import Clock
     from simkit.runtime.engine.scheduler import Scheduler
     from simkit.runtime.engine.world_structure import WorldStructure
