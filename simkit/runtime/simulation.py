@@ -79,7 +79,7 @@ class Simulation(OldNames):
         self.engine.reschedule()
         self._loaded = self.snapshot()
 
-    # ------------------------------------------------------------------ time and steps
+    # ------------------------------------------------------------------ time, steps and state
 
     @property
     def tick(self) -> int:
@@ -142,8 +142,6 @@ class Simulation(OldNames):
         finally:
             if journal is not None:
                 journal.after_steps()
-
-    # ------------------------------------------------------------------ state
 
     @journaled
     def reset(self, seed: int | None = None) -> None:
