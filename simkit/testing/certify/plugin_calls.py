@@ -15,7 +15,10 @@ from simkit.testing.certify.topic_hashes import plugin_title
 from simkit.testing.certify.value_hash import short_value_text, value_hash
 
 if TYPE_CHECKING:
+    import mujoco
+
     from simkit.runtime import Simulation
+    from simkit.runtime.engine.engine_state import EngineState
 
 
 class PluginCallRecorder:
@@ -30,27 +33,29 @@ class PluginCallRecorder:
         self.is_away = False
         self._known: dict[int, dict[str, int]] = {}
 
-    def call(self, sim: Simulation, plugin: Any, hook: str, method: Callable[..., Any], values: tuple[Any, ...]) -> Any:
+    def call(
+        self, engine: EngineState, plugin: Any, hook: str, method: Callable[..., Any], values: tuple[Any, ...]
+    ) -> Any:
         """Calls something of a plugin, and notes what it did."""
-        if self.is_away or not hasattr(plugin, "has_hook") or not hasattr(sim, "_loop"):
+        if self.is_away or not hasattr(plugin, "has_hook"):
             return method(*values)
-        before, tick = writable_state_hash(sim), sim.tick
+        before, tick = writable_state_hash(engine.physics.data), engine.tick
         try:
             return method(*values)
         finally:
-            self._note(sim, plugin, hook, tick, before)
+            self._note(engine.physics.data, plugin, hook, tick, before)
 
     def loaded(self, sim: Simulation) -> None:
         """Notes what plugins remember once the world is open."""
         for plugin in sim.structure.all_plugins():
-            self._note(sim, plugin, "load", 0, writable_state_hash(sim))
+            self._note(sim.mj_data, plugin, "load", 0, writable_state_hash(sim.mj_data))
 
     def again(self) -> None:
         """After a reset: nothing of before counts."""
         self.events.clear()
         self._known.clear()
 
-    def _note(self, sim: Simulation, plugin: Any, hook: str, tick: int, before: int) -> None:
+    def _note(self, data: mujoco.MjData, plugin: Any, hook: str, tick: int, before: int) -> None:
         state = plugin_attributes(plugin)
         now = {name: value_hash(value) for name, value in state.items()}
         known = self._known.get(id(plugin), {})
@@ -59,7 +64,7 @@ class PluginCallRecorder:
         changed.update({name: 0 for name in known if name not in now})
         said = {name: short_value_text(state[name]) for name in changed if name in state}
         self.events.append(
-            PluginCall(tick, plugin_title(plugin), hook, before, writable_state_hash(sim), changed, said)
+            PluginCall(tick, plugin_title(plugin), hook, before, writable_state_hash(data), changed, said)
         )
 
 
@@ -75,12 +80,12 @@ def record_plugin_calls(witness: PluginCallRecorder) -> Iterator[None]:
         inner = task(self, plugin, hook)
 
         def call(tick: int = 0) -> None:
-            witness.call(self._sim, plugin, hook, inner, (tick,))
+            witness.call(self._engine, plugin, hook, inner, (tick,))
 
         return call
 
     def watched_guard(self: Any, plugin: Any, hook: str, method: Callable[..., Any]) -> Callable[..., Any]:
-        return guard(self, plugin, hook, lambda *values: witness.call(self._sim, plugin, hook, method, values))
+        return guard(self, plugin, hook, lambda *values: witness.call(self._engine, plugin, hook, method, values))
 
     PluginFaults.task, PluginFaults.guard, grouped_hooks.MIN_GROUP_SIZE = watched_task, watched_guard, 1 << 30  # type: ignore
     try:
@@ -101,9 +106,8 @@ def plugin_attributes(plugin: Any) -> dict[str, Any]:
     return dict(inner if isinstance(inner, Mapping) else state)
 
 
-def writable_state_hash(sim: Simulation) -> int:
-    """A hash of what plugins can write to: the state, controls and forces."""
-    data = sim.mj_data
+def writable_state_hash(data: mujoco.MjData) -> int:
+    """Return a hash of what plugins can write to: the state, controls and forces."""
     found = 0
     for field in (data.qpos, data.qvel, data.act, data.ctrl, data.qfrc_applied, data.xfrc_applied, data.mocap_pos):
         found = crc32(field.tobytes(), found)

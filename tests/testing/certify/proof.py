@@ -71,7 +71,7 @@ class Runner:
             if part == 1:
                 self._set_parameters(random)
             sim.step(self._steps // 6)
-            physics.append(writable_state_hash(sim))
+            physics.append(writable_state_hash(sim.mj_data))
         return Seen(
             physics, list(self._messages), self._readings(), memory_of(sim), self._parameters(), state_hash(sim)
         )
