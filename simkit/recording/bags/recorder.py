@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import fnmatch
 import os
-from collections import deque
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from types import TracebackType
@@ -13,16 +12,20 @@ from typing import TYPE_CHECKING
 from simkit import msgs
 from simkit.errors import InputError, SimkitError
 from simkit.recording.bags.writer import McapBag, Rosbag2Folder
-from simkit.runtime.communication.topic_bus import NO_MESSAGE, LazyMessage
+from simkit.recording.message_taps import MessageQueue, TopicTaps
 from simkit.writers.atomic_output import write_obstacle
 
 if TYPE_CHECKING:
-    from simkit.runtime import Simulation, Subscription
+    from simkit.runtime import Simulation
 
 
 def matches_topic(topic: str, patterns: Iterable[str]) -> bool:
     """Check whether a topic matches one of the shell patterns; `scan` and `/scan` are the same."""
     return any(fnmatch.fnmatchcase(topic, p if p.startswith(("/", "*")) else f"/{p}") for p in patterns)
+
+
+def _serialise(message: Any) -> tuple[str, bytes]:
+    return msgs.type_name(message), msgs.serialize(message)
 
 
 class RecordError(SimkitError):
@@ -117,10 +120,10 @@ class Recorder:
         self._choose = choose
         self._count = 0
         self._bag: McapBag | None = open_bag(self.path, overwrite=overwrite)
-        self._taps: dict[str, Subscription] = {}
         # behind a picture that is still being drawn, other messages wait as bytes, so that all stay in order
-        self._waiting: deque[tuple[str, int, LazyMessage | tuple[str, bytes]]] = deque()
-        sim.bus.on_topic(self._add)
+        self._queue = MessageQueue(self._write, _serialise)
+        self._taps = TopicTaps(sim, self._receiver_of)
+        self._taps.open()
 
     @property
     def message_count(self) -> int:
@@ -148,10 +151,8 @@ class Recorder:
 
     def close(self) -> None:
         """Ends the recording and completes the bag; does nothing the second time."""
-        for tap in self._taps.values():
-            tap.close()
-        self._taps.clear()
-        self._write_waiting(to_the_end=True)
+        self._taps.close()
+        self._queue.deliver_all()
         bag, self._bag = self._bag, None
         if bag is None:
             return
@@ -161,14 +162,11 @@ class Recorder:
         except OSError as error:
             self._fail(error)
 
-    def _add(self, topic: str, _: str) -> None:
-        if self._bag is None or topic in self._taps:
-            return
-        if not (self._choose or self._is_selected)(topic):
-            return
-        if matches_topic(topic, self._skip):
-            return
-        self._taps[topic] = self._sim.bus.tap(topic, lambda message: self._take(topic, message), takes_later=True)
+    def _receiver_of(self, topic: str, _: str) -> Callable[[Any], None] | None:
+        if not (self._choose or self._is_selected)(topic) or matches_topic(topic, self._skip):
+            return None
+        sim, queue = self._sim, self._queue
+        return lambda message: queue.add((topic, sim.time_ns), message)
 
     def _is_selected(self, topic: str) -> bool:
         if self._patterns:
@@ -179,38 +177,8 @@ class Recorder:
         """Check whether the options select the topic."""
         return topic in self._taps
 
-    def _take(self, topic: str, message: object) -> None:
-        """A message that was published now."""
-        now, waiting = self._sim.time_ns, self._waiting
-        if waiting or (type(message) is LazyMessage and not message.is_ready):
-            # it may be written to after this
-            kept = message if type(message) is LazyMessage else (msgs.type_name(message), msgs.serialize(message))
-            waiting.append((topic, now, kept))
-            self._write_waiting()
-            return
-        if type(message) is LazyMessage:
-            message = message.get()
-        if message is not NO_MESSAGE:
-            self._write(topic, now, msgs.type_name(message), msgs.serialize(message))
-
-    def _write_waiting(self, *, to_the_end: bool = False) -> None:
-        """Writes what is there by now, in order; all of it where asked for."""
-        waiting = self._waiting
-        while waiting:
-            topic, time_ns, kept = waiting[0]
-            if isinstance(kept, LazyMessage):
-                if not (kept.is_ready or to_the_end):
-                    return
-                message = kept.get()
-                found = None if message is NO_MESSAGE else (msgs.type_name(message), msgs.serialize(message))
-            else:
-                found = kept
-            waiting.popleft()
-            if found is not None:
-                self._write(topic, time_ns, *found)
-
-    def _write(self, topic: str, time_ns: int, type_name: str, data: bytes) -> None:
-        bag = self._bag
+    def _write(self, label: tuple[str, int], message: tuple[str, bytes]) -> None:
+        bag, (topic, time_ns), (type_name, data) = self._bag, label, message
         if bag is None:
             return
         try:
@@ -221,7 +189,7 @@ class Recorder:
         except OSError as error:
             # Not raised here: this runs inside whoever publishes, and it is not the publisher's fault.
             self._fail(error)
-            self._waiting.clear()
+            self._queue.clear()
             self.close()
 
     def _fail(self, error: OSError) -> None:

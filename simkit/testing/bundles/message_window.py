@@ -6,12 +6,13 @@ import hashlib
 import math
 import struct
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from simkit import msgs
 from simkit.recording.bags.recorder import matches_topic
+from simkit.recording.message_taps import TopicTaps
 from simkit.recording.topic_counts import RENDERED
 from simkit.runtime.communication.topic_bus import NO_MESSAGE, LazyMessage
 from simkit.runtime.engine.snapshot import state_hash
@@ -56,9 +57,9 @@ class MessageWindow:
         self._length = sim.clock.ticks(seconds) if math.isfinite(seconds) else 1 << 62
         self._kept: deque[tuple[int, int, str, Any]] = deque()  # steps, tick, topic, message or type and CDR
         self._packed = 0  # bytes
-        self._taps: dict[str, Any] = {}
         self._cut = 0
-        sim.bus.on_topic(self._add)
+        self._taps = TopicTaps(sim, self._receiver_of)
+        self._taps.open()
 
     @property
     def first(self) -> int:
@@ -66,8 +67,7 @@ class MessageWindow:
 
     def close(self) -> None:
         """Hears no more."""
-        for tap in self._taps.values():
-            tap.close()
+        self._taps.close()
 
     def messages(self, first: int | None = None) -> Iterator[WindowMessage]:
         """What was heard since so many steps, in its order; what cannot be made any more is left out.
@@ -86,9 +86,9 @@ class MessageWindow:
             packed = message if type(message) is tuple else (msgs.type_name(message), msgs.serialize(message))
             yield WindowMessage(clock.time_ns(tick), topic, *packed)
 
-    def _add(self, topic: str, type_name: str) -> None:
-        if topic in self._taps or not self._is_kept(topic, type_name):
-            return
+    def _receiver_of(self, topic: str, type_name: str) -> Callable[[Any], None] | None:
+        if not self._is_kept(topic, type_name):
+            return None
         sim, kept, length, most = self._sim, self._kept, self._length, self._most // _ASSUMED_MESSAGE_BYTES
         last: Any = None
         is_packed = False
@@ -108,7 +108,7 @@ class MessageWindow:
             if len(kept) > most or self._packed > self._most:
                 self._cut = self._drop() + 1
 
-        self._taps[topic] = sim.bus.tap(topic, hear, takes_later=True)
+        return hear
 
     def _drop(self) -> int:
         """Lets go of the oldest message; gives the steps that it came after."""

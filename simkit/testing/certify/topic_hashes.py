@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from simkit import msgs
 from simkit.recording.bags.recorder import matches_topic
+from simkit.recording.message_taps import TopicTaps
 from simkit.testing.certify.outcome import TopicOutcome
 from simkit.testing.certify.value_hash import short_hash
 from simkit.testing.certify.variations import Listening
@@ -37,7 +38,7 @@ class TopicHashes:
         self._streams: dict[str, _TopicHash] = {}
         self.is_deaf = False
         if how != "none":
-            sim.bus.on_topic(self._open)
+            TopicTaps(sim, self._receiver_of).open()
 
     def take(self) -> None:
         """Looks at what was kept; to be called now and then between two steps."""
@@ -50,17 +51,17 @@ class TopicHashes:
         owners = _topic_publishers(self._sim)
         return {topic: stream.heard(owners.get(topic, "")) for topic, stream in sorted(self._streams.items())}
 
-    def _open(self, topic: str, type_name: str) -> None:
+    def _receiver_of(self, topic: str, type_name: str) -> Callable[[Any], None] | None:
         if topic in self._streams or not self._is_wanted(topic):
-            return
+            return None
         stream = self._streams[topic] = _TopicHash(self, self._sim, type_name)
         if self._how == "kept":
-            self._sim.bus.tap(topic, stream.keep, takes_later=True)
-            return
+            return stream.keep
         self._sim.subscribe(topic, stream.receive, keep=1)
         if self._how == "late":
             self._sim.subscribe(topic, lambda _: None, keep=3)
             self._sim.subscribe(topic, keep=2)
+        return None  # real subscriptions, so that how a topic is heard differs from run to run
 
     def _is_wanted(self, topic: str) -> bool:
         if topic in self._sim.bus.aside and topic not in self._topics:

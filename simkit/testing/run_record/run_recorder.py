@@ -6,7 +6,7 @@ import contextlib
 import hashlib
 import math
 import os
-from collections import Counter, deque
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
 from operator import attrgetter
@@ -17,7 +17,7 @@ import numpy as np
 from simkit import msgs
 from simkit.errors import PluginError, SimulationDiverged, SubscriberError
 from simkit.recording.bags.recorder import matches_topic
-from simkit.runtime.communication.topic_bus import NO_MESSAGE, LazyMessage
+from simkit.recording.message_taps import MessageQueue, TopicTaps
 from simkit.testing.run_record.record import RunRecord, Stream
 
 if TYPE_CHECKING:
@@ -170,8 +170,8 @@ class RunRecorder:
         self._leaves, self._places = values_of_simulation(sim)
         self._fields, self._sources = fields_of_model(sim), source_hashes(sim)
         self._diagnostics = Counter(d.code for d in sim.diagnostics)
-        self._is_open = True
-        sim.bus.on_topic(self._add)
+        self._taps = TopicTaps(sim, self._receiver_of)
+        self._taps.open()
         self._marks = StateRecorder(sim, sim.clock.ticks(longest))
 
     def __enter__(self) -> RunRecorder:
@@ -182,9 +182,9 @@ class RunRecorder:
 
     def close(self) -> None:
         """Takes nothing any more."""
-        self._is_open = False
         for stream in self._streams.values():
-            stream.close()
+            stream.queue.deliver_all()
+        self._taps.close()
         self._marks.close()
 
     def record(self, end: str = "duration") -> RunRecord:
@@ -218,9 +218,12 @@ class RunRecorder:
             environment=_environment(self._sim),
         )
 
-    def _add(self, topic: str, type_name: str) -> None:
-        if self._is_open and topic not in self._streams and self._is_asked_for(topic, type_name):
-            self._streams[topic] = StreamRecorder(self._scenario, self._sim, topic, type_name)
+    def _receiver_of(self, topic: str, type_name: str) -> Callable[[Any], None] | None:
+        if not self._is_asked_for(topic, type_name):
+            return None
+        sim = self._sim
+        stream = self._streams[topic] = StreamRecorder(self._scenario, sim, topic, type_name)
+        return lambda message: stream.queue.add(sim.time_ns, message)
 
     def _is_asked_for(self, topic: str, type_name: str) -> bool:
         scenario = self._scenario
@@ -238,6 +241,9 @@ class StreamRecorder:
         scenario: how.
         sim: the simulation.
         topic, type_name: which.
+
+    Attributes:
+        queue: is given each message with the time at which it was published [ns].
     """
 
     def __init__(self, scenario: RunSpec, sim: Simulation, topic: str, type_name: str) -> None:
@@ -246,44 +252,18 @@ class StreamRecorder:
         self._times: list[int] = []
         self._whole, self._second = hashlib.sha256(), hashlib.sha256()
         self._chunks: list[str] = []
-        self._waiting: deque[tuple[int, Any]] = deque()  # behind a picture that is still being drawn
-        self._tap = sim.bus.tap(topic, self._take, takes_later=True)
-
-    def close(self) -> None:
-        """Takes nothing any more."""
-        self._take_waiting(to_the_end=True)
-        self._tap.close()
+        self.queue = MessageQueue(self._keep)
 
     def stream(self) -> Stream:
         """What was taken so far."""
         self._sim.bus.gather(self._topic)
-        self._take_waiting(to_the_end=True)
+        self.queue.deliver_all()
         stream = Stream(self._topic, self._type_name, np.array(self._times, np.int64))
         stream.digest = self._whole.hexdigest()
         stream.chunks = [*self._chunks, self._second.hexdigest()[:_HASH_LETTERS]] if self._times else []
         if self._taker is not None:
             self._taker.fill(stream)
         return stream
-
-    def _take(self, message: Any) -> None:
-        """A message that was published now."""
-        now = self._sim.time_ns
-        if type(message) is LazyMessage and (self._waiting or not message.is_ready):
-            self._waiting.append((now, message))
-            self._take_waiting()
-            return
-        if self._waiting:
-            self._take_waiting(to_the_end=True)  # this one may be written to later, and stays in its order
-        message = message.get() if type(message) is LazyMessage else message
-        if message is not NO_MESSAGE:
-            self._keep(now, message)
-
-    def _take_waiting(self, *, to_the_end: bool = False) -> None:
-        while self._waiting and (to_the_end or self._waiting[0][1].is_ready):
-            now, later = self._waiting.popleft()
-            message = later.get()
-            if message is not NO_MESSAGE:
-                self._keep(now, message)
 
     def _keep(self, now: int, message: Any) -> None:
         type_name = msgs.type_name(message)
