@@ -24,7 +24,7 @@ def matches_topic(topic: str, patterns: Iterable[str]) -> bool:
     return any(fnmatch.fnmatchcase(topic, p if p.startswith(("/", "*")) else f"/{p}") for p in patterns)
 
 
-def _serialise(message: Any) -> tuple[str, bytes]:
+def _serialise(message: object) -> tuple[str, bytes]:
     return msgs.type_name(message), msgs.serialize(message)
 
 
@@ -162,7 +162,7 @@ class Recorder:
         except OSError as error:
             self._fail(error)
 
-    def _receiver_of(self, topic: str, _: str) -> Callable[[Any], None] | None:
+    def _receiver_of(self, topic: str, _: str) -> Callable[[object], None] | None:
         if not (self._choose or self._is_selected)(topic) or matches_topic(topic, self._skip):
             return None
         sim, queue = self._sim, self._queue
