@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Final
 
+from simkit.run_spec import PluginErrorPolicy
 from simkit.runtime.contact.anisotropic_friction import AnisotropicFriction
 from simkit.runtime.contact.speculative_contacts import FastBodyWarnings
 from simkit.runtime.engine.engine_state import EngineState

@@ -63,7 +63,8 @@ class MessageWindow:
 
     @property
     def first(self) -> int:
-        return max(0, self._cut, self._sim.steps - self._length)
+        since: int = self._sim.steps - self._length
+        return max(0, self._cut, since)
 
     def close(self) -> None:
         """Hears no more."""
