@@ -10,10 +10,10 @@ import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property, lru_cache
-from importlib.metadata import EntryPoint, EntryPoints, entry_points
+from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
 from types import MappingProxyType, ModuleType
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 T = TypeVar("T")
 
@@ -29,7 +29,7 @@ def entry_points_of(group: str) -> list[EntryPoint]:
 
 
 @lru_cache(maxsize=1)
-def _all_entry_points(_state: tuple[tuple[str, int], ...]) -> EntryPoints:
+def _all_entry_points(_state: tuple[tuple[str, int], ...]) -> Any:  # its type differs between Python 3.11 and 3.12
     return entry_points()
 
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any, Final
+from typing import Final
 
+import mujoco
 import numpy as np
 
 from simkit.compiler.inertia_repair import LEAST_MASS, BodyInertia
@@ -21,7 +22,9 @@ SPLIT_MASS_SHARE: Final = 0.1
 the weld gives way in proportion to 1 / mass."""
 
 
-def add_body(parent: Any, link: SceneLink, pose: Pose, written: BodyInertia | None, *, needs_mass: bool = True) -> Any:
+def add_body(
+    parent: mujoco.MjsBody, link: SceneLink, pose: Pose, written: BodyInertia | None, *, needs_mass: bool = True
+) -> mujoco.MjsBody:
     """A body whose frame is the link frame, `pose` in the parent body's frame; returns MuJoCo's handle.
 
     Args:
@@ -51,7 +54,9 @@ def is_massless(inertial: Inertial) -> bool:
     return inertial.mass == 0.0 and not any(inertial.inertia)
 
 
-def add_split_body(spec: Any, name: str, body: str, under: str, pose: Pose, has_motion: bool) -> Any:
+def add_split_body(
+    spec: mujoco.MjSpec, name: str, body: str, under: str, pose: Pose, has_motion: bool
+) -> mujoco.MjsBody:
     """A second body for a link, hung `under` another body; it takes over a part of the link's mass.
 
     Args:
@@ -79,7 +84,7 @@ def add_split_body(spec: Any, name: str, body: str, under: str, pose: Pose, has_
     return twin
 
 
-def remove_split_body(spec: Any, name: str, body: str) -> None:
+def remove_split_body(spec: mujoco.MjSpec, name: str, body: str) -> None:
     """Takes a twin out again, and gives the link its mass back where that is still there."""
     twin = spec.body(name)
     has_motion = twin is not None and len(twin.joints) > 0
@@ -90,7 +95,7 @@ def remove_split_body(spec: Any, name: str, body: str) -> None:
         _scale(source, 1.0 / (1.0 - SPLIT_MASS_SHARE))
 
 
-def _scale(body: Any, factor: float) -> None:
+def _scale(body: mujoco.MjsBody, factor: float) -> None:
     body.mass *= factor
     if np.isfinite(body.fullinertia[0]):
         body.fullinertia = factor * np.array(body.fullinertia)

@@ -51,7 +51,7 @@ class GeomParent:
         axis: line about which the link turns freely.
     """
 
-    body: Any
+    body: mujoco.MjsBody
     offset: Pose
     fixed: bool
     mass: float
@@ -73,7 +73,7 @@ class GeomWriter:
         self._ambient = ambient
         self._count: Counter[str] = Counter()
 
-    def _add(self, place: GeomParent, owner: GeomOwner, pose: Pose, **settings: Any) -> Any:
+    def _add(self, place: GeomParent, owner: GeomOwner, pose: Pose, **settings: Any) -> mujoco.MjsGeom:
         base = owner.scoped + ("#v" if owner.is_visual else "#")
         name = f"{base}{self._count[base]}"
         self._count[base] += 1

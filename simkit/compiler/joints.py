@@ -16,7 +16,7 @@ from simkit.compiler.engine_options import SOFT_SOLIMP, contact_time_constant
 from simkit.compiler.kinematic_tree import WORLD, TreeEdge
 from simkit.compiler.name_map import Follower, JointBinding, ModelRecord
 from simkit.diagnostics import Diagnostics
-from simkit.pose import IDENTITY, Pose
+from simkit.pose import IDENTITY, Pose, Vector
 from simkit.scene import Axis, SceneJoint, SceneLink
 
 _UNIT: Final = 1e-6
@@ -103,8 +103,8 @@ class _JointMotion:
     """One MuJoCo joint to be: its axis in the moved body's frame, and the file's axis whose dynamics it has."""
 
     name: str
-    kind: Any
-    direction: Any
+    kind: mujoco.mjtJoint
+    direction: Vector
     axis: Axis | None
 
 
@@ -124,7 +124,7 @@ class JointWriter:
 
     # ------------------------------------------------------------------ in the tree
 
-    def add_tree_joint(self, body: Any, link: SceneLink, edge: TreeEdge) -> None:
+    def add_tree_joint(self, body: mujoco.MjsBody, link: SceneLink, edge: TreeEdge) -> None:
         """Adds the joint by which `link` hangs in the tree to its body."""
         joint = edge.joint
         names, followers = self._add_motions(body, joint, link.pose_world, edge.is_reversed)
@@ -167,7 +167,7 @@ class JointWriter:
         self._bind(self._binding(joint))
 
     def _add_motions(
-        self, body: Any, joint: SceneJoint, at: Pose, is_reversed: bool
+        self, body: mujoco.MjsBody, joint: SceneJoint, at: Pose, is_reversed: bool
     ) -> tuple[Any, tuple[Follower, ...]]:
         """Adds the motions of a joint to a body that stands `at` a pose in the world.
 
@@ -217,7 +217,9 @@ class JointWriter:
             for name, kind, direction, axis in zip(names, kinds, directions, axes, strict=False)
         ]
 
-    def _joint(self, body: Any, name: str, kind: Any, frame: Pose, axis: Any) -> Any:
+    def _joint(
+        self, body: mujoco.MjsBody, name: str, kind: mujoco.mjtJoint, frame: Pose, axis: Vector
+    ) -> mujoco.MjsJoint:
         joint = body.add_joint(name=name, type=kind, pos=frame.position, axis=axis)
         constant = contact_time_constant(self.timestep)
         joint.solref_limit = (constant, 1.0)
@@ -226,7 +228,7 @@ class JointWriter:
         joint.solimp_friction = SOFT_SOLIMP
         return joint
 
-    def _dynamics(self, made: Any, axis: Axis) -> None:
+    def _dynamics(self, made: mujoco.MjsJoint, axis: Axis) -> None:
         made.damping[0] = max(0.0, axis.damping)
         made.frictionloss = max(0.0, axis.friction)
         if made.type == _BALL:
@@ -242,7 +244,7 @@ class JointWriter:
             made.limited = mujoco.mjtLimited.mjLIMITED_TRUE
             made.range = (lower, upper)
 
-    def _thread(self, body: Any, joint: SceneJoint, frame: Pose, direction: Any) -> Follower:
+    def _thread(self, body: mujoco.MjsBody, joint: SceneJoint, frame: Pose, direction: Vector) -> Follower:
         """The sliding of a screw, tied to its turning."""
         slide, ratio = f"{joint.scoped}#slide", joint.thread_pitch / (2.0 * math.pi)
         self._joint(body, slide, _SLIDE, frame, direction)
@@ -328,7 +330,7 @@ class JointWriter:
         self.record.joints[binding.scoped] = binding
 
 
-def _plane_axes(joint: SceneJoint, at: Pose) -> list[Any]:
+def _plane_axes(joint: SceneJoint, at: Pose) -> list[Vector]:
     """x, y and normal of a plane of which the file names the normal alone: the joint frame's axes as near as can be."""
     back = at.inverse()
     normal = np.asarray(joint.axes[0].xyz_world if joint.axes else joint.pose_world.rotate((0.0, 0.0, 1.0)))

@@ -41,7 +41,7 @@ def drawn_position(light: SceneLight, position: Any) -> npt.NDArray[np.float64]:
     return place * (most / length) if length > most else place
 
 
-def add_light(body: Any, light: SceneLight, pose: Pose, shadows: bool) -> None:
+def add_light(body: mujoco.MjsBody, light: SceneLight, pose: Pose, shadows: bool) -> None:
     """Adds a light at `pose` in the frame of `body`."""
     made = body.add_light(name=light.scoped)
     kinds = mujoco.mjtLightType

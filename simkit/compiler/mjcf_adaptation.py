@@ -37,7 +37,7 @@ _FIRST: Final = friction_priority(0.0) + 1
 """Above every rank of a friction coefficient: for geoms whose own file says that they have the last word."""
 
 
-def copy_settings(source: Any, target: Any) -> None:
+def copy_settings(source: mujoco.MjSpec, target: mujoco.MjSpec) -> None:
     """Sizes and looks of one specification to another."""
     for name in _GLOBAL:
         setattr(target, name, getattr(source, name))
@@ -48,7 +48,7 @@ def copy_settings(source: Any, target: Any) -> None:
                 setattr(ours, name, getattr(theirs, name))
 
 
-def match_settings(child: Any, spec: mujoco.MjSpec) -> None:
+def match_settings(child: mujoco.MjSpec, spec: mujoco.MjSpec) -> None:
     """Makes the settings of both the same: the world's count, and nothing is left to be merged."""
     for name in OPTIONS:
         setattr(child.option, name, getattr(spec.option, name))
@@ -57,7 +57,7 @@ def match_settings(child: Any, spec: mujoco.MjSpec) -> None:
         _write_inferred_limits(child)
 
 
-def _write_inferred_limits(child: Any) -> None:
+def _write_inferred_limits(child: mujoco.MjSpec) -> None:
     """Writes down what the file leaves to be inferred: a written-out world has one rule for all its parts."""
     said = {
         "joints": (("limited", "range"), ("actfrclimited", "actfrcrange")),
@@ -72,7 +72,7 @@ def _write_inferred_limits(child: Any) -> None:
                     setattr(element, switch, int(low < high))
 
 
-def report_settings(child: Any, spec: mujoco.MjSpec, model: SceneModel, diagnostics: Diagnostics) -> None:
+def report_settings(child: mujoco.MjSpec, spec: mujoco.MjSpec, model: SceneModel, diagnostics: Diagnostics) -> None:
     """Says which of the file's own settings give way to the world's."""
     lost: dict[str, list[str]] = {"warning": [], "note": []}
     places = {"warning": NOWHERE, "note": NOWHERE}
@@ -122,7 +122,7 @@ def _text(name: str, value: Any) -> str:
     return " ".join(f"{float(v):g}" for v in np.ravel(value))
 
 
-def rank_friction(child: Any, model: SceneModel, diagnostics: Diagnostics) -> None:
+def rank_friction(child: mujoco.MjSpec, model: SceneModel, diagnostics: Diagnostics) -> None:
     """Ranks each geom by its friction, as all others in the world are; one with a priority of its own stays first."""
     first = 0
     for geom in child.geoms:
@@ -140,7 +140,7 @@ def rank_friction(child: Any, model: SceneModel, diagnostics: Diagnostics) -> No
         )
 
 
-def write_masses(child: Any, source: MjcfSource) -> None:
+def write_masses(child: mujoco.MjSpec, source: MjcfSource) -> None:
     """Writes down the masses that the file's geoms, bounds and total come to."""
     for name, (mass, centre, axes, moments) in source.masses.items():
         body = child.body(name)
@@ -153,7 +153,7 @@ def write_masses(child: Any, source: MjcfSource) -> None:
     compiler.settotalmass, compiler.boundmass, compiler.boundinertia = -1.0, 0.0, 0.0
 
 
-def drop_lights(child: Any, model: SceneModel, diagnostics: Diagnostics) -> None:
+def drop_lights(child: mujoco.MjSpec, model: SceneModel, diagnostics: Diagnostics) -> None:
     """The light of a file's own world stays there: the world that it comes into has its own."""
     lights = list(child.worldbody.lights)
     for light in lights:
@@ -166,14 +166,14 @@ def drop_lights(child: Any, model: SceneModel, diagnostics: Diagnostics) -> None
         )
 
 
-def rename_lights(child: Any, source: MjcfSource, prefix: str = "") -> None:
+def rename_lights(child: mujoco.MjSpec, source: MjcfSource, prefix: str = "") -> None:
     """Lights on bodies get the names by which they are asked for."""
     for scoped, (name, link) in source.lights.items():
         if link:
             child.light(name).name = scoped.removeprefix(prefix)
 
 
-def make_static(child: Any, model: SceneModel, diagnostics: Diagnostics) -> None:
+def make_static(child: mujoco.MjSpec, model: SceneModel, diagnostics: Diagnostics) -> None:
     """A static model has no joints, and nothing that moves, ties or measures them."""
     gone = [f"{n} joints"] if (n := len(list(child.joints))) else []
     for kind in ("keys", "sensors", "actuators", "tendons", "equalities"):
@@ -190,7 +190,7 @@ def make_static(child: Any, model: SceneModel, diagnostics: Diagnostics) -> None
         diagnostics.note("SK-MJCF-012", f"model {model.scoped} is static: without its {', '.join(gone)}", model.where)
 
 
-def set_base(child: Any, source: MjcfSource, fixed: bool) -> None:
+def set_base(child: mujoco.MjSpec, source: MjcfSource, fixed: bool) -> None:
     """Takes the free joints away, or adds those that are missing."""
     for root in source.roots if fixed or source.base == "fixed" else ():
         for joint in list(child.body(root).joints):
@@ -205,7 +205,7 @@ def set_base(child: Any, source: MjcfSource, fixed: bool) -> None:
             child.body(name.removesuffix("_free")).add_freejoint(name=name)
 
 
-def _shorten_keys(child: Any, joint: str) -> None:
+def _shorten_keys(child: mujoco.MjSpec, joint: str) -> None:
     """Takes a joint's numbers out of the keyframes."""
     q = v = 0
     for other in child.joints:
@@ -220,7 +220,7 @@ def _shorten_keys(child: Any, joint: str) -> None:
             key.qvel = np.delete(key.qvel, slice(v, v + wide[1]))
 
 
-def _drop_users(child: Any, joint: str) -> None:
+def _drop_users(child: mujoco.MjSpec, joint: str) -> None:
     drives = (mujoco.mjtTrn.mjTRN_JOINT, mujoco.mjtTrn.mjTRN_JOINTINPARENT)
     for actuator in list(child.actuators):
         if actuator.target == joint and actuator.trntype in drives:
@@ -230,7 +230,7 @@ def _drop_users(child: Any, joint: str) -> None:
             child.delete(sensor)
 
 
-def keep_only_model(child: Any, source: MjcfSource) -> None:
+def keep_only_model(child: mujoco.MjSpec, source: MjcfSource) -> None:
     """Of a world's file what belongs to one model."""
     for body in list(child.worldbody.bodies):
         if body.name not in source.roots:

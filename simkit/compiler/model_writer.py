@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from typing import Any, Final
+from typing import Final
 
 import mujoco
 
@@ -109,7 +109,7 @@ class ModelWriter:
     def _static_link(self, link: SceneLink) -> None:
         """A static link: geoms of the world, or of a mocap body when it is to be movable."""
         binding = LinkBinding(link.scoped, WORLD, link.pose_world, link, self.record.scene.scoped, True)
-        body: Any = self.spec.worldbody
+        body: mujoco.MjsBody = self.spec.worldbody
         if self.record.movable:
             pose = link.pose_world
             body = self.spec.worldbody.add_body(name=link.scoped, pos=pose.position, quat=pose.quaternion, mocap=True)
@@ -120,7 +120,7 @@ class ModelWriter:
 
     def _bodies(self, tree: KinematicTree) -> None:
         model = self.record.scene
-        bodies: dict[str, Any] = {}
+        bodies: dict[str, mujoco.MjsBody] = {}
         base = tree.root_of(model.canonical_link) if tree.roots.get(model.canonical_link) else ""
         afloat = {end for j in tree.floating for end in (j.child_link,)}
         free = {
@@ -173,7 +173,7 @@ class ModelWriter:
         self.record.exact = {name: (w.mass, w.exact) for name, w in written.items() if w.exact is not None}
         return written
 
-    def _add_free_joint(self, body: Any, link: SceneLink) -> str:
+    def _add_free_joint(self, body: mujoco.MjsBody, link: SceneLink) -> str:
         """Lets a link move freely; returns the name of the joint."""
         name = f"{link.scoped}#free"
         joint = body.add_freejoint(name=name)

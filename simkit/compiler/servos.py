@@ -37,7 +37,7 @@ _STRIDES: Final = np.sqrt(np.array((2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 
 
 
 def add_drive_armature(
-    joint: Any, max_effort: float, max_velocity: float, scoped: str, diagnostics: Diagnostics, where: Where
+    joint: mujoco.MjsJoint, max_effort: float, max_velocity: float, scoped: str, diagnostics: Diagnostics, where: Where
 ) -> None:
     """Gives a joint the armature that its drive has, and reports it.
 
@@ -157,7 +157,7 @@ def add_actuator(spec: mujoco.MjSpec, ref: ActuatorRef, joint_name: str) -> None
         actuator.forcerange = (-most, most)
 
 
-def add_armature(joint: Any, scoped: str, diagnostics: Diagnostics, where: Where) -> None:
+def add_armature(joint: mujoco.MjsJoint, scoped: str, diagnostics: Diagnostics, where: Where) -> None:
     """Gives a driven joint the armature that its servo needs, and reports it."""
     is_slide = joint.type == mujoco.mjtJoint.mjJNT_SLIDE
     least = ARMATURE_LINEAR if is_slide else ARMATURE_ROTARY
