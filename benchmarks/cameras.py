@@ -61,10 +61,10 @@ def single(size: tuple[int, int], rounds: int, *, depth: bool) -> Iterator[Figur
             sim.spawn(PLAIN.format(*size), pose=eye_of(sim).pose)
         sim.run(0.5)
         eye = eye_of(sim) if depth else sim.sensor("plain::l::camera")
-        sim.fresh_acceleration()
+        sim.engine.physics.fresh_accelerations()
         for product, topic in eye._topics.items():
             if product == "image" or (depth and product == "depth_image"):
-                sim.bus.tap(topic, _ignore)
+                sim.communication.bus.tap(topic, _ignore)
         bare = BareCamera(sim, eye)
 
         def clean() -> None:
@@ -88,8 +88,8 @@ def beside_mujoco(rounds: int) -> Figure:
     with simkit.load("turtlebot3_world", render_thread=False) as sim:
         sim.run(0.5)
         eye = eye_of(sim)
-        model, data, view = sim.mj_model, sim.fresh_data(), eye.shots()[0].view
-        taps = [sim.bus.tap(eye._topics[product], _ignore) for product in ("image", "depth_image")]
+        model, data, view = sim.mj_model, sim.engine.physics.fresh(), eye.shots()[0].view
+        taps = [sim.communication.bus.tap(eye._topics[product], _ignore) for product in ("image", "depth_image")]
         option, sides = mujoco.MjvOption(), mujoco.MjvCamera()
         option.geomgroup[:] = 0
         option.geomgroup[VISUAL] = 1
@@ -119,7 +119,9 @@ def whole_loop(rounds: int) -> Iterator[Figure]:
     """IMU 200 Hz, lidar 5 Hz, RGB-D 30 Hz, with noise: a simulated second, and every message of it looked at."""
     for is_on, aim_, clock in ((False, 1 / 0.9, time.process_time), (True, 1 / 1.3, time.perf_counter)):
         with simkit.load("turtlebot3_world", render_thread=is_on) as sim:
-            sensors = [s for s in sim.sensors.values() if s.kind in ("imu", "lidar") or isinstance(s, RenderedCamera)]
+            sensors = [
+                s for s in sim.contents.sensors.values() if s.kind in ("imu", "lidar") or isinstance(s, RenderedCamera)
+            ]
             topics = [s.topic for s in sensors]
             topics.append(eye_of(sim)._topics["depth_image"])
             second = round(1.0 / sim.timestep)
@@ -144,11 +146,13 @@ def whole_loop(rounds: int) -> Iterator[Figure]:
 def messages(rounds: int) -> Figure:
     """Making and serialising all messages of a simulated second, beside the whole loop."""
     with simkit.load("turtlebot3_world", render_thread=False) as sim:
-        sensors = [s for s in sim.sensors.values() if s.kind in ("imu", "lidar") or isinstance(s, RenderedCamera)]
+        sensors = [
+            s for s in sim.contents.sensors.values() if s.kind in ("imu", "lidar") or isinstance(s, RenderedCamera)
+        ]
         topics = [s.topic for s in sensors] + [eye_of(sim)._topics["depth_image"]]
         sim.step(1000)
         made: list[Any] = []
-        taps = [sim.bus.tap(topic, made.append) for topic in topics]
+        taps = [sim.communication.bus.tap(topic, made.append) for topic in topics]
         seconds = []
         for _ in range(rounds):
             made.clear()
@@ -194,7 +198,7 @@ def beside_pybullet(rounds: int) -> Figure | None:
         return None
     with simkit.load("turtlebot3_world", render_thread=False) as sim:
         sim.run(0.5)
-        eye, data = eye_of(sim), sim.fresh_data()
+        eye, data = eye_of(sim), sim.engine.physics.fresh()
         client = pybullet.connect(pybullet.DIRECT)
         _copy_visuals(pybullet, sim.mj_model, data)
         view = eye.shots()[0].view
@@ -202,7 +206,7 @@ def beside_pybullet(rounds: int) -> Figure | None:
         seen = pybullet.computeViewMatrix(place.tolist(), (place + turn[:, 0]).tolist(), turn[:, 2].tolist())
         edges = [float(e) * 0.05 for e in (view.left, view.right, view.bottom, view.top)]
         through = pybullet.computeProjectionMatrix(*edges, 0.05, eye.options.model.far)
-        taps = [sim.bus.tap(eye._topics[product], _ignore) for product in ("image", "depth_image")]
+        taps = [sim.communication.bus.tap(eye._topics[product], _ignore) for product in ("image", "depth_image")]
 
         def theirs() -> Any:
             return pybullet.getCameraImage(

@@ -128,9 +128,11 @@ def measured(robots: int, kind: str, rounds: int) -> Row:
     load = time.process_time() - start
     drive(sim)
     sim.run(0.3)
-    topics = [topic for topic, kind in sim.topics().items() if kind in READ and topic not in sim.bus.aside]
+    topics = [
+        topic for topic, kind in sim.topics().items() if kind in READ and topic not in sim.communication.bus.aside
+    ]
     bare = BareEngine(sim)
-    scans = [cast_bare_scan(s, bare.model, bare.data) for s in sim.sensors.values() if s.kind == "lidar"]
+    scans = [cast_bare_scan(s, bare.model, bare.data) for s in sim.contents.sensors.values() if s.kind == "lidar"]
     received = 0
 
     def count(_: Any) -> None:
@@ -163,7 +165,7 @@ def measured(robots: int, kind: str, rounds: int) -> Row:
 def publishing(rounds: int) -> float:
     """What one published message with one subscriber costs beyond building it [s]."""
     sim = simkit.load('<sdf version="1.9"><world name="w"/></sdf>')
-    publisher = sim.bus.advertise("/x", "std_msgs/msg/Float64")
+    publisher = sim.communication.bus.advertise("/x", "std_msgs/msg/Float64")
     make, count = msgs.type_of("std_msgs/msg/Float64"), 20_000
     sim.subscribe("/x", lambda message: None, keep=1)
 

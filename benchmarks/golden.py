@@ -52,7 +52,7 @@ def main() -> None:
 def _timed(scenario: RunSpec, what: str) -> float:
     """Processor time of one run [s]."""
     with open_scenario(scenario) as sim:
-        taps = [sim.bus.tap(topic, _nothing) for topic in sim.topics()] if what == "listened" else []
+        taps = [sim.communication.bus.tap(topic, _nothing) for topic in sim.topics()] if what == "listened" else []
         start = time.process_time()
         if what == "captured":
             run_record(scenario, sim=sim)

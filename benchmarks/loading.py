@@ -35,7 +35,7 @@ def timed(action: Callable[[], Any]) -> float:
 def loading(source: str, paths: list[str]) -> str:
     """One line: load, bare read and compile, bare compile of a finished specification."""
     with simkit.load(source, resource_paths=paths) as sim:
-        spec = sim.structure.builder.spec.copy()
+        spec = sim.engine.structure.builder.spec.copy()
 
     def compile_only() -> Any:
         model = spec.copy().compile()

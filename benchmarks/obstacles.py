@@ -20,8 +20,8 @@ def main() -> None:
         for sim in (full, empty):
             sim.run(1.0)
             # nothing due: the plugins' and sensors' share is the same in both
-            sim.scheduler.clear()
-            sim.scheduler.rewind(sim.tick)
+            sim.engine.scheduler.clear()
+            sim.engine.scheduler.rewind(sim.tick)
         many, none = time_interleaved([lambda: full.step(STEPS), lambda: empty.step(STEPS)], rounds)
     print(
         f"a step with {COUNT} static obstacles {many / STEPS * 1e6:.1f} us, without {none / STEPS * 1e6:.1f} us, "

@@ -73,8 +73,8 @@ def timed(text: str, folder: Path, rounds: int) -> list[float]:
     with simkit.load(text, resource_paths=[str(folder)]) as sim:
         sim.run(0.05)
         sensor = sim.sensor("m::l::s")
-        data, bare = sim.fresh_data(), cast_bare_scan(sensor, sim.mj_model, sim.mj_data)
-        sim.bus.tap(sensor.topic + "/points", lambda _: None)
+        data, bare = sim.engine.physics.fresh(), cast_bare_scan(sensor, sim.mj_model, sim.mj_data)
+        sim.communication.bus.tap(sensor.topic + "/points", lambda _: None)
         sides = [lambda: sensor.measure(sim.mj_model, data), lambda: sensor.sample(sim.tick), bare]
         return time_interleaved(sides, rounds)
 
@@ -92,7 +92,7 @@ def accuracy() -> float:
     with simkit.load(text) as sim:
         sim.run(0.01)
         sensor = sim.sensor("m::l::s")
-        found = sensor.measure(sim.mj_model, sim.fresh_data()).ranges
+        found = sensor.measure(sim.mj_model, sim.engine.physics.fresh()).ranges
         along = 100 * sensor._directions[:, 0]
         exact = along - np.sqrt(np.maximum(15**2 - (100**2 - along**2), 0))
         return float(np.abs(found - exact).max())
@@ -108,8 +108,8 @@ def beside_pybullet(rounds: int) -> Figure | None:
     with simkit.load("turtlebot3_world") as sim:
         sim.run(1.0)
         sensor = sim.sensor(TURTLEBOT)
-        sim.bus.tap(sensor.topic, lambda _: None)
-        data = sim.fresh_data()
+        sim.communication.bus.tap(sensor.topic, lambda _: None)
+        data = sim.engine.physics.fresh()
         client = pybullet.connect(pybullet.DIRECT)
         _copy_shapes(pybullet, sim.mj_model, data, sensor._body)
         place, turn = sensor._frame_in_world(data)

@@ -112,7 +112,7 @@ def steps(name: str, rounds: int) -> list[str]:
 
 def read_all_but_pictures(sim: simkit.Simulation) -> int:
     """Has every message of the robot's sensors, its joints, its odometry and its frames made."""
-    sensed = {topic for sensor in sim.sensors.values() for topic in sensor._topics.values()}
+    sensed = {topic for sensor in sim.contents.sensors.values() for topic in sensor._topics.values()}
     told = sim.topics()
     topics = [t for t in sorted({*sensed, *OWN}) if t in told and told[t].rpartition("/")[2] not in PICTURES]
     for topic in topics:

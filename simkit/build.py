@@ -229,7 +229,7 @@ def check(
             base=base,
         ) as simulation:
             diagnostics.extend(simulation.diagnostics)
-            diagnostics.extend(lint_world(simulation.world, simulation.compiled))
+            diagnostics.extend(lint_world(simulation.world, simulation.engine.compiled))
     except LoadError as error:
         diagnostics.extend(error.diagnostics)
     except PluginError as error:

@@ -136,7 +136,7 @@ def test_every_world_loads_clean_and_steps(world: Path) -> None:
     with simkit.load(world) as sim:
         # an arm robot among people has twice the time for a step
         assert sim.timestep == pytest.approx(0.002 if world.stem == "simple_office_with_people" else 0.001)
-        assert "sun" in sim.lights
+        assert "sun" in sim.contents.lights
         assert "ground_plane" in sim.models
         sim.step()
         assert sim.time == sim.timestep

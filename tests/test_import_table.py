@@ -1,142 +1,281 @@
-"""The import table of the rooms: who may know whom. One way through the house, from the loaders to the sinks."""
+"""Import rules of the package: which room may use which, no circles, and why an import stands inside a function.
+
+A room is a folder or module directly under `simkit/`. An import counts wherever it stands: at the top of a file, inside a
+function or under `TYPE_CHECKING`.
+"""
 
 from __future__ import annotations
 
 import ast
+from collections import defaultdict
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
+from typing import Literal
 
 import pytest
 
 PACKAGE = Path(__file__).resolve().parents[1] / "simkit"
 
-SMALL_WORDS = frozenset({"apart", "pose", "params", "diagnostics", "errors", "msgs", "registry"})
-ROOMS: dict[str, frozenset[str]] = {
-    "scene": frozenset(),
-    "engine": frozenset(),
-    "loaders": frozenset({"scene"}),
-    "compiler": frozenset({"engine", "scene"}),
-    "runtime": frozenset({"compiler", "engine", "scene"}),
-    "earth": frozenset({"scene"}),
-    "sensors": frozenset({"runtime", "compiler", "scene", "earth"}),
-    "gzpython": frozenset({"runtime", "scene", "earth"}),
-    "plugins": frozenset({"runtime", "compiler", "scene", "earth", "gzpython", "sinks"}),
-    "control": frozenset({"plugins", "runtime", "compiler", "scene"}),
-    "motion": frozenset({"control", "plugins", "runtime", "compiler", "scene"}),
-    "authoring": frozenset({"plugins", "gzpython", "sensors", "runtime", "scene"}),
-    "pytest_plugin": frozenset({"golden", "runtime", "scenario"}),
-    "conditions": frozenset({"runtime", "scenario"}),
-    "scenario": frozenset({"build", "conditions", "runtime", "sinks"}),
-    "golden": frozenset({"compiler", "conditions", "engine", "runtime", "scenario", "scene", "sensors", "sinks"}),
-    "certify": frozenset({"engine", "golden", "runtime", "scenario", "sinks"}),
-    "bundle": frozenset(
-        {"build", "engine", "golden", "loaders", "runtime", "scenario", "scene", "sinks", "spawning", "vendor"}
-        | {"conditions", "writers"}
-    ),
-    "exercise": frozenset({"build", "conditions", "plugins", "runtime", "scenario", "scene", "sinks"}),
-    "parts": frozenset({"control", "motion", "plugins", "sensors", "runtime", "scene"}),
-    "sinks": frozenset({"runtime", "writers"}),
-    "live": frozenset({"runtime"}),
-    "fix_inertia": frozenset({"loaders", "compiler", "scene"}),
-    "lint": frozenset({"runtime", "compiler", "scene"}),
-    "overrides": frozenset({"scene"}),
-    "spawning": frozenset({"loaders", "scene"}),
-    "vendor": frozenset({"loaders", "scene", "writers"}),
-    "writers": frozenset({"scene", "compiler"}),
-    "description": frozenset({"scene", "loaders", "sensors"}),
-    "bench": frozenset({"build", "runtime", "compiler", "sensors", "plugins"}),
-    "cli": frozenset(
-        {
-            "authoring",
-            "bundle",
-            "certify",
-            "conditions",
-            "control",
-            "exercise",
-            "golden",
-            "runtime",
-            "scenario",
-            "live",
-            "motion",
-            "build",
-            "fix_inertia",
-            "description",
-            "bench",
-            "engine",
-            "overrides",
-            "sinks",
-            "vendor",
-        }
-        | {"writers"}
-    ),
+SMALL_MODULES = frozenset(
+    {"child_process", "diagnostic_record", "diagnostics", "errors", "msgs", "mujoco_import", "params", "pose", "registry", "run_spec"}
+    | {"save_path", "version", "yaml_reader"}
+)
+"""Modules at the top that every room may use; they use only each other."""
+
+BELOW_RUNTIME = {"compiler", "scene"}
+BELOW_BUILD = {*BELOW_RUNTIME, "loaders", "plugins", "recording", "runtime", "sensors", "writers"}
+ROOMS: dict[str, set[str]] = {
+    "scene": set(),
+    "loaders": {"scene"},
+    "compiler": {"loaders", "scene"},
+    "writers": {"compiler", "loaders", "scene"},
+    "runtime": BELOW_RUNTIME,
+    "sensors": {*BELOW_RUNTIME, "runtime"},
+    "recording": {"runtime", "writers"},
+    "plugins": {*BELOW_RUNTIME, "recording", "runtime", "sensors"},
+    "build": BELOW_BUILD,
+    "bridges": {"recording", "runtime"},
+    "live": {"bridges"},
+    "testing": {*BELOW_BUILD, "build"},
+    "pytest_plugin": {*BELOW_BUILD, "build", "testing"},
+    "cli": {*BELOW_BUILD, "bridges", "build", "live", "testing"},
 }
-KNOWS_ALL = frozenset({"build"})
-FRONT_DOOR = frozenset({"__init__", "__main__"})
+"""The rooms that each room may use, beside the small modules."""
+
+FRONT = {"__init__", "__main__"}
+"""Modules that only hand on what a user imports or runs."""
+
+HEAVY = {
+    "coacd": "optional: the extra `decompose`",
+    "cv2": "0.1 s",
+    "embreex": "optional: has no wheels for some machines",
+    "concurrent": "0.02 s; few commands start processes",
+    "fcntl": "only some systems have it",
+    "glfw": "optional: the extra `view`",
+    "jinja2": "only reports need it",
+    "lxml": "only files need it",
+    "markupsafe": "comes with jinja2",
+    "msvcrt": "only some systems have it",
+    "multiprocessing": "0.02 s; few commands start processes",
+    "mapbox_earcut": "only polygons need it",
+    "matplotlib": "optional: the extra `plot`",
+    "mcap": "only bags need it",
+    "mujoco": "0.23 s, and looks for a renderer",
+    "numpy": "0.11 s; the pytest plugin and `--help` do without",
+    "OpenGL": "needs a renderer",
+    "PIL": "only pictures need it",
+    "pvlib": "optional: the extra `sun`",
+    "pyarrow": "optional: the extra `parquet`",
+    "pytest": "only tests have it",
+    "rich": "0.05 s",
+    "rosbags": "0.04 s; only messages need it",
+    "scipy": "0.3 s",
+    "trimesh": "0.2 s",
+    "termios": "only some systems have it",
+    "typer": "only the command line needs it",
+    "xacro": "only xacro files need it",
+    "yaml": "only YAML files need it",
+}
+"""Packages that may be imported inside a function, with the reason."""
+
+HANDLES = "simkit.runtime.handles"
+LARGEST_HANDLE_GROUP = 12
+
+Kind = Literal["module", "function", "typing"]
 
 
-def room_of(path: Path) -> str:
-    """The folder or module directly under `simkit/` that a file belongs to."""
-    first = path.relative_to(PACKAGE).parts[0]
-    return first.removesuffix(".py")
+@dataclass(frozen=True)
+class Import:
+    """One import of a file.
+
+    Attributes:
+        target: full name of what is imported: a module of simkit, or a foreign package's first name.
+        kind: where it stands.
+    """
+
+    line: int
+    target: str
+    kind: Kind
 
 
-def imported_rooms(path: Path) -> list[tuple[int, str]]:
-    """(line, room) for each import from simkit in a file, those inside functions and for type checking included."""
-    found = []
-    here = ("simkit", *path.relative_to(PACKAGE).with_suffix("").parts)
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"), str(path))):
-        names: list[str] = []
-        if isinstance(node, ast.Import):
-            names = [alias.name for alias in node.names]
-        elif isinstance(node, ast.ImportFrom):
-            base = node.module or ""
-            if node.level:
-                base = ".".join([*here[: -node.level], *([base] if base else [])])
-            names = [f"{base}.{alias.name}" for alias in node.names]
-        for name in names:
-            parts = name.split(".")
-            if parts[0] == "simkit" and len(parts) > 1 and _is_module(parts[1]):
-                found.append((node.lineno, parts[1]))
+@cache
+def modules() -> Mapping[str, Path]:
+    """Files of the package by module name."""
+    found = {}
+    for path in sorted(PACKAGE.rglob("*.py")):
+        parts = path.relative_to(PACKAGE.parent).with_suffix("").parts
+        found[".".join(parts[:-1] if parts[-1] == "__init__" else parts)] = path
     return found
 
 
-def _is_module(name: str) -> bool:
-    return (PACKAGE / name).is_dir() or (PACKAGE / f"{name}.py").is_file()
+@cache
+def imports(module: str) -> tuple[Import, ...]:
+    """Imports of a module, in the order of the file."""
+    path = modules()[module]
+    package = module if path.name == "__init__.py" else module.rpartition(".")[0]
+    return tuple(_imports(ast.parse(path.read_text(encoding="utf-8"), str(path)), "module", package))
 
 
-FILES = sorted(p for p in PACKAGE.rglob("*.py"))
+def _imports(node: ast.AST, kind: Kind, package: str) -> Iterator[Import]:
+    for child in ast.iter_child_nodes(node):
+        inner = kind
+        if isinstance(child, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda) and kind == "module":
+            inner = "function"
+        if isinstance(child, ast.If) and "TYPE_CHECKING" in ast.unparse(child.test):
+            inner = "typing"
+        names: list[str] = []
+        if isinstance(child, ast.Import):
+            names = [alias.name for alias in child.names]
+        elif isinstance(child, ast.ImportFrom):
+            above = package.split(".")[: len(package.split(".")) - child.level + 1] if child.level else []
+            base = ".".join([*above, *([child.module] if child.module else [])])
+            names = [f"{base}.{alias.name}" for alias in child.names]
+        for name in names:
+            yield Import(child.lineno, _target(name), kind)
+        yield from _imports(child, inner, package)
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda p: str(p.relative_to(PACKAGE)))
-def test_a_file_imports_only_from_the_rooms_its_own_may_know(path: Path) -> None:
-    room = room_of(path)
-    if room in KNOWS_ALL | FRONT_DOOR:
-        return
-    if room in SMALL_WORDS:
-        allowed = SMALL_WORDS
+def _target(name: str) -> str:
+    """The module of simkit that a dotted name lies in, or the first name of a foreign package."""
+    if name.split(".")[0] != "simkit":
+        return name.split(".")[0]
+    while name not in modules():
+        name = name.rpartition(".")[0]
+    return name
+
+
+def room_of(module: str) -> str:
+    """The folder or module directly under `simkit/` that a module belongs to."""
+    parts = module.split(".")
+    return parts[1] if len(parts) > 1 else "__init__"
+
+
+def folder_of(module: str) -> str:
+    """The folder of a module, as a dotted name; a module at the top stands for itself."""
+    parent = modules()[module].relative_to(PACKAGE).parent.parts
+    return ".".join(parent) or room_of(module)
+
+
+def circles(kinds: set[Kind], group: Callable[[str], str] = str) -> list[list[str]]:
+    """Groups of modules (or of what `group` makes of them) that import each other, directly or through others."""
+    graph: dict[str, set[str]] = defaultdict(set)
+    for module in modules():
+        for one in imports(module):
+            if one.kind in kinds and one.target in modules() and group(one.target) != group(module):
+                graph[group(module)].add(group(one.target))
+    reach: dict[str, set[str]] = {}
+    for start in graph:
+        seen: set[str] = set()
+        waiting = [*graph[start]]
+        while waiting:
+            name = waiting.pop()
+            if name not in seen:
+                seen.add(name)
+                waiting += graph.get(name, ())
+        reach[start] = seen
+    members = {name for name, seen in reach.items() if name in seen}
+    found = {frozenset(other for other in members if other in reach[name] and name in reach[other]) for name in members}
+    return sorted(sorted(circle) for circle in found)
+
+
+@pytest.mark.parametrize("room", sorted({room_of(module) for module in modules()} - FRONT))
+def test_a_room_imports_only_the_rooms_that_it_may_use(room: str) -> None:
+    if room in SMALL_MODULES:
+        allowed = {*SMALL_MODULES}
     else:
-        assert room in ROOMS, f"simkit/{room} is no room of the table; give it a row"
-        allowed = ROOMS[room] | SMALL_WORDS | {room}
-    wrong = [f"line {line}: {other}" for line, other in imported_rooms(path) if other not in allowed]
-    assert not wrong, f"simkit/{path.relative_to(PACKAGE)} may import {sorted(allowed)}, but: " + "; ".join(wrong)
+        assert room in ROOMS, f"simkit/{room} has no row in the table; give it one"
+        allowed = {*ROOMS[room], *SMALL_MODULES, room}
+    wrong = [
+        f"{modules()[module].relative_to(PACKAGE)}:{one.line}: {one.target}"
+        for module in modules()
+        if room_of(module) == room
+        for one in imports(module)
+        if one.target in modules() and room_of(one.target) not in allowed and (module, one.target) not in FRONT_USERS
+    ]
+    assert not wrong, f"simkit/{room} may use {sorted(allowed)}, but:\n" + "\n".join(wrong)
+
+
+FRONT_USERS = {
+    ("simkit.pytest_plugin", "simkit"): "tests load worlds as users do",
+    ("simkit.testing.gz_fixture", "simkit"): "TestFixture loads a world as a user's test does",
+}
+"""Modules that use simkit as its users do, with the reason."""
+
+
+def test_subfolders_have_no_circles_by_any_import() -> None:
+    assert circles({"module", "function", "typing"}, folder_of) == []
+
+
+def test_files_have_no_circles_by_imports_that_run() -> None:
+    assert circles({"module", "function"}) == []
+
+
+def test_only_handles_of_the_runtime_know_each_other_by_type() -> None:
+    found = circles({"module", "function", "typing"})
+    assert all(module.startswith(HANDLES) for circle in found for module in circle), found
+    assert len(found) <= 1 and all(len(circle) <= LARGEST_HANDLE_GROUP for circle in found)
+
+
+def test_an_import_inside_a_function_spares_a_heavy_package() -> None:
+    """A module of simkit may be imported late where it loads a heavy package that the importing file does not load.
+
+    Commands import what they run when they run: each then answers `--help` and a completion within a tenth of a second.
+    """
+    wrong = []
+    for module in modules():
+        loaded = _heavy(module)
+        for one in imports(module):
+            if one.kind != "function" or one.target in HEAVY or (module, one.target) in FRONT_USERS:
+                continue
+            if room_of(module) == "cli" and one.target in modules():
+                continue
+            if one.target not in modules() or not _heavy(one.target) - loaded:
+                wrong.append(f"{modules()[module].relative_to(PACKAGE)}:{one.line}: {one.target}")
+    assert not wrong, "these belong to the top of their files:\n" + "\n".join(wrong)
+
+
+@cache
+def _heavy(module: str) -> frozenset[str]:
+    """Heavy packages that come with a module when it is imported."""
+    seen: set[str] = set()
+    found: set[str] = set()
+    waiting = [module]
+    while waiting:
+        name = waiting.pop()
+        if name in seen:
+            continue
+        seen.add(name)
+        parent = name.rpartition(".")[0]
+        if parent:
+            waiting.append(parent)
+        for one in imports(name):
+            if one.kind == "module":
+                if one.target in HEAVY:
+                    found.add(one.target)
+                elif one.target in modules():
+                    waiting.append(one.target)
+    return frozenset(found)
 
 
 def test_only_loaders_read_xml() -> None:
     """XML ends at the loaders; a mesh file that happens to be XML is the mesh reader's."""
-    readers = {p.relative_to(PACKAGE).as_posix() for p in FILES if _imports(p, {"lxml", "xml"})}
-    assert {r for r in readers if not r.startswith("loaders/")} <= {"compiler/meshes/collada.py"}
+    readers = {module for module in modules() for one in imports(module) if one.target in {"lxml", "xml"}}
+    assert {r for r in readers if room_of(r) != "loaders"} <= {"simkit.compiler.meshes.collada"}
 
 
-def test_only_the_compiler_and_what_stands_on_it_knows_the_engine() -> None:
-    """Scene, loaders, messages and the small words work without MuJoCo."""
-    mjcf_parser = PACKAGE / "loaders" / "mjcf" / "engine.py"  # only MuJoCo can say what an MJCF file means
-    users = {room_of(p) for p in FILES if p != mjcf_parser and _imports(p, {"mujoco"})}
-    assert not users & ({"scene", "loaders"} | SMALL_WORDS)
+def test_scene_loaders_and_small_modules_work_without_mujoco() -> None:
+    users = {module for module in modules() for one in imports(module) if one.target == "mujoco"}
+    light = {"scene", "loaders", *SMALL_MODULES} - {"mujoco_import"}
+    assert not {module for module in users if room_of(module) in light}
 
 
-def _imports(path: Path, packages: set[str]) -> bool:
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.Import) and any(a.name.split(".")[0] in packages for a in node.names):
-            return True
-        if isinstance(node, ast.ImportFrom) and not node.level and (node.module or "").split(".")[0] in packages:
-            return True
-    return False
+def test_no_more_than_twelve_folders_lie_at_the_top() -> None:
+    folders = {path.relative_to(PACKAGE).parts[0] for path in PACKAGE.rglob("*.py") if path.parent != PACKAGE}
+    assert len(folders) <= 12, sorted(folders)
+
+
+def test_no_file_is_longer_than_400_lines() -> None:
+    lengths = {str(path.relative_to(PACKAGE)): path.read_text("utf-8").count("\n") for path in modules().values()}
+    assert {name: length for name, length in lengths.items() if length > 400} == {}

@@ -19,7 +19,7 @@ WORLD = (
 def test_the_page_has_every_service_with_its_type_and_no_other() -> None:
     rows = {name.replace("<world>", "w"): type_name for name, type_name, _ in ROW.findall(PAGE.read_text("utf-8"))}
     with simkit.load(WORLD) as sim:
-        offered = sim.services()
+        offered = sim.communication.services.names()
     assert rows == {name: kind for name, kind in offered.items() if not name.endswith("/blocking")}
     blocking = {name.removesuffix("/blocking") for name in offered if name.endswith("/blocking")}
     assert {f"/world/w/{short}" for short in ("control", "generate_world_sdf", "scene/info")} == {
@@ -30,7 +30,11 @@ def test_the_page_has_every_service_with_its_type_and_no_other() -> None:
 def test_the_page_has_the_topics_that_a_world_tells_of_itself() -> None:
     text = PAGE.read_text("utf-8")
     with simkit.load(WORLD) as sim:
-        topics = {topic: kind for topic, kind in sim.bus.all_topics().items() if topic in sim.bus.aside}
+        topics = {
+            topic: kind
+            for topic, kind in sim.communication.bus.all_topics().items()
+            if topic in sim.communication.bus.aside
+        }
     for topic, kind in topics.items():
         assert f"`{topic.replace('/w/', '/<world>/')}`" in text
         assert kind.rpartition("/")[2] in text

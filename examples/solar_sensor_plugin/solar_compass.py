@@ -27,9 +27,9 @@ class SolarCompass(ModelPlugin):
 
     def load(self, parent: Model, params: Params) -> None:
         lamp = params.text("lamp", required=True)
-        if lamp not in self.sim.lights:
+        if lamp not in self.sim.contents.lights:
             params.error(
-                "SK-PLUGIN-003", f"there is no lamp {lamp!r}; lights are: {', '.join(sorted(self.sim.lights))}"
+                "SK-PLUGIN-003", f"there is no lamp {lamp!r}; lights are: {', '.join(sorted(self.sim.contents.lights))}"
             )
             return
         self.lamp = self.sim.light(lamp)

@@ -50,4 +50,4 @@ class SolarTracker(ModelPlugin):
             turntable = self.gain * math.atan2(y, x)
             hinge = self.gain * (math.atan2(math.hypot(x, y), z) - tilt)
         for servo, speed in zip(self.servos, (turntable, hinge), strict=True):
-            self.sim.set_control(servo, max(-self.top_speed, min(self.top_speed, speed)))
+            self.sim.engine.set_control(servo, max(-self.top_speed, min(self.top_speed, speed)))

@@ -49,7 +49,7 @@ class BareCamera:
     ) -> None:
         render_thread.drain()
         self.model = sim.mj_model if model is None else model
-        self.data = sim.fresh_data() if data is None else data
+        self.data = sim.engine.physics.fresh() if data is None else data
         self.sensor = sensor
         (shot,) = sensor.shots()
         self.view, self._has_depth = shot.view, shot.depth
@@ -163,7 +163,7 @@ class HandWrittenLoop(BareEngine):
         self._random = np.random.default_rng(0)
         self.latest: dict[str, object] = {}
         types = sim.topics()
-        sensors = {sensor.topic: sensor for sensor in sim.sensors.values()}
+        sensors = {sensor.topic: sensor for sensor in sim.contents.sensors.values()}
         self._sim = sim
         self._due = [(p, t, self._reader(types[t], sensors.get(t))) for t, p in periods.items()]
         self._plans: dict[int, list[tuple[int, list[tuple[str, Callable[[], object]]]]]] = {}

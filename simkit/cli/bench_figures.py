@@ -104,7 +104,7 @@ def compare_with_bare_mujoco(
     if what != "steps":
         with load() as sim:
             sim.run(1.0)
-            for sensor in sim.sensors.values():
+            for sensor in sim.contents.sensors.values():
                 if sensor.topic:
                     yield compare_sensor(sim, sensor, rounds)
 
@@ -117,17 +117,17 @@ def _step_figures(load: Callable[..., Any], rounds: int) -> Iterator[Figure]:
         _schedule_only(sim, None, sim.engine.faults.task(plugin, "after_step"), "after")
         yield _compare_step(sim, rounds, "step, only a Python plugin after each", 1.20)
     with load() as sim:
-        imu = next((s for s in sim.sensors.values() if s.kind == "imu" and s.topic), None)
+        imu = next((s for s in sim.contents.sensors.values() if s.kind == "imu" and s.topic), None)
         if imu:
             _schedule_only(sim, imu.update_rate, imu.sample, "sense")
-            latest = sim.bus.subscribe(imu.topic, keep=1)
+            latest = sim.communication.bus.subscribe(imu.topic, keep=1)
             yield _compare_step(sim, rounds, f"step, only an imu at {imu.update_rate:g} Hz, looked at later", 1.10)
             latest.close()
-            sim.bus.tap(imu.topic, _ignore_message)
+            sim.communication.bus.tap(imu.topic, _ignore_message)
             yield _compare_step(sim, rounds, f"step, only an imu at {imu.update_rate:g} Hz, each message made", 1.10)
     for how in ("looked at later", "each message made"):
         with load() as sim:
-            kinds = [s for s in sim.sensors.values() if s.topic and (s.kind == "imu" or isinstance(s, Lidar))]
+            kinds = [s for s in sim.contents.sensors.values() if s.topic and (s.kind == "imu" or isinstance(s, Lidar))]
             if len(kinds) > 1:
                 yield compare_motion_and_scans(sim, {s.topic for s in kinds}, rounds, how)
     with load() as sim:
@@ -159,23 +159,23 @@ def measure_memory_growth(sim: Simulation, duration: float) -> float:
 
 def _topics_without_images(sim: Simulation) -> set[str]:
     """The topics for which nothing is drawn; boxes around what is seen are for example not among them."""
-    drawn = {t for s in sim.sensors.values() if isinstance(s, RenderedCamera) for t in s._topics.values()}
+    drawn = {t for s in sim.contents.sensors.values() if isinstance(s, RenderedCamera) for t in s._topics.values()}
     return {topic for topic, type_name in sim.topics().items() if type_name not in _CAMERAS} - drawn
 
 
 def compare_stepping(sim: Simulation, rounds: int) -> Figure:
     """Steps with nothing due beside `mj_step` on a copy of the same model and state."""
     sim.step(100)
-    sim.scheduler.clear()
-    sim.scheduler.rewind(sim.tick)
+    sim.engine.scheduler.clear()
+    sim.engine.scheduler.rewind(sim.tick)
     return _compare_step(sim, rounds, "step, nothing due", 1.05)
 
 
 def _schedule_only(sim: Simulation, rate: float | None, task: Callable[[int], None], phase: Phase) -> None:
     """Nothing but `task` is due in this simulation from now on."""
-    sim.scheduler.clear()
-    sim.scheduler.every(rate, task, phase)
-    sim.scheduler.rewind(sim.tick)
+    sim.engine.scheduler.clear()
+    sim.engine.scheduler.every(rate, task, phase)
+    sim.engine.scheduler.rewind(sim.tick)
 
 
 def _compare_step(sim: Simulation, rounds: int, name: str, aim: float) -> Figure:
@@ -195,7 +195,7 @@ def compare_motion_and_scans(sim: Simulation, topics: set[str], rounds: int, how
     name = f"step, all plugins, imu and lidar read, {how}"
     if how == "looked at later":
         for topic in topics:
-            sim.bus.subscribe(topic, keep=1)
+            sim.communication.bus.subscribe(topic, keep=1)
     return _compare_hand_written(sim, topics, rounds, name, 1 / 0.9, keeps_counting=how != "looked at later")
 
 
@@ -226,8 +226,8 @@ def compare_sensor(sim: Simulation, sensor: Sensor, rounds: int) -> Figure:
     """A whole sample with its message, of data that are up to date; a scan beside its bare rays, a picture beside one
     bare pass. Pictures are without noise, and clouds are not made."""
     clouds = [p for p, product in sensor._products.items() if product.type_name == "sensor_msgs/msg/PointCloud2"]
-    taps = [sim.bus.tap(t, _ignore_message) for p, t in sensor._topics.items() if p not in clouds]
-    sim.fresh_acceleration()
+    taps = [sim.communication.bus.tap(t, _ignore_message) for p, t in sensor._topics.items() if p not in clouds]
+    sim.engine.physics.fresh_accelerations()
     name, aim = f"{sensor.kind} {sensor.scoped}", None
     bare: Callable[[], object] | None = None
     one_pass: BareCamera | None = None
@@ -272,7 +272,7 @@ def _count_messages(sim: Simulation, topics: set[str]) -> tuple[dict[str, int], 
 
         return one_more
 
-    return counts, [sim.bus.tap(topic, count(topic)) for topic in sorted(topics)]
+    return counts, [sim.communication.bus.tap(topic, count(topic)) for topic in sorted(topics)]
 
 
 def _ignore_message(_: object) -> None:

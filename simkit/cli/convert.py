@@ -68,7 +68,7 @@ def _to_mjcf(file: str, output: Path, options: SourceOptions, *, strict: bool, f
     check_target(output, f"{output.stem}_assets", overwrite=force)
     with load(file, strict=strict, **options) as sim:
         print_diagnostics(sim.diagnostics, verbose=verbose)
-        written = write_mjcf(sim.compiled.builder, output, overwrite=force)
+        written = write_mjcf(sim.engine.compiled.builder, output, overwrite=force)
     if written.balanced:
         print_status(
             f"MuJoCo's compiler refuses the inertia of {', '.join(written.balanced[:6])}"

@@ -51,7 +51,7 @@ class RunKeys:
 
     def _is_stepping(self) -> bool:
         """Whether a step that was asked for by a key is still to be done."""
-        until: int | None = self._sim.pausing.until
+        until: int | None = self._sim.control.pausing.until
         return until is not None and until == self._step_ends and self._sim.tick < until
 
     def say_paused(self) -> None:
@@ -62,7 +62,7 @@ class RunKeys:
 
     def press(self, key: str) -> None:
         """Does what a key says; one without a meaning does nothing."""
-        pausing = self._sim.pausing
+        pausing = self._sim.control.pausing
         if key == " ":
             if pausing.is_paused:
                 pausing.resume()

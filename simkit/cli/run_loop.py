@@ -73,7 +73,7 @@ class RunLoop:
     ) -> None:
         self._sim, self._interrupts, self._watchers = sim, interrupts, watchers
         if rtf is not None:
-            sim.pausing.pace = rtf
+            sim.control.pausing.pace = rtf
         self._longest = max(1, round(_PATH / sim.timestep)) if follow else 1 << 30
         self._slice = min(max(1, round(0.01 / sim.timestep)), self._longest)
         self._count_anew()
@@ -91,11 +91,11 @@ class RunLoop:
         What a plugin took back by a reset on the way counts, so that a run comes to an end.
         """
         sim = self._sim
-        end = None if duration is None else sim.steps + round(duration / sim.timestep)
+        end = None if duration is None else sim.engine.steps + round(duration / sim.timestep)
         self._count_anew()
         was_paused = False
-        with sim.pausing.served():
-            while end is None or sim.steps < end:
+        with sim.control.pausing.served():
+            while end is None or sim.engine.steps < end:
                 if self._interrupts.exit_code or not self.keep_going() or self.is_over():
                     return False
                 before = sim.tick
@@ -130,12 +130,16 @@ class RunLoop:
 
     def _count_anew(self) -> None:
         """From here and now on."""
-        self._start: tuple[int, float, float | None] = self._sim.tick, time.perf_counter(), self._sim.pausing.pace
+        self._start: tuple[int, float, float | None] = (
+            self._sim.tick,
+            time.perf_counter(),
+            self._sim.control.pausing.pace,
+        )
 
     def _ahead(self) -> float:
         """How long the run is to wait so that it is no faster than it may be [s]."""
         tick, wall, pace = self._start
-        if pace != self._sim.pausing.pace:
+        if pace != self._sim.control.pausing.pace:
             self._count_anew()
             return 0.0
         if pace is None:
@@ -148,7 +152,7 @@ class RunLoop:
     def _wait(self, seconds: float) -> None:
         """Lets wall time pass, which is the clients' [s]; not all of it where the world is paused, or let go on."""
         sim, end = self._sim, time.perf_counter() + seconds
-        was_paused, pace, until = sim.paused, sim.pausing.pace, sim.pausing.until
+        was_paused, pace, until = sim.paused, sim.control.pausing.pace, sim.control.pausing.until
         while (left := end - time.perf_counter()) > 0 and not self._interrupts.exit_code:
             if self.server is None:
                 time.sleep(min(left, _PAUSE_POLL_SECONDS))
@@ -156,24 +160,24 @@ class RunLoop:
                 self.server.poll(min(left, _PAUSE_POLL_SECONDS))
             if self.poll_keys is not None:
                 self.poll_keys()
-            if (sim.paused, sim.pausing.pace, sim.pausing.until) != (was_paused, pace, until):
+            if (sim.paused, sim.control.pausing.pace, sim.control.pausing.until) != (was_paused, pace, until):
                 return
 
     # ------------------------------------------------------------------ a slice
 
     def _advance(self, end: int | None) -> None:
         sim = self._sim
-        pace = sim.pausing.pace
+        pace = sim.control.pausing.pace
         longest = self._slice if pace is None else max(1, round(_PACED * pace / sim.timestep))
         stop = sim.tick + min(self._slice, longest)
         if end is not None:
-            stop = min(stop, sim.tick + end - sim.steps)
+            stop = min(stop, sim.tick + end - sim.engine.steps)
         for ahead in [sender.next_tick for sender in self.senders]:
             if ahead is not None:
                 stop = min(stop, max(ahead, sim.tick + 1))
         whole = stop - sim.tick == self._slice
         begun = time.perf_counter()
-        sim.pausing.advance(stop - sim.tick)
+        sim.control.pausing.advance(stop - sim.tick)
         taken = time.perf_counter() - begun
         long, short = (_LONG, _SHORT) if self.server is None else self.server.slices(_LONG, _SHORT)
         if taken > long:

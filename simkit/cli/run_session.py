@@ -256,7 +256,7 @@ class Session:
     def _hold(self) -> None:
         """Has the run begin paused, or be so after some steps."""
         if self.spec.steps is not None:
-            self.sim.pausing.step(self.spec.steps)
+            self.sim.control.pausing.step(self.spec.steps)
         elif self.spec.paused:
             self.sim.paused = True
 

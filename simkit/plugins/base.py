@@ -141,17 +141,19 @@ class Plugin(abc.ABC):
 
     def advertise(self, topic: str, type_name: str, *, latched: bool = False) -> Publisher:
         """A publisher on `topic` (expanded and remapped as in ROS), of a type such as `nav_msgs/msg/Odometry`."""
-        with self.sim.bus.owned_by(self):
-            publisher: Publisher = self.sim.bus.advertise(self.ros.topic(topic), type_name, latched=latched)
+        with self.sim.communication.bus.owned_by(self):
+            publisher: Publisher = self.sim.communication.bus.advertise(
+                self.ros.topic(topic), type_name, latched=latched
+            )
         return publisher
 
     def listen(self, topic: str, types: str | Sequence[str], callback: Callable[[Any], None]) -> Listener:
         """Calls `callback(message)` between two steps for each message on `topic`; the first type is the listed one."""
         name = self.ros.topic(topic)
-        guarded = self.sim.faults.guard(self, f"its callback for {name!r}", callback)
-        with self.sim.bus.owned_by(self):
+        guarded = self.sim.engine.faults.guard(self, f"its callback for {name!r}", callback)
+        with self.sim.communication.bus.owned_by(self):
             kinds = (types,) if isinstance(types, str) else types
-            listener: Listener = self.sim.bus.listen(name, kinds, guarded)
+            listener: Listener = self.sim.communication.bus.listen(name, kinds, guarded)
         return listener
 
     def subscribe(
@@ -167,8 +169,8 @@ class Plugin(abc.ABC):
             keep: how many of the newest messages `.messages` has.
         """
         name = self.ros.topic(topic)
-        guarded = callback and self.sim.faults.guard(self, f"its callback for {name!r}", callback)
-        with self.sim.bus.owned_by(self):
+        guarded = callback and self.sim.engine.faults.guard(self, f"its callback for {name!r}", callback)
+        with self.sim.communication.bus.owned_by(self):
             return self.sim.subscribe(name, guarded, keep)
 
     def offer(self, service: str, type_name: str, handler: Callable[[Any], Any]) -> Service:
@@ -179,7 +181,7 @@ class Plugin(abc.ABC):
             type_name: its type.
             handler: given the request, gives the response: a message, a dict of its fields, or None for all zero.
         """
-        with self.sim.bus.owned_by(self):
+        with self.sim.communication.bus.owned_by(self):
             return self.sim.offer(self.ros.topic(service), type_name, handler)
 
     def act(
@@ -198,8 +200,8 @@ class Plugin(abc.ABC):
                 a hook ends it with `succeed`, `abort` or `canceled`; `publish_feedback` tells how far it is.
             on_cancel: called with a goal that is to be cancelled; gives False to go on. Without it, nothing is.
         """
-        with self.sim.bus.owned_by(self):
-            opened: Action = self.sim.action_table.act(self.ros.topic(action), type_name, on_goal, on_cancel)
+        with self.sim.communication.bus.owned_by(self):
+            opened: Action = self.sim.communication.actions.act(self.ros.topic(action), type_name, on_goal, on_cancel)
         return opened
 
     def declare(
@@ -235,7 +237,7 @@ class Plugin(abc.ABC):
         otherwise = "/" + "/".join(filter(None, (*self.scoped.split("::"), self.name)))
         # a model has several of one class under one name: then the plugin itself says what tells them apart
         otherwise = getattr(self, "node", otherwise)
-        node = self.sim.parameter_table.node_of(self, otherwise if "::" in self.name else own, otherwise)
+        node = self.sim.communication.live_parameters.node_of(self, otherwise if "::" in self.name else own, otherwise)
         return declare_at(
             self,
             node,
@@ -253,7 +255,7 @@ class Plugin(abc.ABC):
     def random(self, channel: str, width: int = 1) -> RandomStream:
         """This plugin's own random stream: `.normal(index)` has `width` numbers that depend on seed, name and index."""
         owner = f"{self.scoped}::{self.name}" if self.scoped else self.name
-        stream: RandomStream = self.sim.streams.stream(owner, channel, width)
+        stream: RandomStream = self.sim.engine.streams.stream(owner, channel, width)
         return stream
 
     @property
@@ -347,7 +349,9 @@ class Plugin(abc.ABC):
                 if key not in vars(self).get("_uncopied", set()):
                     uncopyable = f"plugin {self.name!r}: attribute {key!r} cannot be copied"
                     message = f"{uncopyable}, snapshots and reset leave it as it is: {error}"
-                    self.sim.reports.warning("SK-PLUGIN-006", message, self.where, "override get_state and set_state")
+                    self.sim.engine.reports.warning(
+                        "SK-PLUGIN-006", message, self.where, "override get_state and set_state"
+                    )
         self._uncopied = uncopied
         return state
 

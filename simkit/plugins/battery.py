@@ -126,7 +126,7 @@ class Battery(ModelPlugin):
     def open_state(self, model: str) -> str:
         """Opens the topic of its state; gives what the names of its topics begin with."""
         base = f"/model/{model}/battery/{self.battery}"
-        for other in self.sim.structure.all_plugins():
+        for other in self.sim.engine.structure.all_plugins():
             if other is self:
                 break
             if isinstance(other, Battery) and (other.scoped, other.battery) == (self.scoped, self.battery):
@@ -142,10 +142,10 @@ class Battery(ModelPlugin):
         return sum(consumer.power for consumer in self._consumers())
 
     def _consumers(self) -> list[BatteryConsumer]:
-        return self.sim.names.shared(f"consumers {id(self)}", self._find_consumers)  # type: ignore[no-any-return]
+        return self.sim.engine.names.shared(f"consumers {id(self)}", self._find_consumers)  # type: ignore[no-any-return]
 
     def _find_consumers(self) -> list[BatteryConsumer]:
-        consumers = [p for p in self.sim.structure.all_plugins() if isinstance(p, BatteryConsumer)]
+        consumers = [p for p in self.sim.engine.structure.all_plugins() if isinstance(p, BatteryConsumer)]
         return [p for p in consumers if p.battery == self.battery and p.scoped == self.scoped]
 
     def after_step(self) -> None:

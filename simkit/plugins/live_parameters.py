@@ -35,9 +35,9 @@ def declare_at(
     on_change: Callable[[T], None] | None,
 ) -> Parameter[T]:
     """Read the first value from an element in `params`, add the parameter to a node, and open the node's services."""
-    table = plugin.sim.parameter_table
+    table = plugin.sim.communication.live_parameters
     if on_change is not None:
-        on_change = plugin.sim.faults.guard(plugin, f"its callback for parameter {name!r}", on_change)
+        on_change = plugin.sim.engine.faults.guard(plugin, f"its callback for parameter {name!r}", on_change)
     value: Any = _first_value(params, element, default, minimum, maximum, choices)
     is_new = node not in table.nodes()
     parameter = Parameter(
@@ -55,7 +55,7 @@ def declare_at(
         params.error("SK-PARAM-002", f"found <{element}> {value!r}, allowed is {parameter.allowed}")
     table.add(parameter)
     if is_new:
-        with plugin.sim.bus.owned_by(plugin):
+        with plugin.sim.communication.bus.owned_by(plugin):
             offer_parameter_services(plugin.sim.communication.services, plugin.sim.communication.live_parameters, node)
     return parameter
 

@@ -67,7 +67,7 @@ def read_topic(params: Params, element: str, default: str) -> str:
 
 def find_light(sim: Simulation, name: str, params: Params) -> Light | None:
     """A light of the world by its scoped name, or None after an error that lists the lights."""
-    lights = sim.lights
+    lights = sim.contents.lights
     if name in lights:
         return lights[name]
     listed = ", ".join(repr(n) for n in sorted(lights)) or "none"

@@ -26,12 +26,12 @@ def publish_while_subscribed(
         publisher: by whom it publishes.
         rate: [Hz] on the grid of simulated time; 0 is every step.
         method: its name; without arguments.
-        also: another reason to call it; say `sim.on_demand.look()` where that changes.
+        also: another reason to call it; say `sim.communication.on_demand.look()` where that changes.
     """
     sim = plugin.sim
-    sim.bus.on_readers_change(publisher.topic, sim.on_demand.look)
-    task = sim.faults.task(plugin, method)
-    sim.on_demand.add(lambda: publisher.active and (publisher.wanted or also()), rate or None, task)
+    sim.communication.bus.on_readers_change(publisher.topic, sim.communication.on_demand.look)
+    task = sim.engine.faults.task(plugin, method)
+    sim.communication.on_demand.add(lambda: publisher.active and (publisher.wanted or also()), rate or None, task)
 
 
 def count_instants(plugin: Plugin, rate: float) -> int:
@@ -72,5 +72,5 @@ def watch_while_subscribed(plugin: Watcher, publishers: Sequence[Any], method: s
         return heard
 
     for publisher in publishers:
-        sim.bus.on_readers_change(publisher.topic, sim.on_demand.look)
-    sim.on_demand.add(is_heard, None, sim.faults.task(plugin, method))
+        sim.communication.bus.on_readers_change(publisher.topic, sim.communication.on_demand.look)
+    sim.communication.on_demand.add(is_heard, None, sim.engine.faults.task(plugin, method))

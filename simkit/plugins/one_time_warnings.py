@@ -17,7 +17,7 @@ class OneTimeWarnings:
         if what not in self._said:
             self._said.add(what)
             plugin = self._plugin
-            plugin.sim.reports.warning(code, f"plugin {plugin.name!r}: {message}", plugin.where, hint)
+            plugin.sim.engine.reports.warning(code, f"plugin {plugin.name!r}: {message}", plugin.where, hint)
 
     def left_out(self, what: str, message: str, hint: str = "") -> None:
         """Says that a command cannot be used."""

@@ -35,7 +35,7 @@ class TopicTaps:
     def open(self) -> None:
         """Begin to listen."""
         self._is_open = True
-        self._sim.bus.on_topic(self._add)
+        self._sim.communication.bus.on_topic(self._add)
 
     def close(self) -> None:
         """Listen no more; does nothing the second time."""
@@ -52,7 +52,7 @@ class TopicTaps:
             return
         receiver = self._receiver_of(topic, type_name)
         if receiver is not None:
-            self._taps[topic] = self._sim.bus.tap(topic, receiver, takes_later=True)
+            self._taps[topic] = self._sim.communication.bus.tap(topic, receiver, takes_later=True)
 
 
 class MessageQueue(Generic[_Label]):

@@ -121,7 +121,7 @@ def check_target(path: Path) -> None:
 def _last_scans(sim: Simulation) -> list[tuple[LaserScan, Pose]]:
     """The newest planar scan of each scanner, with the scanner's pose."""
     found = []
-    for sensor in sim.sensors.values():
+    for sensor in sim.contents.sensors.values():
         if sensor.kind in _SCANNERS:
             message = sensor.latest
             if hasattr(message, "ranges"):

@@ -54,7 +54,7 @@ class TopicCounter:
         self._sim, self._skip, self._is_read = sim, frozenset(skip), is_read
         self._rows: dict[str, TopicCount] = {}
         self._taps: list[Subscription] = []
-        sim.bus.on_topic(self._add)
+        sim.communication.bus.on_topic(self._add)
 
     @property
     def rows(self) -> list[TopicCount]:
@@ -74,7 +74,7 @@ class TopicCounter:
 
     def _add(self, topic: str, type_name: str) -> None:
         is_read = self._is_read is not None and self._is_read(topic)
-        if topic in self._rows or (topic in self._sim.bus.aside and not is_read):
+        if topic in self._rows or (topic in self._sim.communication.bus.aside and not is_read):
             return
         is_counted = type_name not in self._skip or is_read
         row = self._rows[topic] = TopicCount(topic, type_name, is_counted, self._sim.time_ns)
@@ -92,4 +92,4 @@ class TopicCounter:
                 row.second = now
 
         # a picture that is still being drawn counts as well
-        self._taps.append(self._sim.bus.tap(topic, count, takes_later=True))
+        self._taps.append(self._sim.communication.bus.tap(topic, count, takes_later=True))

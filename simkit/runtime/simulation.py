@@ -23,7 +23,6 @@ from simkit.runtime.handles.light import Light
 from simkit.runtime.handles.link import Link
 from simkit.runtime.handles.model import Model
 from simkit.runtime.handles.visual import Visual
-from simkit.runtime.old_names import OldNames
 from simkit.runtime.spawner import ModelLoader, SensorsAndPluginsMaker
 from simkit.runtime.world_contents import WorldContents
 from simkit.runtime.world_control import WorldControl
@@ -32,14 +31,13 @@ if TYPE_CHECKING:
     import mujoco
 
     from simkit.diagnostics import Diagnostic, Diagnostics
-    from simkit.run_spec import RunSpec
     from simkit.runtime.communication.journal import Journal
     from simkit.runtime.engine.scheduler import Scheduler
     from simkit.runtime.engine.world_structure import WorldStructure
     from simkit.scene import SceneWorld
 
 
-class Simulation(OldNames):
+class Simulation:
     """A loaded world. Made by `simkit.load`; also a context manager.
 
     Everything read shows the state at `time`.
@@ -70,16 +68,12 @@ class Simulation(OldNames):
         self.communication = Communication(bus, self.engine)
         self.engine.faults.interfaces = self.communication
         self.contents = WorldContents(self, self.engine, self.communication, self._stateful, load_model, make_parts)
-        self.control = WorldControl(
-            self.engine, self.communication, self.contents.handles, self._advance, self._loaded_state
-        )
-        spawner = self.contents.spawner
-        spawner.adopt(structure)
-        spawner.start(list(structure.parts.values()), diagnostics)
+        state = self._loaded_state
+        self.control = WorldControl(self.engine, self.communication, self.contents.handles, self._advance, state)
+        self.contents.spawner.adopt(structure)
+        self.contents.spawner.start(list(structure.parts.values()), diagnostics)
         self.engine.reschedule()
         self._loaded = self.snapshot()
-
-    # ------------------------------------------------------------------ time, steps and state
 
     @property
     def tick(self) -> int:
@@ -211,7 +205,10 @@ class Simulation(OldNames):
             raise InputError("the world is still being loaded, there is nothing yet to go back to", "SK-CORE-004")
         return self._loaded
 
-    # ------------------------------------------------------------------ what is in the world
+    @property
+    def world(self) -> SceneWorld:
+        """The world as the file describes it."""
+        return self.engine.world
 
     @property
     def models(self) -> dict[str, Model]:
@@ -269,7 +266,14 @@ class Simulation(OldNames):
     def gravity(self, value: Sequence[float] | Vector) -> None:
         self.control.gravity = value
 
-    # ------------------------------------------------------------------ topics, services, actions
+    @property
+    def paused(self) -> bool:
+        """Whether the world is paused, as its services and `simkit run` understand it; settable."""
+        return self.control.paused
+
+    @paused.setter
+    def paused(self, paused: bool) -> None:
+        self.control.paused = paused
 
     def publish(self, topic: str, message: Any) -> None:
         """Sends a message object, or a dict of its fields; inputs get it before the next step.
@@ -290,11 +294,9 @@ class Simulation(OldNames):
         """Receives a topic, before or after its publisher exists.
 
         Args:
-            topic: absolute, or taken as such.
             callback: called with each message.
-            keep: how many messages are kept, the newest; a million where nothing is said.
-            on_error: what becomes of a callback that raises: "stop" stops the run with a SubscriberError, "drop" closes
-                the subscription with a warning, and the run goes on.
+            keep: how many messages are kept, the newest; a million by default.
+            on_error: of a callback that raises: "stop" ends the run with a SubscriberError, "drop" the subscription.
         """
         return self.communication.bus.subscribe(topic, callback, keep, on_error)
 
@@ -303,11 +305,7 @@ class Simulation(OldNames):
         return self.communication.bus.topics()
 
     def call(self, service: str, request: Any = None) -> Any:
-        """The response of a service; what it did is done when this returns.
-
-        Args:
-            service: absolute, or taken as such.
-            request: a message, a dict of its fields, or None for all zero.
+        """The response of a service to a message, a dict of its fields, or None for all zero.
 
         Raises:
             ServiceError: there is no such service; names the closest.
@@ -341,7 +339,6 @@ class Simulation(OldNames):
         """Sends a goal; the plugin has it before the next step.
 
         Args:
-            action: absolute, or taken as such.
             goal: a message, a dict of its fields, or None for all zero.
             on_feedback: called with each feedback message.
             on_done: called with the handle once the goal has ended.
@@ -352,6 +349,10 @@ class Simulation(OldNames):
         """
         self.engine.check_open()
         return self.communication.actions.send(action, goal, on_feedback, on_done)
+
+    def set_parameter(self, node: str, name: str, value: Any) -> None:
+        """Changes a live parameter; raises ParameterError where none has that name or takes the value."""
+        self.communication.set_parameter(node, name, value)
 
     @property
     def _journal(self) -> Journal | None:
@@ -373,7 +374,6 @@ class Simulation(OldNames):
         return self.engine.physics.data
 
     def _fill(self, scheduler: Scheduler) -> None:
-        """Puts every task into the scheduler."""
         handles = self.contents.handles
         fill_schedule(self.engine, scheduler, handles.tables["joint"].values(), handles.exact_limits)
         self.communication.on_demand.fill(scheduler)

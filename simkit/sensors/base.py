@@ -137,7 +137,7 @@ class Sensor(Sampler):
     @property
     def pose(self) -> Pose:
         """Pose of the sensor in the world, now."""
-        data = self.sim.fresh_data()
+        data = self.sim.engine.physics.fresh()
         return Pose(data.xpos[self._body], data.xquat[self._body]) @ self._offset
 
     def set_rate(self, rate: float) -> None:
@@ -148,11 +148,11 @@ class Sensor(Sampler):
         """
         if not (math.isfinite(rate) and rate >= 0):
             raise ValueError(f"a rate is a number of at least 0 [Hz], got {rate}")
-        self.sim.bus.settle()
+        self.sim.communication.bus.settle()
         if self._noises and self._sample is not None:
             self.latest  # noqa: B018 - its message may tell the rate that it was measured at
         self._apply_rate(float(rate))
-        self.sim.reschedule()
+        self.sim.engine.reschedule()
 
     def optical_frames(self) -> dict[str, Pose]:
         """Return the poses, in the sensor's frame, of the other frames that its messages name."""
@@ -168,7 +168,7 @@ class Sensor(Sampler):
         """
         if not self._has_plugin_topics:
             for _, publisher, _ in self._publishers:
-                self.sim.bus.close(publisher)
+                self.sim.communication.bus.close(publisher)
             self._topics, self._publishers = {}, []
             self._has_plugin_topics = True
         self._open(topics)
@@ -178,7 +178,7 @@ class Sensor(Sampler):
         for product, topic in topics.items():
             self._topics.setdefault(product, topic)
             of = self._products[product]
-            publisher = self.sim.bus.advertise(topic, of.type_name)
+            publisher = self.sim.communication.bus.advertise(topic, of.type_name)
             publisher.pending = self._process_pending
             self._publishers.append((product, publisher, of.needs_reading))
 
@@ -191,12 +191,12 @@ class Sensor(Sampler):
         """Open topics and random streams; called once."""
         self.sim = sim
         options, quirks = self.timing, sim.world.gazebo_quirks
-        self._times = SampleTimes(options, sim.clock, sim.streams, self.scoped, in_milliseconds=quirks)
+        self._times = SampleTimes(options, sim.engine.clock, sim.engine.streams, self.scoped, in_milliseconds=quirks)
         if options.latency > 0:
-            self._delayed = DelayedReadings(options, sim.clock, sim.streams, self.scoped)
+            self._delayed = DelayedReadings(options, sim.engine.clock, sim.engine.streams, self.scoped)
         self._report_timing(sim)
         if options.set_rate_topic:
-            sim.bus.listen(valid_topic(options.set_rate_topic), (_RATE_TYPE,), self._on_rate)
+            sim.communication.bus.listen(valid_topic(options.set_rate_topic), (_RATE_TYPE,), self._on_rate)
         self.prepare()
         if self.noise is not None:
             self._register_noise(self.noise)  # of a kind that made its own
@@ -209,10 +209,10 @@ class Sensor(Sampler):
         rate, jitter, step = self.update_rate, self.timing.jitter, sim.timestep
         if self._times.is_too_fast(rate):
             message = f"sensor {self.scoped!r}: {rate:g} Hz is more than the {1 / step:g} steps a second"
-            sim.reports.note("SK-SENSOR-028", f"{message}; it samples at every step", self.scene.where)
+            sim.engine.reports.note("SK-SENSOR-028", f"{message}; it samples at every step", self.scene.where)
         if 0 < jitter < 0.5 * step:
             message = f"sensor {self.scoped!r}: <jitter>{jitter:g}</jitter> is less than half a step of {step:g} s"
-            sim.reports.warning("SK-SENSOR-023", f"{message} and has no effect", self.scene.where)
+            sim.engine.reports.warning("SK-SENSOR-023", f"{message} and has no effect", self.scene.where)
 
     def bind(self, compiled: Compiled) -> None:
         """Find the sensor in a compiled model; called again after every change of structure."""
@@ -220,7 +220,7 @@ class Sensor(Sampler):
         for sample in self._kept_samples():
             self._finish_sample(sample)  # what is held belongs to the model before
         for _, publisher, _ in self._publishers:
-            self.sim.bus.settle_topic(publisher.topic)  # and so does what waits to be looked at
+            self.sim.communication.bus.settle_topic(publisher.topic)  # and so does what waits to be looked at
         self._link_name = self._find_link(compiled.names)
         link = compiled.names.link(self._link_name)
         self._body = int(link.body)
@@ -254,7 +254,7 @@ class Sensor(Sampler):
         return self._register_noise(UniformNoise(model, width, *self._noise_stream_names(group), **self._noise_terms()))
 
     def _noise_stream_names(self, group: str) -> tuple[RandomStreams, str, str]:
-        return self.sim.streams, self.scoped, group
+        return self.sim.engine.streams, self.scoped, group
 
     def _noise_terms(self) -> dict[str, Any]:
         interval = self._times.nominal_interval(self.update_rate)
@@ -284,7 +284,7 @@ class Sensor(Sampler):
             self.set_rate(rate)
             return
         message = f"sensor {self.scoped!r}: a rate of {rate:g} Hz came in on {self.timing.set_rate_topic!r}: {refused}"
-        self.sim.reports.warning("SK-SENSOR-026", message, self.scene.where)
+        self.sim.engine.reports.warning("SK-SENSOR-026", message, self.scene.where)
 
     def _default_topic(self, suffix: str) -> str:
         """Return `<topic>` where the file gives it, else Gazebo's default."""
@@ -306,6 +306,6 @@ class Sensor(Sampler):
 
 def report_once(sensor: Sensor, severity: Severity, code: str, message: str, where: Where, hint: str = "") -> None:
     """Add a diagnostic unless the same was reported for that place already."""
-    known = chain(sensor.diagnostics, sensor.sim.reports)
+    known = chain(sensor.diagnostics, sensor.sim.engine.reports)
     if not any(d.code == code and (d.file, d.line) == (where.file, where.line) for d in known):
         sensor.diagnostics.add(severity, code, message, where, hint)

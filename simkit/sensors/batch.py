@@ -52,7 +52,7 @@ class SensorBatch(abc.ABC, Generic[Member]):
 
     def is_ready(self, member: Sampler, tick: int) -> bool:
         """Capture all members for a tick, once; False where the member has to do it by itself."""
-        physics = self.sim.physics
+        physics = self.sim.engine.physics
         if tick != self._tick or physics.edition != self._edition:
             if physics.model is not self.model:  # another structure, and no new schedule yet
                 return False

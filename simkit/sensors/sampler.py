@@ -134,7 +134,7 @@ class Sampler(abc.ABC):
     @property
     def is_read_now(self) -> bool:
         """Whether a subscriber or a recorder reads the measurements."""
-        if self._revision != self.sim.bus.revision:
+        if self._revision != self.sim.communication.bus.revision:
             self._update_readers()
         return self._is_read
 
@@ -160,11 +160,11 @@ class Sampler(abc.ABC):
         if self._selects_ticks and not (self._is_on() and self.accepts(tick)):
             return
         sim = self.sim
-        if self._revision != sim.bus.revision:
+        if self._revision != sim.communication.bus.revision:
             self._update_readers()
         if self._is_unread:
             self._skipped += 1
-            self._held = tick, sim.physics.hold()
+            self._held = tick, sim.engine.physics.hold()
             return
         if self._is_served and self.batch is not None and self.batch.publish_sample(self, tick):
             return
@@ -179,7 +179,7 @@ class Sampler(abc.ABC):
             if self._selects_products_of_sample:
                 self._select_products(sample)
         else:
-            sample.held = sim.hold_state()
+            sample.held = sim.engine.physics.hold()
         if self._delayed is not None:
             self._delayed.samples.append((self._delayed.arrival(tick, sample.index), sample))
             self._deliver(self._delayed, tick)
@@ -236,7 +236,7 @@ class Sampler(abc.ABC):
 
     def _begin_sample(self, tick: int) -> Sample:
         """Begin the next sample, and advance noise that has a state to it."""
-        time_ns = self.sim.clock.time_ns(tick)
+        time_ns = self.sim.engine.clock.time_ns(tick)
         self._index = index = self._index + 1
         if self._evolves:
             self.evolve(index, (time_ns - self._time_ns) * 1e-9 if self._time_ns >= 0 else 0.0)
@@ -258,13 +258,13 @@ class Sampler(abc.ABC):
     def _computed_data(self) -> Any:
         """Return MuJoCo's data with what `measure` reads computed."""
         if self.needs_acceleration or self.reads_contacts:
-            return self.sim.fresh_acceleration()
-        return self.sim.fresh_data()
+            return self.sim.engine.physics.fresh_accelerations()
+        return self.sim.engine.physics.fresh()
 
     def _update_readers(self) -> None:
         """Find out who reads: which products are wanted, and whether captures may be gathered."""
         self._process_pending()
-        self._revision = self.sim.bus.revision
+        self._revision = self.sim.communication.bus.revision
         self._wanted = [end for end in self._publishers if end[1].wanted]
         self._is_read = any(needs_reading for _, _, needs_reading in self._wanted)
         self._is_served = bool(self._wanted) and all(publisher.is_live for _, publisher, _ in self._wanted)
@@ -355,7 +355,7 @@ class Sampler(abc.ABC):
     def _capture_sample(self, sample: Sample) -> None:
         """Capture the physics state that a sample holds, once."""
         if sample.held is not None:
-            sample.raw = self.capture_held(sample.held.model, self.sim.data_of(sample.held), sample)
+            sample.raw = self.capture_held(sample.held.model, self.sim.engine.physics.data_of(sample.held), sample)
             sample.held = None
             if self._selects_products_of_sample:
                 self._select_products(sample)

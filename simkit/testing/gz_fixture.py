@@ -172,7 +172,7 @@ class Server:
 
     def system_count(self, runner: int = 0) -> int:
         """The plugins of the world, those that simkit adds by itself included."""
-        return len(self.simulation.structure.all_plugins())
+        return len(self.simulation.engine.structure.all_plugins())
 
     def iteration_count(self, runner: int = 0) -> int:
         return self.simulation.tick
@@ -182,7 +182,7 @@ class Server:
         if runner != 0:
             return None
         sim = self.simulation
-        return UpdateInfo(sim.time_ns, sim.clock.time_ns(1), sim.tick, not self.is_running())
+        return UpdateInfo(sim.time_ns, sim.engine.clock.time_ns(1), sim.tick, not self.is_running())
 
 
 class TestFixture:

@@ -253,7 +253,7 @@ def test_a_converted_world_brings_its_heat_signatures(here: Path) -> None:
     (here / "a.png").unlink()
     with simkit.load("out/v.sdf") as sim:
         assert not [d for d in sim.diagnostics if d.code == "SK-SENSOR-142"]
-        assert [name for name, _ in sim.temperatures.items()] == ["near::l::v"]
+        assert [name for name, _ in sim.contents.temperatures.items()] == ["near::l::v"]
 
 
 def test_a_vendored_world_brings_its_heat_signatures(here: Path) -> None:
@@ -277,7 +277,7 @@ def test_a_vendored_world_brings_its_heat_signatures(here: Path) -> None:
     (here / "worlds").rename(here / "elsewhere")
     with simkit.load("box/w.sdf") as sim:
         assert not [d for d in sim.diagnostics if d.code == "SK-SENSOR-142"]
-        pictures = {name: found.picture.relative_to(here / "box") for name, found in sim.temperatures.items()}
+        pictures = {name: found.picture.relative_to(here / "box") for name, found in sim.contents.temperatures.items()}
     assert {name: str(path) for name, path in pictures.items()} == {
         "oven::l::v": "models/oven/textures/a.png",
         "near::l::v": "warm/a.png",
@@ -365,8 +365,10 @@ def test_elements_of_our_own_come_out_with_their_prefix_and_mean_the_same(here: 
 def messages(path: str) -> dict[str, list[bytes]]:
     heard: dict[str, list[bytes]] = {}
     with simkit.load(path, seed=3) as sim:
-        for sensor in sim.sensors.values():
-            sim.bus.tap(sensor.topic, lambda m, n=sensor.scoped: heard.setdefault(n, []).append(msgs.serialize(m)))
+        for sensor in sim.contents.sensors.values():
+            sim.communication.bus.tap(
+                sensor.topic, lambda m, n=sensor.scoped: heard.setdefault(n, []).append(msgs.serialize(m))
+            )
         sim.run(0.1)
     return heard
 

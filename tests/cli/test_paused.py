@@ -39,7 +39,7 @@ def test_it_waits_for_a_service_and_then_comes_to_its_end(capfd: pytest.CaptureF
         assert ticks[:3] == [0, 0, 0]
         assert ticks[3:5] == [5, 5]
         assert ticks[-1] == sim.tick == 50
-        assert not sim.pausing.is_served
+        assert not sim.control.pausing.is_served
     assert capfd.readouterr().err.count("paused at t=0 s until a service lets it go on") == 1
 
 
@@ -47,8 +47,8 @@ def test_the_newest_pace_counts_and_the_users_is_newer_than_what_the_world_asked
     with simkit.load(BALL) as sim:
         sim.call("/world/w/set_physics", {"max_update_rate": 10_000.0})  # of 1 ms: ten times real time
         RunLoop(sim, Commands(sim, []), Quiet(), [])  # type: ignore[arg-type]
-        assert sim.pausing.pace == 10.0
+        assert sim.control.pausing.pace == 10.0
         RunLoop(sim, Commands(sim, []), Quiet(), [], rtf=2.0)  # type: ignore[arg-type]
-        assert sim.pausing.pace == 2.0
+        assert sim.control.pausing.pace == 2.0
         sim.call("/world/w/set_physics", {"max_update_rate": 10_000.0})
-        assert sim.pausing.pace == 10.0
+        assert sim.control.pausing.pace == 10.0

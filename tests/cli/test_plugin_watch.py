@@ -57,7 +57,7 @@ class Turner(ModelPlugin):
         self.count = 0
 
     def before_step(self):
-        self.sim.set_control(self.servo, self.speed)
+        self.sim.engine.set_control(self.servo, self.speed)
 
     def after_step(self):
         self.count += STEP
@@ -90,7 +90,7 @@ class Edited:
 
     @property
     def plugin(self) -> Any:
-        return self.sim.plugins["arm::turner"]
+        return self.sim.contents.plugins["arm::turner"]
 
     def state(self) -> str:
         data = self.sim.mj_data
@@ -156,7 +156,9 @@ def test_topics_and_services_are_the_new_plugins_own(edited: Edited) -> None:
     edited.sim.publish("set", {"data": 4})
     edited.sim.run(0.01)
     assert edited.told.latest.data == 41, "one listener, the new one"
-    services = [name for name, kind in edited.sim.services().items() if kind == "std_srvs/srv/Empty"]
+    services = [
+        name for name, kind in edited.sim.communication.services.names().items() if kind == "std_srvs/srv/Empty"
+    ]
     assert "/null" in services and "/zero" not in services
 
 
@@ -249,10 +251,10 @@ def test_systems_of_gz_are_reloaded_as_well(tmp_path: Path, text: str, old: str,
         (tmp_path / "ticker.py").write_text(text.replace(old, new))
         assert reloader.poll(), said
         sim.step(10)
-        assert sim.plugins["t"].system.count == 110
+        assert sim.contents.plugins["t"].system.count == 110
         sim.reset()
         sim.step(10)
-        assert sim.plugins["t"].system.count == 100
+        assert sim.contents.plugins["t"].system.count == 100
 
 
 # ---------------------------------------------------------------------- the command

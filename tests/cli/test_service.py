@@ -63,7 +63,7 @@ def test_parameters_are_listed_read_and_described(yard: Any, simkit_line: Any) -
 def test_parameters_are_set_dumped_and_loaded(start: Any, simkit_line: Any, tmp_path: Path) -> None:
     live = start(paused=True)
     assert simkit_line("param", "set", "/Tuner", "p_gain", "12.5").stdout == "Set parameter successful\n"
-    assert live.sim.parameters["/Tuner"]["p_gain"].value == 12.5
+    assert live.sim.communication.parameters["/Tuner"]["p_gain"].value == 12.5
     several = simkit_line("param", "set", "/Tuner", "frame.offset", "[1.0, -2.0]", "mode", "slow")
     assert several.stdout == "frame.offset: Set parameter successful\nmode: Set parameter successful\n"
     refused = simkit_line("param", "set", "Tuner", "p_gain", "-1.0")
@@ -76,9 +76,9 @@ def test_parameters_are_set_dumped_and_loaded(start: Any, simkit_line: Any, tmp_
     file.write_text(text.replace("12.5", "7.0"), encoding="utf-8")
     loaded = simkit_line("param", "load", "/Tuner", str(file))
     assert "Set parameter p_gain successful\n" in loaded.stdout and loaded.exit_code == 0
-    assert live.sim.parameters["/Tuner"]["p_gain"].value == 7.0
+    assert live.sim.communication.parameters["/Tuner"]["p_gain"].value == 7.0
     together = simkit_line("param", "set", "/Tuner", "count", "9", "p_gain", "1000.0", "--atomic")
-    assert together.exit_code == 2 and live.sim.parameters["/Tuner"]["count"].value == 3
+    assert together.exit_code == 2 and live.sim.communication.parameters["/Tuner"]["count"].value == 3
 
 
 def test_actions_are_listed_and_told_of(yard: Any, simkit_line: Any) -> None:

@@ -83,7 +83,7 @@ def drive(
     for _ in range(round(duration / 0.01)):
         keys.poll()
         teleop.send_due()
-        sim.pausing.advance(round(0.01 / sim.timestep))
+        sim.control.pausing.advance(round(0.01 / sim.timestep))
     return teleop, sent
 
 
@@ -245,14 +245,14 @@ def test_space_stops_and_pauses_and_again_goes_on_standing() -> None:
         keys = RunKeys(sim, Hands(sim, {}))
         keys.press("n")
         assert not sim.paused
-        sim.pausing.advance(100)
+        sim.control.pausing.advance(100)
         assert sim.tick == 251
         keys.press(".")
         keys.press("n")
-        sim.pausing.advance(100)
+        sim.control.pausing.advance(100)
         assert sim.tick == 253
         keys.press(" ")
-        sim.pausing.advance(100)
+        sim.control.pausing.advance(100)
         assert sim.tick == 353
         assert sim.model("sled").pose.position[0] == pytest.approx(0.05, abs=1e-3)
 
@@ -260,7 +260,7 @@ def test_space_stops_and_pauses_and_again_goes_on_standing() -> None:
 def test_n_while_it_runs_does_one_step_and_stands() -> None:
     with simkit.load(world()) as sim:
         RunKeys(sim, Hands(sim, {})).press("n")
-        sim.pausing.advance(100)
+        sim.control.pausing.advance(100)
         assert sim.tick == 1
         assert sim.paused
 
@@ -272,10 +272,10 @@ def test_keys_after_a_step_wait_for_its_end() -> None:
         ticks = []
         for _ in range(5):
             keys.poll()
-            sim.pausing.advance(10)
+            sim.control.pausing.advance(10)
             ticks.append(sim.tick)
         assert ticks == [1, 2, 3, 13, 23]
-        sim.pausing.step(1)
+        sim.control.pausing.step(1)
         sim.reset()  # takes the step back, and nothing waits for it
         keys.press(" ")
         assert sim.paused

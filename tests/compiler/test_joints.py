@@ -415,8 +415,8 @@ def test_a_four_bar_that_turns_at_35_radians_a_second_stays_closed(step, most):
         {hinge("d", "world", "rocker")}{hinge("c", "coupler", "rocker", rocker)}</model></world></sdf>"""
     )
     model, data = sim.mj_model, sim.mj_data
-    bodies = [sim.names.link(f"m::{name}").body for name in ("coupler", "rocker")]
-    lengths, dof = (coupler, rocker), sim.names.joints["m::a"].dofs[0]
+    bodies = [sim.engine.names.link(f"m::{name}").body for name in ("coupler", "rocker")]
+    lengths, dof = (coupler, rocker), sim.engine.names.joints["m::a"].dofs[0]
     widest = 0.0
     while data.time < 2.0:
         data.qfrc_applied[dof] = 3000.0 if data.qvel[dof] < 35.0 else 0.0

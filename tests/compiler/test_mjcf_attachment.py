@@ -311,7 +311,7 @@ def test_cameras_and_rays_see_a_geom_by_what_it_does(folder: Path) -> None:
       <geom name="felt" size=".1" group="3"/><geom name="weight" size=".1" contype="0" conaffinity="0" group="4"/>
       </body></worldbody></mujoco>""")
     with simkit.load(folder / "m.xml") as sim:
-        link = sim.names.link("m::b")
+        link = sim.engine.names.link("m::b")
         name = {g: mujoco.mj_id2name(sim.mj_model, mujoco.mjtObj.mjOBJ_GEOM, g).split("::")[-1] for g in range(4)}
         assert {name[g] for g in link.visuals} == {"both", "seen"}
         assert {name[g] for g in link.geoms} == {name[g] for g in link.ray_geoms} == {"both", "felt"}

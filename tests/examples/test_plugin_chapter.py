@@ -101,7 +101,7 @@ def test_the_beam_swings_until_its_damping_is_tuned() -> None:
         # stiffness 5, damping 0.1, inertia 0.1: the overshoot is exp(-pi zeta / sqrt(1 - zeta^2)), zeta = 0.0707
         zeta = 0.1 / (2 * math.sqrt(5 * 0.1))
         assert swinging.max() == pytest.approx(1 + math.exp(-math.pi * zeta / math.sqrt(1 - zeta**2)), abs=0.01)
-        (node,) = [n for n, parameters in sim.parameters.items() if "d_gain" in parameters]
+        (node,) = [n for n, parameters in sim.communication.parameters.items() if "d_gain" in parameters]
         sim.set_parameter(node, "d_gain", 2 * math.sqrt(5 * 0.1))  # critical
         sim.run(2.0)
         angles = sim.subscribe("/angle")

@@ -43,12 +43,12 @@ def heard() -> Any:
     """Sensor -> its topics -> (time of arrival [s], message), of one second."""
     found: dict[str, dict[str, list[tuple[float, Any]]]] = {}
     with simkit.load("sensor_bench", seed=7) as sim:
-        for name, sensor in sim.sensors.items():
+        for name, sensor in sim.contents.sensors.items():
             if is_heard(sensor):
                 found[name] = {}
                 for topic in sensor._topics.values():
                     kept = found[name][topic] = []
-                    sim.bus.tap(topic, lambda message, kept=kept: kept.append((sim.time, message)))
+                    sim.communication.bus.tap(topic, lambda message, kept=kept: kept.append((sim.time, message)))
         sim.run(DURATION)
         yield sim, found
 
@@ -59,8 +59,8 @@ def heard() -> Any:
 def test_every_kind_is_in_it() -> None:
     """By one of its names; of the kinds that one class makes, those that look at different things both."""
     with simkit.load("sensor_bench") as sim:
-        here = {sensor.kind for sensor in sim.sensors.values()}
-        lidars = {s.kind: s.options for s in sim.sensors.values() if s.kind in ("lidar", "gpu_lidar")}
+        here = {sensor.kind for sensor in sim.contents.sensors.values()}
+        lidars = {s.kind: s.options for s in sim.contents.sensors.values() if s.kind in ("lidar", "gpu_lidar")}
     names: dict[type, set[str]] = {}
     for kind, cls in sensor_kinds().items():
         names.setdefault(cls, set()).add(kind)
@@ -76,7 +76,7 @@ def test_it_is_clean_under_strict() -> None:
 
 def test_no_two_sensors_share_a_topic() -> None:
     with simkit.load("sensor_bench") as sim:
-        topics = [topic for sensor in sim.sensors.values() for topic in sensor._topics.values()]
+        topics = [topic for sensor in sim.contents.sensors.values() for topic in sensor._topics.values()]
     assert len(topics) == len(set(topics))
 
 
@@ -155,11 +155,11 @@ def digests(duration: float) -> dict[str, str]:
     """Topic -> a digest of every bit that sensors said on it."""
     sums: dict[str, Any] = {}
     with simkit.load("sensor_bench", seed=7) as sim:
-        for sensor in sim.sensors.values():
+        for sensor in sim.contents.sensors.values():
             if is_heard(sensor):
                 for topic in sensor._topics.values():
                     kept = sums[topic] = hashlib.blake2b(digest_size=8)
-                    sim.bus.tap(topic, lambda message, kept=kept: kept.update(msgs.serialize(message)))
+                    sim.communication.bus.tap(topic, lambda message, kept=kept: kept.update(msgs.serialize(message)))
         sim.run(duration)
     return {topic: kept.hexdigest() for topic, kept in sums.items()}
 

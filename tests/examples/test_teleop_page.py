@@ -56,7 +56,7 @@ def test_every_key_of_the_page_does_something() -> None:
             if sim.paused:
                 sim.paused = False
             RunKeys(sim, _Hands(), teleop).press(name)
-            assert teleop.speeds != (0.05, 0.0, 0.2) or sim.pausing.until is not None or name in "jl"
+            assert teleop.speeds != (0.05, 0.0, 0.2) or sim.control.pausing.until is not None or name in "jl"
 
 
 def test_the_lines_are_those_of_the_page() -> None:

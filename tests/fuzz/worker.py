@@ -144,7 +144,7 @@ def unreadable(sim: Any) -> str:
     """A sensor, not a drawn one, whose reading has a number that is none; empty where all are fine."""
     from simkit.sensors.cameras.rendered_camera import RenderedCamera
 
-    for sensor in sim.sensors.values():
+    for sensor in sim.contents.sensors.values():
         if isinstance(sensor, RenderedCamera):
             continue
         for message in (sensor.latest, sensor.truth):

@@ -65,7 +65,7 @@ def test_a_rate_that_a_hook_changes_holds_once_that_is_said_and_comes_back() -> 
             super().after_step()
             if self.sim.tick == 3:
                 self.after_step_rate = 100
-                self.sim.reschedule()
+                self.sim.engine.reschedule()
 
     slower = Slower()
     with opened(slower) as sim:

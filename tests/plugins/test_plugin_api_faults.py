@@ -81,16 +81,20 @@ def test_the_warning_names_plugin_hook_time_and_the_last_line_of_the_traceback()
 
 def test_its_topics_services_actions_and_parameters_are_gone() -> None:
     with simkit.load(world(FLOATING), plugins=[Pusher(0.1)]) as sim:
-        assert "/pushes" in sim.topics() and "/again" in sim.services() and "/go" in sim.actions()
-        assert any("gain" in names for names in sim.parameters.values())
+        assert (
+            "/pushes" in sim.topics()
+            and "/again" in sim.communication.services.names()
+            and "/go" in sim.communication.actions.names()
+        )
+        assert any("gain" in names for names in sim.communication.parameters.values())
         goal = sim.send_goal("/go", {"order": 3})
         sim.step()
         assert goal.is_active
         sim.run(0.3)
         assert goal.status.name == "ABORTED" and "out of breath" in goal.reason
         assert not {"/pushes", "/more"} & set(sim.topics())
-        assert "/again" not in sim.services() and "/go" not in sim.actions()
-        assert not any("gain" in names for names in sim.parameters.values())
+        assert "/again" not in sim.communication.services.names() and "/go" not in sim.communication.actions.names()
+        assert not any("gain" in names for names in sim.communication.parameters.values())
 
 
 def test_the_bits_are_those_of_a_run_in_which_it_is_silent_from_then_on() -> None:
@@ -154,7 +158,7 @@ def test_callbacks_are_met_as_hooks_are(what: str) -> None:
             with pytest.raises(simkit.SimkitError, match="left out"):
                 sim.call("/again")
         else:
-            sim.set_parameter(next(iter(sim.parameters)), "limit", 2.0)
+            sim.set_parameter(next(iter(sim.communication.parameters)), "limit", 2.0)
         sim.run(0.1)
         said = {"topic": "less than nothing", "service": "no answer", "parameter": "not now"}[what]
         assert len(warnings(sim)) == 1 and said in warnings(sim)[0]
@@ -226,7 +230,7 @@ def test_a_servo_of_a_plugin_that_is_left_out_lets_go_of_its_joint() -> None:
             self.servo = builder.add_velocity_servo("arm::j", max_effort=50.0, owner=self.name)
 
         def load(self, parent: Simulation, params: Params) -> None:
-            self.sim.set_control(self.servo, 2.0)
+            self.sim.engine.set_control(self.servo, 2.0)
 
         def after_step(self) -> None:
             if self.sim.time > 0.5:
@@ -358,7 +362,7 @@ def test_a_plugin_that_raises_over_its_state_is_met_as_in_any_hook(hook: str) ->
         sim.restore(sim.snapshot())
         sim.step(2)
         assert [hook in line and "is left out" in line for line in warnings(sim)] == [True]
-        assert sim.plugins["Forgetful"].steps == 2
+        assert sim.contents.plugins["Forgetful"].steps == 2
 
 
 def test_what_is_refused_in_load_names_the_plugin() -> None:
@@ -374,7 +378,7 @@ def test_what_is_refused_in_load_names_the_plugin() -> None:
     ):
         simkit.load(world(FLOATING), plugins=[Server(), Server()])
     with simkit.load(world(FLOATING), plugins=[Server(), Second()]) as sim:
-        assert "/home" in sim.services() and "plugin 'Second' raised in load" in warnings(sim)[0]
+        assert "/home" in sim.communication.services.names() and "plugin 'Second' raised in load" in warnings(sim)[0]
 
 
 def test_load_cannot_go_back_to_what_is_not_there_yet() -> None:

@@ -70,7 +70,7 @@ def module_of(tmp_path: Path, text: str, name: str) -> ModuleType:
 
 
 def system(sim: Simulation) -> Any:
-    return next(p.system for p in sim.structure.all_plugins() if getattr(p, "is_gz_system", False))
+    return next(p.system for p in sim.engine.structure.all_plugins() if getattr(p, "is_gz_system", False))
 
 
 def told(sim: Simulation) -> list[Any]:
@@ -104,7 +104,7 @@ def test_classes_and_modules_with_the_hooks_of_gz_are_found_as_any_plugin_is(tmp
         sim.step()
         steps = STEP[:1] if way == "functions" else STEP
         assert told(sim) == [("configure", "hello" if word else ""), *steps]
-        assert sim.plugins["Counter"].where.line
+        assert sim.contents.plugins["Counter"].where.line
 
 
 def test_a_file_alone_runs_none_of_it(tmp_path: Path) -> None:
@@ -240,7 +240,7 @@ def test_one_for_a_model_hangs_on_the_one_it_is_given_with_or_on_the_only_one() 
     with simkit.load(world(GROUND, BALL.format(""), rover()), plugins=[("rover", first), ("ground", second)]) as sim:
         assert (first.parent.name, second.parent.name) == ("rover", "ground")
         sim.remove("rover")
-        assert first not in sim.structure.all_plugins()
+        assert first not in sim.engine.structure.all_plugins()
     with pytest.raises(simkit.LoadError, match=r"SK-PLUGIN-021.*'ground', 'ball', 'rover'"):
         simkit.load(world(GROUND, BALL.format(""), rover()), plugins=[OnModel()])
     with pytest.raises(simkit.LoadError, match="did you mean 'rover'"):

@@ -53,7 +53,7 @@ def order(folder: Path, text: str, hook: str = "load", spawn: str = "") -> list[
     with simkit.load(text, plugin_paths=[folder], resource_paths=[folder]) as sim:
         if spawn:
             sim.spawn(spawn)
-        tell: Any = next(type(p) for p in sim.structure.all_plugins() if type(p).__name__ == "Tell")
+        tell: Any = next(type(p) for p in sim.engine.structure.all_plugins() if type(p).__name__ == "Tell")
         calls = tell.load.__globals__["CALLS"]
         if hook != "load":
             del calls[:]
@@ -133,7 +133,7 @@ def test_plugins_made_in_python_come_after_the_file_and_spawned_ones_last(tmp_pa
     with simkit.load(text, plugin_paths=[tmp_path], plugins=[Made("x"), Made("y")]) as sim:
         for name in ("z", "a"):
             sim.spawn(f"<sdf version='1.9'><model name='{name}'>{link('l')}{plugin(name)}</model></sdf>")
-        told = [p.name for p in sim.structure.all_plugins() if type(p).__name__ in ("Tell", "Made")]
+        told = [p.name for p in sim.engine.structure.all_plugins() if type(p).__name__ in ("Tell", "Made")]
         sim.step()
     assert told == ["m", "Made", "Made", "z", "a"]
     assert calls == ["x", "y"]
@@ -144,7 +144,7 @@ def test_the_order_is_that_of_the_file_after_a_reset_and_a_restore_too(tmp_path:
     with simkit.load(WORLD, plugin_paths=[tmp_path]) as sim:
 
         def told() -> list[str]:
-            return [p.name for p in sim.structure.all_plugins() if type(p).__name__ == "Tell"]
+            return [p.name for p in sim.engine.structure.all_plugins() if type(p).__name__ == "Tell"]
 
         snapshot = sim.snapshot()
         sim.remove("a")

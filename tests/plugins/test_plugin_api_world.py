@@ -135,7 +135,7 @@ def test_lights_move_and_change_from_a_hook() -> None:
 @pytest.mark.parametrize("hook", ["before_step", "after_step"])
 def test_a_sensor_is_fitted_from_a_hook_and_reads_from_then_on(hook: str) -> None:
     with simkit.load(
-        world(GROUND, ball(), rover()), plugins=[Once(lambda sim: sim.add_sensor("ball::l", IMU), 0.05, hook)]
+        world(GROUND, ball(), rover()), plugins=[Once(lambda sim: sim.contents.add_sensor("ball::l", IMU), 0.05, hook)]
     ) as sim:
         got = sim.subscribe("/added")
         sim.run(0.2)
@@ -150,7 +150,7 @@ def test_a_sensor_is_fitted_from_a_hook_and_reads_from_then_on(hook: str) -> Non
 
 def test_nobody_elses_bits_change() -> None:
     ends = []
-    for what in (lambda sim: None, lambda sim: sim.add_sensor("ball::l", IMU)):
+    for what in (lambda sim: None, lambda sim: sim.contents.add_sensor("ball::l", IMU)):
         with run(Once(what, 0.1), GROUND, ball(), rover(), until=0.5) as sim:
             ends.append(bits(sim) + bits(sim, "ball"))
     assert ends[0] == ends[1]
@@ -160,7 +160,7 @@ def test_snapshot_restore_reset_and_remove_cover_a_fitted_sensor() -> None:
     with simkit.load(world(GROUND, ball())) as sim:
         sim.run(0.05)
         before = sim.snapshot()
-        sim.add_sensor("ball::l", IMU)
+        sim.contents.add_sensor("ball::l", IMU)
         with_it = sim.snapshot()
         sim.run(0.1)
         seen = sim.sensor("ball::l::imu").latest
@@ -168,13 +168,13 @@ def test_snapshot_restore_reset_and_remove_cover_a_fitted_sensor() -> None:
         sim.run(0.1)
         assert sim.sensor("ball::l::imu").latest.header.stamp == seen.header.stamp
         sim.restore(before)
-        assert not sim.has_sensor("ball::l::imu") and "/added" not in sim.topics()
+        assert not sim.contents.has_sensor("ball::l::imu") and "/added" not in sim.topics()
         sim.restore(with_it)
-        assert sim.has_sensor("ball::l::imu")
+        assert sim.contents.has_sensor("ball::l::imu")
         sim.remove("ball")
-        assert not sim.has_sensor("ball::l::imu")
+        assert not sim.contents.has_sensor("ball::l::imu")
         sim.reset()
-        assert not sim.has_sensor("ball::l::imu") and "ball" in sim.models
+        assert not sim.contents.has_sensor("ball::l::imu") and "ball" in sim.models
 
 
 def test_a_dict_is_the_same_as_xml() -> None:
@@ -192,7 +192,7 @@ def test_a_dict_is_the_same_as_xml() -> None:
         },
     }
     with simkit.load(world(GROUND, rover())) as sim:
-        sensor = sim.add_sensor("rover::base", lidar)
+        sensor = sim.contents.add_sensor("rover::base", lidar)
         sim.run(0.2)
         assert sensor.pose.position[2] == pytest.approx(0.63, abs=0.02)
         assert len(sensor.latest.ranges) == 5 and sensor.latest.range_max == pytest.approx(7)
@@ -200,7 +200,7 @@ def test_a_dict_is_the_same_as_xml() -> None:
 
 def test_a_sensor_on_a_joint() -> None:
     with simkit.load(world("<gravity>0 0 -10</gravity>", ARM)) as sim:
-        sensor = sim.add_sensor("arm::j", "<sensor name='ft' type='force_torque'/>")
+        sensor = sim.contents.add_sensor("arm::j", "<sensor name='ft' type='force_torque'/>")
         sim.run(0.1)
         assert abs(sensor.latest.wrench.force.z) == pytest.approx(10.0, rel=1e-3)
 
@@ -221,12 +221,12 @@ def test_what_is_wrong_with_a_sensor_is_said_and_nothing_changes() -> None:
             ("ball::l", "", simkit.SimkitError, "one <sensor>"),
         ):
             with pytest.raises(error, match=text):
-                sim.add_sensor(name, sensor)
-            assert not sim.sensors
-        sim.add_sensor("ball::l", IMU)
+                sim.contents.add_sensor(name, sensor)
+            assert not sim.contents.sensors
+        sim.contents.add_sensor("ball::l", IMU)
         with pytest.raises(simkit.SimkitError, match="already"):
-            sim.add_sensor("ball::l", IMU)
-        sim.add_sensor(
+            sim.contents.add_sensor("ball::l", IMU)
+        sim.contents.add_sensor(
             "ball::l", IMU.replace("'imu'", "'two'", 1).replace("<topic>", "<tpic>").replace("</topic>", "</tpic>")
         )
         found = [d for d in sim.diagnostics if d.code == "SK-PARAM-003"]
@@ -298,7 +298,7 @@ def with_closer(name: str) -> str:
 
 
 def closed(sim: Simulation) -> list[str]:
-    plugin = next(p for p in sim._population.loaded_plugins if type(p).__name__ == "Closer")
+    plugin = next(p for p in sim.contents.spawner.loaded_plugins if type(p).__name__ == "Closer")
     found: list[str] = type(plugin).load.__globals__["CLOSED"]
     return found
 
@@ -307,22 +307,22 @@ def test_a_plugin_of_a_spawned_model_is_closed_and_let_go_once_nothing_brings_it
     with simkit.load(world(GROUND), plugin_paths=[closer]) as sim:
         sim.spawn(with_closer("a"))
         told = closed(sim)
-        kept = len(sim._population.loaded_plugins)
-        plugin = weakref.ref(sim.plugins["a::a"])
+        kept = len(sim.contents.spawner.loaded_plugins)
+        plugin = weakref.ref(sim.contents.plugins["a::a"])
         snapshot = sim.snapshot()
         sim.remove("a")
         assert told == []  # the snapshot has it
         sim.restore(snapshot)
-        assert "/serve" in sim.services()
+        assert "/serve" in sim.communication.services.names()
         sim.remove("a")
         del snapshot
         sim.spawn(with_closer("b"))
         sim.remove("b")
         assert told == ["a", "b"]
-        assert len(sim._population.loaded_plugins) == kept - 1
+        assert len(sim.contents.spawner.loaded_plugins) == kept - 1
         gc.collect()
         assert plugin() is None
-        assert "/serve" not in sim.services() and not sim.parameters
+        assert "/serve" not in sim.communication.services.names() and not sim.communication.parameters
     assert told == ["a", "b"]
 
 
@@ -344,9 +344,9 @@ def test_a_thousand_spawned_and_removed_leave_nothing_behind(closer: Path) -> No
             sim.spawn(with_closer(f"n{i}"))
             sim.step()
             sim.remove(f"n{i}")
-        owners = [p.owner for ends in sim.bus._publishers.values() for p in ends if p.owner is not None]
+        owners = [p.owner for ends in sim.communication.bus._publishers.values() for p in ends if p.owner is not None]
         assert not [o for o in owners if type(o).__name__ == "Closer"]
-        assert len(sim.entities._made) == 1
+        assert len(sim.contents.handles._made) == 1
 
 
 # ---------------------------------------------------------------------- what nobody read

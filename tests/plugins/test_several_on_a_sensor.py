@@ -27,7 +27,7 @@ def test_each_output_is_published() -> None:
     with simkit.load(lidar(PLUGINS)) as sim:
         subs = {output: sim.subscribe(f"/ray/{output}") for output in OUTPUTS}
         sim.step(150)
-        assert not [t for t in sim.topics() if t.startswith("/world/") and t not in sim.bus.aside]
+        assert not [t for t in sim.topics() if t.startswith("/world/") and t not in sim.communication.bus.aside]
         assert all(sim.topics()[f"/ray/{output}"] == f"sensor_msgs/msg/{output}" for output in OUTPUTS)
         assert {output: len(sub.messages) for output, sub in subs.items()} == dict.fromkeys(OUTPUTS, 2)
         assert subs["Range"].latest.range == pytest.approx(3.0)

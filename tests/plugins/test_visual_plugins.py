@@ -46,7 +46,7 @@ PLUGIN = '<plugin name="p" filename="libpainter.so"><colour>blue</colour></plugi
 
 
 def plugin_of(sim: simkit.Simulation) -> object:
-    (found,) = [p for p in sim.structure.all_plugins() if type(p).__name__ == "Painter"]
+    (found,) = [p for p in sim.engine.structure.all_plugins() if type(p).__name__ == "Painter"]
     return found
 
 

@@ -18,7 +18,7 @@ def sent(commands: list[Command], seconds: float, chunk: int) -> list[tuple[int,
     """(tick, value) of what arrives, advancing as a loop does."""
     arrived: list[tuple[int, float]] = []
     with simkit.load(EMPTY) as sim:
-        sim.bus.listen("/level", ["std_msgs/msg/Float64"], lambda m: arrived.append((sim.tick, m.data)))
+        sim.communication.bus.listen("/level", ["std_msgs/msg/Float64"], lambda m: arrived.append((sim.tick, m.data)))
         queue = Commands(sim, commands)
         end = round(seconds / sim.timestep)
         while sim.tick < end:
@@ -113,7 +113,7 @@ def test_a_script_that_is_not_there_is_said(tmp_path: Path) -> None:
 
 def test_a_message_that_does_not_fit_is_said_with_its_line() -> None:
     with simkit.load(EMPTY) as sim:
-        sim.bus.listen("/level", ["std_msgs/msg/Float64"], lambda m: None)
+        sim.communication.bus.listen("/level", ["std_msgs/msg/Float64"], lambda m: None)
         queue = Commands(sim, [Command(0.0, "/level", {"dat": 1.0}, where="drive.yaml:7")])
         with pytest.raises(InputError, match=r"drive\.yaml:7: .*did you mean 'data'"):
             queue.send_due()

@@ -37,14 +37,14 @@ def test_a_skipped_type_is_listed_and_not_read() -> None:
         sim.run(1.0)
         row = next(row for row in counter.rows if row.topic == "/imu")
         assert not row.counted
-        assert not sim.bus.wanted("/imu")
+        assert not sim.communication.bus.wanted("/imu")
 
 
 def test_a_topic_that_comes_later_is_counted_from_then_on() -> None:
     with simkit.load(WORLD) as sim:
         counter = TopicCounter(sim)
         sim.run(1.0)
-        publisher = sim.bus.advertise("/late", "std_msgs/msg/Float64")
+        publisher = sim.communication.bus.advertise("/late", "std_msgs/msg/Float64")
         for _ in range(10):
             sim.run(0.1)
             publisher.publish(msgs.make("std_msgs/msg/Float64"))
@@ -67,6 +67,6 @@ def test_counting_does_not_make_messages() -> None:
     with simkit.load(WORLD) as sim:
         TopicCounter(sim)
         made: list[int] = []
-        publisher = sim.bus.advertise("/later", "std_msgs/msg/Float64")
+        publisher = sim.communication.bus.advertise("/later", "std_msgs/msg/Float64")
         publisher.publish_later(lambda: made.append(1))
         assert made == []

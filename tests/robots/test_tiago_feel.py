@@ -114,7 +114,7 @@ def grasp(run: Run) -> None:
     run.go("gripper_controller", FINGERS, (2.0, [0.0, 0.0], [0.0, 0.0]))
     run.sim.remove("plinth")
     run.sim.run(1.0)
-    model, data = run.sim.mj_model, run.sim.fresh_data()
+    model, data = run.sim.mj_model, run.sim.engine.physics.fresh()
     body = {model.geom(g).id: model.body(model.geom_bodyid[g]).name for g in range(model.ngeom)}
     for contact in data.contact[: data.ncon]:
         names = {body[int(g)] for g in contact.geom}

@@ -53,7 +53,7 @@ def office() -> Iterator[simkit.Simulation]:
 
 
 def people(sim: simkit.Simulation) -> list[str]:
-    return [name for name, model in sim.structure.models.items() if model.moved_by is not None]
+    return [name for name, model in sim.engine.structure.models.items() if model.moved_by is not None]
 
 
 def test_people_stand_sit_and_walk(office: simkit.Simulation) -> None:
@@ -70,7 +70,7 @@ def test_nobody_walks_through_walls_or_furniture_or_through_the_middle_of_the_co
 ) -> None:
     """Seen from above: a circle of 0.2 m at the height of the hips meets nothing solid, nor a robot at the origin."""
     solid = []
-    for link in office.structure.models["office"].links:
+    for link in office.engine.structure.models["office"].links:
         for collision in link.collisions:
             shape, pose = collision.geometry, collision.pose_link
             half = np.array(shape.size) / 2 if hasattr(shape, "size") else None  # a box
@@ -79,7 +79,7 @@ def test_nobody_walks_through_walls_or_furniture_or_through_the_middle_of_the_co
             if low < 1.6:
                 solid.append((pose, half, radius))
     for name in ("walking_woman", "walking_man", "visitor"):
-        script: Any = office.structure.models[name].moved_by.script
+        script: Any = office.engine.structure.models[name].moved_by.script
         for time in np.arange(0.0, script.length, 0.1):
             place = script.pose(time + 4.0).position * (1, 1, 0)
             assert np.hypot(*place[:2]) > 0.5, (name, time)
@@ -95,7 +95,7 @@ def test_nobody_walks_through_walls_or_furniture_or_through_the_middle_of_the_co
 
 def test_who_walks_looks_where_they_go_at_an_even_pace(office: simkit.Simulation) -> None:
     for name in ("walking_woman", "walking_man", "visitor"):
-        (track,) = office.structure.models[name].moved_by.script.tracks
+        (track,) = office.engine.structure.models[name].moved_by.script.tracks
         way = np.diff(track.poses[:, :2], axis=0)
         speed = np.linalg.norm(way, axis=1) / np.diff(track.times)
         assert speed.min() > 0.55

@@ -22,7 +22,9 @@ def seen(robot: str, monkeypatch: pytest.MonkeyPatch) -> tuple[Any, dict[str, An
     with simkit.load("turtlebot3_world") as sim:
         heard = {topic: sim.subscribe(topic, keep=1) for topic in sim.topics() if topic.startswith("/camera/")}
         sim.run(0.1)
-        eye = next(sensor.pose for sensor in sim.sensors.values() if sensor.kind in ("camera", "depth", "rgbd_camera"))
+        eye = next(
+            sensor.pose for sensor in sim.contents.sensors.values() if sensor.kind in ("camera", "depth", "rgbd_camera")
+        )
         return tuple(sim.diagnostics), {topic: readings.latest for topic, readings in heard.items()}, eye
 
 

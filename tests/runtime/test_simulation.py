@@ -353,7 +353,7 @@ def test_a_reset_by_who_is_called_back_ends_its_tick() -> None:
             sim.subscribe(topics["a"], look)
             sim.subscribe(topics["b"], lambda m: found.append((sim.tick, m.angular_velocity.x)))
             sim.step(100)
-            assert sim.steps == 100
+            assert sim.engine.steps == 100
         return found
 
     assert numbers(reset_at=50) == [found for found in numbers(reset_at=-1) if found[0] <= 50]
@@ -370,28 +370,28 @@ def test_a_plugin_that_resets_again_and_again_does_not_keep_a_run_from_its_end()
 
     with simkit.load('<sdf version="1.9"><world name="w"/></sdf>', plugins=[Episodes()]) as sim:
         sim.step(100)
-        assert (sim.steps, sim.tick) == (100, 10)
+        assert (sim.engine.steps, sim.tick) == (100, 10)
         sim.run(0.05)
-        assert (sim.steps, sim.tick) == (150, 0)
+        assert (sim.engine.steps, sim.tick) == (150, 0)
 
 
 def test_several_models_are_spawned_at_once_or_none() -> None:
     ball = '<sdf version="1.9"><model name="{}"><pose>0 0 {} 0 0 0</pose><link name="l"/></model></sdf>'
     with simkit.load('<sdf version="1.9"><world name="w"/></sdf>') as sim:
         sim.step(10)
-        models = sim.spawn_all([(ball.format(name, z), None, None) for z, name in enumerate("abc")])
+        models = sim.contents.spawn_all([(ball.format(name, z), None, None) for z, name in enumerate("abc")])
         assert [(m.name, float(m.pose.position[2])) for m in models] == [("a", 0.0), ("b", 1.0), ("c", 2.0)]
         before = sim.snapshot()
         with pytest.raises(simkit.LoadError, match="there is a model 'd' already"):
-            sim.spawn_all([(ball.format("d", 3), None, None), (ball.format("e", 3), "d", None)])
+            sim.contents.spawn_all([(ball.format("d", 3), None, None), (ball.format("e", 3), "d", None)])
         assert list(sim.models) == ["a", "b", "c"]
         sim.step(5)
         sim.restore(before)
         sim.remove("b")
         assert [
-            m.name for m in sim.spawn_all([(ball.format("b", 1), "x", None), (ball.format("b", 1), "b", None)])
+            m.name for m in sim.contents.spawn_all([(ball.format("b", 1), "x", None), (ball.format("b", 1), "b", None)])
         ] == [
             "x",
             "b",
         ]
-        assert sim.spawn_all([]) == []
+        assert sim.contents.spawn_all([]) == []

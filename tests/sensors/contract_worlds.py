@@ -109,7 +109,7 @@ def load(kind: str, **how: Any) -> Any:
 
 
 def sensor_of(sim: Any) -> Any:
-    (found,) = sim.sensors.values()
+    (found,) = sim.contents.sensors.values()
     return found
 
 
@@ -135,7 +135,7 @@ def heard(sim: Any, duration: float = DURATION) -> list[tuple[int, str, str]]:
     """(tick of arrival, topic, digest) of everything that a sensor publishes."""
     out: list[tuple[int, str, str]] = []
     taps = [
-        sim.bus.tap(topic, lambda m, topic=topic: out.append((sim.tick, topic, digest(m))))
+        sim.communication.bus.tap(topic, lambda m, topic=topic: out.append((sim.tick, topic, digest(m))))
         for topic in sensor_of(sim)._topics.values()
     ]
     sim.run(duration)

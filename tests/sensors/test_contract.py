@@ -80,7 +80,7 @@ def test_a_sensor_that_was_removed_holds_on_to_no_world(kind: str, is_read: bool
         sensor = sensor_of(sim)
         subscriptions = [sim.subscribe(topic, keep=1) for topic in sensor._topics.values() if is_read]
         sim.run(0.1)
-        there = weakref.ref(sim.structure)
+        there = weakref.ref(sim.engine.structure)
         sim.remove("m")
         sim.step()
         gc.collect()
@@ -133,7 +133,7 @@ def test_samples_lie_on_the_grid_and_carry_its_times(kind: str) -> None:
     period = 1000 // worlds.RATE
     with load(kind) as sim:
         stamps: list[tuple[int, int]] = []
-        sim.bus.tap(sensor_of(sim).topic, lambda m: stamps.append((sim.tick, msgs.stamp_ns(stamp_of(m)))))
+        sim.communication.bus.tap(sensor_of(sim).topic, lambda m: stamps.append((sim.tick, msgs.stamp_ns(stamp_of(m)))))
         sim.run(worlds.DURATION)
         assert stamps
         for tick, stamp in stamps:

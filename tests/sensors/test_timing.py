@@ -79,7 +79,7 @@ def test_many_sensors_at_odd_rates_keep_exactly_to_their_grids(step: float) -> N
             period = 1 / (Fraction(1, 3) if text.startswith("0.333") else Fraction(text)) / Fraction(str(step))
             expected = [1] + [math.ceil(k * period) for k in range(1, 2000) if k * period <= 7 / Fraction(str(step))]
             assert found.ticks == expected, text
-            assert [stamp(m) for m in found.messages] == [sim.clock.time_ns(t) for t in expected]
+            assert [stamp(m) for m in found.messages] == [sim.engine.clock.time_ns(t) for t in expected]
 
 
 def test_gazebo_cuts_the_period_to_whole_milliseconds() -> None:
@@ -323,7 +323,7 @@ def test_a_snapshot_remembers_the_seed() -> None:
         count = len(heard.rates)
         sim.run(1)
         assert heard.rates[count:] == expected
-        assert sim.seed == 4
+        assert sim.engine.streams.seed == 4
 
 
 # ---------------------------------------------------------------------- what is said
@@ -376,7 +376,7 @@ def test_a_sensor_in_the_wrong_place_is_left_out_with_a_warning_that_says_where_
         (found,) = [d for d in sim.diagnostics if d.severity == "warning"]
         assert found.code == "SK-SENSOR-024"
         assert {"link": "belongs to a joint", "joint": "belongs to a link"}[place] in found.message
-        assert not sim.sensors
+        assert not sim.contents.sensors
         sim.step(10)
     with pytest.raises(simkit.LoadError):
         simkit.load(JOINT.format(**parts), strict=True)

@@ -43,7 +43,7 @@ def has_another_limit(sim: Any) -> None:
 def read(change: Callable[[Any], None], is_read: bool, *, back: bool = False) -> dict[str, bytes]:
     """The newest reading of each sensor after a change, looked at as it was made or only then."""
     with simkit.load(arm()) as sim:
-        for one in sim.sensors.values() if is_read else ():
+        for one in sim.contents.sensors.values() if is_read else ():
             for topic in one._topics.values():
                 sim.subscribe(topic)
         sim.run(0.1)
@@ -54,7 +54,7 @@ def read(change: Callable[[Any], None], is_read: bool, *, back: bool = False) ->
         if back:
             sim.run(0.1)
             sim.restore(before)
-        return {name: msgs.serialize(one.latest) for name, one in sim.sensors.items()}
+        return {name: msgs.serialize(one.latest) for name, one in sim.contents.sensors.items()}
 
 
 @pytest.mark.parametrize("back", [False, True])

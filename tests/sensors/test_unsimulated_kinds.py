@@ -47,7 +47,7 @@ def test_it_is_said_once_and_nothing_else_is_wrong(kind: str) -> None:
         assert said[0].line
         sim.step(10)
         assert "/t" not in sim.topics()
-        assert not sim.sensors
+        assert not sim.contents.sensors
     assert kind not in sensor_kinds()
 
 

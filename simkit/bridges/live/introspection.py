@@ -23,7 +23,7 @@ def topic_list(sim: Simulation, clients: Collection[ClientConnection]) -> list[J
     found: dict[str, JsonObject] = {}
     for topic in listed:
         found[topic] = {"name": topic, "types": [], "publishers": [], "subscribers": []}
-    for topic, end, types, what in sim.bus.endpoints():
+    for topic, end, types, what in sim.communication.bus.endpoints():
         if topic not in found or not end.active:
             continue
         row, who = found[topic], names.endpoint_node(end)
@@ -55,15 +55,15 @@ def node_list(sim: Simulation, clients: Collection[ClientConnection]) -> dict[st
             entry(end["node"])["publishers"][row["name"]] = [end["type"]]
         for end in row["subscribers"]:
             entry(end["node"])["subscribers"][row["name"]] = list(end["types"])
-    for name in sim.services():
-        service = sim.service_table._find(name)
+    for name in sim.communication.services.names():
+        service = sim.communication.services._find(name)
         if service is not None:
             entry(names.owner_node(service.owner))["services"][name] = [service.type_name]
-    for name in sim.actions():
-        action = sim.action_table._find(name)
+    for name in sim.communication.actions.names():
+        action = sim.communication.actions._find(name)
         if action is not None:
             entry(names.owner_node(action.owner))["actions"][name] = [action.type_name]
-    for node, parameters in sim.parameters.items():
+    for node, parameters in sim.communication.parameters.items():
         entry(node)["parameters"] = list(parameters)
     for peer in clients:
         entry(peer.node)
@@ -85,7 +85,7 @@ def parameter_list(sim: Simulation) -> dict[str, JsonObject]:
             }
             for name, p in found.items()
         }
-        for node, found in sim.parameters.items()
+        for node, found in sim.communication.parameters.items()
     }
 
 
@@ -132,7 +132,10 @@ class NodeNames:
     def __init__(self, sim: Simulation, clients: Iterable[ClientConnection]) -> None:
         self._world = "/" + _name_part(sim.world.name)
         self._nodes: dict[int, str] = {
-            id(p.owner): node for node, found in sim.parameters.items() for p in found.values() if p.owner is not None
+            id(p.owner): node
+            for node, found in sim.communication.parameters.items()
+            for p in found.values()
+            if p.owner is not None
         }
         self._clients = {id(end): peer.node for peer in clients for end in peer.publishers.values()}
 

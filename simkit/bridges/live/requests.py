@@ -134,11 +134,11 @@ def node(request: Request) -> object:
 def state(request: Request) -> object:
     sim = request.sim
     found = {"time_ns": sim.time_ns, "tick": sim.tick, "timestep": sim.timestep, "paused": sim.paused}
-    return {**found, "rtf": sim.pausing.pace, "measured_rtf": request.server.measured_rtf()}
+    return {**found, "rtf": sim.control.pausing.pace, "measured_rtf": request.server.measured_rtf()}
 
 
 def control(request: Request) -> object:
-    pausing, action, value = request.sim.pausing, request.arg("action", str), request.args.get("value")
+    pausing, action, value = request.sim.control.pausing, request.arg("action", str), request.args.get("value")
     if action == "pause":
         if not pausing.is_paused:
             pausing.pause()
@@ -175,7 +175,7 @@ def subscribe(request: Request) -> object:
         request.peer, number, topic, request.arg("depth", int)
     )
     request.server.feeds.add(subscribed)
-    types = (types[0] for _, end, types, _ in request.sim.bus.endpoints(topic) if end.active)
+    types = (types[0] for _, end, types, _ in request.sim.communication.bus.endpoints(topic) if end.active)
     return {"topic": topic, "type": next(types, None)}
 
 
@@ -189,7 +189,7 @@ def unsubscribe(request: Request) -> object:
 
 
 def advertise(request: Request) -> object:
-    number, topic, bus = request.new_number(request.peer.publishers), request.topic(), request.sim.bus
+    number, topic, bus = request.new_number(request.peer.publishers), request.topic(), request.sim.communication.bus
     taken = [t for _, end, types, _ in bus.endpoints(topic) if end.active for t in types]
     if request.args.get("type") is None and not taken:
         raise RequestRefused(f"there is no topic {topic!r} yet, so that its type has to be given")
@@ -218,7 +218,7 @@ def unadvertise(request: Request) -> object:
     publisher = request.peer.publishers.pop(request.arg("number", int), None)
     if publisher is None:
         raise RequestRefused("there is no such publisher")
-    request.sim.bus.close(publisher)
+    request.sim.communication.bus.close(publisher)
     return None
 
 
@@ -226,7 +226,7 @@ def unadvertise(request: Request) -> object:
 
 
 def services(request: Request) -> object:
-    return request.sim.services()
+    return request.sim.communication.services.names()
 
 
 def call(request: Request) -> object:
@@ -234,7 +234,7 @@ def call(request: Request) -> object:
 
 
 def actions(request: Request) -> object:
-    return request.sim.actions()
+    return request.sim.communication.actions.names()
 
 
 def goal(request: Request) -> object:

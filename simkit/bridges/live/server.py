@@ -196,11 +196,11 @@ class Server:
         sim = self.sim
         if self._taken_at != sim.tick:
             self._taken, self._taken_at, self._taken_since = {}, sim.tick, time.monotonic()
-            self._fewest = min((QUEUE_DEPTH, *sim.bus.inbox.depths.values()))
+            self._fewest = min((QUEUE_DEPTH, *sim.communication.bus.inbox.depths.values()))
         count = self._taken[topic] = self._taken.get(topic, 0) + 1
         if count < self._fewest:
             return
-        if count >= sim.bus.inbox.depths.get(topic, QUEUE_DEPTH) and not sim.paused:
+        if count >= sim.communication.bus.inbox.depths.get(topic, QUEUE_DEPTH) and not sim.paused:
             peer.is_held = time.monotonic() - self._taken_since < _LONGEST_HOLD
             self._update_interest(peer)
 
@@ -349,7 +349,7 @@ class Server:
         for subscribed in peer.subscriptions.values():
             self.feeds.remove(subscribed)
         for publisher in peer.publishers.values():
-            self.sim.bus.close(publisher)
+            self.sim.communication.bus.close(publisher)
         peer.clear()
 
     # ------------------------------------------------------------------ the end

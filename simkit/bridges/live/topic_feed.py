@@ -30,9 +30,9 @@ class TopicFeed:
         """Add a subscription; the last message of a latched topic goes to it alone."""
         if self._tap is None:
             self._readers.append(reader)
-            self._tap = self._sim.bus.tap(self.topic, self._take, takes_later=True)
+            self._tap = self._sim.communication.bus.tap(self.topic, self._take, takes_later=True)
             return
-        if self.topic in self._sim.bus.latched():
+        if self.topic in self._sim.communication.bus.latched():
             only = TopicFeed(self._sim, self.topic)
             only.add(reader)
             only.remove(reader)

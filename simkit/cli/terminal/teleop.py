@@ -60,7 +60,7 @@ def find_target(sim: Simulation, wanted: str = "") -> TeleopTarget:
         InputError: SK-CLI-051 nobody takes velocities there, or several do.
     """
     takers: dict[str, object] = {}
-    for topic, end, types, does in sim.bus.endpoints():
+    for topic, end, types, does in sim.communication.bus.endpoints():
         if does == "takes" and end.active and any(one in TWISTS for one in types):
             takers.setdefault(topic, end.owner)
     if wanted:
@@ -265,7 +265,7 @@ class Teleop:
         self._told = now
         ahead, left, turn = self.speeds
         twist = {"linear": {"x": ahead, "y": left}, "angular": {"z": turn}}
-        bus = self._sim.bus
+        bus = self._sim.communication.bus
         try:
             if self._takes_stamped():
                 stamp = {"sec": self._sim.time_ns // 1_000_000_000, "nanosec": self._sim.time_ns % 1_000_000_000}
@@ -279,7 +279,7 @@ class Teleop:
 
     def _takes_stamped(self) -> bool:
         """Check whether the first subscriber of velocities takes TwistStamped first or alone."""
-        ends = self._sim.bus.endpoints(self.target.topic)
+        ends = self._sim.communication.bus.endpoints(self.target.topic)
         taken: list[str] = [one for _, end, types, does in ends if does == "takes" and end.active for one in types]
         return next((one for one in taken if one in TWISTS), "") == TWISTS[1]
 

@@ -55,11 +55,11 @@ class ActorMover(WorldPlugin):
             poses = cast.poses(self._time_of(cast.name, now))
             positions[places], quaternions[places] = poses[:, :3], poses[:, 3:]
         if moving:
-            sim.physics.changed(STALE)
+            sim.engine.physics.changed(STALE)
 
     def _moving(self) -> tuple[_Moving, ...]:
         """The actors that go anywhere, with the indices of their bodies in the engine."""
-        structure = self.sim.structure
+        structure = self.sim.engine.structure
         if self._known[0] is not structure:
             found = []
             for model in structure.models.values():

@@ -79,7 +79,7 @@ class PluginReloader:
         return found
 
     def _of_plugins(self) -> set[str]:
-        return {name for plugin in self._sim.structure.all_plugins() for name in modules_of(plugin)}
+        return {name for plugin in self._sim.engine.structure.all_plugins() for name in modules_of(plugin)}
 
     def _look_for_files(self) -> None:
         for path in self._modules():
@@ -104,7 +104,7 @@ class PluginReloader:
                 if not self._import(name, path):
                     sys.modules.update(before)
                     return False
-        replaced = [p for p in self._sim.structure.all_plugins() if before.keys() & modules_of(p)]
+        replaced = [p for p in self._sim.engine.structure.all_plugins() if before.keys() & modules_of(p)]
         done = [self._exchange(plugin, before) for plugin in replaced]
         if not all(done):
             sys.modules.update(before)
@@ -245,7 +245,7 @@ def with_diagnostics(params: Params, diagnostics: Diagnostics) -> Params:
 
 def scene_of(sim: Simulation, scoped: str) -> Any:
     """What a plugin hangs on, as the file has it: the world, a model, a visual or a sensor."""
-    for top in sim.structure.models.values():
+    for top in sim.engine.structure.models.values():
         if scoped != top.scoped and not scoped.startswith(f"{top.scoped}::"):
             continue
         things: list[Any] = [*top.all_models(), *top.all_sensors(), *(v for k in top.all_links() for v in k.visuals)]

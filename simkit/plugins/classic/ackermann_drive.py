@@ -194,7 +194,7 @@ class GazeboRosAckermannDrive(ModelPlugin):
         for axis in (rear_left, rear_right):
             axis.push(push)
         if self._hand is not None:
-            self.sim.set_control(self._hand, self._steered() / self._ratio)
+            self.sim.engine.set_control(self._hand, self._steered() / self._ratio)
 
     def _steered(self) -> float:
         """Angle of the steering, in the mean of both wheels [rad]."""

@@ -38,6 +38,6 @@ class GazeboRosBumper(SensorPlugin):
             self.refuse(parent, "contact")
             return
         if not parent.publish_states(topic, frame):
-            links = [scoped.rsplit("::", 1)[-1] for scoped in self.sim.names.links]
+            links = [scoped.rsplit("::", 1)[-1] for scoped in self.sim.engine.names.links]
             message = f"plugin {self.name!r}: there is no link {frame!r}; contacts are told in the world until there is"
             params.diagnostics.warning("SK-SENSOR-042", message, self.where, did_you_mean(frame, links))

@@ -67,6 +67,6 @@ class BuoyancyPlugin(BuoyancyBase, ModelPlugin):
 
     def find_hulls(self) -> Mapping[str, Sequence[Hull]]:
         """Of the model's links; numbers of the file before shapes."""
-        links = self.sim.names.links
+        links = self.sim.engine.names.links
         given = self._given
         return {n: [given[n]] if n in given else self._yard.hulls(links[n].scene) for n in self._links if n in links}

@@ -304,7 +304,7 @@ class GazeboRosDiffDrive(ModelPlugin):
                 speed = self._ramped(self._rims[wheel], target, elapsed)
                 if speed != self._rims[wheel]:
                     self._rims[wheel] = speed
-                    self.sim.set_control(self._servos[wheel], speed / pair.radius)
+                    self.sim.engine.set_control(self._servos[wheel], speed / pair.radius)
 
     def _ramped(self, speed: float, target: float, elapsed: float) -> float:
         limit = self.options.max_acceleration

@@ -147,13 +147,13 @@ class ElevatorPlugin(ModelPlugin):
         pace = NEVER if phase == "idle" else None
         if pace != self.before_step_rate:
             self.before_step_rate = pace
-            self.sim.reschedule()
+            self.sim.engine.reschedule()
 
     def _hold(self, number: int, position: float) -> None:
         """Tells the cabin's servo (0) or the door's (1) where to be."""
         sim = self.sim
-        sim.mj_data.ctrl[sim.names.actuator(self._servos[number])] = position
-        sim.physics.changed(CONTROL)
+        sim.mj_data.ctrl[sim.engine.names.actuator(self._servos[number])] = position
+        sim.engine.physics.changed(CONTROL)
 
 
 class GazeboRosElevatorOptions(ElevatorPluginOptions):

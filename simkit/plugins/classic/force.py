@@ -69,7 +69,7 @@ class GazeboRosForce(ModelPlugin):
             self._stand()
 
     def _stand(self, *, are_applied: bool = False) -> None:
-        self.sim.set_standing_wrenches(self, self._standing(), are_applied=are_applied)
+        self.sim.engine.wrenches.set(self, self._standing(), are_applied=are_applied)
 
     def _standing(self) -> dict[str, Vector]:
         return {self._scoped: self._wrench} if self._wrench.any() else {}

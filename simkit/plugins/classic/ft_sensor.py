@@ -90,12 +90,12 @@ class GazeboRosFtSensor(ModelPlugin):
         self._index += 1  # counted whether read or not, so that who listens does not change the noise
         if not self._out.wanted:
             return
-        data = self.sim.fresh_acceleration()
+        data = self.sim.engine.physics.fresh_accelerations()
         values = np.concatenate(self._of_joint(data) if self._joint else self._of_link(data))
         self._out.publish_later(partial(self._message, self.sim.time_ns, values, self._index))
 
     def _of_joint(self, data: mujoco.MjData) -> tuple[Vector, Vector]:
-        names = self.sim.names
+        names = self.sim.engine.names
         joint = names.joint(self._joint)
         child = names.link(joint.scene.child_link)
         turn = data.xmat[child.body].reshape(3, 3)
@@ -105,7 +105,7 @@ class GazeboRosFtSensor(ModelPlugin):
         return -force @ axes, -torque @ axes
 
     def _of_link(self, data: mujoco.MjData) -> tuple[Vector, Vector]:
-        model, body = self.sim.mj_model, self.sim.names.link(self._link).body
+        model, body = self.sim.mj_model, self.sim.engine.names.link(self._link).body
         if not body:
             return np.zeros(3), np.zeros(3)
         velocity, acceleration = np.empty(6), np.empty(6)

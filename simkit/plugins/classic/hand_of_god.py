@@ -71,7 +71,7 @@ class GazeboRosHandOfGod(ModelPlugin):
             self.subscribe(topic, self._on_transforms)
 
     def reset(self) -> None:
-        self.sim.reschedule()
+        self.sim.engine.reschedule()
 
     def set_state(self, state: Mapping[str, Any]) -> None:
         """Back to a state from `get_state`."""
@@ -82,7 +82,7 @@ class GazeboRosHandOfGod(ModelPlugin):
         """Takes the link's weight."""
         force = -self._mass * np.asarray(self.sim.gravity) if self._has_weight else np.zeros(3)
         lift = {self._scoped: np.array([*force, 0.0, 0.0, 0.0])} if force.any() else {}
-        self.sim.set_standing_wrenches(self, lift, are_applied=are_applied)
+        self.sim.engine.wrenches.set(self, lift, are_applied=are_applied)
 
     def _on_transforms(self, message: Any) -> None:
         own = f"{self._frame}_actual"
@@ -99,7 +99,7 @@ class GazeboRosHandOfGod(ModelPlugin):
         pace = None if self._desired() is not None else NEVER
         if pace != self.before_step_rate:
             self.before_step_rate = pace
-            self.sim.reschedule()
+            self.sim.engine.reschedule()
 
     def _desired(self) -> Pose | None:
         """Where the link is wanted in the world; None while nobody has told."""

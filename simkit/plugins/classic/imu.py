@@ -77,7 +77,7 @@ class GazeboRosImu(ModelPlugin):
     def load(self, parent: Model, params: Params) -> None:
         self._link = self.sim.link(self._body)
         self._out = self.advertise(self._topic, TYPE) if self._topic else None
-        if self._service and self.ros.topic(self._service) not in self.sim.services():
+        if self._service and self.ros.topic(self._service) not in self.sim.communication.services.names():
             self.offer(self._service, "std_srvs/srv/Empty", lambda _request: None)
         self._stream = self.random("gaussianNoise", 6) if self._deviation > 0 else None
         self._index = 0

@@ -103,7 +103,7 @@ class GazeboRosJointPoseTrajectory(ModelPlugin):
         """The link that a trajectory holds in place; None for the world, or after a report."""
         if frame in _WORLD:
             return None
-        links: dict[str, Link] = self.sim.entities.tables["link"]
+        links: dict[str, Link] = self.sim.contents.handles.tables["link"]
         own = f"{self.scoped}::{frame}"
         found = links.get(own) or links.get(frame)
         found = found or next((link for scoped, link in links.items() if scoped.endswith("::" + frame)), None)

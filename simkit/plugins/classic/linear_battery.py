@@ -73,7 +73,7 @@ class LinearBatteryConsumer(BatteryConsumer):
 
     def load(self, parent: Model, params: Params) -> None:
         self._power = self.declare("power_load", 0.0, description="what is drawn from the battery [W]")
-        plugins = [p for p in self.sim.structure.all_plugins() if isinstance(p, Battery)]
+        plugins = [p for p in self.sim.engine.structure.all_plugins() if isinstance(p, Battery)]
         there = [p.battery for p in plugins if p.scoped == self.scoped]
         if self.battery and self.battery not in there:
             message = f"plugin {self.name!r}: its model has no battery {self.battery!r}; nothing is drawn"

@@ -214,7 +214,7 @@ class GazeboRosPlanarMove(ModelPlugin):
         """What is to be moved now: the model, in the axes of its heading."""
         tick = self.sim.tick
         if tick >= self._next:
-            grid: TickGrid | None = self.sim.clock.grid(self.options.update_rate)
+            grid: TickGrid | None = self.sim.engine.clock.grid(self.options.update_rate)
             self._next = grid.next(tick) if grid is not None else tick
             self._command = self._told
         if (self.sim.time_ns - self._told_ns) * 1e-9 > self.options.timeout:

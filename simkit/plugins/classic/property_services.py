@@ -60,7 +60,7 @@ def set_joint_properties(sim: Simulation, request: Any) -> str:
     if any(stops.values()) and len(dofs) != 1:
         raise RequestRefused(f"joint {joint.scoped!r} has {len(dofs)} degrees of freedom; limits are set of one only")
     if damping:
-        sim.touch("dof_damping")[dofs[: len(damping)]] = damping
+        sim.engine.touch("dof_damping")[dofs[: len(damping)]] = damping
     for name, values in stops.items():
         if values:
             setattr(joint, _STOPS[name], values[0])

@@ -124,7 +124,7 @@ class RealSense(ModelPlugin):
     def _find(self, model: Any, name: str, product: str) -> Any | None:
         """The model's camera of that name, or None after a warning."""
         inside = model.scoped + "::"
-        within = [s for scoped, s in self.sim.sensors.items() if scoped.startswith(inside)]
+        within = [s for scoped, s in self.sim.contents.sensors.items() if scoped.startswith(inside)]
         sensors = [sensor for sensor in within if hasattr(sensor, "transform_messages")]
         fitting = {s.name: s for s in sensors if product in s.products()}
         if name in fitting:

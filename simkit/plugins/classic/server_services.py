@@ -55,24 +55,24 @@ class ClassicServices(WorldPlugin):
             offer_table("/gazebo", sim, _server_services(sim), _ros_1_services(self), property_services(sim))
             _broadcast_states("/gazebo", sim, STATES_RATE)
             listen_to_states("/gazebo", sim)
-        sim.on_demand.add(lambda: bool(self.pushes), None, self._push, "before")
+        sim.communication.on_demand.add(lambda: bool(self.pushes), None, self._push, "before")
 
     def push(self, push: TimedWrench | None) -> None:
         """Takes on what pushes a link or drives a joint for a while."""
         if push is not None:
             self.pushes.append(push)
-            self.sim.on_demand.look()
+            self.sim.communication.on_demand.look()
 
     def clear(self, link: str = "", joint: str = "") -> None:
         """Ends what pushes a link or drives a joint."""
         self.pushes = [p for p in self.pushes if not (link and p.link == link) and not (joint and p.joint == joint)]
-        self.sim.on_demand.look()
+        self.sim.communication.on_demand.look()
 
     def _push(self, _: int) -> None:
         left = apply_wrenches(self.sim, self.pushes)
         if len(left) != len(self.pushes):
             self.pushes = left
-            self.sim.on_demand.look()
+            self.sim.communication.on_demand.look()
 
 
 def offer_table(prefix: str, sim: Simulation, *tables: Table, named: Callable[[str], str] | None = None) -> None:
@@ -89,9 +89,9 @@ def offer_table(prefix: str, sim: Simulation, *tables: Table, named: Callable[[s
                 says_why = not type_name.endswith(("GetModelList", "GetEntityState", "SetEntityState"))
                 handler = answer_handler(sim, name, does, says_why)
             if named is None:
-                sim.service_table.offer_by_default(name, type_name, handler)
+                sim.communication.services.offer_by_default(name, type_name, handler)
             else:
-                sim.service_table.offer(name, type_name, handler)
+                sim.communication.services.offer(name, type_name, handler)
 
 
 # ---------------------------------------------------------------------- what the server has
@@ -103,10 +103,10 @@ def _server_services(sim: Simulation) -> Table:
         "spawn_entity": ("gazebo_msgs/srv/SpawnEntity", partial(_spawn_entity, sim)),
         "delete_entity": ("gazebo_msgs/srv/DeleteEntity", partial(_delete_entity, sim)),
         "get_model_list": ("gazebo_msgs/srv/GetModelList", partial(_model_list, sim)),
-        "pause_physics": (_EMPTY, lambda _: setattr(sim, "paused", True)),
-        "unpause_physics": (_EMPTY, lambda _: setattr(sim, "paused", False)),
+        "pause_physics": (_EMPTY, lambda _: setattr(sim.control, "paused", True)),
+        "unpause_physics": (_EMPTY, lambda _: setattr(sim.control, "paused", False)),
         "reset_simulation": (_EMPTY, lambda _: _reset_simulation(sim)),
-        "reset_world": (_EMPTY, lambda _: sim.reset_models()),
+        "reset_world": (_EMPTY, lambda _: sim.control.reset_models()),
     }
 
 
@@ -289,22 +289,22 @@ def listen_to_states(prefix: str, sim: Simulation) -> None:
     inputs = {"set_model_state": ("ModelState", _set_model_state), "set_link_state": ("LinkState", _set_link_state)}
     for short, (kind, does) in inputs.items():
         topic = f"{prefix}/{short}"
-        sim.bus.aside.add(topic)
-        sim.bus.unlisted.add(topic)
+        sim.communication.bus.aside.add(topic)
+        sim.communication.bus.unlisted.add(topic)
         take = command_handler(sim, topic, partial(does, sim))
-        sim.bus.listen(topic, (f"gazebo_msgs/msg/{kind}",), take)
+        sim.communication.bus.listen(topic, (f"gazebo_msgs/msg/{kind}",), take)
 
 
 def broadcast_states(sim: Simulation, models: str, links: str, rate: float, *, is_aside: bool) -> None:
     """Publishes the states of models and links while somebody listens."""
     makers = {models: states.model_states, links: states.link_states}
     topics = {models: MODEL_STATES, links: LINK_STATES}
-    sim.on_demand.broadcast(topics, rate, lambda topic: makers[topic](sim), is_aside=is_aside)
+    sim.communication.on_demand.broadcast(topics, rate, lambda topic: makers[topic](sim), is_aside=is_aside)
 
 
 def _broadcast_states(prefix: str, sim: Simulation, rate: float) -> None:
     models, links = f"{prefix}/model_states", f"{prefix}/link_states"
-    if not {models, links} & set(sim.bus.all_topics()):  # a plugin of the file may have them
+    if not {models, links} & set(sim.communication.bus.all_topics()):  # a plugin of the file may have them
         broadcast_states(sim, models, links, rate, is_aside=True)
 
 

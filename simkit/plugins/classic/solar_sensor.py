@@ -151,10 +151,10 @@ class SolarSensor(ModelPlugin):
         if not (wanted or self._readings.wanted):
             return
         sim, pose = self.sim, self._link.pose
-        if self._compiled is not sim.compiled:  # the structure changed
-            self._compiled = sim.compiled
+        if self._compiled is not sim.engine.compiled:  # the structure changed
+            self._compiled = sim.engine.compiled
             view.bind(self._compiled, self._link_name)
-        reading = view.measure(sim.mj_model, sim.fresh_data(), light.state, pose.position, pose.matrix)
+        reading = view.measure(sim.mj_model, sim.engine.physics.fresh(), light.state, pose.position, pose.matrix)
         for publisher, make, value in wanted:
             publisher.publish(make(value(reading)))
         if self._readings.wanted:
@@ -210,13 +210,13 @@ class SolarSensor(ModelPlugin):
 def _find_light(sim: Simulation, params: Params) -> Light | None:
     """The light that `<light_name>` names; None after an error that lists the lights, or a note for a bare model."""
     name = params.text("light_name", "")
-    if name and not sim.lights and sim.world.where == NOWHERE:
+    if name and not sim.contents.lights and sim.world.where == NOWHERE:
         message = f"a bare model has no light {name!r}: no reading is published until it stands in a world that has it"
         params.diagnostics.note("SK-PLUGIN-009", message, params.where)
         return None
     if name:
         return find_light(sim, name, params)
-    listed = ", ".join(repr(n) for n in sorted(sim.lights)) or "none"
+    listed = ", ".join(repr(n) for n in sorted(sim.contents.lights)) or "none"
     params.error("SK-PARAM-001", f"<{params.name}> needs <light_name>: the name of a light", f"lights are: {listed}")
     return None
 

@@ -54,9 +54,9 @@ def spawn_model(sim: Simulation, xml: str, name: str, namespace: str, pose_messa
         raise RequestRefused(f"Entity [{name}] already exists.")
     source = add_namespace(xml, namespace) if namespace else xml
     initial = frame_of(sim, frame) @ pose_of(pose_message, "initial_pose")
-    pose = None if initial == IDENTITY else initial @ sim.pose_in_file(source)
+    pose = None if initial == IDENTITY else initial @ sim.contents.pose_in_file(source)
     if not name:
-        name = wanted = sim.name_in_file(source)
+        name = wanted = sim.contents.name_in_file(source)
         number = 0
         while name in sim.models:
             name, number = f"{wanted}_{number}", number + 1
@@ -106,7 +106,7 @@ def carrying_link(sim: Simulation, kind: str, scoped: str) -> Link | None:
         return sim.link(scoped)
     if kind == "visual":
         return sim.visual(scoped).link
-    links = sim.entities.tables["link"]
+    links = sim.contents.handles.tables["link"]
     if kind == "model":
         found: Link | None = links.get(sim.model(scoped).scene.canonical_link)
         return found
@@ -182,7 +182,7 @@ def model_states(sim: Simulation) -> Any:
 
 def link_states(sim: Simulation) -> Any:
     """A `gazebo_msgs/msg/LinkStates` of all links, by their scoped names."""
-    return _states(sim, LINK_STATES, "link", list(sim.entities.tables["link"]))
+    return _states(sim, LINK_STATES, "link", list(sim.contents.handles.tables["link"]))
 
 
 def _states(sim: Simulation, type_name: str, kind: str, names: list[str]) -> Any:

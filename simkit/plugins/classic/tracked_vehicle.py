@@ -82,10 +82,10 @@ class _TrackedVehicle(ModelPlugin):
 
     def rub(self, link: SceneLink, mu: float) -> None:
         """Gives the collisions of a link a coefficient of friction, in the engine's model."""
-        geoms = list(self.sim.names.link(link.scoped).geoms)
-        self.sim.touch("geom_friction")[geoms, 0] = mu
-        self.sim.touch("geom_priority")[geoms] = friction_priority(mu)
-        self.sim.physics.changed_model()
+        geoms = list(self.sim.engine.names.link(link.scoped).geoms)
+        self.sim.engine.touch("geom_friction")[geoms, 0] = mu
+        self.sim.engine.touch("geom_priority")[geoms] = friction_priority(mu)
+        self.sim.engine.physics.changed_model()
 
 
 class SimpleTrackedVehiclePluginOptions(Options):
@@ -152,7 +152,7 @@ class SimpleTrackedVehiclePlugin(_TrackedVehicle):
         self._runs: list[BeltMotion | None] = list(self._stands)
         self._speeds = (0.0, 0.0)
         self.before_step_rate = 1e-9
-        self.sim.friction.add_belts(self, self._belts)
+        self.sim.engine.friction.add_belts(self, self._belts)
 
     def _belts(self) -> list[Belt]:
         def now(index: int) -> BeltMotion | None:
@@ -169,7 +169,7 @@ class SimpleTrackedVehiclePlugin(_TrackedVehicle):
         pace = None if self._turn() is not None else 1e-9  # in a turn the centre goes along with the vehicle
         if pace != self.before_step_rate:
             self.before_step_rate = pace
-            self.sim.reschedule()
+            self.sim.engine.reschedule()
 
     def _turn(self) -> float | None:
         """Distance of the point that it turns round, to the left [m]; None where it drives straight."""
@@ -195,7 +195,7 @@ class SimpleTrackedVehiclePlugin(_TrackedVehicle):
         ]
         if runs != self._runs:
             self._runs = runs
-            self.sim.physics.changed_surface()
+            self.sim.engine.physics.changed_surface()
 
 
 class WheelTrackedVehiclePluginOptions(Options):
@@ -264,7 +264,7 @@ class WheelTrackedVehiclePlugin(_TrackedVehicle):
     def drive(self, left: float, right: float) -> None:
         speeds = left, right
         for servo, side, radius in self._servos:
-            self.sim.set_control(servo, speeds[side] / radius)
+            self.sim.engine.set_control(servo, speeds[side] / radius)
 
 
 def _clamped(value: float, most: float) -> float:

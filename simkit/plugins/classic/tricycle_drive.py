@@ -264,12 +264,12 @@ class GazeboRosTricycleDrive(ModelPlugin):
         speed = self._ramped(forward / options.driven_radius, elapsed)
         if speed != self._speed:
             self._speed = speed
-            self.sim.set_control(self._motor, speed)
+            self.sim.engine.set_control(self._motor, speed)
         angle = max(-math.pi / 2, min(math.pi / 2, angle))
         given = self._steered(angle) if options.steering_speed > 0 else angle
         if given != self._given:
             self._given = given
-            self.sim.set_control(self._steering, given)
+            self.sim.engine.set_control(self._steering, given)
 
     def _ramped(self, target: float, elapsed: float) -> float:
         """The wheel's speed on its way to a target [rad/s]."""

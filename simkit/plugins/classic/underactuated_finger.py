@@ -125,11 +125,11 @@ class UnderactuatedFinger(ModelPlugin):
         self._seen: Any = _nothing  # the engine's model that the numbers of the servos are of, weakly
 
     def before_step(self) -> None:
-        now, physics = float(self._actuated.position), self.sim.physics
+        now, physics = float(self._actuated.position), self.sim.engine.physics
         is_new = physics.model is not self._seen()
         if is_new:  # also after a change of structure
             self._seen = weakref.ref(physics.model)
-            self._ids = np.array([self.sim.names.actuator(ref) for *_, ref in self._servos], np.intp)
+            self._ids = np.array([self.sim.engine.names.actuator(ref) for *_, ref in self._servos], np.intp)
         if is_new or abs(self._counts - now) > _NOISE:
             if abs(self._counts - now) > _NOISE:
                 self._counts = now

@@ -110,7 +110,7 @@ class GazeboRosVacuumGripper(ModelPlugin):
         publish_while_subscribed(self, self._grasping, self._rate, "tell")
 
     def reset(self) -> None:
-        self.sim.reschedule()
+        self.sim.engine.reschedule()
 
     @property
     def holds(self) -> list[str]:
@@ -125,7 +125,7 @@ class GazeboRosVacuumGripper(ModelPlugin):
 
     def _together(self) -> list[GazeboRosVacuumGripper]:
         """The grippers that are switched with one service, in the order of the file."""
-        grippers = [p for p in self.sim.structure.all_plugins() if isinstance(p, GazeboRosVacuumGripper)]
+        grippers = [p for p in self.sim.engine.structure.all_plugins() if isinstance(p, GazeboRosVacuumGripper)]
         return [p for p in grippers if p._services == self._services]
 
     def _on_switch(self, request: Any) -> dict[str, Any]:
@@ -144,10 +144,10 @@ class GazeboRosVacuumGripper(ModelPlugin):
         if not is_on:
             for weld in self._held.values():
                 if self._is_there(weld):
-                    self.sim.set_weld(weld, False)
+                    self.sim.contents.set_weld(weld, False)
             self._held = {}
         self.before_step_rate = None if is_on else NEVER
-        self.sim.reschedule()
+        self.sim.engine.reschedule()
         return True
 
     # ------------------------------------------------------------------ holding
@@ -158,7 +158,7 @@ class GazeboRosVacuumGripper(ModelPlugin):
             return
         sim, things = self.sim, self._things
         things.bind(sim, self._own, self._fixed, self._grippers)
-        physics = sim.physics
+        physics = sim.engine.physics
         # where things are does not hang on what velocities and forces have been set since the last step
         near = things.near(physics.fresh() if physics.stage == STALE else physics.data, self._reach)
         for gripper, thing in near:
@@ -169,13 +169,13 @@ class GazeboRosVacuumGripper(ModelPlugin):
     def _hold(self, gripper: str, thing: str) -> None:
         sim, weld = self.sim, f"{gripper}#vacuum {thing}"
         if not self._is_there(weld):
-            sim.add_weld(weld, gripper, thing)
-        sim.set_weld(weld, True)
+            sim.contents.add_weld(weld, gripper, thing)
+        sim.contents.set_weld(weld, True)
         self._held = {**self._held, thing: weld}
 
     def _is_there(self, weld: str) -> bool:
         try:
-            self.sim.names.equality(weld)
+            self.sim.engine.names.equality(weld)
         except KeyError:
             return False
         return True
@@ -192,13 +192,13 @@ class _GrippableLinks:
 
     def bind(self, sim: Simulation, own: str, fixed: frozenset[str], grippers: list[str]) -> None:
         """Finds them in the present model."""
-        if self._known is sim.structure:
+        if self._known is sim.engine.structure:
             return
-        self._known, names, weld = sim.structure, sim.names, sim.mj_model.body_weldid
+        self._known, names, weld = sim.engine.structure, sim.engine.names, sim.mj_model.body_weldid
         self._grippers = grippers
         self._links = [
             link
-            for link in sim.entities.tables["link"]
+            for link in sim.contents.handles.tables["link"]
             if (parts := link.split("::"))[0] != own
             and not fixed.intersection((parts[0], link, parts[-1]))
             and weld[names.link(link).body] != 0

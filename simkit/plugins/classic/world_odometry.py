@@ -61,7 +61,12 @@ class GazeboWorldOdometry(ModelPlugin):
         )
         what = "standard deviation of each step of the walk of x, y [m] and yaw [rad]"
         self._deviation = self.declare(
-            "gaussian_noise", 0.0, minimum=0, maximum=5, description=what, on_change=lambda _: self.sim.on_demand.look()
+            "gaussian_noise",
+            0.0,
+            minimum=0,
+            maximum=5,
+            description=what,
+            on_change=lambda _: self.sim.communication.on_demand.look(),
         )
         self._stream = self.random("gaussian_noise", 3)
         self._walk: Vector = np.zeros(3)

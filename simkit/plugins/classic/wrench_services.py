@@ -73,19 +73,19 @@ def _tick_range(sim: Simulation, request: Any) -> tuple[int, int | None] | None:
     duration, start_ns = msgs.stamp_ns(request.duration), msgs.stamp_ns(request.start_time)
     start = sim.tick
     if start_ns > sim.time_ns:
-        start = sim.clock.ticks(start_ns / 1e9)
-        while sim.clock.time_ns(start) < start_ns:
+        start = sim.engine.clock.ticks(start_ns / 1e9)
+        while sim.engine.clock.time_ns(start) < start_ns:
             start += 1
     if duration < 0:
         return start, None
-    step_ns = sim.clock.time_ns(1)
+    step_ns = sim.engine.clock.time_ns(1)
     return (start, start + math.ceil(duration / step_ns)) if duration else None
 
 
 def apply_wrenches(sim: Simulation, pushes: list[TimedWrench]) -> list[TimedWrench]:
     """Applies for the next step what is due; gives what is left of it, without what is over or has no link any more."""
     tick = sim.tick
-    tables = sim.entities.tables
+    tables = sim.contents.handles.tables
     left = [
         p
         for p in pushes
@@ -98,6 +98,6 @@ def apply_wrenches(sim: Simulation, pushes: list[TimedWrench]) -> list[TimedWren
             sim.link(push.link).apply_wrench(push.values[:3], push.values[3:])
         else:
             joint = sim.joint(push.joint)
-            waiting = float(sim.mj_data.qfrc_applied[joint.mj_dofs[0]]) if sim.physics.one_shot else 0.0
+            waiting = float(sim.mj_data.qfrc_applied[joint.mj_dofs[0]]) if sim.engine.physics.one_shot else 0.0
             joint.set_effort(waiting + push.values[0])
     return left

@@ -90,7 +90,7 @@ class EntityPoses:
 
     def take(self) -> PoseSample:
         """What the poses of this tick are made of."""
-        data = self._sim.fresh_data()
+        data = self._sim.engine.physics.fresh()
         return PoseSample(self, data.xpos[self._bodies], data.xquat[self._bodies])
 
     def place(self, positions: Vector, quaternions: Vector) -> list[FramePose]:
@@ -149,7 +149,7 @@ class EntityPoses:
 
     def _spot(self, handle: Any) -> tuple[int, Pose]:
         """The body that carries a link or a model, and its frame in that of the body."""
-        names, scene = self._sim.names, handle.scene
+        names, scene = self._sim.engine.names, handle.scene
         if handle.scoped in names.links:
             binding = names.link(handle.scoped)
             return int(binding.body), binding.offset

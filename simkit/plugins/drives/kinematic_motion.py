@@ -39,7 +39,7 @@ class KinematicMotion:
 
     def __init__(self, sim: Simulation, links: Iterable[str], carrier: str, frame: Pose = IDENTITY) -> None:
         self._sim, self.links, self._carrier, self._frame = sim, tuple(links), carrier, frame
-        names = sim.names
+        names = sim.engine.names
         self._roots = [name for name in self.links if names.link(name).root_joint_dof >= 0]
         self._bound: Any = None
 
@@ -53,7 +53,7 @@ class KinematicMotion:
     def frame(self) -> Pose:
         """The frame in the world; unlike a link's pose it is read without what follows from velocities set since."""
         self.bind()
-        physics = self._sim.physics
+        physics = self._sim.engine.physics
         if physics.stage == STALE:
             physics.fresh()
         data = physics.data
@@ -65,7 +65,7 @@ class KinematicMotion:
         sim = self._sim
         if self._bound is sim.mj_model:
             return
-        self._bound, names = sim.mj_model, sim.names
+        self._bound, names = sim.mj_model, sim.engine.names
         carrier = names.link(self._carrier)
         self._body, self._offset = int(carrier.body), carrier.offset @ self._frame
         roots = [names.link(name) for name in self._roots]
@@ -109,7 +109,7 @@ class KinematicMover:
         """
         if not moves:
             return
-        sim, physics = self._sim, self._sim.physics
+        sim, physics = self._sim, self._sim.engine.physics
         self._bind(tuple(move.motion for move in moves))
         if physics.stage == STALE:
             physics.fresh()

@@ -89,7 +89,7 @@ class StaticTransforms(WorldPlugin):
         for described in scene.all_sensors():
             link = children[described.parent] if described.on_joint else described.parent
             # a Classic plugin names a link's frame; a kind that simkit does not have is in the scene only
-            if described.plugins or link not in frames or not self.sim.has_sensor(described.scoped):
+            if described.plugins or link not in frames or not self.sim.contents.has_sensor(described.scoped):
                 continue
             sensor = self.sim.sensor(described.scoped)
             frame, pose = sensor.frame_id, sensor.scene.pose_link
@@ -130,7 +130,7 @@ class RobotStatePublisher(ModelPlugin):
 
     def tell(self) -> None:
         """Publishes."""
-        poses: Any = self.sim.names.shared(f"joint frames {id(self)}", self._poses)
+        poses: Any = self.sim.engine.names.shared(f"joint frames {id(self)}", self._poses)
         self._out.publish_later(partial(transforms_message, self.sim.time_ns, poses.take()))
 
     def _poses(self) -> EntityPoses:

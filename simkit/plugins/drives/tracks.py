@@ -35,7 +35,7 @@ def belt_of(
         now: how it runs.
         friction: along and across its way; None where it is as the file has it.
     """
-    found = sim.names.link(link)
+    found = sim.engine.names.link(link)
     x, y, z = (found.offset @ track).matrix @ np.array((0.0, 1.0, 0.0))
     return Belt(found.geoms, found.body, (float(x), float(y), float(z)), now, friction)
 

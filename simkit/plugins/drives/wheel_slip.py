@@ -116,7 +116,7 @@ class WheelSlipBase(ModelPlugin):
         ]
         self._scales = [wheel.radius / wheel.force for wheel in self.wheels]
         if self.wheels:
-            self.sim.friction.add_wheels(self, [wheel.contact for wheel in self.wheels], self.slips)
+            self.sim.engine.friction.add_wheels(self, [wheel.contact for wheel in self.wheels], self.slips)
 
     def _own(self, name: str, wheel: Wheel, value: float) -> Any:
         ahead = "along" if name == LATERAL else "across"
@@ -172,7 +172,7 @@ def _wheel_joint(scene: SceneModel, link: SceneLink, block: Params) -> SceneJoin
 def set_compliances(sim: Simulation, links: set[str], lateral: float, longitudinal: float) -> list[str]:
     """Sets the compliances of wheels among links, as `/world/<world>/wheel_slip` does; which wheels were there."""
     found: list[str] = []
-    for plugin in sim.friction.owners():
+    for plugin in sim.engine.friction.owners():
         if not isinstance(plugin, WheelSlipBase):
             continue
         for wheel, pair in zip(plugin.wheels, plugin.compliances, strict=True):
@@ -212,11 +212,11 @@ class _ClassicWheelSlip(WheelSlipBase):
 
     def measured(self) -> list[tuple[Wheel, float, float, float]]:
         """Of each wheel its speeds ahead and along the axle, and that of its rim [m/s]."""
-        data = self.sim.physics.fresh()
+        data = self.sim.engine.physics.fresh()
         down = quat_rotate(self._model.pose.quaternion, self._down)
         found = []
         for wheel, link, joint in zip(self.wheels, self._links, self._joints, strict=True):
-            axle = data.xaxis[self.sim.names.joint(wheel.contact.joint).joint_ids[0]]
+            axle = data.xaxis[self.sim.engine.names.joint(wheel.contact.joint).joint_ids[0]]
             velocity, rim = link.linear_velocity, wheel.radius * float(joint.velocity)
             found.append((wheel, float(np.cross(down, axle) @ velocity), float(axle @ velocity), rim))
         return found

@@ -73,7 +73,7 @@ class BuoyancyBase(Plugin):
         if not all(lie.steady):
             found.push(data, lie, self.sim.mj_model.opt.gravity)
         if self.before_step_rate is not None:
-            self.sim.reschedule()
+            self.sim.engine.reschedule()
 
     def _bind(self) -> None:
         self._found, self._stood = BuoyantForces(self.sim, self.find_hulls(), self._fluid), None
@@ -91,13 +91,13 @@ class BuoyancyBase(Plugin):
                 for name, is_steady, mass in zip(found.links.names, lie.steady, lie.masses, strict=True)
                 if is_steady and mass
             }
-            self.sim.set_standing_wrenches(self, self._standing)
+            self.sim.engine.wrenches.set(self, self._standing)
         return lie
 
     def set_state(self, state: Mapping[str, Any]) -> None:
         """Back to a state from `get_state`."""
         super().set_state(state)
-        self.sim.set_standing_wrenches(self, self._standing, are_applied=True)
+        self.sim.engine.wrenches.set(self, self._standing, are_applied=True)
 
     def _tell_open(self, collision: str) -> None:
         message = f"the mesh of {collision!r} is open and encloses nothing; its convex hull floats instead"

@@ -50,7 +50,7 @@ class LiftDragBase(ModelPlugin):
     def before_step(self) -> None:
         """Pushes for the step to come."""
         sim = self.sim
-        body = sim.names.links[self._scoped].body
+        body = sim.engine.names.links[self._scoped].body
         if body <= 0:
             return
         data = moving_data(sim)
@@ -63,8 +63,8 @@ class LiftDragBase(ModelPlugin):
         x, y, z = arm
         row = data.xfrc_applied[body]
         row += (fx, fy, fz, mx + y * fz - z * fy, my + z * fx - x * fz, mz + x * fy - y * fx)
-        sim.physics.one_shot = True
-        sim.physics.changed_body(CONTROL, body)
+        sim.engine.physics.one_shot = True
+        sim.engine.physics.changed_body(CONTROL, body)
 
     def _motion(self, data: mujoco.MjData, body: int) -> tuple[Triple, Triple, list[float]]:
         """The centre of pressure from the centre of mass [m], its velocity through the air [m/s], the link's axes."""
@@ -75,7 +75,7 @@ class LiftDragBase(ModelPlugin):
         gx, gy, gz = data.subtree_com[model.body_rootid[body]].tolist()
         wx, wy, wz, vx, vy, vz = data.cvel[body].tolist()  # about the centre of mass of the whole tree
         rx, ry, rz = ox + px - gx, oy + py - gy, oz + pz - gz
-        ax, ay, az = self.sim.wind.at(self.sim.tick)
+        ax, ay, az = self.sim.engine.wind.at(self.sim.tick)
         velocity = vx + wy * rz - wz * ry - ax, vy + wz * rx - wx * rz - ay, vz + wx * ry - wy * rx - az
         mx, my, mz = data.xipos[body].tolist()
         return (ox + px - mx, oy + py - my, oz + pz - mz), velocity, axes

@@ -21,7 +21,7 @@ _YZX, _ZXY = [1, 2, 0], [2, 0, 1]
 
 def moving_data(sim: Simulation) -> Any:
     """The engine's data with places and velocities computed; the step that follows goes on from there."""
-    physics = sim.physics
+    physics = sim.engine.physics
     return physics.data if physics.fresh_velocities() else physics.fresh()
 
 
@@ -42,7 +42,7 @@ class PushedLinks:
 
     def __init__(self, sim: Simulation, names: Sequence[str]) -> None:
         self._sim, self._model = sim, sim.mj_model
-        links = sim.names.links
+        links = sim.engine.names.links
         # whoever sets the pose of a movable static model moves it, no force does
         moving = [name for name in names if name in links and links[name].body > 0 and links[name].mocap < 0]
         self.names = tuple(moving)
@@ -116,7 +116,7 @@ class PushedLinks:
 
     def _tell(self, bodies: list[int]) -> None:
         """Says which were pushed."""
-        physics = self._sim.physics
+        physics = self._sim.engine.physics
         physics.one_shot = True
         if physics.sleep.watches:
             for body in bodies:

@@ -67,7 +67,7 @@ class WindPluginBase(WorldPlugin):
             message = f"plugin {self.name!r}: the world has a wind plugin already; this one has no effect"
             params.diagnostics.warning("SK-PLUGIN-111", message, self.where, "leave one of them")
             return
-        parent.wind.source = self.velocity
+        parent.engine.wind.source = self.velocity
         base = valid_topic(f"/world/{parent.world.name}")
         self.listen(f"{base}/wind", (WIND, VECTOR), self._on_wind)
         self.offer(f"{base}/wind_info", INFO, self._tell)
@@ -84,7 +84,7 @@ class WindPluginBase(WorldPlugin):
 
     def _before(self) -> list[Any]:
         """The plugins that stand before this one."""
-        return list(takewhile(lambda plugin: plugin is not self, self.sim.structure.all_plugins()))
+        return list(takewhile(lambda plugin: plugin is not self, self.sim.engine.structure.all_plugins()))
 
     @property
     def _is_calm(self) -> bool:
@@ -106,7 +106,7 @@ class WindPluginBase(WorldPlugin):
         """Pushes for the step to come."""
         if self._links is None or not self._links.is_current:
             self._bind()
-            self.sim.reschedule()
+            self.sim.engine.reschedule()
         links = self._links
         if not links or self._is_calm:
             return
@@ -132,7 +132,7 @@ class WindPluginBase(WorldPlugin):
         links.push_some(data, wrenches)
 
     def _bind(self) -> None:
-        names = self.sim.names.links
+        names = self.sim.engine.names.links
         windy = {name: binding.scene for name, binding in names.items() if binding.scene.enable_wind}
         self._links = PushedLinks(self.sim, list(windy))
         self._masses = np.array([windy[name].inertial.mass for name in self._links.names], float)
@@ -151,11 +151,11 @@ class WindPluginBase(WorldPlugin):
             self.once.not_finite("a wind")
             return
         blows = bool(getattr(message, "enable_wind", True))
-        for sensor in self.sim.structure.all_sensors():
+        for sensor in self.sim.engine.structure.all_sensors():
             sensor.take_held()  # what was held was measured in the old one
         self._seed = self._gusts.changed(self._seed, velocity, blows, self.sim.tick)
         self._felt = None
-        self.sim.reschedule()
+        self.sim.engine.reschedule()
 
     def _tell(self, request: Any) -> dict[str, Any]:
         seed = self._seed

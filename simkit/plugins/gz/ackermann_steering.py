@@ -219,7 +219,7 @@ class AckermannSteering(ModelPlugin):
             if speed != self._turns[side]:
                 self._turns[side] = speed
                 for _, servo in self._steering[side]:
-                    self.sim.set_control(servo, speed)
+                    self.sim.engine.set_control(servo, speed)
 
     def _slope_of(self, forward: float, turn: float) -> float:
         """Tangent of the steering in the middle for a speed and a rate of turning, within the limit."""
@@ -240,7 +240,7 @@ class AckermannSteering(ModelPlugin):
             if rim != self._rims[side]:
                 self._rims[side] = rim
                 for motor in self._motors[side]:
-                    self.sim.set_control(motor, rim / self._radius)
+                    self.sim.engine.set_control(motor, rim / self._radius)
 
     def _correction(self, error: float) -> float:
         """Speed of the steering for an error of its angle."""

@@ -98,7 +98,7 @@ class ApplyLinkWrench(WorldPlugin):
 
     def _target(self, name: str, kind: int) -> Link | None:
         """The link that a name means: exactly, or the first whose scoped name ends so."""
-        tables = self.sim.entities.tables
+        tables = self.sim.contents.handles.tables
         if kind != _MODEL:
             link: Link | None = _find_entity(tables["link"], name)
             if link is not None or kind == _LINK:
@@ -188,11 +188,11 @@ class ApplyLinkWrench(WorldPlugin):
             else:
                 both = np.array((*wrench.force, *wrench.torque))
                 total[link.scoped] = total.get(link.scoped, np.zeros(6)) + both
-        self.sim.set_standing_wrenches(self, total, are_applied=are_applied)
+        self.sim.engine.wrenches.set(self, total, are_applied=are_applied)
         pace = None if is_missing else NEVER
         if pace != self.before_step_rate:
             self.before_step_rate = pace
-            self.sim.reschedule()
+            self.sim.engine.reschedule()
 
     def _say(self, text: str, name: str) -> None:
         if self._verbose:

@@ -56,7 +56,7 @@ class Buoyancy(BuoyancyBase, WorldPlugin):
         self._fluid = self._read(params)
         enabled = [(element.value, element) for element in params.all("enable")]
         self._enabled = frozenset(name for name, _ in enabled)
-        names = {scope for link in parent.names.links for scope in _scopes(link)}
+        names = {scope for link in parent.engine.names.links for scope in _scopes(link)}
         for name, element in enabled:
             if name not in names:
                 message = f"plugin {self.name!r}: there is no model or link {name!r} to float; it is waited for"
@@ -67,7 +67,7 @@ class Buoyancy(BuoyancyBase, WorldPlugin):
         """Of every link that moves and is to float."""
         return {
             name: self._yard.hulls(binding.scene)
-            for name, binding in self.sim.names.links.items()
+            for name, binding in self.sim.engine.names.links.items()
             if binding.body > 0 and (not self._enabled or not self._enabled.isdisjoint(_scopes(name)))
         }
 

@@ -105,13 +105,13 @@ class DetachableJoint(ModelPlugin):
         self._is_attached = False
 
     def reset(self) -> None:
-        self.sim.reschedule()
+        self.sim.engine.reschedule()
 
     # ------------------------------------------------------------------ commands
 
     def _on_detach(self, _: Any) -> None:
         if self._is_attached and self._is_there():
-            self.sim.set_weld(self._weld, False)
+            self.sim.contents.set_weld(self._weld, False)
             self._is_attached = False
             self._tell("detached")
 
@@ -127,12 +127,12 @@ class DetachableJoint(ModelPlugin):
             self._set_pace()
             return
         if not self._is_there():
-            models = self.sim.structure.models.values()
+            models = self.sim.engine.structure.models.values()
             self._child = self._find(models, self.params)
             if not self._child:
                 return
-            self.sim.add_weld(self._weld, self._parent, self._child)
-        self.sim.set_weld(self._weld, True)
+            self.sim.contents.add_weld(self._weld, self._parent, self._child)
+        self.sim.contents.set_weld(self._weld, True)
         self._wanted, self._is_attached = False, True
         self._tell("attached")
         self._set_pace()
@@ -141,7 +141,7 @@ class DetachableJoint(ModelPlugin):
 
     def _is_there(self) -> bool:
         try:
-            self.sim.names.equality(self._weld)
+            self.sim.engine.names.equality(self._weld)
         except KeyError:
             return False
         return True
@@ -151,7 +151,7 @@ class DetachableJoint(ModelPlugin):
         pace = None if self._wanted and not self._is_attached else NEVER
         if pace != self.before_step_rate:
             self.before_step_rate = pace
-            self.sim.reschedule()
+            self.sim.engine.reschedule()
 
     def _tell(self, state: str) -> None:
         if self._state.wanted:

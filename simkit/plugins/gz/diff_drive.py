@@ -161,7 +161,7 @@ class DiffDrive(ModelPlugin):
         half = angular * self._separation / 2
         for servos, speed in zip(self._servos, (linear - half, linear + half), strict=True):
             for servo in servos:
-                self.sim.set_control(servo, speed / self._radius)
+                self.sim.engine.set_control(servo, speed / self._radius)
 
     # ------------------------------------------------------------------ readings
 
@@ -190,7 +190,7 @@ class DriveFleet:
 
     def __init__(self, drives: Sequence[DiffDrive]) -> None:
         self._drives, self._sim = list(drives), drives[0].sim
-        self._physics = self._sim.physics
+        self._physics = self._sim.engine.physics
         self._wheels = np.array([wheel._one_qpos for drive in drives for wheel in drive._pair], dtype=np.intp)
         self._rows: list[Vector] = []
         self._odometries = [drive._odometry for drive in drives]

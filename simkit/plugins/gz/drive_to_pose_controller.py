@@ -88,7 +88,7 @@ class DriveToPoseController(ModelPlugin):
         if self._place is None and self._place_topic not in topics:
             message = f"nobody tells on {self._place_topic} where the robot is; it does not start"
             self.once.warn("SK-PLUGIN-132", "place", message, "give the model an OdometryPublisher")
-        ends = self.sim.bus.endpoints(self._speed.topic)
+        ends = self.sim.communication.bus.endpoints(self._speed.topic)
         if not self._speed.wanted and not any(does == "takes" for *_, does in ends):
             message = f"nobody takes speeds on {self._speed.topic}"
             self.once.warn("SK-PLUGIN-132", "speed", message, "give the model a DiffDrive, or its <topic> that name")
@@ -98,7 +98,7 @@ class DriveToPoseController(ModelPlugin):
         pace = NEVER if self._target is None else None
         if pace != self.after_step_rate:
             self.after_step_rate = pace
-            self.sim.reschedule()
+            self.sim.engine.reschedule()
 
     # ------------------------------------------------------------------ driving
 

@@ -202,7 +202,10 @@ class Elevator(ModelPlugin):
 
     def _send(self, joint: int, position: float) -> None:
         mover = self._movers[joint]
-        if not any(does == "takes" for *_, does in self.sim.bus.endpoints(mover.topic)) and not mover.wanted:
+        if (
+            not any(does == "takes" for *_, does in self.sim.communication.bus.endpoints(mover.topic))
+            and not mover.wanted
+        ):
             hint = f"give the model a JointPositionController for joint {self._joint_names[joint]!r}"
             self.once.warn("SK-PLUGIN-132", mover.topic, f"nobody takes positions on {mover.topic}", hint)
         mover.publish(msgs.make(DOUBLE, data=position))
@@ -223,4 +226,4 @@ class Elevator(ModelPlugin):
         pace = NEVER if self._phase == "idle" else self._update_rate
         if pace != self.after_step_rate:
             self.after_step_rate = pace
-            self.sim.reschedule()
+            self.sim.engine.reschedule()

@@ -89,13 +89,13 @@ class FollowActor(ModelPlugin):
         self._places, self._shown = _ActorBodies(), (math.nan, 0.0, 0.0, False)
         self.before_step_rate = None  # at once, then on the grid
         if self._find() is None:
-            models = sorted(self.sim.entities.tables["model"])
+            models = sorted(self.sim.contents.handles.tables["model"])
             what = f"there is no model or link {self._target!r} to walk after"
             message = f"plugin {self.name!r}: {what}; it is waited for"
             params.diagnostics.warning("SK-PLUGIN-136", message, self.where, did_you_mean(self._target, models))
 
     def reset(self) -> None:
-        self.sim.reschedule()
+        self.sim.engine.reschedule()
 
     def before_step(self) -> None:
         """Takes it to where it is by now, and says where to from there."""
@@ -106,7 +106,7 @@ class FollowActor(ModelPlugin):
         self._aim()
         if self.before_step_rate is None:
             self.before_step_rate = _RATE
-            self.sim.reschedule()
+            self.sim.engine.reschedule()
 
     def _gone(self) -> float:
         """Metres since the last decision."""
@@ -132,7 +132,7 @@ class FollowActor(ModelPlugin):
 
     def _find(self) -> Any:
         """The model or link of that name: exactly, or the first whose scoped name ends so."""
-        tables = self.sim.entities.tables
+        tables = self.sim.contents.handles.tables
         for table in (tables["model"], tables["link"]):
             if self._target in table:
                 return table[self._target]
@@ -154,7 +154,7 @@ class FollowActor(ModelPlugin):
         self._shown = shown
         poses = self._gait.poses((x, y, self._z), self._yaw, behind, goes)
         data.mocap_pos[places], data.mocap_quat[places] = poses[:, :3], poses[:, 3:]
-        sim.physics.changed(STALE)
+        sim.engine.physics.changed(STALE)
 
 
 class _ActorBodies:
@@ -167,8 +167,8 @@ class _ActorBodies:
         return self
 
     def find(self, sim: Simulation, links: list[str]) -> Floats:
-        if self._known[0] is not sim.structure:
-            names = sim.names
-            self._known = sim.structure, np.array([names.link(link).mocap for link in links], dtype=np.intp)
+        if self._known[0] is not sim.engine.structure:
+            names = sim.engine.names
+            self._known = sim.engine.structure, np.array([names.link(link).mocap for link in links], dtype=np.intp)
         found: Floats = self._known[1]
         return found

@@ -75,7 +75,7 @@ class GzSystem(Plugin):
                     entity = _entity_of(self._hub.ecm, parent)
                     self._calls[hook](entity, Element(params), self._hub.ecm, EventManager())
         except Exception as error:  # noqa: BLE001 - a user's system may raise anything
-            self.sim.faults.meet(self, f"{hook}{line_of(error)}", error)
+            self.sim.engine.faults.meet(self, f"{hook}{line_of(error)}", error)
         finally:
             simulation_context.leave_simulation(before)
 
@@ -113,7 +113,7 @@ class GzSystem(Plugin):
         try:
             method(*info, *((self._hub.ecm,) if info else ()))
         except Exception as error:  # noqa: BLE001 - a user's system may raise anything
-            self.sim.faults.meet(self, f"{hook}{line_of(error)}", error)
+            self.sim.engine.faults.meet(self, f"{hook}{line_of(error)}", error)
         finally:
             import_hook.leave()
             simulation_context.leave_simulation(before)
@@ -155,7 +155,7 @@ class GzSystem(Plugin):
             self._outside.add(name)
             which = f"plugin {self.name!r}: attribute {name!r}"
             message = f"{which} cannot be copied, snapshots and reset leave it as it is: {error}"
-            self.sim.reports.warning("SK-PLUGIN-006", message, self.where, "give it a __deepcopy__")
+            self.sim.engine.reports.warning("SK-PLUGIN-006", message, self.where, "give it a __deepcopy__")
 
 
 def line_of(error: BaseException) -> str:
@@ -173,7 +173,7 @@ def _variables(system: Any) -> dict[str, Any]:
 
 
 def _joint_state_publishers(sim: Simulation) -> frozenset[str]:
-    plugins = sim.structure.all_plugins()
+    plugins = sim.engine.structure.all_plugins()
     return frozenset(name for p in plugins if isinstance(p, JointStatePublisher) for name in p._joints)
 
 

@@ -66,11 +66,11 @@ class KineticEnergyMonitor(ModelPlugin):
     def _present(self) -> float:
         """Kinetic energy of the link [J]."""
         sim = self.sim
-        body = sim.names.link(self._scoped).body
+        body = sim.engine.names.link(self._scoped).body
         if not body:
             return 0.0
         twist = np.zeros(6)
-        mujoco.mj_objectVelocity(sim.mj_model, sim.fresh_data(), _BODY, body, twist, 1)
+        mujoco.mj_objectVelocity(sim.mj_model, sim.engine.physics.fresh(), _BODY, body, twist, 1)
         turning, moving = twist[:3], twist[3:]
         inertia: Vector = sim.mj_model.body_inertia[body]
         return 0.5 * float(sim.mj_model.body_mass[body] * moving.dot(moving) + inertia.dot(turning * turning))

@@ -42,4 +42,4 @@ class Label(Plugin):
 
     def load(self, parent: Any, params: Params) -> None:
         if not self._is_lost:
-            self.sim.labels[parent.scoped] = self._label
+            self.sim.contents.labels[parent.scoped] = self._label

@@ -121,12 +121,12 @@ class LinearBattery(Battery):
 
     def _supply(self, scene: SceneModel) -> None:
         """Has the model's rendered sensors rest while the battery is empty, where the Sensors system asks for it."""
-        systems = (p for p in self.sim.structure.all_plugins() if isinstance(p, SensorsSystem))
+        systems = (p for p in self.sim.engine.structure.all_plugins() if isinstance(p, SensorsSystem))
         if not any(system.stops_without_power for system in systems):
             return
         for sensor in scene.all_sensors():
             is_rendered = any(word in sensor.kind for word in _RENDERED) and "logical" not in sensor.kind
-            if is_rendered and self.sim.has_sensor(sensor.scoped):
+            if is_rendered and self.sim.contents.has_sensor(sensor.scoped):
                 self.sim.sensor(sensor.scoped).sample_only_while(lambda: not self.is_empty)
 
     def _offer_recharge(self, base: str, *, by_topic: bool) -> None:
@@ -174,12 +174,12 @@ class LinearBattery(Battery):
 
     def _is_commanded(self) -> bool:
         """Whether a joint of the model was commanded in this step: a control or an effort other than zero."""
-        physics = self.sim.physics
+        physics = self.sim.engine.physics
         if not (physics.data.ctrl.any() or physics.last_applied.any()):
             return False
-        dofs, actuators = self.sim.names.shared(f"battery {id(self)}", self._find_parts)
+        dofs, actuators = self.sim.engine.names.shared(f"battery {id(self)}", self._find_parts)
         pushed = np.abs(physics.last_applied[dofs]) > _LEAST_EFFORT
-        return self.sim.velocity_servos.is_commanded(actuators) or bool(pushed.any())
+        return self.sim.engine.velocity_servos.is_commanded(actuators) or bool(pushed.any())
 
     def _find_parts(self) -> tuple[Any, Any]:
         """Degrees of freedom of the model's joints, and the actuators on them."""
@@ -196,7 +196,7 @@ class LinearBattery(Battery):
 
     def _let_go(self) -> None:
         """Nothing commands the joints any more, as gz's physics has it of a model whose battery is empty."""
-        gains, biases = self.sim.touch("actuator_gainprm"), self.sim.touch("actuator_biasprm")
+        gains, biases = self.sim.engine.touch("actuator_gainprm"), self.sim.engine.touch("actuator_biasprm")
         for name in self._joints:
             joint = self.sim.joint(name)
             actuators = self._actuators_of(joint)
@@ -208,7 +208,7 @@ class LinearBattery(Battery):
 
     def _take_up(self) -> None:
         """The joints obey again."""
-        gains, biases = self.sim.touch("actuator_gainprm"), self.sim.touch("actuator_biasprm")
+        gains, biases = self.sim.engine.touch("actuator_gainprm"), self.sim.engine.touch("actuator_biasprm")
         for name, (efforts, gain, bias) in self._held.items():
             joint = self.sim.joint(name)
             actuators = self._actuators_of(joint)

@@ -117,7 +117,9 @@ class LogRecord(WorldPlugin):
     def load(self, parent: Simulation, params: Params) -> None:
         self.once, self._log = OneTimeWarnings(self), _Log()
         self.before_step_rate = self.after_step_rate = NEVER
-        others = [p for p in self.sim.structure.all_plugins() if isinstance(p, LogRecord) and p._path is not None]
+        others = [
+            p for p in self.sim.engine.structure.all_plugins() if isinstance(p, LogRecord) and p._path is not None
+        ]
         if self._path is None:
             return
         if others[0] is not self:
@@ -128,7 +130,7 @@ class LogRecord(WorldPlugin):
         self.after_step_rate = 1.0 / self._period if self._period else None
         self._sdf = self.advertise(valid_topic(f"/{self._path.name}/sdf"), STRING)
         self._state = self.advertise(valid_topic(f"/world/{parent.world.name}/changed_state"), TRANSFORMS)
-        self.sim.bus.aside.update((self._sdf.topic, self._state.topic))
+        self.sim.communication.bus.aside.update((self._sdf.topic, self._state.topic))
         self._places: dict[str, tuple[float, ...]] = {}
 
     # ------------------------------------------------------------------ running
@@ -138,7 +140,7 @@ class LogRecord(WorldPlugin):
         if not self._log.was_begun:
             self._begin()
         self.before_step_rate = NEVER
-        self.sim.reschedule()
+        self.sim.engine.reschedule()
 
     def _begin(self) -> None:
         from simkit.recording.bags.recorder import Recorder
@@ -152,7 +154,7 @@ class LogRecord(WorldPlugin):
         except (OSError, SimkitError) as error:
             self.once.warn("SK-PLUGIN-127", "begin", f"nothing is recorded: {error}")
             return
-        self._sdf.publish(msgs.type_of(STRING)(self.sim.to_sdf()))
+        self._sdf.publish(msgs.type_of(STRING)(self.sim.control.to_sdf()))
         self._tell_state()
 
     def _is_recorded(self, topic: str) -> bool:
@@ -182,7 +184,7 @@ class LogRecord(WorldPlugin):
 
     def _present(self) -> list[tuple[str, tuple[float, ...]]]:
         found = []
-        for scoped, link in self.sim.entities.tables["link"].items():
+        for scoped, link in self.sim.contents.handles.tables["link"].items():
             pose = link.pose
             both: Vector = np.concatenate((pose.position, pose.quaternion))
             found.append((scoped, tuple(both.tolist())))

@@ -153,7 +153,7 @@ class MecanumDrive(ModelPlugin):
         for servos, (a, b, c) in zip(self._servos, _SIGNS, strict=True):
             rim = a * ahead + b * left + c * turn * self._arm
             for servo in servos:
-                self.sim.set_control(servo, rim / self._radius)
+                self.sim.engine.set_control(servo, rim / self._radius)
 
     # ------------------------------------------------------------------ readings
 

@@ -167,7 +167,7 @@ class PerformerDetector(ModelPlugin):
 
     def _performers(self) -> tuple[Performer, ...]:
         """Of the world's plugins, which are there from its beginning to its end."""
-        plugins = self.sim.structure.all_plugins()
+        plugins = self.sim.engine.structure.all_plugins()
         return tuple(one for plugin in plugins if isinstance(plugin, Performers) for one in plugin.performers)
 
     def _found(self) -> list[tuple[str, Pose, bool]]:

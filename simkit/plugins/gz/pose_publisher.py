@@ -119,11 +119,11 @@ class PosePublisher(ModelPlugin):
 
     def _is_due(self, rate: float) -> bool:
         """Whether this tick is one of a rate's; the hook is called on those of both rates."""
-        grid, tick = self.sim.clock.grid(rate), self.sim.tick
+        grid, tick = self.sim.engine.clock.grid(rate), self.sim.tick
         return grid is None or grid.next(tick - 1) == tick
 
     def _publish(self, out: Any, which: str, parts: list[PosedEntity]) -> None:
-        poses = self.sim.names.shared(f"{which} poses {id(self)}", partial(EntityPoses, self.sim, parts))
+        poses = self.sim.engine.names.shared(f"{which} poses {id(self)}", partial(EntityPoses, self.sim, parts))
         taken, time_ns = poses.take(), self.sim.time_ns
         if self._is_vector:
             out.publish_later(partial(transforms_message, time_ns, taken))

@@ -74,7 +74,7 @@ class Thermal(Plugin):
         if self._picture is not None:
             found = HeatSignature(self._picture, *_sorted_range(self._range, self.sim))
         if found is not None:
-            self.sim.temperatures[self.scoped] = found
+            self.sim.contents.temperatures[self.scoped] = found
 
 
 def _read_kelvins(params: Params, name: str) -> float:

@@ -54,19 +54,19 @@ class TouchTimer(ModelPlugin):
         self._watched = frozenset(watched)
         self._since = -1  # [ns]; -1 while it does not touch
         self._set_pace()
-        names = collision_table(self.sim.compiled).names
+        names = collision_table(self.sim.engine.compiled).names
         if not any(self._is_target(name) for name in names):
             message = f"plugin {self.name!r}: no collision has {self._target!r} in its name; one is waited for"
             models = sorted({part for name in names for part in name.split("::")})
             params.diagnostics.warning("SK-SENSOR-044", message, self.where, did_you_mean(self._target, models))
 
     def reset(self) -> None:
-        self.sim.reschedule()
+        self.sim.engine.reschedule()
 
     def after_step(self) -> None:
         sim = self.sim
-        own, target, model = sim.names.shared(f"touch {id(self)}", self._masks)
-        found = find_contacts(sim.mj_model, sim.fresh_data(), own)
+        own, target, model = sim.engine.names.shared(f"touch {id(self)}", self._masks)
+        found = find_contacts(sim.mj_model, sim.engine.physics.fresh(), own)
         if found is None or not target[found.geoms].any():
             self._since = -1
             return
@@ -86,7 +86,7 @@ class TouchTimer(ModelPlugin):
 
     def _masks(self) -> tuple[Bools, Bools, Bools]:
         """Which geoms are watched, which are targets, and which are of this model."""
-        collisions = collision_table(self.sim.compiled)
+        collisions = collision_table(self.sim.engine.compiled)
         targets = {name for name in collisions.names if self._is_target(name)}
         own = {name for name in collisions.names if name.startswith(f"{self.scoped}::")}
         return collisions.mask(self._watched), collisions.mask(targets), collisions.mask(own)
@@ -113,7 +113,7 @@ class TouchTimer(ModelPlugin):
         pace = None if self._is_enabled else NEVER
         if pace != self.after_step_rate:
             self.after_step_rate = pace
-            self.sim.reschedule()
+            self.sim.engine.reschedule()
 
 
 class TouchPluginOptions(Options):
@@ -164,7 +164,9 @@ class TouchPlugin(TouchTimer):
         return tuple(found)
 
     def load(self, parent: Any, params: Params) -> None:
-        sensors = [s for s in self.sim.sensors.values() if s.kind == "contact" and s.scene.parent in self._links]
+        sensors = [
+            s for s in self.sim.contents.sensors.values() if s.kind == "contact" and s.scene.parent in self._links
+        ]
         watched = [name for sensor in sensors for name in sensor.collisions]
         if self._named:
             watched = [name for name in self._named if self._may_create or name in watched]
@@ -178,7 +180,7 @@ class TouchPlugin(TouchTimer):
 
     def _together(self) -> list[TouchPlugin]:
         """The detectors of its namespace, in the order of the file."""
-        detectors = [p for p in self.sim.structure.all_plugins() if isinstance(p, TouchPlugin)]
+        detectors = [p for p in self.sim.engine.structure.all_plugins() if isinstance(p, TouchPlugin)]
         return [p for p in detectors if p._topic == self._topic]
 
     def _on_call(self, request: Any) -> dict[str, Any]:

@@ -94,7 +94,7 @@ class TrackController(ModelPlugin):
         self._odometry = self.advertise(odometry, ODOMETRY)
         publish_while_subscribed(self, self._odometry, self._odometry_rate, "publish")
         if self._link:
-            self.sim.friction.add_belts(self, self._belts)
+            self.sim.engine.friction.add_belts(self, self._belts)
 
     def _belts(self) -> list[Belt]:
         return [belt_of(self.sim, self._link, self._track, lambda: self._run)]
@@ -120,7 +120,7 @@ class TrackController(ModelPlugin):
         self.before_step()
         if self.before_step_rate is not None:
             self.before_step_rate = None
-            self.sim.reschedule()
+            self.sim.engine.reschedule()
 
     def before_step(self) -> None:
         """Takes the limited speed one step towards the command; called no more once it is there."""
@@ -138,14 +138,14 @@ class TrackController(ModelPlugin):
         self._apply()
         if not waits and speed == last == before and self.before_step_rate is None and tick != self._told_tick:
             self.before_step_rate = NEVER
-            self.sim.reschedule()
+            self.sim.engine.reschedule()
 
     def _apply(self) -> None:
         stands = self._speed == 0.0 and not self._is_directed
         run = None if stands else BeltMotion(self._speed, self._centre)
         if run != self._run:
             self._run = run
-            self.sim.physics.changed_surface()
+            self.sim.engine.physics.changed_surface()
 
     # ------------------------------------------------------------------ readings
 

@@ -179,7 +179,7 @@ class TrackedVehicle(ModelPlugin):
         self._is_new = True
         if self.after_step_rate is not None:
             self.after_step_rate = None
-            self.sim.reschedule()
+            self.sim.engine.reschedule()
 
     def after_step(self) -> None:
         """Takes the limited speeds one step towards the command, and tells the tracks, for the next step."""
@@ -198,7 +198,7 @@ class TrackedVehicle(ModelPlugin):
             self._tell(*self._last)
         elif rests:
             self.after_step_rate = NEVER
-            self.sim.reschedule()
+            self.sim.engine.reschedule()
 
     def _tell(self, ahead: float, turning: float) -> None:
         half = turning * self._separation / (2.0 * self._efficiency)

@@ -112,7 +112,7 @@ class TrajectoryFollower(ModelPlugin):
         pace = NEVER if self._is_paused or not self._way else None
         if pace != self.before_step_rate:
             self.before_step_rate = pace
-            self.sim.reschedule()
+            self.sim.engine.reschedule()
 
     def before_step(self) -> None:
         if not self._way or self._is_paused:

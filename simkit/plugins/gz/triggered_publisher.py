@@ -218,7 +218,7 @@ class TriggeredPublisher(WorldPlugin):
         self._set_pace()
 
     def reset(self) -> None:
-        self.sim.reschedule()
+        self.sim.engine.reschedule()
 
     def before_step(self) -> None:
         while self._due and self._due[0] <= self.sim.time_ns:
@@ -231,7 +231,7 @@ class TriggeredPublisher(WorldPlugin):
         pace = None if self._due else NEVER
         if pace != self.before_step_rate:
             self.before_step_rate = pace
-            self.sim.reschedule()
+            self.sim.engine.reschedule()
 
     def _answer(self) -> None:
         for out in self._outputs:
@@ -240,7 +240,7 @@ class TriggeredPublisher(WorldPlugin):
         for request in self._requests:
             was_taken, answer = call_service(self.sim, request.service, request.message, request.answer)
             if not was_taken:
-                hint = did_you_mean(request.service, self.sim.services())
+                hint = did_you_mean(request.service, self.sim.communication.services.names())
                 message = f"there is no service {request.service!r} that takes its request"
                 self.once.warn("SK-PLUGIN-122", request.service, message, hint)
             elif "data" in request.answer.FIELDS and answer.data is False:

@@ -146,6 +146,6 @@ def _float_triple(vector: Any) -> Triple:
 
 def _links_by_tree(sim: Simulation, links: list[str]) -> dict[str, list[str]]:
     """Of each link, the links that hang together with it by joints, itself among them."""
-    model, names = sim.mj_model, sim.names
+    model, names = sim.mj_model, sim.engine.names
     root = {link: int(model.body_rootid[names.link(link).body]) for link in links}
     return {link: [other for other in links if root[other] == root[link]] for link in links}

@@ -30,7 +30,7 @@ _NO_SIMULATION: Final = (
 )
 _INSTEAD: Final = {
     "advertise_service": "write a simkit plugin and use self.offer",
-    "service_info": "use service_list, or simkit's own sim.services()",
+    "service_info": "use service_list, or simkit's own sim.communication.services.names()",
     "topic_info": "use topic_list, or simkit's own sim.topics()",
     **dict.fromkeys(("enable_stats", "topic_stats"), "nothing is counted: every message arrives"),
 }
@@ -66,7 +66,7 @@ def _warn_of_rate(sim: Simulation, owner: Plugin | None, topic: str, options: _O
     if rate:
         message = f"msgs_per_sec = {rate} for {topic!r} has no effect: every message arrives"
         where = getattr(owner, "where", NOWHERE)
-        sim.reports.warning("SK-PLUGIN-086", message, where, "count steps, or compare info.sim_time")
+        sim.engine.reports.warning("SK-PLUGIN-086", message, where, "count steps, or compare info.sim_time")
 
 
 class AdvertiseMessageOptions(_Options):
@@ -93,8 +93,8 @@ class Publisher:
         _warn_of_rate(sim, owner, self._topic, self._options)
         known, types = sim.topics().get(self._topic), [twin.ros for twin in twins_of(self._kind)]
         self._ros = known if known in types else types[0]
-        with sim.bus.owned_by(owner):
-            self._publisher = sim.bus.advertise(self._topic, self._ros)
+        with sim.communication.bus.owned_by(owner):
+            self._publisher = sim.communication.bus.advertise(self._topic, self._ros)
 
     def publish(self, message: Message) -> bool:
         """Sends a message.
@@ -148,8 +148,8 @@ class _Subscription:
         known, twins = sim.topics().get(self.topic), [twin.ros for twin in twins_of(self._kind)]
         types = sorted(twins, key=lambda ros: ros != known)  # what is published there is listed first
         called = self._on_message if owner is None else _call_as_owner(sim, owner, self.topic, self._on_message)
-        with sim.bus.owned_by(owner):
-            self.listener = sim.bus.listen(self.topic, types, called)
+        with sim.communication.bus.owned_by(owner):
+            self.listener = sim.communication.bus.listen(self.topic, types, called)
 
 
 class Node:
@@ -224,7 +224,7 @@ class Node:
             if end in self._waiting:
                 self._waiting.remove(end)
             elif end.listener is not None:
-                self._simulation().bus.close(end.listener)
+                self._simulation().communication.bus.close(end.listener)
         return bool(ends)
 
     def request(
@@ -240,7 +240,7 @@ class Node:
         return list(self._simulation().topics())
 
     def service_list(self) -> list[str]:
-        return list(self._simulation().services())
+        return list(self._simulation().communication.services.names())
 
     def advertised_topics(self) -> list[str]:
         return list(self._advertised)
@@ -265,7 +265,7 @@ def _call_as_owner(sim: Simulation, owner: Plugin | None, topic: str, callback: 
         finally:
             simulation_context.leave_simulation(before)
 
-    found: Handler = sim.faults.guard(owner, f"its callback for {topic!r}", run)
+    found: Handler = sim.engine.faults.guard(owner, f"its callback for {topic!r}", run)
     return found
 
 

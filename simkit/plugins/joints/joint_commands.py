@@ -197,11 +197,11 @@ class JointCommander(ControlledJoints, ModelPlugin):
 
     def _drive(self) -> None:
         """The last of all plugins that command velocities moves the joints of all: they hang together."""
-        crew, structure = self._crew_of, self.sim.structure
+        crew, structure = self._crew_of, self.sim.engine.structure
         if crew is None or crew.structure is not structure:
             members = [p for p in structure.all_plugins() if isinstance(p, JointCommander) and p._by_velocity]
             crew = self._crew_of = _VelocityGroup(structure, members)
-        is_disabled = self.sim.faults.is_disabled
+        is_disabled = self.sim.engine.faults.is_disabled
         if self is next(p for p in reversed(crew.members) if not is_disabled(p)):
             pairs = [
                 (axis, p._wish) for p in crew.members if p._wish is not None and not is_disabled(p) for axis in p.axes

@@ -170,7 +170,7 @@ class _EffortTrial:
 
     def apply(self, efforts: Vector) -> None:
         """Sets efforts; what is no longer a number becomes so large that the physics diverges, and says so."""
-        physics = self._sim.physics
+        physics = self._sim.engine.physics
         physics.data.qfrc_applied[self.layout.dofs] = np.where(np.abs(efforts) <= LARGEST, efforts, LARGEST)
         physics.one_shot = True
         if physics.sleep.watches:
@@ -182,7 +182,7 @@ class _EffortTrial:
     def missing(self, efforts: Vector) -> Vector:
         """What the velocities of the next step lack to the wanted ones with these efforts [rad/s or m/s]."""
         self.apply(efforts)
-        data = self._sim.physics.fresh()
+        data = self._sim.engine.physics.fresh()
         missing: Vector = self._wanted - self._velocity - self.step * self._gained(data.qacc)
         return missing
 

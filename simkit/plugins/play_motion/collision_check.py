@@ -72,10 +72,10 @@ class CollisionCheck:
         """
         self._sim, self._robot, self._joints = sim, robot, list(joints)
         self._model, self._data = sim.mj_model, mujoco.MjData(sim.mj_model)
-        now = sim.fresh_data()
+        now = sim.engine.physics.fresh()
         for field in ("qpos", "mocap_pos", "mocap_quat"):
             getattr(self._data, field)[...] = getattr(now, field)
-        self._bindings = [sim.names.joint(joint.scoped) for joint in self._joints]
+        self._bindings = [sim.engine.names.joint(joint.scoped) for joint in self._joints]
         self._find_parts(free_joints)
         self._held = self._find_held(now)
         self._find_loose()
@@ -166,7 +166,7 @@ class CollisionCheck:
             int(model.jnt_bodyid[j])
             for name, joint in self._robot.joints.items()
             if name in free_joints
-            for j in sim.names.joint(joint.scoped).joint_ids
+            for j in sim.engine.names.joint(joint.scoped).joint_ids
         }
         self._mover = np.zeros(model.nbody, dtype=int)
         is_free = np.zeros(model.nbody, dtype=bool)
@@ -174,7 +174,7 @@ class CollisionCheck:
             parent = model.body_parentid[body]
             self._mover[body] = body if body in moved else self._mover[parent]
             is_free[body] = body in free or is_free[parent]
-        found = collision_table(sim.compiled)
+        found = collision_table(sim.engine.compiled)
         prefix = f"{self._robot.scoped}::"
         mine = np.array([name.startswith(prefix) for name in found.names] + [False])
         bodies = model.geom_bodyid
@@ -281,6 +281,6 @@ class CollisionCheck:
         return int(self._model.body_weldid[self._model.body_parentid[body]])
 
     def _name(self, geom: int) -> str:
-        link, scoped, _ = self._sim.names.geom_owner(geom)
+        link, scoped, _ = self._sim.engine.names.geom_owner(geom)
         name = link or scoped or f"geom {geom}"
         return str(name).removeprefix(f"{self._robot.scoped}::")

@@ -52,12 +52,12 @@ def empty_world_with(robot: str) -> tuple[str, list[Path]]:
 
 def motion_players(sim: Simulation) -> dict[str, PlayMotion]:
     """The robots that play motions, by their scoped names."""
-    return {p.scoped: p for p in sim.structure.all_plugins() if isinstance(p, PlayMotion)}
+    return {p.scoped: p for p in sim.engine.structure.all_plugins() if isinstance(p, PlayMotion)}
 
 
 def controlled_models(sim: Simulation) -> list[str]:
     """Scoped names of the models that a controller manager moves."""
-    return [p.scoped for p in sim.structure.all_plugins() if isinstance(p, ControlPlugin)]
+    return [p.scoped for p in sim.engine.structure.all_plugins() if isinstance(p, ControlPlugin)]
 
 
 def choose_player(there: Mapping[str, PlayMotion], name: str | None) -> PlayMotion:

@@ -138,7 +138,7 @@ class PlayMotion(ModelPlugin):
     def _choose_namespace(self) -> None:
         """Plays under the robot's own name where another one has the names that it would have."""
         taken = self.ros.topic("play_motion2")
-        if taken not in self.sim.action_table.names():
+        if taken not in self.sim.communication.actions.names():
             return
         self.ros = RosNames(self.ros.node, f"{self.ros.namespace}/{self.robot.name}", params=self.params)
         message = f"robot {self.robot.name!r} plays motions under {self.action_name!r}: {taken!r} is another one's"
@@ -181,10 +181,10 @@ class PlayMotion(ModelPlugin):
 
     def read(self, path: Path) -> None:
         """Knows the motions of one more file from now on; what is wrong with them is among `sim.diagnostics`."""
-        found = read_motions(path, self.sim.reports)
+        found = read_motions(path, self.sim.engine.reports)
         self.known.update(found.motions)
         for motion in found.motions.values():
-            self._check(motion, self.sim.reports)
+            self._check(motion, self.sim.engine.reports)
 
     @property
     def action_name(self) -> str:
@@ -242,7 +242,7 @@ class PlayMotion(ModelPlugin):
         self._runs.append(run)
         for controller in needed:
             request = trajectory_goal(found, motion, controller, self.robot)
-            send = self.sim.action_table.send
+            send = self.sim.communication.actions.send
             run.parts[controller.name] = send(controller.action, request, self._on_feedback, self._on_controller_done)
 
     def _check_idle(self, goal: GoalHandle, names: Sequence[str]) -> None:

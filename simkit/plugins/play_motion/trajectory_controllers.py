@@ -32,7 +32,7 @@ class TrajectoryController:
 def active_controllers(sim: Simulation, robot: Model) -> list[TrajectoryController]:
     """List the active trajectory controllers of a robot in the order in which they were loaded."""
     found = []
-    plugins = (plugin for plugin in sim.structure.all_plugins() if isinstance(plugin, ControlPlugin))
+    plugins = (plugin for plugin in sim.engine.structure.all_plugins() if isinstance(plugin, ControlPlugin))
     for plugin in plugins:
         if not _is_within(plugin.scoped, robot.scoped) or not hasattr(plugin, "manager"):
             continue

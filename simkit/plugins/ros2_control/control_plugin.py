@@ -201,7 +201,7 @@ class ControlPlugin(ModelPlugin):
     def _take_free_namespace(self, model: str, params: Params) -> None:
         """Takes the model's name for a namespace where another robot has a manager of this one's name."""
         wanted = f"{self.ros.namespace}/{self._manager_name}"
-        if f"{wanted}/list_controllers" not in self.sim.services():
+        if f"{wanted}/list_controllers" not in self.sim.communication.services.names():
             return
         self.ros = RosNames(self.name, f"{self.ros.namespace}/{model}", params=params)
         message = (

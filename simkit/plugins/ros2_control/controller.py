@@ -215,7 +215,7 @@ class Controller(abc.ABC):
         own, model = f"{plugin.ros.namespace}/{self.name}", plugin.scoped.partition("::")[0]
         return declare_at(
             plugin,
-            plugin.sim.parameter_table.node_of(plugin, own, f"/{model}/{self.name}"),
+            plugin.sim.communication.live_parameters.node_of(plugin, own, f"/{model}/{self.name}"),
             name,
             default,
             minimum=minimum,
@@ -257,7 +257,7 @@ class Controller(abc.ABC):
                     uncopied.add(key)
                     message = f"controller {self.name!r}: attribute {key!r} cannot be copied"
                     message = f"{message}, snapshots and reset leave it as it is: {error}"
-                    self.sim.reports.warning("SK-PLUGIN-006", message, self.params.where)
+                    self.sim.engine.reports.warning("SK-PLUGIN-006", message, self.params.where)
 
     def __deepcopy__(self, memo: dict[int, object]) -> Controller:
         return self
@@ -281,7 +281,7 @@ class OneTimeWarnings:
             return
         self._reported.add(what)
         controller = self._controller
-        controller.sim.reports.warning(
+        controller.sim.engine.reports.warning(
             code, f"controller {controller.name!r}: {message}", controller.params.where, hint
         )
 

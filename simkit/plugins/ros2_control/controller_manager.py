@@ -118,7 +118,7 @@ class ControllerManager:
     @property
     def reports(self) -> Diagnostics:
         """Diagnostics that problems go to: those of the load, later those of the run."""
-        found: Diagnostics = self.plugin.sim.reports if self._diagnostics is None else self._diagnostics
+        found: Diagnostics = self.plugin.sim.engine.reports if self._diagnostics is None else self._diagnostics
         return found
 
     def load(self, name: str) -> str:

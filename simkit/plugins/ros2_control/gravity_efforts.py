@@ -34,11 +34,11 @@ class GravityEfforts:
 
     def efforts(self) -> Vector:
         """Return the efforts [N·m or N], shape (n,)."""
-        sim, physics = self._sim, self._sim.physics
+        sim, physics = self._sim, self._sim.engine.physics
         model, data = physics.model, physics.data
         if model is not self._model:
             self._model, self._own = model, np.zeros(model.nv)
-            self._dofs = np.array([sim.names.joint(name).dofs[0] for name in self._joints], np.intp)
+            self._dofs = np.array([sim.engine.names.joint(name).dofs[0] for name in self._joints], np.intp)
         if physics.fresh_velocities():
             bias: Vector = data.qfrc_bias[self._dofs]
             return bias

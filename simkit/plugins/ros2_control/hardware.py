@@ -183,7 +183,7 @@ class Hardware:
 
     def read(self) -> None:
         """Brings the state interfaces up to the present."""
-        if self._model is not self._sim.physics.model:
+        if self._model is not self._sim.engine.physics.model:
             self._bind()
         states = self.states
         values = states.values
@@ -219,7 +219,7 @@ class Hardware:
 
     def reading(self, interface: str, joints: Sequence[str]) -> Callable[[], Vector]:
         """Return a function that reads positions, velocities or efforts of joints of the present engine model."""
-        names, physics = self._sim.names, self._sim.physics
+        names, physics = self._sim.engine.names, self._sim.engine.physics
         bindings = [names.joint(self.joints[joint].scoped) for joint in joints]
         if interface == POSITION:
             qpos = np.array([binding.qpos[0] for binding in bindings], np.intp)

@@ -154,8 +154,8 @@ def frame_link(sim: Simulation, model: str, name: str, others: Sequence[str] = (
 
 def is_moved_by_joint(sim: Simulation, link: str, joint: str) -> bool:
     """Check whether a link is what a joint turns, or fixed to that, or carried by it; both by their scoped names."""
-    parents, body = sim.mj_model.body_parentid, int(sim.names.link(link).body)
-    turning = int(sim.mj_model.jnt_bodyid[sim.mj_model.dof_jntid[sim.names.joint(joint).dofs[0]]])
+    parents, body = sim.mj_model.body_parentid, int(sim.engine.names.link(link).body)
+    turning = int(sim.mj_model.jnt_bodyid[sim.mj_model.dof_jntid[sim.engine.names.joint(joint).dofs[0]]])
     while body > 0 and body != turning:
         body = int(parents[body])
     return body == turning
@@ -163,7 +163,7 @@ def is_moved_by_joint(sim: Simulation, link: str, joint: str) -> bool:
 
 def _sensor_frame(sim: Simulation, scene: SceneModel, name: str, names: list[str]) -> tuple[str, Pose] | None:
     for described in scene.all_sensors():
-        if described.on_joint or not sim.has_sensor(described.scoped):
+        if described.on_joint or not sim.contents.has_sensor(described.scoped):
             continue
         sensor = sim.sensor(described.scoped)
         optical = sensor.optical_frames()

@@ -123,8 +123,8 @@ class JointActuators:
         is_first, self._model = self._model is None, sim.mj_model
         model = self._model
         self._cached = None
-        bindings = [sim.names.joint(joint.scoped) for joint in self.joints]
-        self._ids = np.array([sim.names.actuator(ref) for ref in self.actuators], np.intp)
+        bindings = [sim.engine.names.joint(joint.scoped) for joint in self.joints]
+        self._ids = np.array([sim.engine.names.actuator(ref) for ref in self.actuators], np.intp)
         self._states = np.array(model.actuator_actadr[self._ids], np.intp)
         self._qpos = np.array([b.qpos[0] for b in bindings], np.intp)
         self._dofs = np.array([b.dofs[0] for b in bindings], np.intp)
@@ -176,23 +176,26 @@ class JointActuators:
         self.integrals[changed] = 0.0
         self.targets[changed] = data.qpos[self._qpos[changed]]
         now = self._active_modes()
-        biases = sim.touch("actuator_biasprm")
+        biases = sim.engine.touch("actuator_biasprm")
         biases[self._ids, 1], biases[self._ids, 2] = -now.kp, -now.kv
         for loss in ("dof_damping", "dof_frictionloss"):
-            losses = sim.touch(loss)
-            losses[self._dofs] = np.where(now.is_compensated, 0.0, sim.original(loss)[self._dofs])
+            losses = sim.engine.touch(loss)
+            losses[self._dofs] = np.where(now.is_compensated, 0.0, sim.engine.original(loss)[self._dofs])
         self._limit_efforts(now)
         # whoever commands efforts has not spoken yet: until then the joint does not fall
         held = now.kp * self.targets + np.maximum(now.compensation, now.effort_share) * self._gravity.efforts()
         data.act[self._states[changed]] = held[changed]
         data.ctrl[self._ids[changed]] = 0.0
-        sim.physics.changed(CONTROL)
+        sim.engine.physics.changed(CONTROL)
 
     def _limit_efforts(self, now: ActiveModes) -> None:
         """Bounds the efforts as the present modes have it."""
         is_bound = np.isfinite(now.lowest) | np.isfinite(now.highest)
         if is_bound.any():
-            limited, ranges = self._sim.touch("actuator_forcelimited"), self._sim.touch("actuator_forcerange")
+            limited, ranges = (
+                self._sim.engine.touch("actuator_forcelimited"),
+                self._sim.engine.touch("actuator_forcerange"),
+            )
             limited[self._ids] = is_bound
             ranges[self._ids] = np.clip(np.stack((now.lowest, now.highest), 1), -_LARGEST_CONTROL, _LARGEST_CONTROL)
 
@@ -206,7 +209,7 @@ class JointActuators:
         return self._cached
 
     def _rebind_if_needed(self) -> None:
-        if self._model is not self._sim.physics.model:
+        if self._model is not self._sim.engine.physics.model:
             self._bind()
 
     def write(self, commands: Vector, period: float) -> None:
@@ -219,7 +222,7 @@ class JointActuators:
         if not self.joints:
             return
         self._rebind_if_needed()
-        now, physics = self._active_modes(), self._sim.physics
+        now, physics = self._active_modes(), self._sim.engine.physics
         data, wanted = physics.data, commands
         if self._has_mimics:  # a mimic has no command of its own
             offset = np.where(now.is_position, self._mimic_law[1], 0.0)
@@ -246,7 +249,7 @@ class JointActuators:
         targets = self.targets
         if period <= 0.0:
             return targets, np.zeros_like(targets)
-        data = self._sim.physics.data
+        data = self._sim.engine.physics.data
         if now.period != period:
             now.period, now.highest_move = period, self._max_velocities * period
             now.lowest_move = -now.highest_move
@@ -271,7 +274,7 @@ class JointActuators:
         self, now: ActiveModes, wanted: Vector, period: float
     ) -> tuple[list[float], list[float]]:
         """The same of those that are not driven by position, `now.velocity_joints`."""
-        data = self._sim.physics.data
+        data = self._sim.engine.physics.data
         control, place, turning = data.ctrl.item, data.qpos.item, data.qvel.item
         target, speed = self.targets.item, wanted.item
         before, led, speeds, places, turns = [], [], [], [], []
@@ -295,14 +298,14 @@ class JointActuators:
 
     def _integrate(self, now: ActiveModes, reference: Vector, rate: Vector, period: float) -> Vector:
         """The integral parts of the file's loops, carried on [N·m or N]."""
-        data, (ki, lowest, highest) = self._sim.physics.data, now.integral
+        data, (ki, lowest, highest) = self._sim.engine.physics.data, now.integral
         error = np.where(now.is_position, reference - data.qpos[self._qpos], rate - data.qvel[self._dofs])
         self.integrals = np.minimum(np.maximum(self.integrals + ki * error * period, lowest), highest)
         return self.integrals
 
     def efforts(self) -> Vector:
         """Return the effort of each actuator now [N·m or N]."""
-        now, data = self._active_modes(), self._sim.physics.data
+        now, data = self._active_modes(), self._sim.engine.physics.data
         force = data.act[self._states] - now.kp * data.qpos[self._qpos] - now.kv * data.qvel[self._dofs]
         effort: Vector = np.minimum(np.maximum(force, now.lowest), now.highest)
         return effort

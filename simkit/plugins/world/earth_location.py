@@ -24,8 +24,8 @@ def set_world_location(sim: Simulation, request: Any) -> None:
     if surface not in (0, 1):
         raise RequestRefused(f"found surface_model {surface}, allowed is 0 (EARTH_WGS84) or 1 (MOON_SCS)")
     name, (equatorial, polar) = ("EARTH_WGS84", _EARTH) if surface == 0 else ("MOON_SCS", _MOON)
-    before = sim.site.place or SphericalCoordinates(where=sim.world.where)
-    sim.site.move(
+    before = sim.control.origin.place or SphericalCoordinates(where=sim.world.where)
+    sim.control.origin.move(
         replace(
             before,
             latitude=latitude,
@@ -43,10 +43,10 @@ def set_entity_location(sim: Simulation, handle: Any, request: Any) -> None:
     """Puts a model or a light at a place on the planet, upright, turned by the heading about z. Raises Refused."""
     from simkit.sensors.environment.geodesy import WorldOnPlanet
 
-    if sim.site.place is None:
+    if sim.control.origin.place is None:
         raise RequestRefused("the world has no spherical coordinates, by which an entity could be placed")
     latitude, longitude, elevation, heading = _numbers(request)
-    planet = WorldOnPlanet(sim.site.place)
+    planet = WorldOnPlanet(sim.control.origin.place)
     position = planet.axes.T @ (planet.ellipsoid.cartesian(latitude, longitude, elevation) - planet.origin)
     handle.set_pose(Pose(position, quat_from_rpy(0.0, 0.0, heading)))
 

@@ -43,14 +43,14 @@ def answer_handler(
             found = does(request)
         except (RequestRefused, InputError, UnknownName) as error:
             why = str(error)
-            sim.log.warning("%s: %s", name, why)
+            sim.engine.log.warning("%s: %s", name, why)
             return {"success": False, "status_message": why} if says_why else {"success": False}
         fields = found if isinstance(found, dict) else {}
         if isinstance(found, str) and found:
             if says_why:
                 fields = {"status_message": found}
             else:
-                sim.log.warning("%s: %s", name, found)
+                sim.engine.log.warning("%s: %s", name, found)
         return {"success": True, **fields}
 
     return handle
@@ -67,7 +67,7 @@ def command_handler(sim: Simulation, name: str, does: Callable[[Any], Any]) -> C
 
 
 def spawn_entities(make: Callable[..., Any], *values: Any) -> Any:
-    """What `sim.spawn`, `sim.spawn_all` or `sim.clone` adds.
+    """What `sim.spawn`, `sim.contents.spawn_all` or `sim.contents.clone` adds.
 
     Raises:
         Refused: a plugin of the model raised when it was loaded; the world is as before.
@@ -84,11 +84,11 @@ def spawn_entities(make: Callable[..., Any], *values: Any) -> Any:
 def scoped_names(sim: Simulation, kind: str) -> Iterable[str]:
     """Scoped names of all entities of a kind (one of `KINDS`), in document order."""
     if kind == "visual":
-        return sim.entities.visuals()
+        return sim.contents.handles.visuals()
     if kind == "collision":
-        links = sim.entities.tables["link"].values()
+        links = sim.contents.handles.tables["link"].values()
         return [collision.scoped for link in links for collision in link.scene.collisions]
-    return sim.entities.tables.get(kind, {})
+    return sim.contents.handles.tables.get(kind, {})
 
 
 def entity_id(kind: str, scoped: str) -> int:
@@ -156,7 +156,7 @@ def frame_of(sim: Simulation, name: str) -> Pose:
 
 def handle_of(sim: Simulation, kind: str, scoped: str) -> Any:
     """The handle of an entity that has one."""
-    return sim.visual(scoped) if kind == "visual" else sim.entities.find(kind, scoped)
+    return sim.visual(scoped) if kind == "visual" else sim.contents.handles.find(kind, scoped)
 
 
 # ---------------------------------------------------------------------- numbers

@@ -51,7 +51,7 @@ def set_physics(sim: Simulation, request: Any, *, keeps_gravity: bool = False) -
         )
     if not keeps_gravity:
         sim.gravity = gravity
-    sim.pausing.pace = rate * sim.timestep if rate > 0.0 else None
+    sim.control.pausing.pace = rate * sim.timestep if rate > 0.0 else None
     own = _config_fields(sim)
     asked = {name: getattr(request.ode_config, name) for name in own}
     given = [name for name, value in asked.items() if value and value != own[name]]
@@ -62,7 +62,7 @@ def _config_fields(sim: Simulation) -> dict[str, float]:
     """The fields of an `ODEPhysics` message: what has a counterpart here, the rest zero."""
     return {
         **dict.fromkeys(_OF_ODE, 0),
-        "auto_disable_bodies": bool(sim.physics.sleep.enabled),
+        "auto_disable_bodies": bool(sim.engine.physics.sleep.enabled),
         "sor_pgs_iters": int(sim.mj_model.opt.iterations),
         "sor_pgs_rms_error_tol": float(sim.mj_model.opt.tolerance),
         "max_contacts": int(sim.world.physics.max_contacts),
@@ -71,7 +71,7 @@ def _config_fields(sim: Simulation) -> dict[str, float]:
 
 def physics_fields(sim: Simulation) -> dict[str, Any]:
     """The fields of a `gazebo_msgs/srv/GetPhysicsProperties_Response`; of ODE's settings those with a counterpart."""
-    pace = sim.pausing.pace or 0.0  # none: as fast as it goes, which is a rate of 0 in Gazebo
+    pace = sim.control.pausing.pace or 0.0  # none: as fast as it goes, which is a rate of 0 in Gazebo
     return {
         "time_step": sim.timestep,
         "pause": sim.paused,

@@ -167,7 +167,9 @@ def _irradiance(params: Params) -> float | None:
 def _find_sun(sim: Simulation, params: Params) -> Light | None:
     """The light to move, or None after an error."""
     name = params.text("light_name", "")
-    suns = [light for light in sim.lights.values() if light.scene.type == "directional" and not light.scene.link]
+    suns = [
+        light for light in sim.contents.lights.values() if light.scene.type == "directional" and not light.scene.link
+    ]
     if not name:
         if not suns:
             params.error("SK-PLUGIN-003", "the world has no directional light to be the sun", "add model://sun")

@@ -69,7 +69,7 @@ class WorldServices(WorldPlugin):
 
     def load(self, parent: Simulation, params: Params) -> None:
         self._prefix = prefix = valid_topic(f"/world/{self.sim.world.name}")
-        offer = self.sim.service_table.offer_by_default
+        offer = self.sim.communication.services.offer_by_default
         for short, type_name in _TABLE.items():
             does: Callable[[Any], Any] = getattr(self, f"_{short}")
             name = f"{prefix}/{short}"
@@ -79,20 +79,20 @@ class WorldServices(WorldPlugin):
             if short in _ALSO_BLOCKING:
                 offer(f"{name}/blocking", type_name, handler)
         offer(f"{prefix}/scene/info", "simkit_msgs/srv/GetScene", self._scene_info)
-        writing = answer_handler(self.sim, f"{prefix}/generate_world_sdf", lambda _: {"sdf": self.sim.to_sdf()})
+        writing = answer_handler(self.sim, f"{prefix}/generate_world_sdf", lambda _: {"sdf": self.sim.control.to_sdf()})
         offer(f"{prefix}/generate_world_sdf", "simkit_msgs/srv/GenerateWorldSdf", writing)
         inputs = {"light_config": (LIGHT, self._configure_light), "material_color": (MATERIAL, self._paint)}
         for short, (type_name, does) in inputs.items():
             topic = f"{prefix}/{short}"
-            self.sim.bus.aside.add(topic)
-            self.sim.bus.unlisted.add(topic)
-            self.sim.bus.listen(topic, (type_name,), command_handler(self.sim, topic, does))
+            self.sim.communication.bus.aside.add(topic)
+            self.sim.communication.bus.unlisted.add(topic)
+            self.sim.communication.bus.listen(topic, (type_name,), command_handler(self.sim, topic, does))
 
     # ------------------------------------------------------------------ running
 
     def _control(self, request: Any) -> None:
         asked, sim = request.world_control, self.sim
-        pausing, reset, seed = sim.pausing, asked.reset, int(asked.seed)
+        pausing, reset, seed = sim.control.pausing, asked.reset, int(asked.seed)
         time_ns = msgs.stamp_ns(asked.run_to_sim_time)
         starts_over = bool(reset.all or reset.time_only)
         if time_ns and time_ns <= (0 if starts_over else sim.time_ns):
@@ -100,9 +100,9 @@ class WorldServices(WorldPlugin):
         if starts_over:
             sim.reset(seed or None)
         elif seed:
-            sim.reseed(seed)
+            sim.control.reseed(seed)
         if reset.model_only and not starts_over:
-            sim.reset_models()
+            sim.control.reset_models()
         count = int(asked.multi_step) or int(bool(asked.step))
         if time_ns:
             pausing.run_to(time_ns)
@@ -123,7 +123,7 @@ class WorldServices(WorldPlugin):
         self._spawn(request.entity_factory)
 
     def _create_multiple(self, request: Any) -> None:
-        with self.sim.all_or_none():
+        with self.sim.contents.all_or_none():
             waiting: dict[str, tuple[str, Pose | None]] = {}
             for factory in request.entity_factories:
                 if factory.clone_name or factory.relative_to not in ("", "world"):  # may be of one that waits
@@ -132,21 +132,23 @@ class WorldServices(WorldPlugin):
                 else:
                     source, name, pose = self._wanted(factory, waiting)
                     if name is None:
-                        name = self._free_name(self.sim.name_in_file(source), False, waiting)
+                        name = self._free_name(self.sim.contents.name_in_file(source), False, waiting)
                     waiting[name] = source, pose
             self._spawn_waiting(waiting)
 
     def _spawn_waiting(self, waiting: dict[str, tuple[str, Pose | None]]) -> None:
         """Spawns models by name, compiled once for all of them."""
         if waiting:
-            spawn_entities(self.sim.spawn_all, [(source, name, pose) for name, (source, pose) in waiting.items()])
+            spawn_entities(
+                self.sim.contents.spawn_all, [(source, name, pose) for name, (source, pose) in waiting.items()]
+            )
             waiting.clear()
 
     def _spawn(self, factory: Any) -> None:
         if factory.clone_name:
             pose = self._asked_pose(factory)
             _, old = find_entity(self.sim, factory.clone_name, ("model",))
-            spawn_entities(self.sim.clone, old, self._free_name(factory.name or old, True), pose)
+            spawn_entities(self.sim.contents.clone, old, self._free_name(factory.name or old, True), pose)
         else:
             spawn_entities(self.sim.spawn, *self._wanted(factory))
 
@@ -155,7 +157,7 @@ class WorldServices(WorldPlugin):
         pose = self._asked_pose(factory)
         source, name = factory.sdf or factory.sdf_filename, factory.name or None
         if factory.allow_renaming:
-            name = self._free_name(name or self.sim.name_in_file(source), True, waiting)
+            name = self._free_name(name or self.sim.contents.name_in_file(source), True, waiting)
         elif name is not None:
             self._free_name(name, False, waiting)
         return source, name, pose
@@ -218,11 +220,13 @@ class WorldServices(WorldPlugin):
     def _switch_collision(self, entity: Any, enabled: bool) -> None:
         kind, name = entity_of(self.sim, entity, ("collision", "link", "model"))
         if kind == "model":
-            self.sim.enable_collisions([link.scoped for link in self.sim.model(name).scene.all_links()], enabled)
+            self.sim.control.enable_collisions(
+                [link.scoped for link in self.sim.model(name).scene.all_links()], enabled
+            )
         elif kind == "link":
-            self.sim.enable_collisions([name], enabled)
+            self.sim.control.enable_collisions([name], enabled)
         else:
-            self.sim.enable_collisions([name.rpartition("::")[0]], enabled, only=name)
+            self.sim.control.enable_collisions([name.rpartition("::")[0]], enabled, only=name)
 
     def _wheel_slip(self, request: Any) -> None:
         kind, name = entity_of(self.sim, request.entity, ("model", "link"))
@@ -338,7 +342,7 @@ def _entity_description(sim: Simulation, kind: str, scoped: str) -> dict[str, An
         pose = _joint_pose(sim, joint.scene)
     else:
         pose = handle_of(sim, kind, scoped).pose
-    model = sim.structure.models.get(scoped.split("::")[0])
+    model = sim.engine.structure.models.get(scoped.split("::")[0])
     return {
         "entity": {"id": entity_id(kind, scoped), "name": scoped, "type": KINDS.index(kind)},
         "parent": outer or sim.world.name,
@@ -349,7 +353,7 @@ def _entity_description(sim: Simulation, kind: str, scoped: str) -> dict[str, An
 
 def _joint_pose(sim: Simulation, scene: Any) -> Pose:
     """Where a joint's frame is now: it goes with its child link."""
-    if scene.child_link not in sim.entities.tables["link"]:
+    if scene.child_link not in sim.contents.handles.tables["link"]:
         return scene.pose_world  # type: ignore[no-any-return]
     link = sim.link(scene.child_link)
     return link.pose @ link.scene.pose_world.inverse() @ scene.pose_world  # type: ignore[no-any-return]

@@ -82,13 +82,13 @@ class WorldStats(WorldPlugin):
     def load(self, parent: Simulation, params: Params) -> None:
         sim, prefix = self.sim, valid_topic(f"/world/{self.sim.world.name}")
         self._wall = WallClock(sim)
-        on_demand = sim.on_demand
+        on_demand = sim.communication.on_demand
         both = {"/stats": STATISTICS, f"{prefix}/stats": STATISTICS}
         self._stats = on_demand.broadcast(both, STATISTICS_RATE, self._statistics, is_listed=True)
         on_demand.broadcast({f"{prefix}/clock": CLOCK}, CLOCK_RATE, self._clock)
         on_demand.broadcast({f"{prefix}/pose/info": TRANSFORMS}, POSE_RATE, self._all_poses)
         on_demand.broadcast({f"{prefix}/dynamic_pose/info": TRANSFORMS}, POSE_RATE, self._moving_poses)
-        sim.pausing.on_change(self._on_pause)
+        sim.control.pausing.on_change(self._on_pause)
 
     def _on_pause(self) -> None:
         self._wall.look()
@@ -99,7 +99,7 @@ class WorldStats(WorldPlugin):
     def _statistics(self, _topic: str) -> Any:
         sim, wall = self.sim, self._wall
         wall.look()
-        step_ns = sim.clock.time_ns(1)
+        step_ns = sim.engine.clock.time_ns(1)
         return msgs.make(
             STATISTICS,
             header=msgs.header(sim.time_ns, ""),
@@ -108,10 +108,10 @@ class WorldStats(WorldPlugin):
             pause_time=msgs.time(round(wall.paused * 1e9)),
             paused=sim.paused,
             iterations=sim.tick,
-            model_count=len(sim.entities.tables["model"]),
+            model_count=len(sim.contents.handles.tables["model"]),
             real_time_factor=wall.factor(),
             step_size=msgs.time(0 if sim.paused else step_ns),
-            stepping=sim.pausing.is_stepping and not sim.paused,
+            stepping=sim.control.pausing.is_stepping and not sim.paused,
         )
 
     def _clock(self, _topic: str) -> Any:
@@ -119,7 +119,7 @@ class WorldStats(WorldPlugin):
 
     def _all_poses(self, _topic: str) -> Callable[[], Any]:
         sim = self.sim
-        lights = [light for light in sim.lights.values() if not light.scene.link]
+        lights = [light for light in sim.contents.lights.values() if not light.scene.link]
         placed = [(sim.world.name, light.scoped, pose_numbers(light.pose)) for light in lights]
         return partial(transforms_message, sim.time_ns, self._take("all poses", with_all=True), placed)
 
@@ -128,11 +128,11 @@ class WorldStats(WorldPlugin):
 
     def _take(self, name: str, *, with_all: bool) -> PoseSample:
         """Where things are now: all models with their visuals, or those that may move without."""
-        poses: EntityPoses = self.sim.names.shared(name, lambda: EntityPoses(self.sim, self._parts(with_all)))
+        poses: EntityPoses = self.sim.engine.names.shared(name, lambda: EntityPoses(self.sim, self._parts(with_all)))
         return poses.take()
 
     def _parts(self, with_all: bool) -> list[PosedEntity]:
-        scenes = [s for s in self.sim.structure.models.values() if with_all or not s.static]
+        scenes = [s for s in self.sim.engine.structure.models.values() if with_all or not s.static]
         return [part for scene in scenes for part in self._of_model(scene, with_all)]
 
     def _of_model(self, scene: SceneModel, with_visuals: bool) -> Iterator[PosedEntity]:

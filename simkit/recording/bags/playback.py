@@ -118,13 +118,17 @@ class Playback:
     def _world_inputs(self) -> dict[str, tuple[str, ...]]:
         """Topics that something in the world takes -> the types."""
         found: dict[str, tuple[str, ...]] = {}
-        for topic, end, types, what in self._sim.bus.endpoints():
+        for topic, end, types, what in self._sim.communication.bus.endpoints():
             if what == "takes" and end.active:
                 found[topic] = (*found.get(topic, ()), *types)
         return found
 
     def _playable_topics(self) -> dict[str, str]:
-        own = {topic for topic, end, _, what in self._sim.bus.endpoints() if what == "publishes" and end.active}
+        own = {
+            topic
+            for topic, end, _, what in self._sim.communication.bus.endpoints()
+            if what == "publishes" and end.active
+        }
         there = dict.fromkeys(topic.name for topic in self._bag.topics)
         found = {topic: topic for topic in there if topic in self._input_types and topic not in own}
         if not found:

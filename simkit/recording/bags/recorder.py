@@ -171,7 +171,7 @@ class Recorder:
     def _is_selected(self, topic: str) -> bool:
         if self._patterns:
             return matches_topic(topic, self._patterns)
-        return topic not in self._sim.bus.aside
+        return topic not in self._sim.communication.bus.aside
 
     def records(self, topic: str) -> bool:
         """Check whether the options select the topic."""
@@ -184,7 +184,7 @@ class Recorder:
         try:
             channel = bag.channels.get((topic, type_name))
             if channel is None:
-                channel = bag.channel(topic, type_name, topic in self._sim.bus.latched())
+                channel = bag.channel(topic, type_name, topic in self._sim.communication.bus.latched())
             bag.write_raw(channel, data, time_ns)
         except OSError as error:
             # Not raised here: this runs inside whoever publishes, and it is not the publisher's fault.

@@ -84,7 +84,7 @@ class SeriesTap:
     def __init__(self, sim: Simulation, curves: Sequence[Curve]) -> None:
         self._sim, self._collector = sim, _SeriesCollector(curves)
         topics = dict.fromkeys(curve.topic for curve in curves)
-        self._taps = [sim.bus.tap(topic, partial(self._take, topic)) for topic in topics]
+        self._taps = [sim.communication.bus.tap(topic, partial(self._take, topic)) for topic in topics]
 
     def __enter__(self) -> SeriesTap:
         return self

@@ -1,6 +1,6 @@
 """Live parameters: values of a plugin that may be changed while it runs, typed and bounded, as those of a ROS 2 node.
 
-    sim.parameters["/tb3/gain_tuner"]["p_gain"].value
+    sim.communication.parameters["/tb3/gain_tuner"]["p_gain"].value
     sim.set_parameter("/tb3/gain_tuner", "p_gain", 12.0)
 
 A change takes effect between two steps.

@@ -108,7 +108,7 @@ def call_before_forces(data: mujoco.MjData, call: Callable[[], None]) -> Iterato
         data: of the engine; passes of others, on other threads, are left alone.
         call: may change the contacts and the references of constraints of these data.
     """
-    address, mine = int(data._address), _Callback(call)  # type: ignore[attr-defined]  # the stubs leave it out
+    address, mine = int(data._address), _Callback(call)
     _CONTROL.add(address, mine)
     try:
         yield

@@ -134,9 +134,9 @@ MAX_LABEL: Final = 255
 class Labels(VisualProperty[int]):
     """Label by scoped name of a model or a visual; may be changed at any time.
 
-        sim.labels["shelf"] = 40                    # the model and all that is in it
-        sim.labels["shelf::base::handle"] = 41      # one visual
-        del sim.labels["shelf"]
+        sim.contents.labels["shelf"] = 40                    # the model and all that is in it
+        sim.contents.labels["shelf::base::handle"] = 41      # one visual
+        del sim.contents.labels["shelf"]
 
     A visual wears its own label, else that of the innermost model around it that has one. A model that is removed
     takes its labels along; snapshots and reset bring back what was.
@@ -170,8 +170,8 @@ Temperature = float | HeatSignature
 class Temperatures(VisualProperty[Temperature]):
     """Temperature [K] or heat signature by scoped name of a model, a link or a visual; may be changed at any time.
 
-        sim.temperatures["stove::base::plate"] = 450.0     # one visual
-        sim.temperatures["stove"] = 310.0                  # all that has none of its own
+        sim.contents.temperatures["stove::base::plate"] = 450.0     # one visual
+        sim.contents.temperatures["stove"] = 310.0                  # all that has none of its own
 
     A visual has its own, else that of its link, else that of the innermost model around it that has one. A model that
     is removed takes them along; snapshots and reset bring back what was.

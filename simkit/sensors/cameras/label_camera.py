@@ -97,10 +97,10 @@ class LabelCamera(RenderedCamera):
     def capture_surroundings(self) -> tuple[LabelledObjects, WorldStructure]:
         """What wears which label now, and what is in the world."""
         sim = self.sim
-        now = sim.labels.state, sim.structure
+        now = sim.contents.labels.state, sim.engine.structure
         if self._items is None or self._items_of[0] is not now[0] or self._items_of[1] is not now[1]:
             self._items, self._items_of = find_labelled_objects(sim, self.makes_boxes), now
-        return self._items, sim.structure
+        return self._items, sim.engine.structure
 
     def leave(self) -> None:
         super().leave()
@@ -137,10 +137,12 @@ class LabelCamera(RenderedCamera):
         return reading
 
     def _report_unlabelled(self, sim: Simulation) -> None:
-        if not len(sim.labels) and not any(getattr(p, "gives_labels", False) for p in sim.structure.all_plugins()):
+        if not len(sim.contents.labels) and not any(
+            getattr(p, "gives_labels", False) for p in sim.engine.structure.all_plugins()
+        ):
             message = f"sensor {self.scoped!r} tells labels, and nothing in the world has one"
             hint = '<plugin filename="gz-sim-label-system" name="gz::sim::systems::Label"><label>10</label></plugin>'
-            sim.reports.warning("SK-SENSOR-132", message, self.scene.where, f"in a <model> or <visual>: {hint}")
+            sim.engine.reports.warning("SK-SENSOR-132", message, self.scene.where, f"in a <model> or <visual>: {hint}")
 
 
 @dataclass(frozen=True, slots=True)

@@ -81,11 +81,11 @@ def find_labelled_objects(sim: Simulation, boxed: bool = False) -> LabelledObjec
             model, whichever, and takes the label 255 for the background.
     """
     quirks = bool(sim.world.gazebo_quirks)
-    labels = sim.labels.by_visual(nested=not quirks)
+    labels = sim.contents.labels.by_visual(nested=not quirks)
     if quirks and boxed:
         labels = {scoped: label for scoped, label in labels.items() if label != _GAZEBOS_BACKGROUND}
-    visuals = list(_drawn_visuals(sim.structure, labels))
-    size = int(sim.structure.compiled.model.ngeom) + 1
+    visuals = list(_drawn_visuals(sim.engine.structure, labels))
+    size = int(sim.engine.structure.compiled.model.ngeom) + 1
     label_of, instance_of, item_of = np.full(size, UNLABELLED, np.int32), np.zeros(size, np.int32), np.full(size, -1)
     items = _group_visuals(visuals, quirks and boxed)
     for position, item in enumerate(items):

@@ -135,7 +135,7 @@ class LogicalCamera(Sensor):
         super().bind(compiled)
         found: dict[str, tuple[int, Pose]] = {}
         quirks = self.sim.world.gazebo_quirks
-        for top in self.sim.structure.models.values():
+        for top in self.sim.engine.structure.models.values():
             poses = {model.scoped: model.pose_world for model in top.all_models()}
             for model in top.all_models():
                 # Gazebo tells the last part of a name, so that one model hides another, and takes a nested model's pose

@@ -56,7 +56,7 @@ class CameraUnit:
             self.options = replace(self.options, model=self.options.model.as_gazebo())
         model = self.options.model
         self.noise = ImageNoise(
-            self.options.noise, sim.streams, f"{scoped}::{self.name}", as_ogre=sim.world.gazebo_quirks
+            self.options.noise, sim.engine.streams, f"{scoped}::{self.name}", as_ogre=sim.world.gazebo_quirks
         )
         self._spares = ArrayPool((model.height, model.width, 3), np.uint8)
         self.update_camera_info()

@@ -80,7 +80,7 @@ class RenderedCamera(RenderedSampler):
             self.options = replace(self.options, model=self.options.model.as_gazebo())
             self.optical_frame_id = ""  # gz-sensors' main branch passes it over (CameraSensor.cc, OpticalFrameId)
         options = self.options
-        self._noise = ImageNoise(options.noise, sim.streams, self.scoped, as_ogre=sim.world.gazebo_quirks)
+        self._noise = ImageNoise(options.noise, sim.engine.streams, self.scoped, as_ogre=sim.world.gazebo_quirks)
         self._view: View | None = None
         self._info = CameraInfoMaker(options.model, self._baseline)
         size = options.model.height, options.model.width
@@ -145,7 +145,7 @@ class RenderedCamera(RenderedSampler):
         if self._trigger is None:
             self._trigger = Trigger()
         self._trigger.counts = counts
-        self._trigger.listen(self.sim.bus, topic, types)
+        self._trigger.listen(self.sim.communication.bus, topic, types)
 
     def accepts(self, tick: int) -> bool:
         return self._trigger is None or self._trigger.take()

@@ -72,7 +72,7 @@ class RenderedSampler(Sensor):
         """Composes what is to be drawn, and has it drawn: on the render thread, unless somebody waits for it."""
         expose = self._make_exposure(model, data)
         # the first picture of all is drawn here, so that it is known at once whether there is a renderer
-        if self._has_callback or not (self.sim.render_thread and gl_context.is_open()):
+        if self._has_callback or not (self.sim.engine.render_thread and gl_context.is_open()):
             return render_thread.run_now(expose)
         return render_thread.submit(expose)
 
@@ -211,11 +211,11 @@ class RenderedSampler(Sensor):
         self._failure = error
         self._drop_samples()
         why = str(error).removeprefix(error.code).strip()
-        is_known = any(d.code == error.code and d.message.endswith(why) for d in self.sim.reports)
+        is_known = any(d.code == error.code and d.message.endswith(why) for d in self.sim.engine.reports)
         message = f"camera {self.scoped!r} is switched off: {why}"
-        self.sim.reports.warning(error.code, message, self.scene.where)
+        self.sim.engine.reports.warning(error.code, message, self.scene.where)
         if not is_known:  # what ails all cameras is said aloud once
-            self.sim.log.error("%s %s", error.code, message)
+            self.sim.engine.log.error("%s %s", error.code, message)
 
 
 def _make_messages_early(work: render_thread.RenderJob, messages: Sequence[LazyMessage]) -> None:

@@ -90,7 +90,7 @@ class RgbdCamera(RenderedCamera):
 
     def attach(self, sim: Simulation) -> None:
         disparity, model = self._disparity_options, self.options.model
-        self._disparity = DisparityNoise(disparity, sim.streams, self.scoped) if disparity else None
+        self._disparity = DisparityNoise(disparity, sim.engine.streams, self.scoped) if disparity else None
         self._spare_depths = ArrayPool((model.height, model.width), np.float32)
         # of several samples of a pixel only one has a depth, and not in its middle
         self._is_blended = self.options.anti_aliasing > 0 and Appearance.of(sim.world).quality.samples > 0
@@ -166,7 +166,7 @@ class RgbdCamera(RenderedCamera):
         message = f"sensor {self.scoped!r}: its cloud has z forward, as in Gazebo Classic, but its frame is {frame!r}"
         hint = "name a link by <frame_name> that is turned to the sensor's by an rpy of -1.5708 0 -1.5708"
         says = f"{message}, a link with other axes: it shows turned"
-        self.sim.reports.note("SK-SENSOR-112", says, self.scene.where, hint)
+        self.sim.engine.reports.note("SK-SENSOR-112", says, self.scene.where, hint)
 
     # ------------------------------------------------------------------ readings
 

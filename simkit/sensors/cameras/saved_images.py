@@ -110,9 +110,9 @@ class ImageSaver(Publisher):
 
     def _end(self, why: str) -> None:
         self._is_over = True
-        self._sim.bus.revision += 1
+        self._sim.communication.bus.revision += 1
         message = f"camera {self._sensor.scoped!r} saves no more pictures: {why}"
-        self._sim.reports.warning("SK-SENSOR-121", message, self._sensor.where)
+        self._sim.engine.reports.warning("SK-SENSOR-121", message, self._sensor.where)
 
 
 def _write(path: Path, data: bytes) -> None:

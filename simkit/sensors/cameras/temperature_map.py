@@ -169,12 +169,12 @@ def make_temperature_map(sim: Simulation, air: float, span: float) -> Temperatur
         span: between what is black and what is white of that [K], as in Gazebo: half of it below the air's temperature
             and half above.
     """
-    model, names = sim.mj_model, sim.names
+    model, names = sim.mj_model, sim.engine.names
     table = np.full(model.ngeom + 1, air, np.float32)
     table[:-1] += (_brightness(model) - 0.5) * span
     is_source = np.zeros(model.ngeom + 1, np.bool_)
     surface_of = np.full(model.ngeom + 1, -1, np.int32)
-    temperatures = sim.temperatures.by_visual()
+    temperatures = sim.contents.temperatures.by_visual()
     surfaces: list[HeatSurface] = []
     for link in names.links.values() if temperatures else ():
         drawn = names.drawn(link.scoped)

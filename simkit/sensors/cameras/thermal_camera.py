@@ -134,7 +134,7 @@ class ThermalCamera(RenderedCamera):
     def capture_surroundings(self) -> TemperatureMap:
         """What is how warm now."""
         sim = self.sim
-        state, structure = sim.temperatures.state, sim.structure
+        state, structure = sim.contents.temperatures.state, sim.engine.structure
         if self._heat is None or self._heat_of[0] is not state or self._heat_of[1] is not structure:
             self._heat = make_temperature_map(sim, self._air, self._span)
             self._heat_of = state, structure

@@ -140,7 +140,7 @@ class Contact(Sensor):
         """
         self._states_frame = frame.strip("/")
         self.update_rate = self.scene.rate
-        self._frame = self._find_frame(self.sim.names)
+        self._frame = self._find_frame(self.sim.engine.names)
         self.publish_on({"states": topic})
         return self._frame is not None or self._states_frame in _WORLD_FRAMES
 

@@ -112,7 +112,7 @@ class Encoder(Sensor):
             self.diagnostics.error("SK-SENSOR-051", message, where, "give it a <resolution> in metres")
 
     def prepare(self) -> None:
-        options, joint = self.options, self.sim.names.joint(self.scene.parent)
+        options, joint = self.options, self.sim.engine.names.joint(self.scene.parent)
         width = _WIDTHS.get(joint.type, 1)
         self._names = [joint.scene.name] if width == 1 else [f"{joint.scene.name}[{i}]" for i in range(width)]
         self._is_ball = joint.type == "ball"

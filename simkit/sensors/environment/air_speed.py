@@ -89,7 +89,7 @@ class AirSpeed(AirSensor):
         """Velocity of the air [m/s] in the step that led to a state, shape (3,); Gazebo's sensor knows of none."""
         if self._is_calm:
             return np.zeros(3)
-        return np.array(self.sim.wind.at(max(round(data.time / self.sim.timestep) - 1, 0)))
+        return np.array(self.sim.engine.wind.at(max(round(data.time / self.sim.timestep) - 1, 0)))
 
     def perturb(self, reading: Flow, index: int) -> Flow:
         if self.noise.is_silent:

@@ -75,7 +75,7 @@ class Altimeter(Sensor):
     def bind(self, compiled: Compiled) -> None:
         super().bind(compiled)
         if self._reference is None:
-            self._reference = float(self._frame_in_world(self.sim.fresh_data())[0][2])
+            self._reference = float(self._frame_in_world(self.sim.engine.physics.fresh())[0][2])
 
     @property
     def reference(self) -> float:

@@ -123,7 +123,7 @@ class SolarSensor(Sensor):
 
     def bind(self, compiled: Compiled) -> None:
         super().bind(compiled)
-        if self.light is None or self.sim.lights.get(self.light.scoped) is not self.light:
+        if self.light is None or self.sim.contents.lights.get(self.light.scoped) is not self.light:
             self._find_light()  # it came, or went, with a model
         if self._view is not None:
             self._view.bind(compiled, self._link_name)
@@ -132,13 +132,13 @@ class SolarSensor(Sensor):
 
     def _find_light(self) -> None:
         """The light that the file names, else the first directional one, else none."""
-        lights, name = self.sim.lights, self.options.light_name
+        lights, name = self.sim.contents.lights, self.options.light_name
         suns = (light for light in lights.values() if light.scene.type == "directional")
         self.light = lights.get(name) if name else next(suns, None)
         self._view = SolarView(self.options.view, self.light) if self.light is not None else None
 
     def _report_missing(self) -> None:
-        lights, name = self.sim.lights, self.options.light_name
+        lights, name = self.sim.contents.lights, self.options.light_name
         where = self.scene.params.block("solar").block("light_name").where
         listed = ", ".join(repr(n) for n in sorted(lights)) or "none"
         said = f"sensor {self.scoped!r}: "

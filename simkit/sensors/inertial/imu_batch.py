@@ -54,7 +54,7 @@ class ImuBatch(SensorBatch[ImuMeasurement]):
         references = [imu._from_reference for imu in members]
         self._references = None if first.is_against_world else np.array(references).T.copy()
         self._is_silent, self._is_white = first.noise.is_silent, first.noise._white is not None
-        self._normals, self._first_index, self._seed = np.empty((0, 0, 0)), 0, self.sim.seed
+        self._normals, self._first_index, self._seed = np.empty((0, 0, 0)), 0, self.sim.engine.streams.seed
         self._index = -1
         self._constants_of: NoiseInterval | None = None
         self._states: list[NoiseState] = []
@@ -144,10 +144,10 @@ class ImuBatch(SensorBatch[ImuMeasurement]):
     def _white(self, index: int) -> Vector:
         """Standard normal numbers of everybody's sample, shape (members, 6)."""
         row = index - self._first_index
-        if not 0 <= row < len(self._normals) or self._seed != self.sim.seed:
+        if not 0 <= row < len(self._normals) or self._seed != self.sim.engine.streams.seed:
             streams = [imu.noise._white for imu in self.members if imu.noise._white is not None]
             parts = [stream.normals(index, _NOISE_BLOCK) for stream in streams]
             self._normals, self._first_index, row = np.stack(parts, axis=1), index, 0
-            self._seed = self.sim.seed
+            self._seed = self.sim.engine.streams.seed
         values: Vector = self._normals[row]
         return values

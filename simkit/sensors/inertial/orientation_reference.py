@@ -161,7 +161,7 @@ def _named_frames(sim: Simulation) -> Iterator[tuple[str, Pose]]:
     """Everything with a pose that a file can name, by scoped name."""
     for frame in sim.world.frames:
         yield frame.scoped, frame.pose_world
-    for top in sim.structure.models.values():
+    for top in sim.engine.structure.models.values():
         for model in top.all_models():
             yield model.scoped, model.pose_world
             yield from _model_frames(model)

@@ -48,13 +48,13 @@ class BundleRecorder:
         topics: Sequence[str] = (),
         write_failed: Callable[[BundleRecorder, Exception], Path] | None = None,
     ) -> None:
-        if sim.run_spec is None or sim.steps or sim.bus.inbox:
+        if sim.run_spec is None or sim.engine.steps or sim.communication.bus.inbox:
             why = "has begun already" if sim.run_spec is not None else "was not loaded by simkit.load"
             raise InputError(
                 f"{NOT_RECORDED} a bundle begins with the run, and this one {why}; keep it right after load",
                 NOT_RECORDED,
             )
-        if sim.bus.journal is not None:
+        if sim.communication.bus.journal is not None:
             raise InputError(f"{NOT_RECORDED} this run is kept already", NOT_RECORDED)
         self.sim, self.seconds, self.topics, self._write_failed = sim, float(seconds), tuple(topics), write_failed
         self.written: Path | None = None
@@ -66,23 +66,23 @@ class BundleRecorder:
     def end(self, failure: Failure | None = None) -> RunEnd:
         """How the run stands."""
         sim = self.sim
-        return RunEnd(sim.steps, sim.tick, sim.time_ns, state_hash(sim), failure)
+        return RunEnd(sim.engine.steps, sim.tick, sim.time_ns, state_hash(sim), failure)
 
     def _listen(self) -> None:
         sim, sources = self.sim, self.journal.sources
-        read = self._read = sim.models_reader
+        read = self._read = sim.contents.models_reader
 
         def heard(source: Any, *args: Any, **named: Any) -> Any:
             sources.append(str(source))
             return read(source, *args, **named)
 
-        sim.models_reader = heard
+        sim.contents.models_reader = heard
         self.journal.keeper = self
-        sim.bus.journal = self.journal
+        sim.communication.bus.journal = self.journal
 
     def close(self) -> None:
         """Keeps nothing more; what was kept stays."""
-        self.sim.bus.journal, self.sim.models_reader = None, self._read
+        self.sim.communication.bus.journal, self.sim.contents.models_reader = None, self._read
         self.window.close()
         self.marks.close()
 
@@ -108,7 +108,7 @@ def recorder_of(sim: Simulation) -> BundleRecorder:
     Raises:
         InputError: SK-BUNDLE-007 nobody does.
     """
-    journal = sim.bus.journal
+    journal = sim.communication.bus.journal
     keeper = getattr(journal, "keeper", None)
     if not isinstance(keeper, BundleRecorder):
         raise InputError(

@@ -143,7 +143,7 @@ class _Replay:
 
     def _read_models_here(self, sim: Simulation) -> None:
         """Models that are spawned while it runs come from the bundle, and from nowhere else."""
-        read, models = sim.models_reader, self._said.models
+        read, models = sim.contents.models_reader, self._said.models
 
         def packed(source: Any, *args: Any, **named: Any) -> Any:
             text = str(source)
@@ -153,23 +153,23 @@ class _Replay:
                 source = self._folder / models[text]
             return read(source, *args, **named)
 
-        sim.models_reader = packed
+        sim.contents.models_reader = packed
 
     def _played(
         self, sim: Simulation, player: JournalPlayer, on_slice: Callable[[Simulation], None] | None
     ) -> SimkitError | None:
         """Runs to the end; gives what it failed with there."""
         end = self._said.end
-        slice_ = max(1, sim.clock.ticks(_SLICE))
+        slice_ = max(1, sim.engine.clock.ticks(_SLICE))
         try:
             while True:
                 player.play_due()
-                if sim.steps >= end.steps:
+                if sim.engine.steps >= end.steps:
                     break
-                stop = min(sim.steps + slice_, end.steps)
+                stop = min(sim.engine.steps + slice_, end.steps)
                 if player.next_steps is not None:
-                    stop = min(stop, max(player.next_steps, sim.steps + 1))
-                sim.step(stop - sim.steps)
+                    stop = min(stop, max(player.next_steps, sim.engine.steps + 1))
+                sim.step(stop - sim.engine.steps)
                 if on_slice is not None:
                     on_slice(sim)
             if end.failure is not None and end.failure.kind in ("PluginError", "SimulationDiverged"):
@@ -197,7 +197,7 @@ class _Replay:
     def _states(self, sim: Simulation, marks: StateHashes) -> list[str]:
         """Whether the physics is the same, and if not, in which second it begins to be another."""
         end = self._said.end
-        if end.state == state_hash(sim) and end.steps == sim.steps:
+        if end.state == state_hash(sim) and end.steps == sim.engine.steps:
             return []
         here = dict(marks.found)
         same, first = 0, None
@@ -209,8 +209,8 @@ class _Replay:
         step = sim.timestep
         where = f"equal up to {same * step:g} s" if same else "nothing before the first second is known to be equal"
         where += f", other at {first * step:g} s" if first is not None else ", other at the end"
-        if sim.steps != end.steps:
-            where += f"; {sim.steps} steps were made, not {end.steps}"
+        if sim.engine.steps != end.steps:
+            where += f"; {sim.engine.steps} steps were made, not {end.steps}"
         return [f"state {state_hash(sim)[:16]}…, in the bundle {end.state[:16]}… ({where})"]
 
     def _streams(self, window: MessageWindow) -> tuple[list[str], int]:

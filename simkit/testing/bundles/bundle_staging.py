@@ -142,7 +142,7 @@ class WorldStager:
         spec = self._spec
         try:
             with load_packed_world(packed_run_spec(self._stage, found.file, found.spawn, found.params, spec)) as sim:
-                same = model_hash(sim.mj_model, sim.originals) == loaded_model_hash(keeper)
+                same = model_hash(sim.mj_model, sim.engine.originals) == loaded_model_hash(keeper)
         except (SimkitError, OSError) as error:
             found.missing.append(f"opening it again failed: {error!s:.300}")
             return
@@ -154,7 +154,7 @@ def loaded_model_hash(keeper: BundleRecorder) -> str:
     """Of the model that was loaded, whatever has been changed of it since."""
     sim = keeper.sim
     loaded = sim._loaded.structure.compiled.model
-    return model_hash(loaded, sim.originals if loaded is sim.mj_model else {})
+    return model_hash(loaded, sim.engine.originals if loaded is sim.mj_model else {})
 
 
 def _split_params_file(text: str) -> tuple[str, str]:

@@ -157,7 +157,7 @@ def _stage_files(keeper: BundleRecorder, stage: Path, failure: Failure | None, n
     first = keeper.window.first
     messages = list(_encodable_messages(keeper.window.messages(first), journal.gaps))
     journal.write_to(stage / COMMANDS)
-    write_bag(stage / BAG, iter(messages), sim.bus.latched())
+    write_bag(stage / BAG, iter(messages), sim.communication.bus.latched())
     world = WorldStager(spec, stage).world(keeper)
     if with_code:
         copy_plugin_modules(world, stage, spec.options.get("plugin_paths", ()))

@@ -53,9 +53,9 @@ class DirectChanges:
         """Takes the present state for known."""
         sim = self._sim
         self._state, self._model = state_vector(sim), sim.mj_model
-        if self._edition != sim.physics.edition:
+        if self._edition != sim.engine.physics.edition:
             self._fields = _changeable_fields(sim)
-            self._edition = sim.physics.edition
+            self._edition = sim.engine.physics.edition
 
     def found(self) -> dict[str, Any] | None:
         """What is other than when it was last seen; None for nothing, or where the world has other parts since."""
@@ -67,13 +67,13 @@ class DirectChanges:
         if now.tobytes() != self._state.tobytes():
             places = np.flatnonzero(now.view(np.int64) != self._state.view(np.int64))
             words["state"] = {"size": now.size, "at": encode_value(places), "values": encode_value(now[places])}
-        if self._edition != sim.physics.edition:
+        if self._edition != sim.engine.physics.edition:
             fields = _changed_fields(self._fields, _changeable_fields(sim))
             if fields:
                 words["fields"] = fields
         if not words:
             return None
-        words["one_shot"] = bool(sim.physics.one_shot)
+        words["one_shot"] = bool(sim.engine.physics.one_shot)
         return words
 
 
@@ -94,11 +94,11 @@ def apply_changes(sim: Simulation, words: dict[str, Any]) -> None:
         _apply_fields(sim, words["fields"])
     if "state" in words:
         _apply_state(sim, words["state"])
-    sim.physics.one_shot = bool(words.get("one_shot"))
+    sim.engine.physics.one_shot = bool(words.get("one_shot"))
 
 
 def _apply_state(sim: Simulation, words: Any) -> None:
-    physics, values = sim.physics, state_vector(sim)
+    physics, values = sim.engine.physics, state_vector(sim)
     places, numbers = _indices_and_values(words, values.size)
     values[places] = numbers
     before = sim.mj_data.qpos.copy(), sim.mj_data.qvel.copy(), sim.mj_data.xfrc_applied.copy()
@@ -124,7 +124,7 @@ def _differs(before: Numbers, now: Numbers, model: Any, joint: int, at: int) -> 
 
 def _changeable_fields(sim: Simulation) -> dict[str, Any]:
     """What of the model may have been changed."""
-    found = {name: getattr(sim.mj_model, name).copy() for name in sim.originals}
+    found = {name: getattr(sim.mj_model, name).copy() for name in sim.engine.originals}
     found["gravity"] = sim.mj_model.opt.gravity.copy()
     return found
 
@@ -154,8 +154,8 @@ def _apply_fields(sim: Simulation, words: Any) -> None:
         if not isinstance(there, np.ndarray):
             raise MessageError(f"the model has no field {name!r:.60}")
         places, numbers = _indices_and_values(change, there.size)
-        sim.physics.changed_model()
-        sim.touch(name).reshape(-1)[places] = numbers
+        sim.engine.physics.changed_model()
+        sim.engine.touch(name).reshape(-1)[places] = numbers
 
 
 def _indices_and_values(words: Any, size: int) -> tuple[Any, Any]:

@@ -62,13 +62,13 @@ class JournalPlayer:
         Raises:
             PluginError, SimulationDiverged: what was done had somebody raise, as it did in the run.
         """
-        while self._between and self._between[0]["steps"] <= self._sim.steps:
+        while self._between and self._between[0]["steps"] <= self._sim.engine.steps:
             self._play(self._between.popleft())
 
     def _play(self, entry: Entry) -> None:
         self.count += 1
-        was_served = self._sim.pausing.is_served
-        self._sim.pausing.is_served = entry.get("served") is True
+        was_served = self._sim.control.pausing.is_served
+        self._sim.control.pausing.is_served = entry.get("served") is True
         try:
             deed = _ENTRY_METHODS.get(entry["do"])
             if deed is None:
@@ -79,34 +79,34 @@ class JournalPlayer:
             text = str(error) if isinstance(error, SimkitError) else repr(error)
             self.refused.append(f"{entry['do']} after {entry['steps']} steps: {text:.300}")
         finally:
-            self._sim.pausing.is_served = was_served
+            self._sim.control.pausing.is_served = was_served
 
     # ------------------------------------------------------------------ what can be done
 
     def _publish(self, entry: Entry) -> None:
-        self._sim.bus.publish(_text_field(entry, "topic"), decode_message(entry.get("message")))
+        self._sim.communication.bus.publish(_text_field(entry, "topic"), decode_message(entry.get("message")))
 
     def _advertise(self, entry: Entry) -> None:
         topic, latched = _text_field(entry, "topic"), entry.get("latched") is True
-        self._publishers[entry.get("number")] = self._sim.bus.advertise(
+        self._publishers[entry.get("number")] = self._sim.communication.bus.advertise(
             topic, _text_field(entry, "type"), latched=latched
         )
 
     def _send(self, entry: Entry) -> None:
         message, publisher = decode_message(entry.get("message")), self._publishers.get(entry.get("number"))
         if publisher is None:  # opened before the journal was
-            self._sim.bus.publish(_text_field(entry, "topic"), message)
+            self._sim.communication.bus.publish(_text_field(entry, "topic"), message)
         else:
             publisher.publish(message)
 
     def _close(self, entry: Entry) -> None:
-        self._sim.bus.close(self._publishers.pop(entry.get("number")))
+        self._sim.communication.bus.close(self._publishers.pop(entry.get("number")))
 
     def _hear(self, entry: Entry) -> None:
         """A tap where the run had a callback; only where that did something."""
         heard = self._counting(entry.get("number"))
         if heard is not None:
-            self._sim.bus.tap(_text_field(entry, "topic"), heard)
+            self._sim.communication.bus.tap(_text_field(entry, "topic"), heard)
 
     def _counting(self, number: Any) -> Callable[[Any], None] | None:
         """A callback that does, the n-th time it is called, what the run's did then; None where that did nothing."""
@@ -145,37 +145,39 @@ class JournalPlayer:
 
     def _spawned(self, entry: Entry) -> None:
         models = [(one["source"], one["name"], _decode_pose(one["pose"])) for one in entry["models"]]
-        self._sim.spawn_all(models)
+        self._sim.contents.spawn_all(models)
 
     def _remove(self, entry: Entry) -> None:
         self._sim.remove(_text_field(entry, "name"))
 
     def _clone(self, entry: Entry) -> None:
-        self._sim.clone(_text_field(entry, "name"), _text_field(entry, "new_name"), _decode_pose(entry.get("pose")))
+        self._sim.contents.clone(
+            _text_field(entry, "name"), _text_field(entry, "new_name"), _decode_pose(entry.get("pose"))
+        )
 
     def _add_sensor(self, entry: Entry) -> None:
-        self._sim.add_sensor(_text_field(entry, "name"), decode_value(entry.get("sensor")))
+        self._sim.contents.add_sensor(_text_field(entry, "name"), decode_value(entry.get("sensor")))
 
     def _make_movable(self, entry: Entry) -> None:
-        self._sim.make_movable(_text_field(entry, "name"))
+        self._sim.contents.make_movable(_text_field(entry, "name"))
 
     def _add_weld(self, entry: Entry) -> None:
-        self._sim.add_weld(
+        self._sim.contents.add_weld(
             _text_field(entry, "name"), _text_field(entry, "parent_link"), _text_field(entry, "child_link")
         )
 
     def _set_weld(self, entry: Entry) -> None:
-        self._sim.set_weld(_text_field(entry, "name"), entry.get("closed") is True)
+        self._sim.contents.set_weld(_text_field(entry, "name"), entry.get("closed") is True)
 
     def _reset(self, entry: Entry) -> None:
         seed = entry.get("seed")
         self._sim.reset(None if seed is None else _integer_field(seed))
 
     def _reseed(self, entry: Entry) -> None:
-        self._sim.reseed(_integer_field(entry.get("seed")))
+        self._sim.control.reseed(_integer_field(entry.get("seed")))
 
     def _reset_models(self, _: Entry) -> None:
-        self._sim.reset_models()
+        self._sim.control.reset_models()
 
     def _snapshot(self, entry: Entry) -> None:
         if entry.get("number") in self._restored:

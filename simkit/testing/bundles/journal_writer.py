@@ -73,7 +73,7 @@ class JournalWriter:
 
     @property
     def _is_outside(self) -> bool:
-        return not self._inside and (self._place is not None or not self._sim.is_stepping)
+        return not self._inside and (self._place is not None or not self._sim.engine.is_stepping)
 
     @contextmanager
     def passing(self, door: str, words: Mapping[str, Any]) -> Iterator[AnswerCallback | None]:
@@ -142,7 +142,7 @@ class JournalWriter:
             count[1] += 1
 
         self._write("hear", {"number": number, "topic": topic})
-        self._sim.bus.tap(topic, heard, takes_later=True)
+        self._sim.communication.bus.tap(topic, heard, takes_later=True)
 
     def before_steps(self) -> None:
         """What was changed by hand before a step comes before it."""
@@ -177,10 +177,10 @@ class JournalWriter:
 
     def _write(self, do: str, words: Mapping[str, Any]) -> None:
         sim = self._sim
-        entry: dict[str, Any] = {"steps": sim.steps, "tick": sim.tick, "do": do, **words}
+        entry: dict[str, Any] = {"steps": sim.engine.steps, "tick": sim.tick, "do": do, **words}
         if self._place is not None:
             entry["in"] = list(self._place)
-        if sim.pausing.is_served:
+        if sim.control.pausing.is_served:
             entry["served"] = True
         line = json.dumps(entry).encode() + b"\n"
         if self._file.tell() + len(line) > MAX_JOURNAL_BYTES:

@@ -54,7 +54,7 @@ class MessageWindow:
         self, sim: Simulation, seconds: float, topics: Sequence[str] = (), most: int = MAX_WINDOW_BYTES
     ) -> None:
         self._sim, self._patterns, self._most = sim, tuple(topics), most
-        self._length = sim.clock.ticks(seconds) if math.isfinite(seconds) else 1 << 62
+        self._length = sim.engine.clock.ticks(seconds) if math.isfinite(seconds) else 1 << 62
         self._kept: deque[tuple[int, int, str, Any]] = deque()  # steps, tick, topic, message or type and CDR
         self._packed = 0  # bytes
         self._cut = 0
@@ -63,7 +63,7 @@ class MessageWindow:
 
     @property
     def first(self) -> int:
-        since: int = self._sim.steps - self._length
+        since: int = self._sim.engine.steps - self._length
         return max(0, self._cut, since)
 
     def close(self) -> None:
@@ -77,7 +77,7 @@ class MessageWindow:
             first: steps; those of `first` where None.
         """
         since = self.first if first is None else first
-        clock = self._sim.clock
+        clock = self._sim.engine.clock
         for steps, tick, topic, content in tuple(self._kept):
             if steps < since:
                 continue
@@ -96,7 +96,7 @@ class MessageWindow:
 
         def hear(message: Any) -> None:
             nonlocal last, is_packed
-            steps = sim.steps
+            steps = sim.engine.steps
             if message is last:
                 is_packed = True
             last = message
@@ -121,7 +121,7 @@ class MessageWindow:
     def _is_kept(self, topic: str, type_name: str) -> bool:
         if matches_topic(topic, self._patterns):
             return True
-        return topic not in self._sim.bus.aside and type_name not in RENDERED
+        return topic not in self._sim.communication.bus.aside and type_name not in RENDERED
 
 
 class StateHashes:
@@ -132,15 +132,15 @@ class StateHashes:
         self._is_on = True
 
         def mark(_: int) -> None:
-            self.found.append((sim.steps, state_hash(sim)[:16]))
+            self.found.append((sim.engine.steps, state_hash(sim)[:16]))
 
-        sim.on_demand.add(lambda: self._is_on, 1.0, mark, "after")
+        sim.communication.on_demand.add(lambda: self._is_on, 1.0, mark, "after")
         self._sim = sim
 
     def close(self) -> None:
         """Makes no more."""
         self._is_on = False
-        self._sim.on_demand.look()
+        self._sim.communication.on_demand.look()
 
 
 def topic_digests(messages: Iterator[WindowMessage]) -> dict[str, dict[str, Any]]:

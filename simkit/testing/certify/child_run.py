@@ -106,7 +106,7 @@ class _ChildRun:
         """Fills the outcome."""
         sim, outcome = self._sim, self._outcome
         self._marks = TickHashes(sim)
-        end = sim.clock.ticks(self._scenario.longest) if self._request.ticks is None else self._request.ticks
+        end = sim.engine.clock.ticks(self._scenario.longest) if self._request.ticks is None else self._request.ticks
         self._end = end
         self._half = end // 2 if self._request.half is None else self._request.half
         try:
@@ -136,7 +136,7 @@ class _ChildRun:
     def _run_to(self, end: int) -> None:
         sim = self._sim
         has_turned = self._variation.detour != "restore"
-        slice_ = max(1, sim.clock.ticks(_SLICE))
+        slice_ = max(1, sim.engine.clock.ticks(_SLICE))
         with self._sender() as commands:
             while sim.tick < end:
                 if self._ears is None and sim.tick >= self._half:
@@ -184,7 +184,7 @@ class _ChildRun:
         sim = self._sim
         left = max(self._end, 2 * self._half) - sim.tick  # beyond its end the scenario promises nothing
         for part in range(2):
-            end = sim.tick + min(sim.clock.ticks(_DETOUR / 2), left // 2)
+            end = sim.tick + min(sim.engine.clock.ticks(_DETOUR / 2), left // 2)
             while sim.tick < end:
                 if commands is not None:
                     commands.send_due()
@@ -219,11 +219,11 @@ class _ChildRun:
         outcome.state = state_hash(sim)
         outcome.marks, outcome.inputs = self._marks.rows(sim.tick)
         outcome.heard = self._ears.heard() if self._ears is not None else {}
-        for sensor in sim.structure.all_sensors():
+        for sensor in sim.engine.structure.all_sensors():
             latest = _latest_readings(sensor)
             outcome.latest[plugin_title(sensor)] = 0 if latest is None else short_hash(msgs.serialize(latest))
             outcome.sources[plugin_title(sensor)] = _class_source(sensor)
-        for plugin in sim.structure.all_plugins():
+        for plugin in sim.engine.structure.all_plugins():
             outcome.remembered[plugin_title(plugin)] = attribute_hashes(plugin_attributes(plugin))
             outcome.sources[plugin_title(plugin)] = _class_source(plugin)
         outcome.fingerprint = fingerprint(pictures=any("Image" in h.type_name for h in outcome.heard.values()))

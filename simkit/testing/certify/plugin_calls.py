@@ -47,7 +47,7 @@ class PluginCallRecorder:
 
     def loaded(self, sim: Simulation) -> None:
         """Notes what plugins remember once the world is open."""
-        for plugin in sim.structure.all_plugins():
+        for plugin in sim.engine.structure.all_plugins():
             self._note(sim.mj_data, plugin, "load", 0, writable_state_hash(sim.mj_data))
 
     def again(self) -> None:
@@ -126,7 +126,7 @@ class TickHashes:
         self.state: dict[int, int] = {}
         self.inputs: dict[int, int] = {}
         self._told = object()
-        sim.on_demand.add(lambda: True, None, self._mark, "after")
+        sim.communication.on_demand.add(lambda: True, None, self._mark, "after")
 
     def rows(self, ticks: int) -> tuple[Any, Any]:
         """Both as arrays of so many ticks."""
@@ -137,7 +137,7 @@ class TickHashes:
     def _mark(self, _: int) -> None:
         if self.is_away:
             return
-        physics = self._sim.physics
+        physics = self._sim.engine.physics
         data, tick = physics.data, physics.tick
         self.state[tick] = _two_hashes(data.qpos, data.qvel, data.act)
         applied, pushed = applied_forces(physics)

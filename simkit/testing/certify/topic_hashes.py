@@ -64,7 +64,7 @@ class TopicHashes:
         return None  # real subscriptions, so that how a topic is heard differs from run to run
 
     def _is_wanted(self, topic: str) -> bool:
-        if topic in self._sim.bus.aside and topic not in self._topics:
+        if topic in self._sim.communication.bus.aside and topic not in self._topics:
             return False
         return not matches_topic(topic, self._skip) and (not self._topics or matches_topic(topic, self._topics))
 
@@ -112,7 +112,7 @@ class _TopicHash:
 def _topic_publishers(sim: Simulation) -> dict[str, str]:
     """Who publishes each topic."""
     found: dict[str, list[str]] = {}
-    for topic, end, _, does in sim.bus.endpoints():
+    for topic, end, _, does in sim.communication.bus.endpoints():
         if does == "publishes" and end.owner is not None:
             found.setdefault(topic, []).append(plugin_title(end.owner))
     return {topic: " and ".join(dict.fromkeys(names)) for topic, names in found.items()}

@@ -133,7 +133,7 @@ class Condition:
 
     def _bind_late(self) -> None:
         """Once the topic that is waited for is there; what does not fit then makes it fail, not the run."""
-        bus = self._view.sim.bus
+        bus = self._view.sim.communication.bus
         if self._fault or bus.revision == self._revision:
             return
         self._revision = bus.revision
@@ -310,9 +310,9 @@ _MAX_LATENESS = 2.5  # periods without a message after which a topic has stopped
 
 def configured_rate(sim: Simulation, topic: str) -> float | None:
     """The rate that what publishes on a topic is set to [Hz], of several together; None where that is not known."""
-    owners: list[Any] = [sensor for sensor in sim.structure.all_sensors() if topic in sensor._topics.values()]
+    owners: list[Any] = [sensor for sensor in sim.engine.structure.all_sensors() if topic in sensor._topics.values()]
     if not owners:
-        for _, end, _, what in sim.bus.endpoints(topic):
+        for _, end, _, what in sim.communication.bus.endpoints(topic):
             if what == "publishes" and end.active:
                 owners.append(None if getattr(end, "latched", False) else end.owner)
     rates = [_publisher_rate(owner, sim.timestep) for owner in owners]
@@ -344,7 +344,7 @@ class TopicRateCheck(RunningCheck):
         if cut:
             return self._decide(False, f"{tally.count} messages came until {now}, where {cut}")
         if not tally.count:
-            topics = sim.bus.all_topics()
+            topics = sim.communication.bus.all_topics()
             if self._topic in topics:
                 return self._decide(False, f"no message came on {self._topic} until {now}")
             near = did_you_mean(self._topic, topics)

@@ -40,7 +40,7 @@ class ContactQuery:
         """Contact number and two geoms of each, the first one's before the other's; of the state at this tick."""
         self._bind()
         sim = self._sim
-        physics = sim.physics
+        physics = sim.engine.physics
         data = physics.fresh()
         sleepers = self._sleepers(data)
         if sleepers:
@@ -52,7 +52,7 @@ class ContactQuery:
         found = self.now()
         if not found:
             return 0.0
-        physics = self._sim.physics
+        physics = self._sim.engine.physics
         data = physics.data_of(physics.hold()) if self._sleepers(physics.fresh()) else physics.fresh()
         wrench, total = np.empty(6), 0.0
         for number, _, _ in self._among(data):
@@ -62,7 +62,7 @@ class ContactQuery:
 
     def describe(self) -> str:
         """Which links touch: `tb3::base_link touches wall::link`; empty where none do."""
-        names = self._sim.names
+        names = self._sim.engine.names
         pairs: dict[str, None] = {}
         for _, mine, other in self.now():
             one, two = (names.geom_owner(geom)[0] or f"geom {geom}" for geom in (mine, other))
@@ -74,7 +74,7 @@ class ContactQuery:
 
     def _bind(self) -> None:
         """Which geoms are meant; found anew after a spawn or a removal."""
-        compiled = self._sim.structure.compiled
+        compiled = self._sim.engine.structure.compiled
         if compiled is self._compiled:
             return
         self._compiled, self._asleep_at = compiled, -1
@@ -140,7 +140,7 @@ class ContactQuery:
 
     def _sleepers(self, data: Any) -> list[int]:
         """What is meant here and sleeps: the engine lists no contacts of sleepers."""
-        if not self._sim.physics.sleep.counts:
+        if not self._sim.engine.physics.sleep.counts:
             return []
         asleep = data.tree_asleep
         return [tree for tree in self._trees if asleep[tree] >= 0]
@@ -150,7 +150,7 @@ class ContactQuery:
         sim = self._sim
         is_all = sleepers == len(self._trees)
         if not (is_all and sim.tick - 1 <= self._asleep_at <= sim.tick):
-            self._asleep = self._among(sim.physics.data_of(sim.physics.hold()))
+            self._asleep = self._among(sim.engine.physics.data_of(sim.engine.physics.hold()))
         self._asleep_at = sim.tick if is_all else -1
         return self._asleep
 

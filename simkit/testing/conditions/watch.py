@@ -101,15 +101,15 @@ class Watch:
         self.look()
         if self._running and not self.ended:
             self._is_active = True
-            self._sim.on_demand.add(lambda: self._is_active, None, lambda _: self.look(), "after")
+            self._sim.communication.on_demand.add(lambda: self._is_active, None, lambda _: self.look(), "after")
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self._is_active = False
-        self._sim.on_demand.look()
-        self._sim.pausing.is_over = False
+        self._sim.communication.on_demand.look()
+        self._sim.control.pausing.is_over = False
         self._view.close()
 
     def look(self) -> None:
@@ -121,4 +121,4 @@ class Watch:
             self._running = [entry for entry in self._running if not entry.is_decided]
             if self.ended:
                 self._running = []
-                self._sim.pausing.end()
+                self._sim.control.pausing.end()

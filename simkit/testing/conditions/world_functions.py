@@ -80,14 +80,14 @@ def _velocity(binder: ExpressionBinder, call: Call) -> BoundNode:
 def _joint(binder: ExpressionBinder, call: Call) -> BoundNode:
     node = quoted_argument(binder, call, 0, "the name of a joint")
     joint = binder.view.joint(node.value, binder.source, node.span)
-    entities, name = binder.view.sim.entities, joint.scoped
+    entities, name = binder.view.sim.contents.handles, joint.scoped
     # another may come in the place of one that was removed
     return BoundNode(call, JOINT, lambda: entities.tables["joint"].get(name, joint))
 
 
 def _exists(binder: ExpressionBinder, call: Call) -> BoundNode:
     name = quoted_argument(binder, call, 0, _ENTITY_ARGUMENT).value
-    entities = binder.view.sim.entities
+    entities = binder.view.sim.contents.handles
     return BoundNode(call, TRUTH, lambda: any(name in entities.tables[kind] for kind in ("model", "link")))
 
 

@@ -33,7 +33,7 @@ class LatestMessage:
     def open(self) -> None:
         """Listens from now on."""
         if self._subscription is None:
-            self._subscription = self._sim.bus.subscribe(self.topic, keep=1)
+            self._subscription = self._sim.communication.bus.subscribe(self.topic, keep=1)
 
     def close(self) -> None:
         """Listens no more; what came last stays."""
@@ -73,7 +73,7 @@ class MessageCounter:
     def open(self) -> None:
         """Counts from now on."""
         if self._tap is None:
-            self._tap = self._sim.bus.tap(self.topic, self._take, takes_later=True)
+            self._tap = self._sim.communication.bus.tap(self.topic, self._take, takes_later=True)
 
     def close(self) -> None:
         """Counts no more."""
@@ -140,7 +140,7 @@ class Entity:
             both = handle._velocity()
             return both[3:], both[:3]
         origin = handle.pose.position
-        carrier = self._sim.entities.tables["link"].get(handle.scene.canonical_link)
+        carrier = self._sim.contents.handles.tables["link"].get(handle.scene.canonical_link)
         if carrier is None:
             return np.zeros(3), np.zeros(3)
         both = carrier._velocity()
@@ -158,7 +158,7 @@ class Entity:
         """
         if error.code != REMOVED_CODE:
             raise error
-        found = self._sim.entities.tables[self._kind].get(self.name)
+        found = self._sim.contents.handles.tables[self._kind].get(self.name)
         if found is None:
             raise UndecidedValue(f"{self.name} was removed") from None
         self.handle = found
@@ -197,13 +197,13 @@ class WorldView:
         """The scoped name of a model, a link, or a collision."""
         from simkit.runtime.contact.collision_contacts import collision_table
 
-        if name in collision_table(self.sim.structure.compiled).names:
+        if name in collision_table(self.sim.engine.structure.compiled).names:
             return name
         found: str = self._find(("model", "link"), name, source, span).scoped
         return found
 
     def _find(self, kinds: tuple[str, ...], name: str, source: str, span: Span) -> Any:
-        tables = self.sim.entities.tables
+        tables = self.sim.contents.handles.tables
         for kind in kinds:
             if name in tables[kind]:
                 return tables[kind][name]
@@ -230,7 +230,7 @@ class WorldView:
             AbsentTopic: there is none yet, and it is waited for.
         """
         topic = absolute_name(name)
-        topics = self.sim.bus.all_topics()
+        topics = self.sim.communication.bus.all_topics()
         if topic in topics:
             return topic, topics[topic]
         near = did_you_mean(topic, topics)

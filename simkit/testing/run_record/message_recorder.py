@@ -218,7 +218,7 @@ def noise_recorder_for(scenario: RunSpec, sim: Simulation, topic: str, type_name
         for path in (*fields.numbers, *fields.arrays)
         if any(t.statistics for t in scenario.tolerance(topic, path)[:1])
     ]
-    sensor = next((s for s in sim.structure.all_sensors() if s.topic == topic), None)
+    sensor = next((s for s in sim.engine.structure.all_sensors() if s.topic == topic), None)
     if not paths or sensor is None:
         return None
     return NoiseRecorder(sensor, type_name, frozenset(paths))

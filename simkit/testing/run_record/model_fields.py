@@ -65,7 +65,7 @@ def fields_of_model(sim: Simulation) -> ModelFields:
     """The fields of a simulation's compiled model."""
     import mujoco
 
-    model = sim.physics.model
+    model = sim.engine.physics.model
     tables: dict[str, tuple[list[str], dict[str, Array]]] = {"option": (["engine"], _options(model.opt))}
     members = [name for name in dir(model) if not name.startswith("_")]
     for kind, (count, obj) in _KINDS.items():

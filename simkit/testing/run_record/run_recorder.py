@@ -172,7 +172,7 @@ class RunRecorder:
         self._diagnostics = Counter(d.code for d in sim.diagnostics)
         self._taps = TopicTaps(sim, self._receiver_of)
         self._taps.open()
-        self._marks = StateRecorder(sim, sim.clock.ticks(longest))
+        self._marks = StateRecorder(sim, sim.engine.clock.ticks(longest))
 
     def __enter__(self) -> RunRecorder:
         return self
@@ -195,7 +195,7 @@ class RunRecorder:
         """
         from simkit.testing.run_record.fingerprint import fingerprint
 
-        published = {topic for topic, _, _, does in self._sim.bus.endpoints() if does == "publishes"}
+        published = {topic for topic, _, _, does in self._sim.communication.bus.endpoints() if does == "publishes"}
         streams = {}
         for topic in sorted(self._streams):
             taker = self._streams[topic]
@@ -231,7 +231,7 @@ class RunRecorder:
             return False
         if scenario.topics:
             return matches_topic(topic, scenario.topics)
-        return topic not in self._sim.bus.aside and type_name != _CLOCK
+        return topic not in self._sim.communication.bus.aside and type_name != _CLOCK
 
 
 class StreamRecorder:
@@ -256,7 +256,7 @@ class StreamRecorder:
 
     def stream(self) -> Stream:
         """What was taken so far."""
-        self._sim.bus.gather(self._topic)
+        self._sim.communication.bus.gather(self._topic)
         self.queue.deliver_all()
         stream = Stream(self._topic, self._type_name, np.array(self._times, np.int64))
         stream.digest = self._whole.hexdigest()

@@ -74,7 +74,7 @@ def _files_of_mesh(mesh: Path) -> Iterator[Path]:
 
 def _plugin_code_files(sim: Simulation) -> Iterator[Path]:
     """The files of plugins and sensors that somebody else wrote."""
-    for part in (*sim.structure.all_plugins(), *sim.structure.all_sensors()):
+    for part in (*sim.engine.structure.all_plugins(), *sim.engine.structure.all_sensors()):
         for kind in type(part).__mro__:
             file = getattr(sys.modules.get(kind.__module__), "__file__", None)
             if file and kind is not object:

@@ -41,13 +41,13 @@ class StateRecorder:
         self._has_more = self._listens = False
         self._look_anew()
         self._keep()
-        sim.on_demand.add(lambda: self._is_active, None, self._mark, "after")
+        sim.communication.on_demand.add(lambda: self._is_active, None, self._mark, "after")
 
     def close(self) -> None:
         """Ends it."""
         if self._is_active:
             self._is_active = False
-            self._sim.on_demand.look()
+            self._sim.communication.on_demand.look()
 
     def states(self) -> States:
         """What was seen, the state of now included."""
@@ -75,7 +75,7 @@ class StateRecorder:
     # ------------------------------------------------------------------ every tick
 
     def _mark(self, _: int) -> None:
-        physics = self._sim.physics
+        physics = self._sim.engine.physics
         if physics.data is not self._data:
             self._look_anew()
         state = crc32(self._qvel.take(self._dofs).data, crc32(self._qpos.take(self._positions).data))
@@ -108,7 +108,7 @@ class StateRecorder:
 
     def _look_anew(self) -> None:
         """Learns the names of the model that is there now."""
-        physics = self._sim.physics
+        physics = self._sim.engine.physics
         model, data = physics.model, physics.data
         self._data = data
         self._qpos, self._qvel, self._ctrl = data.qpos, data.qvel, data.ctrl
@@ -131,7 +131,7 @@ class StateRecorder:
         tick = len(self._marks)
         if self._kept and self._kept[-1][0] == tick:
             return
-        physics = self._sim.physics
+        physics = self._sim.engine.physics
         if physics.data is not self._data:
             self._look_anew()
         self._kept.append((tick, *self._named.values(physics)))

@@ -239,7 +239,7 @@ _PLAIN_YAML_VALUE: Final = re.compile(r"[\w/*:-]+")
 
 def plugin_value_files(sim: Simulation) -> list[Path]:
     """The files that plugins have found, each once."""
-    return list(dict.fromkeys(path.resolve() for path in sim.structure.builder.files_read))
+    return list(dict.fromkeys(path.resolve() for path in sim.engine.structure.builder.files_read))
 
 
 def values_of_files(paths: Iterable[Path]) -> tuple[dict[str, Any], dict[str, str], set[Path]]:

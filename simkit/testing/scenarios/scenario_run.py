@@ -79,17 +79,17 @@ def run_scenario(
     with (
         ScenarioCommands(scenario, sim) as commands,
         Watch(sim, scenario.checks, until=scenario.until, timeout=scenario.longest, absent=absent) as watch,
-        sim.pausing.served(),
+        sim.control.pausing.served(),
     ):
-        end = sim.steps + sim.clock.ticks(scenario.longest)
-        slice_ = max(1, sim.clock.ticks(_SLICE_SECONDS))
+        end = sim.engine.steps + sim.engine.clock.ticks(scenario.longest)
+        slice_ = max(1, sim.engine.clock.ticks(_SLICE_SECONDS))
         reason = "timeout" if scenario.until else "duration"
-        while sim.steps < end and not watch.ended:
+        while sim.engine.steps < end and not watch.ended:
             commands.send_due()
-            stop = min(sim.tick + slice_, sim.tick + end - sim.steps)
+            stop = min(sim.tick + slice_, sim.tick + end - sim.engine.steps)
             if commands.next_tick is not None:
                 stop = min(stop, max(commands.next_tick, sim.tick + 1))
-            sim.pausing.advance(stop - sim.tick)
+            sim.control.pausing.advance(stop - sim.tick)
             if on_slice is not None:
                 on_slice()
             if given_up is not None and time.perf_counter() > given_up:

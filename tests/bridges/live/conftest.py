@@ -99,7 +99,7 @@ def running(
                     while calls:
                         calls.pop(0)(server)
                     if not sim.paused:
-                        sim.pausing.advance(5)
+                        sim.control.pausing.advance(5)
             except BaseException as error:  # noqa: BLE001 - told by the thread of the test
                 failed.append(error)
                 server.close(f"ended: {error}")

@@ -101,7 +101,7 @@ def test_a_topic_of_a_client_is_listed_while_it_is_open(court: simkit.Simulation
 def test_who_comes_late_has_the_last_message_of_a_latched_topic(
     court: simkit.Simulation, run: Callable[..., Any]
 ) -> None:
-    court.bus.advertise("/map_name", "std_msgs/msg/String", latched=True).publish(
+    court.communication.bus.advertise("/map_name", "std_msgs/msg/String", latched=True).publish(
         msgs.make("std_msgs/msg/String", data="hall")
     )
     with run(court) as client:
@@ -113,7 +113,7 @@ def test_who_comes_late_has_the_last_message_of_a_latched_topic(
 def test_of_more_messages_than_may_wait_the_newest_are_kept_and_the_others_counted(
     court: simkit.Simulation, run: Callable[..., Any]
 ) -> None:
-    talker = court.bus.advertise("/count", "std_msgs/msg/Int32")
+    talker = court.communication.bus.advertise("/count", "std_msgs/msg/Int32")
     calls: list[Any] = []
     with run(court, calls=calls) as client:
         few = client.subscribe("/count", depth=5)

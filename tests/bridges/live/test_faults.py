@@ -275,7 +275,7 @@ def test_the_run_has_the_same_bits_and_the_same_bag(
 
 
 def test_a_slow_client_holds_no_more_memory_than_it_may(court: simkit.Simulation) -> None:
-    talker = court.bus.advertise("/picture", "std_msgs/msg/UInt8MultiArray")
+    talker = court.communication.bus.advertise("/picture", "std_msgs/msg/UInt8MultiArray")
     big = msgs.make("std_msgs/msg/UInt8MultiArray", data=bytes(1 << 20))
     with Server(court) as server:
         caller = Caller(server)
@@ -295,7 +295,7 @@ def test_pictures_that_are_still_being_drawn_come_in_their_order(court: simkit.S
         is_done = False
 
     drawing = Work()
-    talker = court.bus.advertise("/picture", "std_msgs/msg/Int32")
+    talker = court.communication.bus.advertise("/picture", "std_msgs/msg/Int32")
     with Server(court) as server:
         caller = Caller(server)
         caller.ask("subscribe", number=1, topic="/picture", depth=10)
@@ -357,7 +357,7 @@ def test_clients_take_turns(court: simkit.Simulation) -> None:
 
 def test_no_command_is_dropped_while_the_run_goes_on(court: simkit.Simulation) -> None:
     heard: list[Any] = []
-    court.bus.listen("/numbers", ["std_msgs/msg/Int32"], heard.append, depth=10)
+    court.communication.bus.listen("/numbers", ["std_msgs/msg/Int32"], heard.append, depth=10)
     with Server(court) as server:
         caller = Caller(server)
         server.poll()
@@ -371,7 +371,7 @@ def test_no_command_is_dropped_while_the_run_goes_on(court: simkit.Simulation) -
             steps += 1
         assert [m.data for m in heard] == list(range(95))
         assert 10 <= steps <= 13, "ten of them a step"
-        assert not court.bus.dropped
+        assert not court.communication.bus.dropped
         caller.socket.close()
 
 
@@ -384,7 +384,7 @@ def test_json_of_answers_has_infinity_and_arrays() -> None:
 
 
 def test_topics_that_nobody_has_any_more_are_forgotten(court: simkit.Simulation) -> None:
-    bus = court.bus
+    bus = court.communication.bus
     before = len(bus._readers), len(bus._publishers), len(bus._listeners)
     with Server(court) as server:
         caller = Caller(server)

@@ -56,7 +56,7 @@ def test_one_foot_of_somebody_who_walks_is_on_the_ground_and_does_not_slide() ->
             ankles = {}
             for side in ("left", "right"):
                 pose = sim.model("anna").link(f"shin_{side}").pose
-                links = sim.structure.models["anna"].links
+                links = sim.engine.structure.models["anna"].links
                 link = next(li for li in links if li.name == f"shin_{side}")
                 shoe = next(v for v in link.visuals if v.name == "shoe")
                 scale = -float(shoe.pose_link.position[2]) / 0.448
@@ -93,7 +93,7 @@ def test_a_reading_shows_the_actor_of_its_own_time() -> None:
     """However often the actor is put on: a sensor that is due asks for it."""
     with simkit.load(world(ANNA, lidar("lidar").replace("<update_rate>10", "<update_rate>7"))) as sim:
         sim.subscribe("/scan", keep=1)
-        script = sim.structure.models["anna"].moved_by.script
+        script = sim.engine.structure.models["anna"].moved_by.script
         scan = sim.subscribe("/scan", lambda message: seen.append(float(sim.model("anna").pose.position[0])))
         seen: list[float] = []
         sim.run(1.0)
@@ -132,7 +132,7 @@ def test_an_actor_that_does_not_start_by_itself_is_started_by_a_service() -> Non
 def test_a_person_looks_as_the_file_says() -> None:
     look = "<simkit:person><height>1.9</height><shirt>1 0 0</shirt></simkit:person>"
     with simkit.load(world(f'<actor name="bob">{look}</actor>')) as sim:
-        (link,) = sim.structure.models["bob"].links
+        (link,) = sim.engine.structure.models["bob"].links
         chest = next(v for v in link.visuals if v.name == "torso_chest")
         assert chest.material is not None
         assert chest.material.diffuse == (1, 0, 0, 1)
@@ -142,7 +142,7 @@ def test_a_person_looks_as_the_file_says() -> None:
 
 def test_feet_stand_on_the_ground_where_the_way_is_that_of_the_hips() -> None:
     with simkit.load(world('<actor name="bob"><pose>0 0 1 0 0 0</pose></actor>')) as sim:
-        (link,) = sim.structure.models["bob"].links
+        (link,) = sim.engine.structure.models["bob"].links
         shoe = next(v for v in link.visuals if v.name.endswith("left_shoe"))
         assert -1.0 < shoe.pose_link.position[2] < -0.9
 
@@ -151,7 +151,9 @@ def test_somebody_who_sits_is_lower() -> None:
     sitting = '<script><trajectory id="0" type="sitting"/></script>'
     with simkit.load(world(f'<actor name="bob">{sitting}</actor><actor name="cai"/>')) as sim:
         heads = [
-            next(v for v in sim.structure.models[n].links[0].visuals if v.name == "torso_head").pose_link.position[2]
+            next(
+                v for v in sim.engine.structure.models[n].links[0].visuals if v.name == "torso_head"
+            ).pose_link.position[2]
             for n in ("bob", "cai")
         ]
         assert heads[0] < heads[1] - 0.2

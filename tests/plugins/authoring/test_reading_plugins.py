@@ -185,7 +185,7 @@ def test_every_plugin_can_be_read() -> None:
 def test_what_a_run_asks_for_was_found_by_reading(world: str) -> None:
     common = {p.path[0] for p in common_facts().parameters}
     with simkit.load(world) as sim:
-        read = [p for p in sim.structure.all_plugins() if p.source is not None]
+        read = [p for p in sim.engine.structure.all_plugins() if p.source is not None]
         assert read
         for plugin in read:
             found = {p.path[0] for p in facts_of(type(plugin)).parameters} | common

@@ -46,7 +46,7 @@ def xyz(message: Any) -> np.ndarray:
 def test_it_publishes_where_ros_expects_it(content: str, topic: str) -> None:
     with simkit.load(world(plugin(content))) as sim:
         assert sim.topics()[topic] == "gazebo_msgs/msg/ContactsState"
-        assert not [t for t in sim.topics() if t.startswith("/world/") and t not in sim.bus.aside]
+        assert not [t for t in sim.topics() if t.startswith("/world/") and t not in sim.communication.bus.aside]
         assert sim.sensor("box::body::s").topic == topic
         assert not [d for d in sim.diagnostics if d.severity != "note"]
 

@@ -24,7 +24,7 @@ def test_it_publishes_the_fix_and_the_velocity_under_its_own_name() -> None:
         sim.step(1)
         assert sim.topics()["/my_gps/out"] == "sensor_msgs/msg/NavSatFix"
         assert sim.topics()["/my_gps/vel"] == "geometry_msgs/msg/Vector3Stamped"
-        assert not [t for t in sim.topics() if t.startswith("/world/") and t not in sim.bus.aside]
+        assert not [t for t in sim.topics() if t.startswith("/world/") and t not in sim.communication.bus.aside]
         assert fix.latest.latitude == pytest.approx(-22.9, abs=1e-7)
         assert fix.latest.header.frame_id == velocity.latest.header.frame_id == "mast"
         assert velocity.latest.vector.y == pytest.approx(2.0)  # the world's x points north

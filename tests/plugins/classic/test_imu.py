@@ -97,7 +97,7 @@ def test_names_and_offsets_are_as_in_the_file() -> None:
         message = first(sim, "/tb/imu")[0]
         assert message.header.frame_id == "chip"
         assert 2 * math.atan2(message.orientation.z, message.orientation.w) == pytest.approx(0.5)
-        assert sim.services()["/tb/calibrate"] == "std_srvs/srv/Empty"
+        assert sim.communication.services.names()["/tb/calibrate"] == "std_srvs/srv/Empty"
         sim.call("/tb/calibrate", {})
         assert "SK-SENSOR-072" in {d.code for d in sim.diagnostics}
 
@@ -106,7 +106,7 @@ def test_what_is_not_given_has_gazebos_defaults() -> None:
     with simkit.load(fixed(imu(topicName=None))) as sim:
         messages = first(sim, "/default_imu", 0.01)
         assert len(messages) == 10
-        assert "/default_imu" in sim.services()
+        assert "/default_imu" in sim.communication.services.names()
         np.testing.assert_array_equal(messages[0].angular_velocity_covariance, np.zeros(9))
 
 

@@ -383,9 +383,9 @@ def test_snapshots_and_reset_cover_what_pushes() -> None:
 def test_nothing_is_due_at_every_step_once_nothing_pushes() -> None:
     with flying() as sim:
         push(sim, wrench={"force": {"x": 4.0}}, duration={"nanosec": 2_000_000})
-        assert len(sim.scheduler.before.every) == 1
+        assert len(sim.engine.scheduler.before.every) == 1
         sim.run(0.1)
-        assert not sim.scheduler.before.every
+        assert not sim.engine.scheduler.before.every
 
 
 def test_who_is_not_there_is_told() -> None:
@@ -404,9 +404,9 @@ def test_who_is_not_there_is_told() -> None:
 @pytest.mark.parametrize(("more", "is_there"), [("", False), (STATE, False), (ROS_1, True), (API, True)])
 def test_the_names_of_ros_1_are_there_for_worlds_of_its_time(more: str, is_there: bool) -> None:
     with load(more) as sim:
-        assert ("/gazebo/set_model_state" in sim.services()) == is_there
-        assert ("/gazebo/model_states" in sim.bus.all_topics()) == is_there
-        assert "/spawn_entity" in sim.services()
+        assert ("/gazebo/set_model_state" in sim.communication.services.names()) == is_there
+        assert ("/gazebo/model_states" in sim.communication.bus.all_topics()) == is_there
+        assert "/spawn_entity" in sim.communication.services.names()
 
 
 def test_models_and_links_of_ros_1_are_spawned_set_and_read() -> None:

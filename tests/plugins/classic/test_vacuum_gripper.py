@@ -173,7 +173,7 @@ def test_grippers_with_one_service_are_switched_together() -> None:
     sim = load(f'<model name="bar">{links}{cups}</model>', box("a", 0.0), box("b", 1.0))
     assert sim.call(SWITCH, {"data": True}).success
     sim.run(0.1)
-    cups_there = [plugin for plugin in sim.structure.all_plugins() if hasattr(plugin, "holds")]
+    cups_there = [plugin for plugin in sim.engine.structure.all_plugins() if hasattr(plugin, "holds")]
     held = {link for plugin in cups_there for link in plugin.holds}
     assert held == {"a::l", "b::l"}
     assert not sim.call(SWITCH, {"data": True}).success

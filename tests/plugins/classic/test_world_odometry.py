@@ -51,7 +51,7 @@ def test_linear_velocity_is_in_the_worlds_axes_and_angular_in_the_links() -> Non
 def test_offsets_may_be_set_while_it_runs() -> None:
     with opened(bodyName="base", topicName="truth") as sim:
         odometry = sim.subscribe("/truth")
-        (node,) = sim.parameters
+        (node,) = sim.communication.parameters
         for name, value in (("x_offset", 1.0), ("y_offset", -2.0), ("yaw_offset", 0.25)):
             sim.set_parameter(node, name, value)
         sim.run(0.1)
@@ -85,7 +85,7 @@ def test_a_link_that_is_not_there_is_an_error_that_names_the_closest() -> None:
 
 def test_a_walk_that_was_set_goes_on_after_a_restore() -> None:
     with opened(1, bodyName="base", topicName="truth") as sim:
-        (node,) = sim.parameters
+        (node,) = sim.communication.parameters
         sim.set_parameter(node, "gaussian_noise", 0.01)
         sim.run(0.1)
         snapshot = sim.snapshot()

@@ -82,7 +82,9 @@ def test_a_service_sets_the_compliances_of_a_link_or_a_model():
     sim = driven(slip(wheels(0, 0)), pull=(-1.0, 0.0), duration=1.0)
     answer = sim.call("/world/w/wheel_slip", _request("car::rl", 3, 0.25, 0.75))
     assert answer.success
-    (own,) = [found for found in sim.parameters.values() if "slip_compliance_unitless_lateral/rl" in found]
+    (own,) = [
+        found for found in sim.communication.parameters.values() if "slip_compliance_unitless_lateral/rl" in found
+    ]
     assert own["slip_compliance_unitless_lateral/rl"].value == 0.25
     assert own["slip_compliance_unitless_longitudinal/rl"].value == 0.75
     assert own["slip_compliance_unitless_longitudinal/rr"].value == 0.0
@@ -101,7 +103,9 @@ def _request(name, kind, lateral, longitudinal):
 
 def test_a_restore_and_a_reset_bring_the_compliances_back():
     sim = driven(slip(wheels(0, 0)), duration=0.2)
-    node = next(name for name, own in sim.parameters.items() if "slip_compliance_unitless_lateral/rl" in own)
+    node = next(
+        name for name, own in sim.communication.parameters.items() if "slip_compliance_unitless_lateral/rl" in own
+    )
     kept = sim.snapshot()
     sim.run(0.2)
     there = sim.mj_data.qpos.tobytes()
@@ -154,11 +158,11 @@ def test_a_held_tick_is_read_with_the_slips_of_that_tick():
 
     def accelerations(sets):
         sim = driven(slip(wheels(0, 1)), pull=(-1.0, 0.0), duration=0.3)
-        held = sim.physics.hold()
+        held = sim.engine.physics.hold()
         sim.step()
         if sets:
             assert sim.call("/world/w/wheel_slip", _request("car", 2, 0.0, 0.0)).success
-        return sim.physics.data_of(held).qacc.tobytes()
+        return sim.engine.physics.data_of(held).qacc.tobytes()
 
     assert accelerations(False) == accelerations(True)
 

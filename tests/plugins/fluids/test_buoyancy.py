@@ -72,7 +72,7 @@ def test_what_is_as_heavy_as_water_hangs_in_it_and_what_stands_costs_nothing() -
     assert not sim.link("even::hull").linear_velocity.any()
     assert sim.link("heavy::hull").linear_velocity[2] == pytest.approx(-G / 2, rel=1e-9)
     assert sim.link("light::hull").linear_velocity[2] == pytest.approx(G, rel=1e-9)
-    (plugin,) = (p for p in sim.plugins.values() if type(p).__name__ == "Buoyancy")
+    (plugin,) = (p for p in sim.contents.plugins.values() if type(p).__name__ == "Buoyancy")
     assert plugin.before_step_rate == 1e-9
 
 

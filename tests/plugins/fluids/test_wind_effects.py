@@ -77,7 +77,7 @@ def test_it_rises_as_a_low_pass_filter() -> None:
     <vertical><time_for_rise>0.5</time_for_rise></vertical>"""
     sim = simkit.load(world(rise))
     sim.step(1000)
-    x, y, z = sim.wind.at(sim.tick - 1)
+    x, y, z = sim.engine.wind.at(sim.tick - 1)
     assert math.hypot(x, y) == pytest.approx(5 * (1 - (1 - 0.001 / 2) ** 1000), rel=1e-9)
     assert z == pytest.approx(1 - (1 - 0.001 / 0.5) ** 1000, rel=1e-9)
     assert math.atan2(y, x) == pytest.approx(math.atan2(4, 3))  # the heading is there from the start
@@ -90,7 +90,7 @@ def test_strength_and_heading_swing() -> None:
     sim = simkit.load(world(swing, wind="0 2 0"))
     for tick in (49, 99, 149, 262):
         t = (tick + 1) * 0.001
-        x, y, _ = sim.wind.at(tick)
+        x, y, _ = sim.engine.wind.at(tick)
         assert math.hypot(x, y) == pytest.approx(2 * (1 + 0.2 * math.sin(2 * math.pi * t / 0.4)), rel=1e-9)
         turned = 90 + 30 * math.sin(2 * math.pi * t / 0.2)
         assert math.degrees(math.atan2(y, x)) == pytest.approx(turned, abs=1e-9)
@@ -101,24 +101,24 @@ def test_noise_has_its_deviation_and_is_the_same_for_everybody() -> None:
     <stddev>0.2</stddev></noise></magnitude></horizontal><vertical><noise type="gaussian"><stddev>0.3</stddev></noise>
     <time_for_rise>1e-6</time_for_rise></vertical>"""
     sim = simkit.load(world(noise), seed=4)
-    blown = np.array([sim.wind.at(tick) for tick in range(4000)])
+    blown = np.array([sim.engine.wind.at(tick) for tick in range(4000)])
     strengths = np.hypot(blown[:, 0], blown[:, 1])
     assert strengths.mean() == pytest.approx(5.5, abs=4 * 0.2 / math.sqrt(4000))
     assert strengths.std() == pytest.approx(0.2, rel=0.05)
     assert blown[:, 2].std() == pytest.approx(0.3, rel=0.05)
     again = simkit.load(world(noise), seed=4)
-    assert [again.wind.at(tick) for tick in (17, 3, 3999)] == [tuple(blown[tick]) for tick in (17, 3, 3999)]
-    assert simkit.load(world(noise), seed=5).wind.at(17) != tuple(blown[17])
+    assert [again.engine.wind.at(tick) for tick in (17, 3, 3999)] == [tuple(blown[tick]) for tick in (17, 3, 3999)]
+    assert simkit.load(world(noise), seed=5).engine.wind.at(17) != tuple(blown[17])
 
 
 def test_commands_change_what_is_asked_for() -> None:
     rise = "<horizontal><magnitude><time_for_rise>1</time_for_rise></magnitude></horizontal>"
     sim = simkit.load(world(rise, wind="2 0 0"))
     sim.step(1000)
-    before = sim.wind.at(sim.tick - 1)[0]
+    before = sim.engine.wind.at(sim.tick - 1)[0]
     sim.publish("/world/w/wind", {"linear_velocity": {"x": 0.0, "y": 6.0, "z": 0.0}, "enable_wind": True})
     sim.step(1000)
-    x, y, _ = sim.wind.at(sim.tick - 1)
+    x, y, _ = sim.engine.wind.at(sim.tick - 1)
     left = 0.999**1000
     assert math.hypot(x, y) == pytest.approx(6 + (before - 6) * left, rel=1e-9)
     assert math.degrees(math.atan2(y, x)) == pytest.approx(90 * (1 - left), rel=1e-9)
@@ -134,7 +134,7 @@ def test_off_it_neither_pushes_nor_brakes() -> None:
     sim.step(1)
     still = speed(sim)
     sim.step(100)
-    assert (speed(sim) == still).all() and sim.wind.at(sim.tick) == (0, 0, 0)
+    assert (speed(sim) == still).all() and sim.engine.wind.at(sim.tick) == (0, 0, 0)
     sim.publish("/world/w/wind", msgs.type_of("geometry_msgs/msg/Vector3")(1.0, 0.0, 0.0))
     sim.step(1)
     assert speed(sim)[0] == pytest.approx(still[0] + (1 - still[0]) * 0.001, rel=1e-9)
@@ -146,7 +146,7 @@ def test_the_heading_turns_the_short_way() -> None:
     sim.step(10)
     sim.publish("/world/w/wind", {"linear_velocity": {"x": -1.0, "y": -0.1, "z": 0.0}, "enable_wind": True})
     sim.step(500)
-    x, y, _ = sim.wind.at(sim.tick)
+    x, y, _ = sim.engine.wind.at(sim.tick)
     assert abs(math.degrees(math.atan2(y, -x))) < 6
 
 
@@ -155,13 +155,15 @@ def test_a_command_without_numbers_is_left_out() -> None:
     sim.publish("/world/w/wind", {"linear_velocity": {"x": math.nan, "y": 0.0, "z": 0.0}, "enable_wind": True})
     sim.step(10)
     assert [d.code for d in sim.diagnostics] == ["SK-PLUGIN-041"]
-    assert sim.wind.at(sim.tick)[0] == pytest.approx(3)
+    assert sim.engine.wind.at(sim.tick)[0] == pytest.approx(3)
 
 
 def test_what_is_spawned_later_is_pushed_too_and_nothing_is_done_before() -> None:
     text = world().replace("<enable_wind>true", "<enable_wind>false")
     sim = simkit.load(text)
-    assert [plugin.before_step_rate for plugin in sim.plugins.values() if isinstance(plugin, WindPluginBase)] == [NEVER]
+    assert [
+        plugin.before_step_rate for plugin in sim.contents.plugins.values() if isinstance(plugin, WindPluginBase)
+    ] == [NEVER]
     sim.step(100)
     sim.spawn(f'<sdf version="1.9">{BODY.format(name="late", x=3, windy="true")}</sdf>')
     sim.step(10)

@@ -130,7 +130,7 @@ def test_sub_topics_and_topics():
 
 def test_the_gain_is_a_live_parameter():
     sim = simkit.load(world(car(only())))
-    (node,) = [name for name, own in sim.parameters.items() if "steer_p_gain" in own]
+    (node,) = [name for name, own in sim.communication.parameters.items() if "steer_p_gain" in own]
     sim.set_parameter(node, "steer_p_gain", 1.0)
     sim.publish("/model/car/steer_angle", {"data": 0.3})
     sim.run(1.0)

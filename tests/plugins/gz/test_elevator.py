@@ -134,7 +134,7 @@ def test_it_does_the_same_after_a_reset_and_after_a_restore() -> None:
 
 def test_at_rest_it_costs_nothing() -> None:
     sim = load()
-    plugin = next(p for p in sim.structure.all_plugins() if type(p).__name__ == "Elevator")
+    plugin = next(p for p in sim.engine.structure.all_plugins() if type(p).__name__ == "Elevator")
     sim.run(0.1)
     assert plugin.after_step_rate == pytest.approx(1e-9)
 

@@ -133,7 +133,7 @@ def test_numbers_of_a_pid_without_force_commands_are_reported() -> None:
 def test_gains_are_live() -> None:
     sim = two(f"{A}{FORCE}<p_gain>2</p_gain>")
     node = "/model/m/joint/j_a/velocity_controller"
-    assert list(sim.parameters[node]) == [
+    assert list(sim.communication.parameters[node]) == [
         "p_gain", "i_gain", "d_gain", "i_max", "i_min", "cmd_max", "cmd_min", "cmd_offset",
     ]  # fmt: skip
     sim.publish(CMD, {"data": 4.0})
@@ -345,7 +345,7 @@ def test_a_joint_that_is_held_fast_stays_where_it_is() -> None:
 def test_damping_that_is_set_while_it_runs_is_made_up_for() -> None:
     sim = load(rotor("a"), velocity(f"{A}<initial_velocity>2</initial_velocity>"), step=0.02)
     sim.step(5)
-    sim.touch("dof_damping")[:] = 5.0
+    sim.engine.touch("dof_damping")[:] = 5.0
     sim.step(5)
     assert sim.joint("m::j_a").velocity == pytest.approx(2.0, abs=1e-4)
     assert sim.joint("m::j_a").effort == pytest.approx(10.0, abs=1e-3)
@@ -373,7 +373,7 @@ def test_gains_set_while_it_runs_are_the_files_again_after_a_reset() -> None:
 def test_two_controllers_of_one_joint_have_parameters_of_their_own() -> None:
     sim = load(rotor("a"), *[velocity(f"{A}{FORCE}<p_gain>{p}</p_gain>") for p in (2, 3)])
     node = "/model/m/joint/j_a/velocity_controller"
-    assert [sim.parameters[n]["p_gain"].value for n in (node, f"{node}_2")] == [2.0, 3.0]
+    assert [sim.communication.parameters[n]["p_gain"].value for n in (node, f"{node}_2")] == [2.0, 3.0]
 
 
 def test_a_turret_keeps_its_velocity_while_its_base_starts_and_turns() -> None:

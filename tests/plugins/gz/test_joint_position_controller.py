@@ -118,7 +118,7 @@ def test_joint_index_is_the_axis_of_a_joint_with_two() -> None:
     sim.run(3.0)
     assert sim.joint("m::j_a").position == pytest.approx([0.0, 0.4], abs=2e-3)
     node = "/model/m/joint/j_a/position_controller"
-    assert list(sim.parameters) == [node, f"{node}_1"]
+    assert list(sim.communication.parameters) == [node, f"{node}_1"]
     with pytest.raises(LoadError, match="universal and has 2 axes; one with axis number 2 is needed"):
         load(joint, position(f"{A}<joint_index>2</joint_index>"))
 
@@ -152,10 +152,10 @@ def test_each_controller_of_a_model_has_its_parameters() -> None:
     parts = [rotor(n) for n in "abc"]
     names = [position(f"<joint_name>j_{n}</joint_name>", name="lift" if n == "c" else "") for n in "abc"]
     sim = load(*parts, *names)
-    assert list(sim.parameters) == [
+    assert list(sim.communication.parameters) == [
         "/lift", "/model/m/joint/j_a/position_controller", "/model/m/joint/j_b/position_controller",
     ]  # fmt: skip
-    assert {n: sim.parameters["/lift"][n].value for n in ("p_gain", "i_gain", "d_gain", "cmd_max")} == {
+    assert {n: sim.communication.parameters["/lift"][n].value for n in ("p_gain", "i_gain", "d_gain", "cmd_max")} == {
         "p_gain": 1.0, "i_gain": 0.1, "d_gain": 0.01, "cmd_max": 1000.0,
     }  # fmt: skip
 

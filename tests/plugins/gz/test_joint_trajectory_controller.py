@@ -171,7 +171,7 @@ def test_wrong_elements_are_told_all_at_once() -> None:
 
 def test_gains_are_live() -> None:
     sim = load(rotor("a"), trajectory(A + "<initial_position>1</initial_position>", name="follow"))
-    assert len(sim.parameters["/follow"]) == 16
+    assert len(sim.communication.parameters["/follow"]) == 16
     sim.run(0.5)
     assert sim.joint("m::j_a").position == 0.0
     sim.set_parameter("/follow", "j_a.position_p_gain", 2000.0)

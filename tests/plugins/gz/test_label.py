@@ -27,7 +27,7 @@ def model(name: str = "m", more: str = "", on_visual: str = "", on_link: str = "
 def worn(*parts: str, quirks: bool = False) -> dict[str, int]:
     top = "<gazebo_quirks>true</gazebo_quirks>" if quirks else ""
     with simkit.load(world(top, *parts)) as sim:
-        return sim.labels.by_visual(nested=not quirks)
+        return sim.contents.labels.by_visual(nested=not quirks)
 
 
 def codes(*parts: str) -> list[tuple[str, str]]:
@@ -71,7 +71,7 @@ def test_an_include_labels_what_it_brings(tmp_path: Path) -> None:
     include = f"<include><uri>thing.sdf</uri><name>t</name>{label(66)}</include>"
     (tmp_path / "world.sdf").write_text(world(include))
     with simkit.load(tmp_path / "world.sdf") as sim:
-        assert sim.labels.by_visual() == {"t::l::a": 66, "t::l::b": 66}
+        assert sim.contents.labels.by_visual() == {"t::l::a": 66, "t::l::b": 66}
 
 
 def test_a_robot_in_urdf_has_labels_too() -> None:
@@ -81,7 +81,7 @@ def test_a_robot_in_urdf_has_labels_too() -> None:
       <joint name="j" type="fixed"><parent link="base"/><child link="arm"/></joint>
       <gazebo>{label(4)}</gazebo><gazebo reference="arm"><visual>{label(5)}</visual></gazebo></robot>"""
     with simkit.load(robot) as sim:
-        assert sorted(sim.labels.by_visual().values()) == [4, 5]
+        assert sorted(sim.contents.labels.by_visual().values()) == [4, 5]
         assert not [d for d in sim.diagnostics if "plugin" in d.message]
 
 
@@ -108,42 +108,42 @@ def test_labels_come_and_go_with_their_models() -> None:
     with simkit.load(world(model("a", label(1)))) as sim:
         before = sim.snapshot()
         sim.spawn(f'<sdf version="1.9">{model("b", label(2), label(3))}</sdf>')
-        assert dict(sim.labels) == {"a": 1, "b": 2, "b::l::a": 3}
+        assert dict(sim.contents.labels) == {"a": 1, "b": 2, "b::l::a": 3}
         both = sim.snapshot()
         sim.remove("b")
-        assert dict(sim.labels) == {"a": 1}
+        assert dict(sim.contents.labels) == {"a": 1}
         sim.spawn(f'<sdf version="1.9">{model("b")}</sdf>')
-        assert dict(sim.labels) == {"a": 1}, "another model of that name has no label"
+        assert dict(sim.contents.labels) == {"a": 1}, "another model of that name has no label"
         sim.restore(both)
-        assert sim.labels.by_visual() == {"a::l::a": 1, "a::l::b": 1, "b::l::a": 3, "b::l::b": 2}
+        assert sim.contents.labels.by_visual() == {"a::l::a": 1, "a::l::b": 1, "b::l::a": 3, "b::l::b": 2}
         sim.restore(before)
-        assert dict(sim.labels) == {"a": 1}
+        assert dict(sim.contents.labels) == {"a": 1}
 
 
 def test_a_program_may_change_them_and_a_reset_brings_the_files_back() -> None:
     with simkit.load(world(model("a", label(1)))) as sim:
-        sim.labels["a::l::b"] = 9
-        sim.labels["a"] = 2
-        assert sim.labels.by_visual() == {"a::l::a": 2, "a::l::b": 9}
+        sim.contents.labels["a::l::b"] = 9
+        sim.contents.labels["a"] = 2
+        assert sim.contents.labels.by_visual() == {"a::l::a": 2, "a::l::b": 9}
         kept = sim.snapshot()
-        del sim.labels["a"]
-        assert sim.labels.by_visual() == {"a::l::b": 9}
+        del sim.contents.labels["a"]
+        assert sim.contents.labels.by_visual() == {"a::l::b": 9}
         sim.restore(kept)
-        assert sim.labels.by_visual() == {"a::l::a": 2, "a::l::b": 9}
+        assert sim.contents.labels.by_visual() == {"a::l::a": 2, "a::l::b": 9}
         sim.reset()
-        assert dict(sim.labels) == {"a": 1}
+        assert dict(sim.contents.labels) == {"a": 1}
 
 
 def test_a_wrong_name_or_number_is_refused() -> None:
     with simkit.load(world(model("crate"))) as sim:
         with pytest.raises(KeyError, match="did you mean 'crate'"):
-            sim.labels["crte"] = 1
+            sim.contents.labels["crte"] = 1
         with pytest.raises(KeyError, match="did you mean 'crate::l::a'"):
-            sim.labels["crate::l::aa"] = 1
+            sim.contents.labels["crate::l::aa"] = 1
         for number in (-1, 256, 1.5):
             with pytest.raises(ValueError, match="from 0 to 255"):
-                sim.labels["crate"] = number
-        assert not sim.labels
+                sim.contents.labels["crate"] = number
+        assert not sim.contents.labels
 
 
 def test_a_labelled_thing_may_sleep() -> None:
@@ -153,6 +153,6 @@ def test_a_labelled_thing_may_sleep() -> None:
     def sleeps(text: str) -> bool:
         with simkit.load(world(GROUND, text, step=0.002)) as sim:
             sim.run(3.0)
-            return bool(sim.physics.sleep.is_asleep(int(sim.names.link("m::l").body), sim.mj_data))
+            return bool(sim.engine.physics.sleep.is_asleep(int(sim.engine.names.link("m::l").body), sim.mj_data))
 
     assert sleeps(thing.format(label(3))) == sleeps(thing.format(""))

@@ -94,7 +94,7 @@ def test_topics_start_and_stop_the_draining() -> None:
     topics = "<power_draining_topic>/on</power_draining_topic>"
     topics += "<stop_power_draining_topic>/off</stop_power_draining_topic>"
     with simkit.load(world(topics, **PLAIN, power_load=90)) as sim:
-        on, off = (sim.bus.advertise(topic, "std_msgs/msg/String") for topic in ("/on", "/off"))
+        on, off = (sim.communication.bus.advertise(topic, "std_msgs/msg/String") for topic in ("/on", "/off"))
         on.publish(simkit.msgs.make("std_msgs/msg/String"))
         assert state(sim, 1.0).charge == pytest.approx(0.0075, rel=1e-4)
         off.publish(simkit.msgs.make("std_msgs/msg/String"))
@@ -147,7 +147,7 @@ def test_the_sign_of_the_current_can_be_turned() -> None:
 
 def test_the_load_is_a_live_parameter() -> None:
     with simkit.load(world(**PLAIN, power_load=0, start_draining=1)) as sim:
-        (node,) = [n for n in sim.services() if n.endswith("battery/main/set_parameters")]
+        (node,) = [n for n in sim.communication.services.names() if n.endswith("battery/main/set_parameters")]
         value = {"name": "power_load", "value": {"type": 3, "double_value": 90.0}}
         assert sim.call(node, {"parameters": [value]}).results[0].successful
         assert state(sim, 1.0).charge == pytest.approx(0.0075, rel=1e-4)

@@ -132,14 +132,14 @@ def test_bad_parameters_are_told_all_at_once():
 
 def test_a_spawned_one_drives_and_a_removed_one_is_forgotten():
     sim = simkit.load(world())
-    assert sim.physics.shaper is None
+    assert sim.engine.physics.shaper is None
     sim.spawn(f'<sdf version="1.9">{mecanum()}</sdf>', "robot")
     sim.publish("/model/robot/cmd_vel", twist(0.0, 0.3))
     sim.run(1.0)
     assert sim.model("robot").pose.position[1] == pytest.approx(0.29, abs=0.02)
     sim.remove("robot")
     sim.run(0.1)
-    assert sim.physics.shaper is None
+    assert sim.engine.physics.shaper is None
 
 
 def test_the_same_bits_again_after_a_reset_and_a_restore():

@@ -244,7 +244,7 @@ def test_a_module_without_a_class_is_a_system_by_itself(tmp_path: Path) -> None:
     write(tmp_path, "plain.py", PLAIN)
     with simkit.load(world("plain"), plugin_paths=[tmp_path]) as run:
         run.run(0.01)
-        (loader,) = [p for p in run.structure.all_plugins() if getattr(p, "is_gz_system", False)]
+        (loader,) = [p for p in run.engine.structure.all_plugins() if getattr(p, "is_gz_system", False)]
         assert loader.system.steps == 10
         run.reset()
         assert loader.system.steps == 0
@@ -277,6 +277,6 @@ def get_system():
     text = f"""<sdf version="1.9"><world name="w">{plugin}<model name="m"><link name="l">
       <sensor name="s" type="imu"><update_rate>10</update_rate>{plugin}</sensor></link></model></world></sdf>"""
     with simkit.load(text, plugin_paths=[tmp_path]) as run:
-        loaders = [p for p in run.structure.all_plugins() if getattr(p, "is_gz_system", False)]
+        loaders = [p for p in run.engine.structure.all_plugins() if getattr(p, "is_gz_system", False)]
         assert sorted(p.system.entity for p in loaders) == [1, 6]
         assert {p.system.name for p in loaders} == {"plugin"}

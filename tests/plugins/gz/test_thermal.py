@@ -33,8 +33,8 @@ def warnings(sim: Any) -> list[str]:
 
 def test_a_visual_gets_the_temperature_that_hangs_on_it() -> None:
     with simkit.load(world(thermal(KELVIN.format(310.5)))) as sim:
-        assert dict(sim.temperatures) == {"m::l::v": 310.5}
-        assert sim.temperatures.by_visual() == {"m::l::v": 310.5}
+        assert dict(sim.contents.temperatures) == {"m::l::v": 310.5}
+        assert sim.contents.temperatures.by_visual() == {"m::l::v": 310.5}
         assert not warnings(sim)
 
 
@@ -48,7 +48,7 @@ def test_a_visual_gets_the_temperature_that_hangs_on_it() -> None:
 )
 def test_older_names_stand_for_the_same(filename: str, name: str) -> None:
     with simkit.load(world(thermal(KELVIN.format(300), name, filename))) as sim:
-        assert dict(sim.temperatures) == {"m::l::v": 300.0}
+        assert dict(sim.contents.temperatures) == {"m::l::v": 300.0}
 
 
 def test_a_link_and_a_model_warm_what_has_no_temperature_of_its_own() -> None:
@@ -57,21 +57,21 @@ def test_a_link_and_a_model_warm_what_has_no_temperature_of_its_own() -> None:
 
     on = [thermal(KELVIN.format(t)) for t in (2, 3, 4)]
     with simkit.load(parts(*on)) as sim:
-        assert sim.temperatures.by_visual() == {"m::l::v": 1, "m::l::w": 2, "m::n::k::v": 4}
+        assert sim.contents.temperatures.by_visual() == {"m::l::v": 1, "m::l::w": 2, "m::n::k::v": 4}
     with simkit.load(parts("", on[1], "")) as sim:
-        assert sim.temperatures.by_visual() == {"m::l::v": 1, "m::l::w": 3, "m::n::k::v": 3}
+        assert sim.contents.temperatures.by_visual() == {"m::l::v": 1, "m::l::w": 3, "m::n::k::v": 3}
 
 
 def test_with_gazebos_quirks_only_visuals_are_warm() -> None:
     text = world(model=thermal(KELVIN.format(300)), top="<simkit:gazebo_quirks>true</simkit:gazebo_quirks>")
     with simkit.load(text) as sim:
-        assert not sim.temperatures
+        assert not sim.contents.temperatures
         assert warnings(sim) == ["SK-SENSOR-141"]
 
 
 def test_nothing_is_colder_than_absolute_zero() -> None:
     with simkit.load(world(thermal(KELVIN.format(-10)))) as sim:
-        assert sim.temperatures["m::l::v"] == 0
+        assert sim.contents.temperatures["m::l::v"] == 0
         assert warnings(sim) == ["SK-SENSOR-141"]
 
 
@@ -108,15 +108,15 @@ def test_a_signature_is_found_beside_its_models_file(folder: Path) -> None:
     text = '<sdf version="1.9"><world name="w"><include><uri>model://randy</uri></include></world></sdf>'
     with simkit.load(text, resource_paths=[folder / "models"]) as sim:
         picture = folder / "models" / "randy" / "textures" / "warm.png"
-        assert dict(sim.temperatures) == {"randy::l::v": HeatSignature(picture, 290, 310)}
+        assert dict(sim.contents.temperatures) == {"randy::l::v": HeatSignature(picture, 290, 310)}
         sim.spawn(folder / "models" / "randy" / "model.sdf", name="second")
-        assert sim.temperatures["second::l::v"] == sim.temperatures["randy::l::v"]
+        assert sim.contents.temperatures["second::l::v"] == sim.contents.temperatures["randy::l::v"]
 
 
 def test_a_signature_may_be_named_by_a_uri(folder: Path) -> None:
     plugin = thermal(f"<heat_signature>model://randy/textures/warm.png</heat_signature>{RANGE}")
     with simkit.load(world(plugin), resource_paths=[folder / "models"]) as sim:
-        assert isinstance(sim.temperatures["m::l::v"], HeatSignature)
+        assert isinstance(sim.contents.temperatures["m::l::v"], HeatSignature)
         assert not warnings(sim)
 
 
@@ -125,7 +125,7 @@ def test_a_signature_that_is_not_there_or_no_picture_leaves_the_surface_as_warm_
     for name in ("no.png", "text.png", "model://nobody/warm.png"):
         (folder / "w.sdf").write_text(world(thermal(f"<heat_signature>{name}</heat_signature>")))
         with simkit.load(folder / "w.sdf") as sim:
-            assert not sim.temperatures
+            assert not sim.contents.temperatures
             assert warnings(sim) == ["SK-SENSOR-142"]
 
 
@@ -133,7 +133,7 @@ def test_of_a_temperature_and_a_signature_the_signature_counts(folder: Path) -> 
     both = "<temperature>400</temperature><heat_signature>models/randy/textures/warm.png</heat_signature>"
     (folder / "w.sdf").write_text(world(thermal(f"{both}<min_temp>310</min_temp><max_temp>290</max_temp>")))
     with simkit.load(folder / "w.sdf") as sim:
-        found = sim.temperatures["m::l::v"]
+        found = sim.contents.temperatures["m::l::v"]
         assert isinstance(found, HeatSignature)
         assert (found.coldest, found.hottest) == (290, 310)
         assert warnings(sim) == ["SK-SENSOR-141"] * 2  # of both elements, and of the ends in the wrong order
@@ -147,30 +147,30 @@ def test_temperatures_follow_spawn_remove_reset_and_snapshots() -> None:
         kept = sim.snapshot()
         sim.spawn(f"""<sdf version="1.9"><model name="x"><static>true</static><link name="l"><visual name="v">{BALL}
           {thermal(KELVIN.format(320))}</visual></link></model></sdf>""")
-        assert sim.temperatures["x::l::v"] == 320
+        assert sim.contents.temperatures["x::l::v"] == 320
         later = sim.snapshot()
         sim.remove("x")
-        assert dict(sim.temperatures) == {"m::l::v": 310}
+        assert dict(sim.contents.temperatures) == {"m::l::v": 310}
         sim.remove("m")
-        assert not sim.temperatures
+        assert not sim.contents.temperatures
         sim.restore(later)
-        assert dict(sim.temperatures) == {"m::l::v": 310, "x::l::v": 320}
-        sim.temperatures["m::l::v"] = 5
+        assert dict(sim.contents.temperatures) == {"m::l::v": 310, "x::l::v": 320}
+        sim.contents.temperatures["m::l::v"] = 5
         sim.restore(kept)
-        assert dict(sim.temperatures) == {"m::l::v": 310}
-        sim.temperatures["m"] = 5
+        assert dict(sim.contents.temperatures) == {"m::l::v": 310}
+        sim.contents.temperatures["m"] = 5
         sim.reset()
-        assert dict(sim.temperatures) == {"m::l::v": 310}
+        assert dict(sim.contents.temperatures) == {"m::l::v": 310}
 
 
 def test_a_wrong_name_or_temperature_is_said() -> None:
     with simkit.load(world()) as sim:
         with pytest.raises(KeyError, match="m::l::v"):
-            sim.temperatures["m::l::vv"] = 300
+            sim.contents.temperatures["m::l::vv"] = 300
         with pytest.raises(ValueError, match="at least 0"):
-            sim.temperatures["m"] = -1
+            sim.contents.temperatures["m"] = -1
         with pytest.raises(ValueError, match="at least 0"):
-            sim.temperatures["m"] = float("nan")
+            sim.contents.temperatures["m"] = float("nan")
 
 
 # ---------------------------------------------------------------------- the sensor's plugin

@@ -57,7 +57,7 @@ def test_a_crate_that_is_held_fast_presses_with_friction_at_any_speed() -> None:
             pushes = []
             for _ in range(100):
                 sim.step()
-                data = sim.physics.fresh()
+                data = sim.engine.physics.fresh()
                 rows = [c.efc_address for c in data.contact if abs(c.frame[0]) > 0.9 and c.efc_address >= 0]
                 pushes.append(float(data.efc_force[rows].sum()))
             assert place(sim)[0] == pytest.approx(0.001, abs=5e-4)
@@ -87,10 +87,10 @@ def test_gazebos_own_test_of_a_conveyor() -> None:
 def test_a_belt_that_stands_costs_no_hook_and_holds() -> None:
     with opened(conveyor(), crate(pose="0 0 0.05 0 0 0")) as sim:
         sim.run(0.1)
-        assert not sim.scheduler.before.every
+        assert not sim.engine.scheduler.before.every
         sim.publish(BELT, {"data": 0.3})
         sim.run(0.5)
-        assert not sim.scheduler.before.every
+        assert not sim.engine.scheduler.before.every
         sim.publish(BELT, {"data": 0.0})
         sim.run(0.5)
         stood = place(sim)

@@ -101,7 +101,7 @@ def test_its_tracks_are_told_on_their_topics_and_a_turn_has_a_centre() -> None:
         drive(sim, 0.4)
         sim.run(0.01)
         assert math.isinf(heard["left track_cmd_center_of_rotation"][-1].y)
-        assert not sim.scheduler.after.every
+        assert not sim.engine.scheduler.after.every
 
 
 def test_its_odometry_is_that_of_wheels_at_the_speeds_of_the_tracks() -> None:

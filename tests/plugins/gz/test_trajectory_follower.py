@@ -71,7 +71,7 @@ def test_a_waypoint_within_the_tolerance_is_left_for_the_next_and_the_last_one_s
 
 def test_a_loop_goes_round() -> None:
     sim = load("<loop>true</loop><force>0</force><torque>0</torque>" + ways("0 0", "1 0", "2 0"))
-    plugin = next(p for p in sim.structure.all_plugins() if type(p).__name__ == "TrajectoryFollower")
+    plugin = next(p for p in sim.engine.structure.all_plugins() if type(p).__name__ == "TrajectoryFollower")
     seen = []
     for x in (0, 1, 2, 0, 1):
         sim.model("puck").set_pose(simkit.Pose((x, 0, 0)))
@@ -82,12 +82,12 @@ def test_a_loop_goes_round() -> None:
 
 def test_lines_and_circles_count_from_where_the_link_is() -> None:
     line = load("<line><direction>0.5</direction><length>4</length></line>", pose="1 2 7 0 0 1")
-    plugin = next(p for p in line.structure.all_plugins() if type(p).__name__ == "TrajectoryFollower")
+    plugin = next(p for p in line.engine.structure.all_plugins() if type(p).__name__ == "TrajectoryFollower")
     (start, end) = plugin._points
     assert start == pytest.approx((1, 2))
     assert end == pytest.approx((1 + 4 * math.cos(1.5), 2 + 4 * math.sin(1.5)))
     circle = load("<circle><radius>2</radius></circle>", pose="1 2 0 0 0 1")
-    plugin = next(p for p in circle.structure.all_plugins() if type(p).__name__ == "TrajectoryFollower")
+    plugin = next(p for p in circle.engine.structure.all_plugins() if type(p).__name__ == "TrajectoryFollower")
     assert len(plugin._points) == 8
     assert plugin._points[0] == pytest.approx((3, 2))  # in the world's axes
     assert plugin._points[2] == pytest.approx((1, 4))
@@ -98,7 +98,7 @@ def test_paused_it_costs_nothing_and_goes_on() -> None:
     sim.publish(PAUSE, {"data": True})
     sim.run(1.0)
     assert sim.model("puck").pose.position == pytest.approx((0, 0, 0), abs=1e-12)
-    plugin = next(p for p in sim.structure.all_plugins() if type(p).__name__ == "TrajectoryFollower")
+    plugin = next(p for p in sim.engine.structure.all_plugins() if type(p).__name__ == "TrajectoryFollower")
     assert plugin.before_step_rate == pytest.approx(1e-9)
     sim.publish(PAUSE, {"data": False})
     sim.run(1.0)

@@ -189,7 +189,7 @@ def test_all_problems_come_in_one_pass() -> None:
 def test_idle_it_costs_no_step() -> None:
     with simkit.load(world(listening("Empty") + "<delay_ms>5</delay_ms>")) as sim:
         sim.run(0.01)
-        (plugin,) = [p for p in sim.structure.all_plugins() if type(p).__name__ == "TriggeredPublisher"]
+        (plugin,) = [p for p in sim.engine.structure.all_plugins() if type(p).__name__ == "TriggeredPublisher"]
         assert plugin.before_step_rate == pytest.approx(0.0, abs=1e-6)
         sim.publish("/in", {})
         sim.run(0.002)

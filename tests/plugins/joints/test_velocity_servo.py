@@ -156,8 +156,8 @@ def test_a_servo_at_its_effort_limit_does_not_wind_up(step: float) -> None:
         speeds(sim, 0.3)
         for _ in range(round(1.0 / step)):
             # beyond what a joint's own effort limit lets through
-            sim.mj_data.qfrc_applied[sim.names.joint("cart::front_left_joint").dofs[0]] = -3.0
-            sim.physics.one_shot = True
+            sim.mj_data.qfrc_applied[sim.engine.names.joint("cart::front_left_joint").dofs[0]] = -3.0
+            sim.engine.physics.one_shot = True
             sim.step()
         assert wheel(sim).velocity < -10.0
         released = speeds(sim, 2.0)

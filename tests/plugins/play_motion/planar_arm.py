@@ -131,7 +131,7 @@ def load(
 
 
 def player(sim: simkit.Simulation) -> PlayMotion:
-    return next(p for p in sim.structure.all_plugins() if isinstance(p, PlayMotion))
+    return next(p for p in sim.engine.structure.all_plugins() if isinstance(p, PlayMotion))
 
 
 def play(sim: simkit.Simulation, name: str, action: str = "/play_motion2", **fields: Any) -> Any:

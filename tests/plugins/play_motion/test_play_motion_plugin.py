@@ -137,7 +137,7 @@ def test_a_controller_that_is_given_something_else_ends_the_motion(sim: Any) -> 
 
 
 def test_joints_without_an_active_controller_cannot_be_played(sim: Any) -> None:
-    host = next(p for p in sim.structure.all_plugins() if hasattr(p, "manager"))
+    host = next(p for p in sim.engine.structure.all_plugins() if hasattr(p, "manager"))
     host.manager.deactivate("gripper_controller")
     goal = arm.play(sim, "open")
     assert goal.status.name == "REJECTED"
@@ -295,7 +295,10 @@ def test_a_second_robot_without_a_namespace_plays_under_its_name(tmp_path: Path)
     second = arm.model("other", arm.play_motion(), "0 3 0 0 0 0").replace("libgazebo_ros2_control.so", "none")
     (tmp_path / "two.sdf").write_text(arm.world(arm.model(extra=arm.play_motion()) + second))
     with simkit.load(tmp_path / "two.sdf") as sim:
-        assert "/other/play_motion2" in sim.actions() and "/other/play_motion/list_motions" in sim.services()
+        assert (
+            "/other/play_motion2" in sim.communication.actions.names()
+            and "/other/play_motion/list_motions" in sim.communication.services.names()
+        )
         note = next(d for d in sim.diagnostics if d.code == "SK-MOTION-007")
         assert note.message == (
             "robot 'other' plays motions under '/other/play_motion2': '/play_motion2' is another one's"

@@ -93,7 +93,7 @@ def command(sim: simkit.Simulation, controller: str, *values: float) -> None:
 
 def position(sim: simkit.Simulation, *joints: str) -> list[float]:
     """Where joints are [rad or m]."""
-    scoped = [name for joint in joints for name in sim.names.joints if name.endswith(f"::{joint}")]
+    scoped = [name for joint in joints for name in sim.engine.names.joints if name.endswith(f"::{joint}")]
     return [float(sim.joint(name).position) for name in scoped]
 
 
@@ -104,4 +104,4 @@ def states(sim: simkit.Simulation, manager: str = "/controller_manager") -> dict
 
 def told(sim: simkit.Simulation, code: str) -> list[str]:
     """The messages of one code, of the load and of the run."""
-    return [d.message for d in dict.fromkeys((*sim.diagnostics, *sim.reports)) if d.code == code]
+    return [d.message for d in dict.fromkeys((*sim.diagnostics, *sim.engine.reports)) if d.code == code]

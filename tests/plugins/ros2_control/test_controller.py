@@ -29,7 +29,7 @@ class Tuned(Controller):
 
 
 def tuned(sim: simkit.Simulation, values: dict[str, Any] | None = None) -> Tuned:
-    host = next(p for p in sim.structure.all_plugins() if hasattr(p, "manager"))
+    host = next(p for p in sim.engine.structure.all_plugins() if hasattr(p, "manager"))
     made = Tuned("tuned", host, Params.from_dict(values or {}, "tuned"), host.hardware)
     made.configure()
     return made
@@ -39,12 +39,12 @@ def test_a_live_parameter_begins_with_the_files_value_and_belongs_to_the_control
     with opened(tmp_path) as sim:
         made = tuned(sim, {"gains": {"elbow": {"p": 3.0}}})
         assert made.gain.value == 3.0
-        assert sim.parameters["/tuned"]["gains.elbow.p"].value == 3.0
+        assert sim.communication.parameters["/tuned"]["gains.elbow.p"].value == 3.0
         sim.set_parameter("/tuned", "gains.elbow.p", 4.0)
         assert made.gain.value == 4.0
         with pytest.raises(ParameterError, match="at least 0"):
             sim.set_parameter("/tuned", "gains.elbow.p", -1.0)
-        assert "/tuned/set_parameters" in sim.services()
+        assert "/tuned/set_parameters" in sim.communication.services.names()
 
 
 def test_its_attributes_are_its_state(tmp_path: Path) -> None:

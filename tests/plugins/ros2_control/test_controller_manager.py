@@ -216,7 +216,7 @@ def test_a_spawned_robot_is_controlled_too_and_others_may_come_and_go(tmp_path: 
         sim.run(1.0)
         assert position(sim, "j1", "j2") == pytest.approx([0.4, -0.2], abs=1e-3)
         sim.remove("robot")
-        assert not [name for name in sim.services() if "controller_manager" in name]
+        assert not [name for name in sim.communication.services.names() if "controller_manager" in name]
 
 
 def test_who_hears_of_a_robot_may_remove_it(tmp_path: Path) -> None:
@@ -243,7 +243,7 @@ def test_a_second_robot_of_the_kind_is_reached_by_its_models_name(tmp_path: Path
 
 
 def looked_at(sim: simkit.Simulation, _: object) -> None:
-    sim.fresh_data()
+    sim.engine.physics.fresh()
 
 
 def test_who_listens_changes_no_motion(tmp_path: Path) -> None:

@@ -94,7 +94,7 @@ def test_a_command_that_is_not_finite_is_left_out_and_that_is_said_once() -> Non
     sim.publish(CMD, twist(0.1, math.inf))
     sim.run(0.02)
     assert host.speeds[-1, 0] == pytest.approx(0.3)
-    assert [d.code for d in sim.reports].count("SK-CONTROL-045") == 1
+    assert [d.code for d in sim.engine.reports].count("SK-CONTROL-045") == 1
 
 
 def test_no_command_is_taken_while_it_is_inactive_and_the_wheels_stop() -> None:

@@ -120,7 +120,7 @@ def test_in_ros_1_the_wheels_sizes_are_the_models(tmp_path: Path) -> None:
         turned = yaw(told.orientation) - yaw(told_before.orientation)
         assert turned == pytest.approx(pose.rpy[2] - before.rpy[2], rel=2e-3)
         np.testing.assert_allclose(xyz(told.position)[:2], pose.position[:2], atol=0.01)
-        assert [d.code for d in sim.reports].count("SK-CONTROL-044") == 2
+        assert [d.code for d in sim.engine.reports].count("SK-CONTROL-044") == 2
 
 
 def test_it_is_the_same_after_a_reset_and_a_restore(tmp_path: Path) -> None:

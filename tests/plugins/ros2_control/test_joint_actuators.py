@@ -164,7 +164,7 @@ def test_who_looks_on_changes_no_motion(tmp_path: Path) -> None:
         for _ in range(70):
             sim.run(0.01)
             if looks:
-                sim.fresh_data()
+                sim.engine.physics.fresh()
         ends.append(np.array(sim.mj_data.qpos))
     assert np.array_equal(*ends)
 

@@ -68,7 +68,7 @@ def test_actuators_are_state_interfaces_and_no_joints_of_joint_states(tmp_path: 
         assert list(messages.messages[-1].name) == ["j1", "j2"]
         names = [i.name for i in sim.call("/controller_manager/list_hardware_interfaces").state_interfaces]
         assert names[-3:] == ["motor/position", "motor/velocity", "motor/effort"]
-        host = next(p for p in sim.structure.all_plugins() if hasattr(p, "manager"))
+        host = next(p for p in sim.engine.structure.all_plugins() if hasattr(p, "manager"))
         host.hardware.set_read_interfaces(["motor/position", "motor/effort", "j1/effort"])
         host.hardware.read()
         states = host.hardware.states

@@ -53,10 +53,10 @@ def test_a_time_in_the_past_is_refused_and_nothing_changes(caplog: pytest.LogCap
 
 
 def test_in_a_world_that_is_served_who_serves_it_does_the_steps() -> None:
-    with load() as sim, sim.pausing.served():
+    with load() as sim, sim.control.pausing.served():
         assert control(sim, pause=True, multi_step=7)
         assert sim.tick == 0
-        sim.pausing.advance(1000)
+        sim.control.pausing.advance(1000)
         assert (sim.tick, sim.paused) == (7, True)
 
 
@@ -93,7 +93,7 @@ def test_models_that_were_put_back_do_as_they_did_at_first() -> None:
         sim.joint("arm::hinge").set_velocity(1.0)
         sim.run(0.3)
         first = sim.mj_data.qpos.copy()
-        sim.reset_models()
+        sim.control.reset_models()
         assert sim.joint("arm::hinge").velocity == 0.0
         sim.joint("arm::hinge").set_velocity(1.0)
         sim.run(0.3)
@@ -128,7 +128,7 @@ def test_a_hook_may_ask_for_it() -> None:
                 control(self.sim, pause=True, multi_step=5)
 
     with load(plugins=[Stops()]) as sim:
-        sim.pausing.advance(1000)
+        sim.control.pausing.advance(1000)
         assert (sim.tick, sim.paused) == (25, True)
 
 

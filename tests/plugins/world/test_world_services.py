@@ -189,10 +189,10 @@ def test_gravity_and_pace_are_set() -> None:
         sim.model("box").set_pose(simkit.Pose((0, 0, 50)))
         sim.run(1.0)
         assert sim.link("box::body").linear_velocity[2] == pytest.approx(-1.6, rel=1e-6)
-        assert sim.pausing.pace == 0.5  # 500 steps of 1 ms in a second
+        assert sim.control.pausing.pace == 0.5  # 500 steps of 1 ms in a second
         assert ask(sim, "set_physics").success  # says nothing of gravity
         assert sim.gravity[2] == -1.6
-        assert sim.pausing.pace is None
+        assert sim.control.pausing.pace is None
 
 
 def test_a_step_of_another_length_is_refused_and_nothing_is_changed() -> None:
@@ -220,7 +220,7 @@ def test_a_light_changes_what_the_request_gives_and_keeps_the_rest() -> None:
         assert ask(sim, "light_config", light={"name": "lamp", "diffuse": {"r": 0.25, "a": 1.0}}).success
         after = sim.light("lamp").scene
         assert (after.diffuse, after.attenuation, after.spot) == ((0.25, 0, 0, 1), before.attenuation, before.spot)
-        index = list(sim.lights).index("lamp")
+        index = list(sim.contents.lights).index("lamp")
         assert sim.mj_model.light_diffuse[index] == pytest.approx((0.25, 0, 0))
         wanted = {"name": "lamp", "type": 1, "intensity": 2.0, "range": 7.0, "attenuation_constant": 1.0}
         assert ask(
@@ -235,7 +235,7 @@ def test_a_light_changes_what_the_request_gives_and_keeps_the_rest() -> None:
 
 def test_snapshot_reset_and_spawn_keep_what_a_light_was_made() -> None:
     with load() as sim:
-        index = list(sim.lights).index("lamp")
+        index = list(sim.contents.lights).index("lamp")
         ask(sim, "light_config", light={"name": "lamp", "diffuse": {"g": 0.75, "a": 1.0}})
         taken = sim.snapshot()
         sim.spawn(model("one", "5 5 5 0 0 0"))
@@ -425,7 +425,7 @@ def test_a_plugin_may_offer_a_service_of_its_own_in_place_of_one() -> None:
     with load() as sim:
         sim.offer("/world/w/create", "std_srvs/srv/Trigger", lambda _: {"message": "mine"})
         assert sim.call("/world/w/create").message == "mine"
-        assert sim.services()["/world/w/create"] == "std_srvs/srv/Trigger"
+        assert sim.communication.services.names()["/world/w/create"] == "std_srvs/srv/Trigger"
 
 
 def test_responses_are_the_messages_of_their_types() -> None:
@@ -482,7 +482,7 @@ def test_a_model_whose_plugin_raises_is_not_spawned_and_the_run_goes_on(tmp_path
 @pytest.mark.parametrize("name", ["a::b", "", " ", "world", "__model__"])
 def test_names_that_no_model_can_have_are_refused(name: str) -> None:
     with load() as sim:
-        for add in (lambda: sim.spawn(model("z"), name=name), lambda: sim.clone("box", name)):
+        for add in (lambda: sim.spawn(model("z"), name=name), lambda: sim.contents.clone("box", name)):
             with pytest.raises(simkit.InputError, match="name"):
                 add()
         if name.strip():  # in a message an empty one is none

@@ -53,7 +53,7 @@ def test_a_pause_is_told_at_once() -> None:
         sim.paused = True
         assert (stats.latest.paused, msgs.stamp_ns(stats.latest.sim_time)) == (True, 50_000_000)
         assert msgs.stamp_ns(stats.latest.step_size) == 0
-        sim.pausing.step(10)
+        sim.control.pausing.step(10)
         assert (stats.latest.paused, stats.latest.stepping) == (False, True)
         sim.paused = False
         assert (stats.latest.paused, stats.latest.stepping) == (False, False)
@@ -61,11 +61,11 @@ def test_a_pause_is_told_at_once() -> None:
 
 def test_nothing_is_scheduled_for_them_while_nobody_listens() -> None:
     with load() as sim:
-        before = len(sim.scheduler.after._tasks)
+        before = len(sim.engine.scheduler.after._tasks)
         sub = sim.subscribe("/world/w/pose/info")
-        assert len(sim.scheduler.after._tasks) == before + 1
+        assert len(sim.engine.scheduler.after._tasks) == before + 1
         sub.close()
-        assert len(sim.scheduler.after._tasks) == before
+        assert len(sim.engine.scheduler.after._tasks) == before
 
 
 def test_who_listens_and_when_leaves_no_trace_in_the_bits() -> None:
@@ -145,7 +145,7 @@ def recorded(path: Path, **options: Any) -> set[str]:
     with load() as sim:
         with Recorder(sim, path, **options):
             sim.run(0.5)
-        return set(sim.bus.all_topics())
+        return set(sim.communication.bus.all_topics())
 
 
 def topics_of(path: Path) -> set[str]:
@@ -178,7 +178,7 @@ def test_a_counter_does_not_ask_for_them() -> None:
         counter = TopicCounter(sim)
         sim.run(0.1)
         assert not {row.topic for row in counter.rows} & ASIDE
-        assert not any(sim.bus.wanted(topic) for topic in ASIDE)
+        assert not any(sim.communication.bus.wanted(topic) for topic in ASIDE)
 
 
 def test_time_on_the_wall_is_no_state_of_the_world() -> None:

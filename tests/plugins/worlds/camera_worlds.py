@@ -47,7 +47,7 @@ def plugin(library: str, content: str = "") -> str:
 
 
 def topics_of(sim: Any) -> dict[str, str]:
-    others = {"/clock", "/tf_static", *sim.bus.aside}
+    others = {"/clock", "/tf_static", *sim.communication.bus.aside}
     return {t: kind.rsplit("/", 1)[-1] for t, kind in sim.topics().items() if t not in others}
 
 

@@ -100,7 +100,7 @@ def test_a_velocity_loses_the_header_that_the_world_has_no_use_for(tmp_path: Pat
     by_ros(tmp_path / "ros", StoragePlugin.SQLITE3, "geometry_msgs/msg/TwistStamped")
     heard: list[Any] = []
     with simkit.load(CART.replace("/cmd_vel", "/other")) as sim:
-        sim.bus.listen("/cmd_vel", ("geometry_msgs/msg/Twist",), heard.append)
+        sim.communication.bus.listen("/cmd_vel", ("geometry_msgs/msg/Twist",), heard.append)
         with Playback(sim, tmp_path / "ros") as played:
             driven(sim, played, 210)
             assert "TwistStamped" in played.notes[0]

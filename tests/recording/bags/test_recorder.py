@@ -188,7 +188,7 @@ def test_a_full_disk_stops_the_recording_and_not_the_publisher(tmp_path: Path) -
 
 def test_a_message_that_cannot_be_written_is_its_publishers_error(tmp_path: Path) -> None:
     with simkit.load(WORLD) as sim, Recorder(sim, tmp_path / "run.mcap"):
-        publisher = sim.bus.advertise("/broken", "std_msgs/msg/Float64")
+        publisher = sim.communication.bus.advertise("/broken", "std_msgs/msg/Float64")
         message = msgs.make("std_msgs/msg/Float64")
         message.data = "much"
         with pytest.raises(MessageError):

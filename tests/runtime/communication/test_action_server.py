@@ -67,7 +67,7 @@ def test_a_goal_is_worked_on_and_ends_with_its_result(sim: Any) -> None:
     assert list(goal.result.sequence) == [0, 1, 1, 2, 3, 5]
     assert told == [[0, 1, 1], [0, 1, 1, 2], [0, 1, 1, 2, 3], [0, 1, 1, 2, 3, 5]]
     assert ended == [goal]
-    assert sim.actions() == {"/fibonacci": FIBONACCI}
+    assert sim.communication.actions.names() == {"/fibonacci": FIBONACCI}
 
 
 def test_a_goal_is_rejected_with_a_reason(sim: Any) -> None:
@@ -158,7 +158,7 @@ def test_what_the_one_who_sent_it_raises_is_not_the_plugins_fault(sim: Any) -> N
         SubscriberError, match=r"on_feedback.*'/fibonacci/_action/feedback' raised at t=0.1 s.*too slow"
     ):
         sim.run(1.0)
-    sim.faults.on_error = "disable"
+    sim.engine.faults.on_error = "disable"
     goal = sim.send_goal("/fibonacci", {"order": 3}, None, lambda goal: 1 / 0)
     with pytest.raises(SubscriberError, match="get_result.*ZeroDivisionError"):
         sim.run(1.0)

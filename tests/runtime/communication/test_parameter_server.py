@@ -27,7 +27,7 @@ class Tuner(simkit.WorldPlugin):
 
 
 def _tuner(sim: Any) -> Tuner:
-    return next(plugin for plugin in sim.structure.all_plugins() if isinstance(plugin, Tuner))
+    return next(plugin for plugin in sim.engine.structure.all_plugins() if isinstance(plugin, Tuner))
 
 
 @pytest.fixture
@@ -40,7 +40,7 @@ def test_a_change_from_outside_is_there_for_the_next_step(sim: Any) -> None:
     tuner = _tuner(sim)
     sim.step(2)
     sim.set_parameter("/Tuner", "p_gain", 5)
-    assert sim.parameters["/Tuner"]["p_gain"].value == 5.0
+    assert sim.communication.parameters["/Tuner"]["p_gain"].value == 5.0
     sim.step(2)
     assert tuner.seen == [2.0, 2.0, 5.0, 5.0]
 
@@ -68,10 +68,10 @@ def test_the_plugin_is_told_of_a_change(sim: Any) -> None:
 def test_a_value_that_is_not_allowed_changes_nothing_and_says_what_is(
     sim: Any, name: str, value: Any, allowed: str
 ) -> None:
-    before = sim.parameters["/Tuner"][name].value
+    before = sim.communication.parameters["/Tuner"][name].value
     with pytest.raises(ParameterError, match=f"allowed is {allowed}"):
         sim.set_parameter("/Tuner", name, value)
-    assert sim.parameters["/Tuner"][name].value == before
+    assert sim.communication.parameters["/Tuner"][name].value == before
 
 
 def test_an_unknown_node_or_parameter_is_an_error_that_names_the_closest(sim: Any) -> None:
@@ -87,9 +87,9 @@ def test_a_reset_and_a_restore_bring_the_values_back(sim: Any) -> None:
     seven = sim.snapshot()
     sim.set_parameter("/Tuner", "p_gain", 9.0)
     sim.restore(seven)
-    assert sim.parameters["/Tuner"]["p_gain"].value == 7.0
+    assert sim.communication.parameters["/Tuner"]["p_gain"].value == 7.0
     sim.reset()
-    assert sim.parameters["/Tuner"]["p_gain"].value == 2.0
+    assert sim.communication.parameters["/Tuner"]["p_gain"].value == 2.0
 
 
 def test_ros_reads_and_changes_them_by_its_own_services(sim: Any) -> None:
@@ -104,10 +104,10 @@ def test_ros_reads_and_changes_them_by_its_own_services(sim: Any) -> None:
     results = sim.call("/Tuner/set_parameters", {"parameters": wanted}).results
     assert [r.successful for r in results] == [True, False]
     assert "an integer of at least 1" in results[1].reason
-    assert sim.parameters["/Tuner"]["p_gain"].value == 4.0
+    assert sim.communication.parameters["/Tuner"]["p_gain"].value == 4.0
     wanted[0]["value"]["double_value"] = 8.0
     assert not sim.call("/Tuner/set_parameters_atomically", {"parameters": wanted}).result.successful
-    assert sim.parameters["/Tuner"]["p_gain"].value == 4.0
+    assert sim.communication.parameters["/Tuner"]["p_gain"].value == 4.0
     described = sim.call("/Tuner/describe_parameters", {"names": ["p_gain"]}).descriptors[0]
     assert described.floating_point_range[0].to_value == 100.0
     assert described.description == "gain [N·m/rad]"
@@ -126,7 +126,7 @@ def test_the_first_value_is_the_files_own(tmp_path: Any) -> None:
         return f'<sdf version="1.9"><world name="w">{plugin}</world></sdf>'
 
     with simkit.load(world("<p_gain>5</p_gain><count>4</count>"), plugin_paths=[tmp_path]) as sim:
-        values = {n: p.value for n, p in sim.parameters["/tuner"].items()}
+        values = {n: p.value for n, p in sim.communication.parameters["/tuner"].items()}
         assert values == {"p_gain": 5.0, "count": 4, "gains": (1.0, 2.0)}
     bad = "<p_gain>-5</p_gain><count>none</count><gains>1 -2</gains>"
     with pytest.raises(LoadError) as caught:
@@ -149,12 +149,12 @@ def test_a_model_that_comes_under_the_name_of_one_that_went_has_its_node_and_a_r
     with simkit.load(world, plugin_paths=[tmp_path]) as sim:
         kept = sim.snapshot()
         sim.remove("m")
-        assert not sim.parameters
+        assert not sim.communication.parameters
         sim.spawn(f'<sdf version="1.9">{model.format(5)}</sdf>', name="m")
-        assert {n: p.value for n, p in sim.parameters["/tuned"].items()} == {"p_gain": 5.0, "i_gain": 2.0}
+        assert {n: p.value for n, p in sim.communication.parameters["/tuned"].items()} == {"p_gain": 5.0, "i_gain": 2.0}
         sim.restore(kept)
         sim.set_parameter("/tuned", "i_gain", 4.0)
-        assert {n: p.value for n, p in sim.parameters["/tuned"].items()} == {"p_gain": 3.0, "i_gain": 4.0}
+        assert {n: p.value for n, p in sim.communication.parameters["/tuned"].items()} == {"p_gain": 3.0, "i_gain": 4.0}
         assert sim.call("/tuned/get_parameters", {"names": ["i_gain"]}).values[0].double_value == 4.0
 
 
@@ -182,5 +182,5 @@ def test_odd_values_are_taken_as_they_are_or_refused(default: Any, given: Any, t
                 sim.set_parameter("/One", "value", given)
         else:
             sim.set_parameter("/One", "value", given)
-        now = sim.parameters["/One"]["value"].value
+        now = sim.communication.parameters["/One"]["value"].value
         assert now == (default if taken is None else taken) and type(now) is type(default)

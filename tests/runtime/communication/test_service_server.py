@@ -31,7 +31,7 @@ def test_a_service_answers_at_once_with_its_response_message() -> None:
         assert lamp.is_on
         assert msgs.type_name(response) == "std_srvs/srv/SetBool_Response"
         assert (response.success, response.message) == (True, "at 0.5 s")
-        assert sim.services()["/lamp/switch"] == "std_srvs/srv/SetBool"
+        assert sim.communication.services.names()["/lamp/switch"] == "std_srvs/srv/SetBool"
 
 
 def test_a_message_is_taken_as_well_as_a_dict() -> None:
@@ -76,7 +76,7 @@ def test_the_service_of_a_removed_model_goes_and_comes_back_with_a_restore(tmp_p
         before = sim.snapshot()
         assert sim.call("/robot/home").success
         sim.remove("robot")
-        assert "/robot/home" not in sim.services()
+        assert "/robot/home" not in sim.communication.services.names()
         sim.restore(before)
         assert sim.call("/robot/home").success
         sim.remove("robot")

@@ -159,7 +159,7 @@ def test_a_hundred_thousand_messages_a_second_are_all_heard_where_they_come_step
             sim.publish("/heard", number(1))
         sim.step()
     assert talker.heard == 10_000
-    assert not sim.bus.dropped
+    assert not sim.communication.bus.dropped
 
 
 def test_messages_that_wait_are_in_a_snapshot_and_a_reset_forgets_them():
@@ -182,7 +182,7 @@ def test_an_input_that_resets_ends_the_delivery():
     sim = simkit.load(WORLD)
     sim.step(5)
     got = []
-    sim.bus.listen("/go", (FLOAT,), lambda m: (got.append(m.data), sim.reset()))
+    sim.communication.bus.listen("/go", (FLOAT,), lambda m: (got.append(m.data), sim.reset()))
     sim.publish("/go", number(1))
     sim.publish("/go", number(2))
     sim.step()

@@ -128,7 +128,7 @@ def test_slips_that_differ_need_a_direction():
 
 
 def test_a_world_without_any_of_it_has_no_law():
-    assert simkit.load(world("<mu>1</mu><mu2>1</mu2>")).physics.shaper is None
+    assert simkit.load(world("<mu>1</mu><mu2>1</mu2>")).engine.physics.shaper is None
 
 
 def test_who_reads_in_between_changes_no_bits():
@@ -137,7 +137,7 @@ def test_who_reads_in_between_changes_no_bits():
         for _ in range(200):
             sim.step()
             if reads:
-                sim.physics.fresh_accelerations()
+                sim.engine.physics.fresh_accelerations()
                 sim.snapshot()
         return sim.mj_data.qpos.tobytes() + sim.mj_data.qvel.tobytes()
 
@@ -166,9 +166,9 @@ def test_it_is_the_same_after_a_reset_a_restore_and_a_spawn():
     assert sim.mj_data.qpos.tobytes() == here
     lone = '<sdf version="1.9"><model name="lone"><pose>5 5 1 0 0 0</pose><link name="l"/></model></sdf>'
     sim.spawn(lone, "lone")
-    assert sim.physics.shaper is not None
+    assert sim.engine.physics.shaper is not None
     sim.remove("box")
-    assert sim.physics.shaper is None
+    assert sim.engine.physics.shaper is None
 
 
 def test_boxes_with_a_direction_fall_asleep_and_wake():
@@ -181,7 +181,7 @@ def test_boxes_with_a_direction_fall_asleep_and_wake():
     )
     sim = simkit.load(world(TWO).replace("</world>", f"<model{box}</model></world>"))
     sim.run(4.0)
-    assert sim.physics.sleep.rests
+    assert sim.engine.physics.sleep.rests
     sim.link("second::l").set_velocity((0.0, 1.0, 0.0))
     sim.run(0.1)
     assert sim.link("second::l").pose.position[1] > 0.02
@@ -196,7 +196,7 @@ def test_a_velocity_that_is_set_after_a_reading_counts_as_without_one():
         sim.run(0.1)
         for turn in range(5):
             if reads:
-                sim.physics.fresh_accelerations()
+                sim.engine.physics.fresh_accelerations()
             sim.link("box::l").set_velocity((0.5, 0.2 * turn, 0.0))
             sim.run(0.02)
         return sim.mj_data.qpos.tobytes() + sim.mj_data.qvel.tobytes()
@@ -245,5 +245,5 @@ def test_an_integrator_that_has_no_place_for_it_is_told_of_once(integrator, tmp_
         sim.spawn(f'<sdf version="1.9">{model}</sdf>', name)
     found = [one.code for one in sim.diagnostics]
     assert found.count("SK-PHYS-030") == (1 if integrator == "discrete" else 0)
-    assert (sim.physics.shaper is None) == (integrator == "discrete")
+    assert (sim.engine.physics.shaper is None) == (integrator == "discrete")
     sim.run(0.05)

@@ -57,7 +57,7 @@ def slide(sim: Any, name: str, speed: float, seconds: float, direction: float = 
     touches, rise, steps = 0, 0.0, round(seconds / sim.timestep)
     for _ in range(steps):
         sim.step()
-        touches += sim.fresh_data().ncon > 0
+        touches += sim.engine.physics.fresh().ncon > 0
         rise = max(rise, float(sim.mj_data.qpos[2]) - height)
     return touches / steps, rise, float(np.linalg.norm(model.pose.position[:2] - start[:2]))
 
@@ -147,7 +147,7 @@ def test_torsion_and_rolling_friction_lift_nothing_either(condim: int, tmp_path:
         sim.run(0.3)
         rest = float(sim.mj_data.qpos[2])
         sim.mj_data.qvel[:] = [3, 0, 0, 0, 0, 20]
-        sim.physics.changed(VELOCITY)
+        sim.engine.physics.changed(VELOCITY)
         rises = []
         for _ in range(500):
             sim.step()
@@ -155,7 +155,7 @@ def test_torsion_and_rolling_friction_lift_nothing_either(condim: int, tmp_path:
         assert max(rises) < 5e-6
         sim.mj_data.qvel[:] = [0, 0, 0, 0, 0, 20]
         sim.mj_data.qpos[3:] = [1, 0, 0, 0]
-        sim.physics.changed(STALE)
+        sim.engine.physics.changed(STALE)
         sim.run(0.2)
         # a torque of 0.02 m times the weight on 0.004 kg m²
         assert sim.mj_data.qvel[5] == pytest.approx(20.0 - 0.02 * 9.81 / 0.004 * 0.2, rel=0.01)
@@ -175,7 +175,7 @@ def test_it_holds_under_every_integrator_and_both_cones(integrator: str, cone: s
         sim.run(0.3)
         rest, start = float(sim.mj_data.qpos[2]), float(sim.mj_data.qpos[0])
         sim.mj_data.qvel[0] = 4.0
-        sim.physics.changed(VELOCITY)
+        sim.engine.physics.changed(VELOCITY)
         for _ in range(500):
             sim.step()
             assert abs(float(sim.mj_data.qpos[2]) - rest) < 5e-6

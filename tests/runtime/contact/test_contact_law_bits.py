@@ -126,7 +126,7 @@ def bits(sim: simkit.Simulation) -> bytes:
 
 
 def readings(sim: simkit.Simulation) -> list[str]:
-    return [repr(sensor.latest) for sensor in sim.sensors.values()]
+    return [repr(sensor.latest) for sensor in sim.contents.sensors.values()]
 
 
 def look(sim: simkit.Simulation) -> None:
@@ -136,9 +136,9 @@ def look(sim: simkit.Simulation) -> None:
             lambda: None,
             lambda: [model.pose for model in sim.models.values()],
             lambda: readings(sim),
-            sim.physics.fresh_velocities,
-            sim.fresh_acceleration,
-            lambda: sim.data_of(sim.hold_state()),
+            sim.engine.physics.fresh_velocities,
+            sim.engine.physics.fresh_accelerations,
+            lambda: sim.engine.physics.data_of(sim.engine.physics.hold()),
         )
     )()
 
@@ -179,7 +179,7 @@ def test_a_run_restored_to_any_tick_of_a_window_repeats(name: str) -> None:
         for count in (5, 20):
             sim.model("ground").pose  # noqa: B018 - a reader
             sim.mj_data.qvel[:] *= 0.5
-            sim.physics.changed(VELOCITY)
+            sim.engine.physics.changed(VELOCITY)
             sim.step(count)
             sim.restore(here)
             look(sim)
@@ -194,7 +194,7 @@ CHANGES: dict[str, Callable[[simkit.Simulation], object]] = {
     "pose": lambda sim: sim.model("a").set_pose(simkit.Pose((0, 0.5, 0.11), UPRIGHT)),
     "wrench": lambda sim: sim.link("a::l").apply_wrench((3, 1, 20), (0, 0.1, 0)),
     "gravity": lambda sim: setattr(sim, "gravity", (1, 0, -5)),
-    "friction": lambda sim: sim.touch("geom_friction").__imul__(0.3),
+    "friction": lambda sim: sim.engine.touch("geom_friction").__imul__(0.3),
     "collisions": lambda sim: setattr(sim.link("a::l"), "collisions_enabled", False),
     "spawn": lambda sim: sim.spawn(f'<sdf version="1.9">{body("z", "0.3 0.5 0.4 0 0 0")}</sdf>'),
     "remove": lambda sim: sim.remove("b"),
@@ -210,7 +210,7 @@ def test_a_change_within_a_window_gives_the_same_bits_with_readers_and_after_a_r
         sim = sliding()
         sim.step(35)
         if how == "read":
-            sim.fresh_acceleration()
+            sim.engine.physics.fresh_accelerations()
         CHANGES[change](sim)
         if how == "restored":
             here = sim.snapshot()
@@ -234,11 +234,11 @@ def test_a_held_state_is_measured_as_the_state_was(name: str) -> None:
     for _ in range(60):
         sim.step()
         live.step()
-        data = live.fresh_acceleration()
-        held.append((sim.hold_state(), data.qacc.copy(), data.cacc.copy(), data.efc_force.copy()))
+        data = live.engine.physics.fresh_accelerations()
+        held.append((sim.engine.physics.hold(), data.qacc.copy(), data.cacc.copy(), data.efc_force.copy()))
     random.Random(1).shuffle(held)
     for state, *values in held:
-        data = sim.data_of(state)
+        data = sim.engine.physics.data_of(state)
         for got, expected in zip((data.qacc, data.cacc, data.efc_force), values, strict=True):
             assert np.array_equal(got, expected)
 
@@ -248,11 +248,11 @@ def test_a_held_state_has_the_controls_of_its_tick() -> None:
     sim = simkit.load("""<mujoco><worldbody><body><joint name="j" axis="0 1 0"/><geom size="0.1" mass="1"/></body>
     </worldbody><actuator><motor joint="j"/></actuator></mujoco>""")
     sim.step(3)
-    held = sim.hold_state()
+    held = sim.engine.physics.hold()
     sim.mj_data.ctrl[0] = 5.0
-    assert sim.data_of(held).qacc[0] == 0.0
+    assert sim.engine.physics.data_of(held).qacc[0] == 0.0
     sim.step()
-    assert sim.data_of(held).qacc[0] == 0.0
+    assert sim.engine.physics.data_of(held).qacc[0] == 0.0
 
 
 # ---------------------------------------------------------------------- one law
@@ -305,7 +305,7 @@ def test_with_the_engines_own_contacts_a_run_has_the_bits_of_the_bare_engine() -
     mujoco.mj_step(model, data, 200)
     for _ in range(20):
         sim.step(10)
-        sim.fresh_acceleration()
+        sim.engine.physics.fresh_accelerations()
     assert data.qpos.tobytes() == sim.mj_data.qpos.tobytes()
 
 
@@ -320,7 +320,7 @@ def test_a_chain_that_slept_moves_alike_whether_or_not_somebody_reads_first() ->
         assert (sim.mj_data.tree_asleep >= 0).all()
         sim.model("chain").set_pose(simkit.Pose((0, 0, 3), (0.995, 0, 0.1, 0)))
         if reads:
-            sim.fresh_data()
+            sim.engine.physics.fresh()
         sim.step()
         found.append(bits(sim))
     assert found[0] == found[1]
@@ -345,7 +345,7 @@ def test_reading_again_and_again_between_two_steps_takes_no_more_memory() -> Non
     for _ in range(3):
         for _ in range(200):
             base.apply_wrench((1e-9, 0, 0))
-            sim.fresh_data()
+            sim.engine.physics.fresh()
         used.append(int(sim.mj_data.maxuse_arena))
     assert used[0] == used[2]
 
@@ -353,12 +353,12 @@ def test_reading_again_and_again_between_two_steps_takes_no_more_memory() -> Non
 def test_a_spawn_while_servos_have_no_strength_leaves_their_corrections_in_bounds() -> None:
     sim = turning()
     sim.step(203)
-    gains = sim.touch("actuator_gainprm")
+    gains = sim.engine.touch("actuator_gainprm")
     before = gains.copy()
     gains[:, 0] = 0.0
     sim.spawn(f'<sdf version="1.9">{body("z", "5 5 0.5 0 0 0")}</sdf>')
     sim.step(100)
-    sim.touch("actuator_gainprm")[:] = before
+    sim.engine.touch("actuator_gainprm")[:] = before
     sim.step(200)
     assert np.abs(sim.mj_data.ctrl).max() < 20.0
     assert not sim.mj_data.warning.number.any()
@@ -370,7 +370,7 @@ def test_a_chain_that_diverges_says_so_and_leaves_the_options_as_they_were(speed
     option = sim.mj_model.opt
     before = option.timestep, option.integrator, option.disableflags, option.enableflags
     sim.mj_data.qvel[:] = speed
-    sim.physics.changed(VELOCITY)
+    sim.engine.physics.changed(VELOCITY)
     with pytest.raises(SimulationDiverged):
         sim.step(100)
     sim.reset()
@@ -398,7 +398,7 @@ def mjcf(integrator: str, cone: str = "pyramidal", condim: int = 3) -> str:
 
 def push(sim: simkit.Simulation) -> None:
     sim.mj_data.qvel[:] = np.random.default_rng(1).normal(size=sim.mj_model.nv)
-    sim.physics.changed(STALE)
+    sim.engine.physics.changed(STALE)
 
 
 def test_worlds_under_runge_kutta_step_on_several_threads_while_others_load() -> None:

@@ -171,17 +171,17 @@ def test_the_limit_is_a_quarter_of_both_thicknesses_in_a_step(speed: float, is_f
     # (0.04 + 0.01) / 4 = 12.5 mm in 1 ms
     sim = simkit.load(world(wall(0.01), body("b", SHAPES["ball"], "-0.1 0.03 0.02 0 0 0")))
     sim.model("b").set_velocity((speed, 0, 0), (0, 0, 0))
-    assert sim.physics.fast_bodies.wants(sim.mj_data) is is_fast
+    assert sim.engine.physics.fast_bodies.wants(sim.mj_data) is is_fast
 
 
 def test_a_plane_and_a_ball_that_spins_want_nothing() -> None:
     plane = fixed("<plane><normal>0 0 1</normal><size>10 10</size></plane>")
     sim = simkit.load(world(plane, body("b", SHAPES["ball"], "0 0 1 0 0 0")))
     sim.model("b").set_velocity((0, 0, -300), (500, 0, 0))
-    assert not sim.physics.fast_bodies.wants(sim.mj_data)
+    assert not sim.engine.physics.fast_bodies.wants(sim.mj_data)
     sim = simkit.load(world(wall(0.01), body("b", SHAPES["ball"], "-0.1 0 0 0 0 0")))
     sim.model("b").set_velocity((0, 0, 0), (0, 5000, 0))
-    assert not sim.physics.fast_bodies.wants(sim.mj_data)
+    assert not sim.engine.physics.fast_bodies.wants(sim.mj_data)
 
 
 def test_what_turns_on_a_joint_counts_by_the_speed_of_its_end() -> None:
@@ -192,7 +192,7 @@ def test_what_turns_on_a_joint_counts_by_the_speed_of_its_end() -> None:
       <size>1 0.01 0.1</size></box></geometry></collision></link></model>"""
     arm = arm.replace('<link name="base"/>', '<link name="base"><inertial><mass>1</mass></inertial></link>')
     sim = simkit.load(world(arm, wall(0.01).replace("<link", "<pose>0.9 0.6 0 0 0 1.57</pose><link")))
-    joint, wants = sim.joint("arm::j"), sim.physics.fast_bodies.wants
+    joint, wants = sim.joint("arm::j"), sim.engine.physics.fast_bodies.wants
     joint.set_velocity(2.0)  # the end at 2 m/s: 2 mm of the 5 mm in a step
     assert not wants(sim.mj_data)
     joint.set_velocity(20.0)
@@ -204,7 +204,7 @@ def test_slow_things_have_the_bits_of_a_run_without_any_look() -> None:
     runs = []
     for looks in (True, False):
         sim = simkit.load(text)
-        sim.physics.fast_bodies._can_be_fast = looks
+        sim.engine.physics.fast_bodies._can_be_fast = looks
         sim.model("b").set_velocity((8, 0, 0), (3, 2, 1))
         sim.run(0.2)
         runs.append((sim.mj_data.qpos.tobytes(), sim.mj_data.qvel.tobytes()))
@@ -234,7 +234,7 @@ def test_chunks_and_readers_make_no_difference(chunks: list[int]) -> None:
         for count in chunks:
             sim.step(count)
             if reads:
-                _ = sim.physics.fresh().ncon, sim.link("b::l").linear_acceleration
+                _ = sim.engine.physics.fresh().ncon, sim.link("b::l").linear_acceleration
         assert _bits(sim) == _bits(whole)
 
 

@@ -86,7 +86,7 @@ def run(source, duration=0.12, change=lambda sim: None):
         commanded(sim)
         change(sim)
         sim.run(duration)
-        truths = [msgs.serialize(s.truth) for s in sim.sensors.values()]
+        truths = [msgs.serialize(s.truth) for s in sim.contents.sensors.values()]
         state = np.concatenate((sim.mj_data.qpos, sim.mj_data.qvel)).tobytes()
     return log, truths, state
 
@@ -113,7 +113,7 @@ def by_numpy(monkeypatch):
 
 
 def batch_sizes(sim):
-    return [len(s.batch.members) if s.batch is not None else 0 for s in sim.sensors.values()]
+    return [len(s.batch.members) if s.batch is not None else 0 for s in sim.contents.sensors.values()]
 
 
 # ---------------------------------------------------------------------- the same bits
@@ -154,7 +154,7 @@ def test_imus_whose_bias_wanders_work_alone(apart):
                           "<dynamic_bias_correlation_time>1</dynamic_bias_correlation_time></noise>")  # fmt: skip
     source = world(imu=f"<imu><angular_velocity><x>{drift}</x></angular_velocity></imu>")
     with simkit.load(source) as sim:
-        assert all(s.batch is None for s in sim.sensors.values() if s.kind == "imu")
+        assert all(s.batch is None for s in sim.contents.sensors.values() if s.kind == "imu")
     assert run(source) == apart(run, source)
 
 
@@ -234,7 +234,7 @@ def test_a_snapshot_taken_together_is_that_taken_alone(apart):
             sim.run(0.1037)
             sim.snapshot()
             sim.run(0.05)
-            drives = [p for p in sim.structure.all_plugins() if type(p).__name__ == "DiffDrive"]
+            drives = [p for p in sim.engine.structure.all_plugins() if type(p).__name__ == "DiffDrive"]
             states = [p.get_state()["_odometry"] for p in drives]
             return [(s.reckoning, s.twist, s._at, s._noted, s._recent) for s in states]
 
@@ -263,7 +263,7 @@ def test_a_reset_from_within_a_callback_ends_the_tick_for_all():
 
 def test_of_many_the_one_that_raises_is_named():
     with simkit.load(world()) as sim:
-        drives = [p for p in sim.structure.all_plugins() if type(p).__name__ == "DiffDrive"]
+        drives = [p for p in sim.engine.structure.all_plugins() if type(p).__name__ == "DiffDrive"]
         drives[3]._servos = None  # breaks it
         commanded(sim)
         with pytest.raises(PluginError) as found:

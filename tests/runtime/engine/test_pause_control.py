@@ -33,12 +33,12 @@ class PausesAt(simkit.WorldPlugin):
 
 def test_who_keeps_a_world_running_stands_still_while_it_is_paused_and_goes_on_when_it_is_resumed() -> None:
     with simkit.load(BALL) as sim:
-        sim.pausing.advance(10)
+        sim.control.pausing.advance(10)
         sim.paused = True
-        sim.pausing.advance(10)
+        sim.control.pausing.advance(10)
         assert (sim.tick, sim.paused) == (10, True)
         sim.paused = False
-        sim.pausing.advance(10)
+        sim.control.pausing.advance(10)
         assert (sim.tick, sim.paused) == (20, False)
 
 
@@ -51,31 +51,31 @@ def test_a_script_goes_as_far_as_it_says_and_the_world_is_as_paused_as_before() 
 
 
 def test_steps_that_were_asked_for_are_done_and_add_up_and_then_it_pauses() -> None:
-    with simkit.load(BALL) as sim, sim.pausing.served():
-        sim.pausing.step(5)
-        sim.pausing.advance(2)
-        assert (sim.tick, sim.paused, sim.pausing.is_stepping) == (2, False, True)
-        sim.pausing.step(4)
-        sim.pausing.advance(1000)
+    with simkit.load(BALL) as sim, sim.control.pausing.served():
+        sim.control.pausing.step(5)
+        sim.control.pausing.advance(2)
+        assert (sim.tick, sim.paused, sim.control.pausing.is_stepping) == (2, False, True)
+        sim.control.pausing.step(4)
+        sim.control.pausing.advance(1000)
         assert (sim.tick, sim.paused) == (9, True)
 
 
 def test_a_run_to_a_time_ends_at_the_first_tick_that_is_not_before_it() -> None:
     with simkit.load(BALL) as sim:
-        sim.pausing.run_to(12_300_001)
-        sim.pausing.advance(1000)
+        sim.control.pausing.run_to(12_300_001)
+        sim.control.pausing.advance(1000)
         assert (sim.tick, sim.paused) == (13, True)
-        sim.pausing.run_to(20_000_000)
-        sim.pausing.advance(1000)
+        sim.control.pausing.run_to(20_000_000)
+        sim.control.pausing.advance(1000)
         assert sim.tick == 20
 
 
 def test_a_hook_that_pauses_ends_a_served_run_with_its_step() -> None:
     with simkit.load(BALL, plugins=[PausesAt(40)]) as sim:
-        sim.pausing.advance(1000)
+        sim.control.pausing.advance(1000)
         assert (sim.tick, sim.paused) == (40, True)
     with simkit.load(BALL, plugins=[PausesAt(40, "before_step")]) as sim:
-        sim.pausing.advance(1000)
+        sim.control.pausing.advance(1000)
         assert (sim.tick, sim.paused) == (41, True)  # the step it was called for is done
 
 
@@ -89,7 +89,7 @@ def test_pauses_leave_no_trace_in_the_bits() -> None:
     with simkit.load(BALL) as straight, simkit.load(BALL, plugins=[PausesAt(40)]) as paused:
         straight.run(0.1)
         while paused.tick < 100:
-            paused.pausing.advance(100 - paused.tick)
+            paused.control.pausing.advance(100 - paused.tick)
             paused.paused = False
         assert np.array_equal(straight.mj_data.qpos, paused.mj_data.qpos)
         assert np.array_equal(straight.mj_data.qvel, paused.mj_data.qvel)
@@ -98,12 +98,12 @@ def test_pauses_leave_no_trace_in_the_bits() -> None:
 def test_snapshots_and_reset_cover_it() -> None:
     with simkit.load(BALL) as sim:
         sim.step(5)
-        sim.pausing.step(3)
+        sim.control.pausing.step(3)
         before = sim.snapshot()
         sim.paused = False
         sim.step(50)
         sim.restore(before)
-        sim.pausing.advance(1000)
+        sim.control.pausing.advance(1000)
         assert (sim.tick, sim.paused) == (8, True)
         sim.reset()
         assert (sim.tick, sim.paused) == (0, False)
@@ -112,7 +112,7 @@ def test_snapshots_and_reset_cover_it() -> None:
 def test_who_watches_is_told_of_every_change_and_of_nothing_else() -> None:
     heard: list[bool] = []
     with simkit.load(BALL) as sim:
-        sim.pausing.on_change(lambda: heard.append(sim.paused))
+        sim.control.pausing.on_change(lambda: heard.append(sim.paused))
         sim.paused = True
         sim.paused = True
         sim.step(5)
@@ -131,7 +131,10 @@ def test_who_keeps_a_world_running_has_their_turn_when_a_hook_goes_back(begin: i
         def after_step(self) -> None:
             self.sim.reset()
 
-    with simkit.load('<sdf version="1.9"><world name="w"/></sdf>', plugins=[Again()]) as sim, sim.pausing.served():
+    with (
+        simkit.load('<sdf version="1.9"><world name="w"/></sdf>', plugins=[Again()]) as sim,
+        sim.control.pausing.served(),
+    ):
         sim.step(begin)
-        sim.pausing.advance(1000)
+        sim.control.pausing.advance(1000)
         assert sim.tick == 0

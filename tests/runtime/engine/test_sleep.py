@@ -34,9 +34,9 @@ def world(*parts: str, gravity: str = "0 0 -9.8") -> str:
 
 def asleep(sim: simkit.Simulation) -> list[str]:
     """Names of the models that sleep."""
-    data = sim.fresh_data()
-    links = {name: sim.names.links[f"{name}::l"].body for name in sim.models}
-    return [name for name, b in links.items() if b and sim.physics.sleep.is_asleep(b, data)]
+    data = sim.engine.physics.fresh()
+    links = {name: sim.engine.names.links[f"{name}::l"].body for name in sim.models}
+    return [name for name, b in links.items() if b and sim.engine.physics.sleep.is_asleep(b, data)]
 
 
 def state(sim: simkit.Simulation) -> bytes:

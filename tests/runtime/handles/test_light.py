@@ -28,7 +28,7 @@ def opened(*parts: str) -> simkit.Simulation:
 
 def drawn(sim: simkit.Simulation) -> tuple[np.ndarray, np.ndarray]:
     """Position and direction of the only light, in the world, as the renderer has them."""
-    data = sim.fresh_data()
+    data = sim.engine.physics.fresh()
     return data.light_xpos[0].copy(), data.light_xdir[0].copy()
 
 

@@ -166,11 +166,11 @@ def test_it_sees_things_where_they_are_when_it_looks() -> None:
 def test_a_label_counts_from_when_it_was_changed() -> None:
     with load("segmentation", thing("a", "2 0 0 0 0 0", visual(PLATE), 40)) as sim:
         sim.run(0.15)
-        sim.labels["a"] = 41
+        sim.contents.labels["a"] = 41
         assert (40, 40, 40) in counts(labels(sim)), "it was taken before"
         sim.run(0.1)
         assert (41, 41, 41) in counts(labels(sim))
-        sim.labels["a::l::v"] = 42
+        sim.contents.labels["a::l::v"] = 42
         sim.run(0.1)
         assert (42, 42, 42) in counts(labels(sim))
         sim.reset()

@@ -387,15 +387,15 @@ def test_temperatures_may_change_as_it_runs(tmp_path: Path) -> None:
     with simkit.load(world(thing("box", "3 0 0 0 0 0", warm("<temperature>310</temperature>")))) as sim:
         sensor = sim.sensor("eye::l::s")
         sim.run(0.05)
-        sim.temperatures["box::l::v"] = 350
+        sim.contents.temperatures["box::l::v"] = 350
         assert pixels(sensor.latest)[MIDDLE] == 31000  # which was taken before
         sim.run(0.05)
         assert pixels(sensor.latest)[MIDDLE] == 35000
         kept = sim.snapshot()
-        sim.temperatures["box::l::v"] = HeatSignature(red, 200, 420)
+        sim.contents.temperatures["box::l::v"] = HeatSignature(red, 200, 420)
         sim.run(0.05)
         assert pixels(sensor.latest)[MIDDLE] == 42000
-        del sim.temperatures["box::l::v"]
+        del sim.contents.temperatures["box::l::v"]
         sim.run(0.05)
         assert pixels(sensor.latest)[MIDDLE] == pytest.approx(AIR * 100, abs=50)
         sim.restore(kept)

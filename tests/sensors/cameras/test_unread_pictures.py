@@ -48,9 +48,14 @@ def things() -> str:
 def seen(script: Callable[[Any], None], is_read: bool) -> dict[str, bytes]:
     """What the newest picture of each camera is after a script, read at once or only then."""
     with simkit.load(world(cameras(), others=things())) as sim:
-        subs = [sim.subscribe(topic) for sensor in sim.sensors.values() for topic in sensor._topics.values() if is_read]
+        subs = [
+            sim.subscribe(topic)
+            for sensor in sim.contents.sensors.values()
+            for topic in sensor._topics.values()
+            if is_read
+        ]
         script(sim)
-        found = {name: msgs.serialize(sensor.latest) for name, sensor in sim.sensors.items()}
+        found = {name: msgs.serialize(sensor.latest) for name, sensor in sim.contents.sensors.items()}
         assert bool(subs) == is_read
         return found
 
@@ -84,8 +89,8 @@ def a_restore_brings_back_what_was_worn(sim: Any) -> None:
     sim.run(0.1)
     before = sim.snapshot()
     sim.run(0.1)
-    sim.labels["ball"], sim.labels["wall"] = 9, 10
-    sim.temperatures["ball::l::v"] = 600
+    sim.contents.labels["ball"], sim.contents.labels["wall"] = 9, 10
+    sim.contents.temperatures["ball::l::v"] = 600
     sim.run(0.1)
     sim.restore(before)
 
@@ -97,7 +102,7 @@ def a_lamp_moves(sim: Any) -> None:
 
 def things_change_colour(sim: Any) -> None:
     sim.run(0.1)
-    sim.touch("geom_rgba")[:, :3] = 1, 0, 0
+    sim.engine.touch("geom_rgba")[:, :3] = 1, 0, 0
 
 
 SCRIPTS = (
@@ -124,7 +129,7 @@ def test_each_of_these_changes_what_the_next_picture_shows() -> None:
     def labelled(sim: Any) -> None:
         sim.run(0.1)
         sim.spawn(CRATE)
-        sim.labels["ball"] = 9
+        sim.contents.labels["ball"] = 9
         sim.run(0.1)
 
     plain, lit, others = seen(lambda sim: sim.run(0.2), True), seen(moved, True), seen(labelled, True)

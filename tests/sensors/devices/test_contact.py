@@ -119,7 +119,7 @@ def test_a_collision_in_convex_pieces_is_one_collision() -> None:
     shape = "<polyline>" + "".join(f"<point>{p}</point>" for p in outline) + "<height>0.1</height></polyline>"
     part = body("b", "0 0 0.0 0 0 0", shape, sensor=contact())
     with simkit.load(world(GROUND, part.replace("<inertial>", "<inertial><pose>0.1 0.1 0.05 0 0 0</pose>"))) as sim:
-        assert len(sim.names.link("b::l").geoms) > 1
+        assert len(sim.engine.names.link("b::l").geoms) > 1
         sub = sim.subscribe(topic("b"), keep=1)
         sim.run(1.0)
         assert names(sub.latest) == [("b::l::c", "ground::l::c")]

@@ -243,7 +243,7 @@ def test_every_kind_of_joint_passes_what_the_motion_needs(kind: str, reverse: bo
     text = world(base, load, joint(kind, *ends, more + tag, axis))
     with simkit.load(text) as sim:
         sim.step(40)
-        assert sim.names.joint("m::j").is_reversed is reverse
+        assert sim.engine.names.joint("m::j").is_reversed is reverse
         sensor = sim.sensor("m::j::ft")
         force, torque = wrench_of(sensor.latest)
         place, load_link = sensor.pose, sim.link("m::load")
@@ -251,8 +251,8 @@ def test_every_kind_of_joint_passes_what_the_motion_needs(kind: str, reverse: bo
         if reverse:
             force, torque = -force, -torque
         # the load by itself: acceleration of its centre of mass, rates and their change, from the engine
-        model, data = sim.mj_model, sim.fresh_acceleration()
-        body = sim.names.link("m::load").body
+        model, data = sim.mj_model, sim.engine.physics.fresh_accelerations()
+        body = sim.engine.names.link("m::load").body
         com = data.xipos[body]
         acceleration, turning = load_link.linear_acceleration, load_link.angular_velocity
         alpha = data.cacc[body][:3]
@@ -276,7 +276,7 @@ def test_a_joint_that_closes_a_loop_has_its_own_wrench() -> None:
     text = world(legs, beam, left, right)
     with simkit.load(text) as sim:
         sim.step(300)
-        assert sim.names.joint("m::right").is_loop or sim.names.joint("m::left").is_loop
+        assert sim.engine.names.joint("m::right").is_loop or sim.engine.names.joint("m::left").is_loop
         for name in ("left", "right"):
             force, torque = wrench_of(sim.sensor(f"m::{name}::ft").latest)
             assert force[2] == pytest.approx(2 * G, abs=0.05)
@@ -334,13 +334,13 @@ def test_on_a_joint_of_the_world_itself_it_is_left_out_and_said() -> None:
     tie = joint("fixed", "world", "m::a", ft())
     with simkit.load(world(link("a"), others=tie)) as sim:
         assert [d.severity for d in sim.diagnostics if d.code == "SK-SENSOR-053"] == ["warning"]
-        assert not sim.sensors
+        assert not sim.contents.sensors
 
 
 def test_on_a_link_it_is_left_out_and_said() -> None:
     with simkit.load(world(link("a", more=ft()))) as sim:
         assert [d.severity for d in sim.diagnostics if d.code == "SK-SENSOR-024"] == ["warning"]
-        assert not sim.sensors
+        assert not sim.contents.sensors
 
 
 # ------------------------------------------------------------------ loads

@@ -51,7 +51,7 @@ def test_gz_orientation_is_relative_to_the_start_and_classics_to_the_world() -> 
         assert message.orientation.z == pytest.approx(math.sin(0.25))
         assert message.header.frame_id == "l"
         assert "/node/out" in sim.topics()
-        assert not [t for t in sim.topics() if t.startswith("/world/") and t not in sim.bus.aside]
+        assert not [t for t in sim.topics() if t.startswith("/world/") and t not in sim.communication.bus.aside]
     with simkit.load(classic("<initial_orientation_as_reference>true</initial_orientation_as_reference>")) as sim:
         sim.run(0.02)
         assert sim.sensor("m::l::s").latest.orientation.w == pytest.approx(1.0)

@@ -75,7 +75,7 @@ def test_sliding_out_on_a_turning_arm_it_feels_coriolis_once() -> None:
         sim.joint("m::j").set_velocity(3.0)
         sim.joint("m::slide").set_velocity(1.5)
         sim.run(0.1)
-        model, data = sim.mj_model, sim.fresh_data()
+        model, data = sim.mj_model, sim.engine.physics.fresh()
         dofs = [sim.joint(name).mj_dofs[0] for name in ("m::j", "m::slide")]
         (omega, out), (alpha, faster) = (values[dofs].tolist() for values in (data.qvel, data.qacc))
         r = 0.4 + sim.joint("m::slide").position

@@ -63,8 +63,8 @@ TURN = simkit.Pose.from_rpy(0, 0, 0, 0.1, -0.2, 0.7).matrix
 
 
 def cast(sim: Any, fan: RayFan, origin: Any = (0.1, 0.2, 0.1), start: float = 0.0) -> RayFan:
-    fan.bind(sim.mj_model, sim.names, 0, ())
-    fan.cast(sim.mj_model, sim.fresh_data(), np.array(origin, float), TURN, start)
+    fan.bind(sim.mj_model, sim.engine.names, 0, ())
+    fan.cast(sim.mj_model, sim.engine.physics.fresh(), np.array(origin, float), TURN, start)
     return fan
 
 
@@ -76,9 +76,9 @@ def test_all_ways_agree(shapes: dict[str, str], moving: bool, start: float) -> N
     with simkit.load(scattered(shapes, moving)) as sim:
         for grid in (FEW, MANY):
             fan, other = cast(sim, fan_of(grid), start=start), fan_of(grid, use_embree=False)
-            other.bind(sim.mj_model, sim.names, 0, ())
+            other.bind(sim.mj_model, sim.engine.names, 0, ())
             other._targets.needs_engine = True  # everything by the engine alone
-            other.cast(sim.mj_model, sim.fresh_data(), np.array((0.1, 0.2, 0.1)), TURN, start)
+            other.cast(sim.mj_model, sim.engine.physics.fresh(), np.array((0.1, 0.2, 0.1)), TURN, start)
             assert 0.2 < np.isfinite(fan.distances).mean() < 1.0
             np.testing.assert_allclose(fan.distances, other.distances, atol=AGREE)
             np.testing.assert_array_equal(fan.geoms, other.geoms)
@@ -104,7 +104,7 @@ def _alone(sim: Any, origin: Any, direction: Any, geom: Any) -> float:
     """One ray by the engine."""
     groups = np.zeros(6, np.uint8)
     groups[list(GROUPS)] = 1
-    args = sim.mj_model, sim.fresh_data(), np.array(origin, float), direction, groups, 1, -1, geom, None
+    args = sim.mj_model, sim.engine.physics.fresh(), np.array(origin, float), direction, groups, 1, -1, geom, None
     found = mujoco.mj_ray(*args)
     return found if 0 <= found <= 20 else math.inf
 
@@ -131,8 +131,8 @@ def test_distances_are_geometrys(shape: str, pose: str, distance: float, grid: t
     fan = RayFan(fan_directions(reach[1], reach[0]), GROUPS, 200.0, grid=reach)
     text = f'<sdf version="1.9"><world name="w">{model("m", SHAPES[shape], pose)}</world></sdf>'
     with simkit.load(text) as sim:
-        fan.bind(sim.mj_model, sim.names, 0, ())
-        fan.cast(sim.mj_model, sim.fresh_data(), np.zeros(3), np.eye(3))
+        fan.bind(sim.mj_model, sim.engine.names, 0, ())
+        fan.cast(sim.mj_model, sim.engine.physics.fresh(), np.zeros(3), np.eye(3))
         ahead = grid[1] // 2
         assert fan.directions[ahead, 0] == pytest.approx(1.0)
         assert fan.distances[ahead] == pytest.approx(distance, abs=1e-6)
@@ -169,13 +169,13 @@ def test_a_mesh_far_away_is_exact() -> None:
         way = np.array((150.0, 80.0, 0.0)) / 170.0
         elevations, azimuths = np.zeros(1), np.linspace(-0.001, 0.001, 50) + math.atan2(80, 150)
         fan = RayFan(fan_directions(azimuths, elevations), GROUPS, 300.0, grid=(elevations, azimuths))
-        fan.bind(sim.mj_model, sim.names, 0, ())
-        fan.cast(sim.mj_model, sim.fresh_data(), np.zeros(3), np.eye(3))
+        fan.bind(sim.mj_model, sim.engine.names, 0, ())
+        fan.cast(sim.mj_model, sim.engine.physics.fresh(), np.zeros(3), np.eye(3))
         assert way @ fan.directions[25] == pytest.approx(1.0, abs=1e-6)
         geom = np.empty(1, np.int32)
         for i in range(fan.count):
             found = mujoco.mj_ray(
-                sim.mj_model, sim.fresh_data(), np.zeros(3), fan.directions[i], None, 1, -1, geom, None
+                sim.mj_model, sim.engine.physics.fresh(), np.zeros(3), fan.directions[i], None, 1, -1, geom, None
             )
             assert fan.distances[i] == pytest.approx(found if found >= 0 else math.inf, abs=1e-6)
 

@@ -121,7 +121,7 @@ def test_spawning_removing_resetting_and_restoring_are_done_again(tmp_path: Path
         sim.run(0.2)
         sim.remove("box")
         sim.restore(before)
-        sim.clone("ball", "third", simkit.Pose((4.0, 0.0, 2.0)))
+        sim.contents.clone("ball", "third", simkit.Pose((4.0, 0.0, 2.0)))
         sim.run(0.1)
         sim.reset(seed=4)
         sim.run(0.2)
@@ -137,13 +137,13 @@ def test_spawning_removing_resetting_and_restoring_are_done_again(tmp_path: Path
 def test_a_client_that_comes_and_goes_is_there_again(tmp_path: Path) -> None:
     with simkit.load(WORLD) as sim, keep(sim):
         sim.run(0.1)
-        publisher = sim.bus.advertise("/chatter", "std_msgs/msg/String")
+        publisher = sim.communication.bus.advertise("/chatter", "std_msgs/msg/String")
         publisher.publish({"data": "hello"})
         sim.run(0.1)
-        other = sim.bus.advertise("/go", "geometry_msgs/msg/Twist")
+        other = sim.communication.bus.advertise("/go", "geometry_msgs/msg/Twist")
         other.publish(simkit.msgs.make("geometry_msgs/msg/Twist", **go(0.4)))
         sim.run(0.1)
-        sim.bus.close(other)
+        sim.communication.bus.close(other)
         sim.run(0.1)
         found = replay(packed(sim, tmp_path))
         assert found.is_same, found.differences

@@ -50,12 +50,12 @@ class Runner:
         self.sim, self._steps = sim, steps
         self._messages: list[tuple[int, str, int]] = []
         self._heard: set[str] = set()
-        sim.bus.on_topic(self._listen)
-        takes = [(topic, types[0]) for topic, _, types, does in sim.bus.endpoints() if does == "takes"]
+        sim.communication.bus.on_topic(self._listen)
+        takes = [(topic, types[0]) for topic, _, types, does in sim.communication.bus.endpoints() if does == "takes"]
         self._inputs = [(topic, kind) for topic, kind in takes if not topic.endswith(_NOT_SENT)]
 
     def _listen(self, topic: str, _: str) -> None:
-        if topic not in self.sim.bus.aside and topic not in self._heard:
+        if topic not in self.sim.communication.bus.aside and topic not in self._heard:
             self._heard.add(topic)
             self.sim.subscribe(
                 topic, lambda m: self._messages.append((self.sim.tick, topic, short_hash(msgs.serialize(m)))), 1
@@ -77,14 +77,18 @@ class Runner:
         )
 
     def _readings(self) -> dict[str, int]:
-        return {name: _digest(sensor.latest) for name, sensor in self.sim.sensors.items()}
+        return {name: _digest(sensor.latest) for name, sensor in self.sim.contents.sensors.items()}
 
     def _parameters(self) -> dict[str, object]:
-        return {f"{node}.{name}": p.value for node, found in self.sim.parameters.items() for name, p in found.items()}
+        return {
+            f"{node}.{name}": p.value
+            for node, found in self.sim.communication.parameters.items()
+            for name, p in found.items()
+        }
 
     def _set_parameters(self, random: np.random.Generator) -> None:
         """Turns every live number a little."""
-        for node, found in self.sim.parameters.items():
+        for node, found in self.sim.communication.parameters.items():
             for name, parameter in found.items():
                 if isinstance(parameter.value, float):
                     with suppress(simkit.errors.SimkitError):
@@ -97,13 +101,13 @@ class Runner:
             self.sim.publish(topic, message if given else _fill(message, random))
         if "/tf" in self.sim.topics():
             self.sim.publish("/tf", _frame(random))
-        if "/play_motion2" in self.sim.action_table.names():
+        if "/play_motion2" in self.sim.communication.actions.names():
             self.sim.send_goal("/play_motion2", {"motion_name": "bow"})
 
 
 def memory_of(sim: simkit.Simulation) -> dict[str, dict[str, int]]:
     """Hashes of what every plugin remembers."""
-    return {f"{p.scoped}::{p.name}": attribute_hashes(plugin_attributes(p)) for p in sim.structure.all_plugins()}
+    return {f"{p.scoped}::{p.name}": attribute_hashes(plugin_attributes(p)) for p in sim.engine.structure.all_plugins()}
 
 
 def proven(
@@ -144,7 +148,7 @@ def proven(
 def differences(one: Seen, other: Seen) -> list[str]:
     """What is other, in words."""
     found = []
-    if one.physics != other.physics or one.state != other.state:
+    if one.physics != other.engine.physics or one.state != other.state:
         found.append("the physics")
     for mine, yours in zip(one.messages, other.messages, strict=False):
         if mine != yours:
@@ -153,7 +157,7 @@ def differences(one: Seen, other: Seen) -> list[str]:
     if len(one.messages) != len(other.messages):
         found.append(f"{len(one.messages)} messages became {len(other.messages)}")
     found += [f"the reading of {name}" for name, value in one.readings.items() if other.readings[name] != value]
-    found += [name for name, value in one.parameters.items() if other.parameters.get(name) != value]
+    found += [name for name, value in one.parameters.items() if other.communication.parameters.get(name) != value]
     for name, memory in one.memory.items():
         for attribute in sorted({*memory, *other.memory[name]}):
             if memory.get(attribute) != other.memory[name].get(attribute):

@@ -38,7 +38,7 @@ def test_a_run_with_the_plugin_repeats_whichever_way_it_is_brought_back(cls: typ
     if not RENDERS and any(word in cls.__name__ for word in DRAWN):
         pytest.skip("draws pictures, and there is no renderer")
     with proof_worlds.open_world(cls.__name__, tmp_path) as sim:
-        plugins = [p for p in sim.structure.all_plugins() if type(p) is cls]
+        plugins = [p for p in sim.engine.structure.all_plugins() if type(p) is cls]
         assert plugins, f"no {cls.__name__} in its world: {[str(d) for d in sim.diagnostics if d.severity != 'note']}"
         at_first = proof.memory_of(sim)
         found, seen = proof.proven(sim)
@@ -51,9 +51,13 @@ def has_done_something(sim, plugin: Plugin, at_first, before: proof.Seen, after:
     """Whether it came to remember something else, published, took a change of its parameters, or drives joints."""
     name = f"{plugin.scoped}::{plugin.name}"
     published = {topic for _, topic, _ in (*before.messages, *after.messages)}
-    ends = {topic for topic, end, _, does in sim.bus.endpoints() if does == "publishes" and end.owner is plugin}
+    ends = {
+        topic
+        for topic, end, _, does in sim.communication.bus.endpoints()
+        if does == "publishes" and end.owner is plugin
+    }
     changed = at_first[name] != before.memory[name] or before.memory[name] != after.memory[name]
-    adjustable = any(p.owner is plugin for found in sim.parameters.values() for p in found.values())
+    adjustable = any(p.owner is plugin for found in sim.communication.parameters.values() for p in found.values())
     return changed or bool(ends & published) or adjustable or bool(plugin._actuators)
 
 
@@ -62,5 +66,5 @@ def pushes_something(cls: type[Plugin], folder: Path) -> bool:
     witness = PluginCallRecorder()
     with record_plugin_calls(witness), proof_worlds.open_world(cls.__name__, folder) as sim:
         sim.step(20)
-        names = {plugin_title(p) for p in sim.structure.all_plugins() if type(p) is cls}
+        names = {plugin_title(p) for p in sim.engine.structure.all_plugins() if type(p) is cls}
     return any(event.before != event.after for event in witness.events if event.owner in names)

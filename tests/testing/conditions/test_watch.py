@@ -109,7 +109,7 @@ def test_what_sleeps_still_touches(yard: Any) -> None:
     mass = "<inertial><mass>1</mass></inertial>"
     sim = yard(more=f'<model name="die"><pose>0 -1 0.1 0 0 0</pose><link name="l">{mass}{box}</link></model>')
     sim.run(5.0)
-    sim.fresh_data()
+    sim.engine.physics.fresh()
     assert sim.mj_data.tree_asleep.max() >= 0  # else this shows nothing
     found = results(
         sim,
@@ -185,7 +185,7 @@ def test_a_topic_that_comes_later_may_be_waited_for(yard: Any) -> None:
     sim = yard()
     with Watch(sim, checks, absent="wait") as watch:
         watch.look()
-        publisher = sim.bus.advertise("/answer", "std_msgs/msg/Int32")
+        publisher = sim.communication.bus.advertise("/answer", "std_msgs/msg/Int32")
         watch.look()
         publisher.publish(simkit.msgs.make("std_msgs/msg/Int32", data=42))
         found = watch.results("duration")
@@ -203,8 +203,10 @@ def test_who_looks_changes_no_bits_and_nobody_else_misses_a_message(yard: Any) -
     seen: list[Any] = []
     for asked in ((), checks, checks[:1]):
         sim, heard, counted = yard(speed=1.0), [], []
-        sim.bus.tap("/imu", lambda message, to=heard: to.append(bytes(message.linear_acceleration.x.hex(), "ascii")))
-        sim.bus.tap("/scan", lambda _, to=counted: to.append(_), takes_later=True)
+        sim.communication.bus.tap(
+            "/imu", lambda message, to=heard: to.append(bytes(message.linear_acceleration.x.hex(), "ascii"))
+        )
+        sim.communication.bus.tap("/scan", lambda _, to=counted: to.append(_), takes_later=True)
         results(sim, 2.0, *asked)
         seen.append((state_hash(sim), heard, len(counted)))
     assert seen[0] == seen[1] == seen[2] and len(seen[0][1]) == 101 and seen[0][2] == 11

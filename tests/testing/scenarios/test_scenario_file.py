@@ -237,7 +237,7 @@ def test_a_scenario_runs_to_its_end_with_its_seed_and_settings(tmp_path):
     found = scenario(tmp_path, "world: ball.sdf\nduration: 0.5\nset: {physics.max_step_size: 0.01}\nseed: 4\n")
     with open_scenario(found) as sim:
         ended = run_scenario(found, sim)
-        assert (ended.reason, sim.time, sim.tick, sim.seed) == ("duration", 0.5, 50, 4)
+        assert (ended.reason, sim.time, sim.tick, sim.engine.streams.seed) == ("duration", 0.5, 50, 4)
         assert sim.model("ball").pose.position[2] == pytest.approx(5 - 0.5 * 9.8 * 0.5**2, abs=0.03)
 
 

@@ -307,7 +307,7 @@ SERVICE_REQUEST_TYPES: Final = ("WorldControl", "EntityFactory", "Entity", "Pose
 def call_service(sim: Simulation, service: str, request: Message, response_kind: type[Message]) -> tuple[bool, Message]:
     """Calls a service: whether it is there and was understood, and the response (of Boolean: whether it succeeded)."""
     response = response_kind()
-    if service not in sim.services():
+    if service not in sim.communication.services.names():
         return False, response
     try:
         answer = sim.call(service, _request_fields(request))

@@ -67,9 +67,9 @@ class EntityView:
         """The entities there are now."""
         if self._sim is not None:
             sim = self.simulation
-            if sim.structure is not self._structure:
-                self._structure = sim.structure
-                self.table.rebuild(sim.world, list(sim.structure.models.values()))
+            if sim.engine.structure is not self._structure:
+                self._structure = sim.engine.structure
+                self.table.rebuild(sim.world, list(sim.engine.structure.models.values()))
         return self.table
 
     def record(self, entity: int, kind: str = "") -> EntityRecord | None:
@@ -83,7 +83,7 @@ class EntityView:
         if record is None:
             return None
         if record.handle is None:
-            record.handle = self.simulation.entities.tables[kind].get(record.scene.scoped)
+            record.handle = self.simulation.contents.handles.tables[kind].get(record.scene.scoped)
         return record.handle
 
     # ------------------------------------------------------------------ readings that must be asked for
@@ -105,10 +105,10 @@ class EntityView:
     def _published_joints(self) -> frozenset[int]:
         """Joints of a JointStatePublisher: as in gz-sim it has position and velocity read for everybody."""
         sim = self.simulation
-        if sim.tick == 0 or sim.structure is not self._published[0]:  # while loading, plugins still come
+        if sim.tick == 0 or sim.engine.structure is not self._published[0]:  # while loading, plugins still come
             names = self.published(sim)
             own = (r.entity for r in self.sync() if r.kind == "joint" and r.scene.scoped in names)
-            self._published = (sim.structure, frozenset(own))
+            self._published = (sim.engine.structure, frozenset(own))
         return self._published[1]
 
     # ------------------------------------------------------------------ state

@@ -33,7 +33,7 @@ def link_box(sim: Simulation, scoped: str) -> AxisAlignedBox:
     import mujoco
 
     endless = int(mujoco.mjtGeom.mjGEOM_PLANE), int(mujoco.mjtGeom.mjGEOM_HFIELD)
-    model, bound, box = sim.mj_model, sim.names.link(scoped), AxisAlignedBox()
+    model, bound, box = sim.mj_model, sim.engine.names.link(scoped), AxisAlignedBox()
     for geom in bound.geoms:
         if int(model.geom_type[geom]) not in endless:
             placed = bound.offset.inverse() @ Pose(model.geom_pos[geom], model.geom_quat[geom])
@@ -260,8 +260,8 @@ def _angular_acceleration(ecm: EntityView, link: RuntimeLink) -> Vector:
     import mujoco
 
     sim, out = ecm.simulation, np.zeros(6)
-    body = int(sim.names.link(link.scoped).body)
-    if body and not sim.physics.sleep.is_asleep(body, sim.physics.fresh()):
+    body = int(sim.engine.names.link(link.scoped).body)
+    if body and not sim.engine.physics.sleep.is_asleep(body, sim.engine.physics.fresh()):
         kind = int(mujoco.mjtObj.mjOBJ_XBODY)
-        mujoco.mj_objectAcceleration(sim.mj_model, sim.physics.fresh_accelerations(), kind, body, out, 0)
+        mujoco.mj_objectAcceleration(sim.mj_model, sim.engine.physics.fresh_accelerations(), kind, body, out, 0)
     return out[:3]

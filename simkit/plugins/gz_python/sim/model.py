@@ -82,6 +82,6 @@ class Model(EntityHandle):
                 ecm.warned.add(("nested", record.scene.scoped))
                 message = f"set_world_pose_cmd of the nested model {record.scene.scoped!r} has no effect"
                 outer = record.scene.scoped.split("::")[0]
-                sim.reports.warning("SK-PLUGIN-085", message, record.scene.where, f"set the pose of {outer!r}")
+                sim.engine.reports.warning("SK-PLUGIN-085", message, record.scene.where, f"set the pose of {outer!r}")
             return
         ecm.commands.pose[self._entity] = simkit_pose(pose)

@@ -145,7 +145,7 @@ def _free_root(sim: Simulation, entity: int, handle: FindHandle) -> tuple[Link, 
         start, frame = sim.link(model.scene.canonical_link or links[0].scoped), model.pose
     else:
         return None
-    names, mj_model = sim.names, sim.mj_model
+    names, mj_model = sim.engine.names, sim.mj_model
     root = int(mj_model.body_rootid[names.link(start.scoped).body])
     for scoped, binding in names.links.items():
         if int(binding.body) == root and binding.root_joint_qpos >= 0:
@@ -157,7 +157,7 @@ def _set_link_velocity(sim: Simulation, link: Link, frame: Pose, part: str, velo
     """Gives a free link a linear or an angular velocity; the other part stays."""
     from simkit.runtime.engine.physics import VELOCITY
 
-    binding, data = sim.names.link(link.scoped), sim.mj_data
+    binding, data = sim.engine.names.link(link.scoped), sim.mj_data
     start, dof = int(binding.root_joint_qpos), int(binding.root_joint_dof)
     quaternion = data.qpos[start + 3 : start + 7]
     wanted = frame.rotate(velocity)
@@ -168,7 +168,7 @@ def _set_link_velocity(sim: Simulation, link: Link, frame: Pose, part: str, velo
     spin = quat_rotate(quaternion, data.qvel[dof + 3 : dof + 6])
     arm = data.qpos[start : start + 3] - link.pose.position
     data.qvel[dof : dof + 3] = wanted + np.cross(spin, arm)
-    sim.physics.changed_body(VELOCITY, binding.body)
+    sim.engine.physics.changed_body(VELOCITY, binding.body)
 
 
 def _set_angular_velocities(sim: Simulation, turned: list[tuple[Joint, Numbers]]) -> None:
@@ -187,7 +187,7 @@ def _set_angular_velocities(sim: Simulation, turned: list[tuple[Joint, Numbers]]
     dofs = list(targets)
     if not dofs:
         return
-    model, data = sim.mj_model, sim.physics.fresh()
+    model, data = sim.mj_model, sim.engine.physics.fresh()
     units, solved = np.zeros((len(dofs), model.nv)), np.zeros((len(dofs), model.nv))
     units[range(len(dofs)), dofs] = 1.0
     mujoco.mj_solveM(model, data, solved, units)

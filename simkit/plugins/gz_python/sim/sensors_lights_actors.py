@@ -89,7 +89,7 @@ class Actor(EntityHandle):
     def _store(self, ecm: EntityView, what: str, value: object) -> None:
         if self.valid(ecm):
             ecm.values[self._entity, what] = value
-            ecm.simulation.log.debug("actor %s: %s is kept, only its script moves it", self.name(ecm), what)
+            ecm.simulation.engine.log.debug("actor %s: %s is kept, only its script moves it", self.name(ecm), what)
 
 
 class Light(EntityHandle):

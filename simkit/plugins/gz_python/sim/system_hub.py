@@ -22,8 +22,8 @@ class SystemPlugin(Protocol):
 
 def systems_of(sim: Simulation) -> list[SystemPlugin]:
     """The plugins that stand for systems of gz, in order, without those that raised and are left out."""
-    plugins = sim.structure.all_plugins()
-    return [p for p in plugins if getattr(p, "is_gz_system", False) and not sim.faults.is_disabled(p)]
+    plugins = sim.engine.structure.all_plugins()
+    return [p for p in plugins if getattr(p, "is_gz_system", False) and not sim.engine.faults.is_disabled(p)]
 
 
 class SystemHub:
@@ -40,11 +40,11 @@ class SystemHub:
         self._count = -1
         self.first: SystemPlugin | None = None
         self.last: SystemPlugin | None = None
-        self._info = UpdateInfo(0, sim.clock.time_ns(1), 0, False)
+        self._info = UpdateInfo(0, sim.engine.clock.time_ns(1), 0, False)
 
     def look(self) -> None:
         """Takes note of who is there now."""
-        structure, out = self._sim.structure, len(self._sim.faults.get_state())
+        structure, out = self._sim.engine.structure, len(self._sim.engine.faults.get_state())
         if structure is not self._structure or out != self._count:
             systems = systems_of(self._sim)
             self.first, self.last = (systems[0], systems[-1]) if systems else (None, None)
@@ -55,7 +55,9 @@ class SystemHub:
         tick = self._sim.tick + ahead
         info = self._info
         if info.iterations != tick:
-            info = self._info = UpdateInfo(self._sim.clock.time_ns(tick), self._sim.clock.time_ns(1), tick, False)
+            info = self._info = UpdateInfo(
+                self._sim.engine.clock.time_ns(tick), self._sim.engine.clock.time_ns(1), tick, False
+            )
         return info
 
     def carry_out(self) -> None:

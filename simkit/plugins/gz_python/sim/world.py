@@ -38,13 +38,13 @@ class World(EntityHandle):
 
     def spherical_coordinates(self, ecm: EntityView) -> SphericalCoordinates | None:
         """Return the location of the origin on its planet; None where the file has none."""
-        return _coordinates(ecm.simulation.site.place) if self.valid(ecm) else None
+        return _coordinates(ecm.simulation.control.origin.place) if self.valid(ecm) else None
 
     def set_spherical_coordinates(self, ecm: EntityView, coordinates: SphericalCoordinates) -> None:
         """Lays the origin somewhere else, at once; sensors of position and field go by it from now on."""
         if not self.valid(ecm):
             return
-        site = ecm.simulation.site
+        site = ecm.simulation.control.origin
         site.move(
             replace(
                 site.place or Place(where=ecm.simulation.world.where),

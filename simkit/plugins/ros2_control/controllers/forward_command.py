@@ -60,7 +60,7 @@ class ForwardCommandController(Controller):
             problem = f"a command is not finite: {values.tolist()}"
         if problem:
             message = f"controller {self.name!r}: {problem}; it is left out"
-            self.sim.reports.warning("SK-CONTROL-016", message, self.params.where)
+            self.sim.engine.reports.warning("SK-CONTROL-016", message, self.params.where)
             return
         self._command = values
 

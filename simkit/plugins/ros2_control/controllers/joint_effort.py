@@ -89,7 +89,7 @@ class _LoopController(Controller):
             return
         found = f"a command of {len(values)} numbers" if len(values) != len(self._joints) else f"{values.tolist()}"
         message = f"controller {self.name!r}: found {found}, allowed are {len(self._joints)} finite numbers"
-        self.sim.reports.warning("SK-CONTROL-016", f"{message}; it is left out", self.params.where)
+        self.sim.engine.reports.warning("SK-CONTROL-016", f"{message}; it is left out", self.params.where)
 
     def update(self, now_ns: int, period: float) -> None:
         position, velocity = self.states.values.reshape(2, -1)

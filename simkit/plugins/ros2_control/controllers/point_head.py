@@ -145,7 +145,7 @@ class PointHeadAction(Controller):
 
     def _head_joints(self, look: tuple[str, Vector]) -> HeadJoints:
         """As it is now."""
-        data = self.sim.physics.fresh()
+        data = self.sim.engine.physics.fresh()
         joints = [self.hardware.joints[name] for name in self._joints]
         ids = [int(self.sim.mj_model.dof_jntid[joint.handle.mj_dofs[0]]) for joint in joints]
         return HeadJoints(

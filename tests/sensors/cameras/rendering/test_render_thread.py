@@ -62,7 +62,7 @@ def on_both(script: Callable[[Any], Any], text: str = "") -> tuple[Any, Any]:
     found = []
     for is_on in (False, True):
         with simkit.load(text or two_cameras(), render_thread=is_on) as sim:
-            assert sim.render_thread is is_on
+            assert sim.engine.render_thread is is_on
             found.append(script(sim))
     return found[0], found[1]
 
@@ -88,7 +88,7 @@ def test_every_message_is_the_same_with_a_spawn_in_the_middle() -> None:
 @pytest.mark.parametrize("latency", ["", "<latency>0.05</latency>"])
 def test_a_recorded_bag_is_the_same_byte_for_byte(tmp_path: Path, latency: str) -> None:
     def script(sim: Any) -> bytes:
-        path = tmp_path / f"{sim.render_thread}.mcap"
+        path = tmp_path / f"{sim.engine.render_thread}.mcap"
         with Recorder(sim, path):
             sim.run(0.12)
             sim.spawn(CRATE)
@@ -139,7 +139,7 @@ def test_a_thread_that_is_switched_on_and_off_changes_nothing() -> None:
         sub = sim.subscribe("/a/points")
         for _ in range(4):
             sim.run(0.04)
-            sim.render_thread = not sim.render_thread
+            sim.engine.render_thread = not sim.engine.render_thread
         return as_bytes(sub.messages)
 
     alone, beside = on_both(script)

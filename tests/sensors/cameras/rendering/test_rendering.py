@@ -116,7 +116,7 @@ def test_pictures_are_the_same_with_and_without_what_is_out_of_sight() -> None:
         for i in range(30)
     )
     with simkit.load(world(camera(), others=around, top=scene(light=DOWN))) as sim:
-        renderer, data = renderer_of(sim), sim.fresh_data()
+        renderer, data = renderer_of(sim), sim.engine.physics.fresh()
         shot = Shot(View(64, 48, -0.5, 0.5, -0.4, 0.4, 0.1, 50.0), depth=True)
         taken = []
         for culled in (True, False):
