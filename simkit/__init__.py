@@ -11,6 +11,7 @@ with simkit.load("turtlebot3_world", seed=0) as sim:
 
 from __future__ import annotations
 
+import importlib
 from typing import TYPE_CHECKING, Any
 
 from simkit.errors import (
@@ -80,7 +81,6 @@ _LAZY = {
 def __getattr__(name: str) -> Any:
     if name not in _LAZY:
         raise AttributeError(f"module 'simkit' has no attribute {name!r}")
-    import importlib
 
     value = getattr(importlib.import_module(_LAZY[name]), name)
     globals()[name] = value

@@ -25,6 +25,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import pytest
 
+from simkit.diagnostics import shorten
+
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterable
 
@@ -190,7 +192,6 @@ def pytest_terminal_summary(terminalreporter: Any) -> None:
 
 
 def _label(source: str | os.PathLike[str]) -> str:
-    from simkit.diagnostics import shorten
 
     text = " ".join(str(source).split())
     return shorten(text, _LONGEST) if "<" in text else text

@@ -7,6 +7,7 @@ of simkit.
 
 from __future__ import annotations
 
+import fnmatch
 import math
 import os
 from collections.abc import Callable, Mapping, Sequence
@@ -294,7 +295,6 @@ class RunSpec:
 
     def tolerance(self, topic: str, field_: str = "") -> Sequence[Tolerance]:
         """Those that speak of a field of a topic, the most particular first."""
-        import fnmatch
 
         name = f"{topic}.{field_}" if field_ else topic
         of_field = [

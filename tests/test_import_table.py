@@ -1,7 +1,7 @@
 """Import rules of the package: which room may use which, no circles, and why an import stands inside a function.
 
-A room is a folder or module directly under `simkit/`. An import counts wherever it stands: at the top of a file, inside a
-function or under `TYPE_CHECKING`.
+A room is a folder or module directly under `simkit/`. An import counts wherever it stands: at the top of a file, inside
+a function or under `TYPE_CHECKING`.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ import pytest
 PACKAGE = Path(__file__).resolve().parents[1] / "simkit"
 
 SMALL_MODULES = frozenset(
-    {"child_process", "diagnostic_record", "diagnostics", "errors", "msgs", "mujoco_import", "params", "pose", "registry", "run_spec"}
-    | {"save_path", "version", "yaml_reader"}
+    {"child_process", "diagnostic_record", "diagnostics", "errors", "msgs", "mujoco_import", "params", "pose"}
+    | {"registry", "run_spec", "save_path", "version", "yaml_reader"}
 )
 """Modules at the top that every room may use; they use only each other."""
 

@@ -23,6 +23,7 @@ from simkit.params import Params
 from simkit.plugins.endpoints import Endpoint
 from simkit.plugins.options import Options
 from simkit.plugins.ros_names import RosNames
+from simkit.plugins.unread_parameters import report_unread
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -303,7 +304,6 @@ class Plugin(abc.ABC):
 
     def report_unread(self) -> None:
         """Warns about what the file says and the plugin did not read; done after `load`."""
-        from simkit.plugins.unread_parameters import report_unread
 
         report_unread(self.params, f"plugin {self.name!r}", getattr(self, "system", self) or self)
 

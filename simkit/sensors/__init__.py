@@ -11,6 +11,8 @@ import functools
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
+from simkit.registry import discover
+
 if TYPE_CHECKING:
     from simkit.sensors.base import Sensor
 
@@ -26,7 +28,6 @@ def sensor_kinds() -> Mapping[str, type[Sensor]]:
     Raises:
         RuntimeError: two classes claim one kind.
     """
-    from simkit.registry import discover
     from simkit.sensors.base import Sensor
 
     return discover("simkit.sensors", GROUP, Sensor, lambda cls: cls.kinds, ("kinds",))  # type: ignore[type-abstract]

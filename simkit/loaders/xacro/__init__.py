@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from simkit.diagnostics import Diagnostics
 from simkit.loaders.resources.resolver import Resolver
 from simkit.loaders.resources.xml_reader import Document
+from simkit.loaders.xacro import expansion
 
 __all__ = ["expand", "needs_expansion"]
 
@@ -33,6 +34,5 @@ def expand(
     document: Document, resolver: Resolver, arguments: Mapping[str, str], diagnostics: Diagnostics
 ) -> Document | None:
     """The expanded file; None, with an error recorded, where it cannot be expanded. See `expansion.expand`."""
-    from simkit.loaders.xacro import expansion
 
     return expansion.expand(document, resolver, arguments, diagnostics)

@@ -8,6 +8,7 @@ from typing import Any
 
 from simkit.diagnostics import Diagnostics, did_you_mean
 from simkit.plugins.base import Plugin
+from simkit.plugins.discovery.gz_hooks import as_plugin
 from simkit.scene import SceneModel, SceneWorld
 
 
@@ -39,7 +40,6 @@ def attach_plugins(made: Iterable[Any], world: SceneWorld, diagnostics: Diagnost
         diagnostics: gets errors; who has one is left out.
     """
     # loads the code of gz's Python, which few worlds need
-    from simkit.plugins.discovery.gz_hooks import as_plugin
 
     found = []
     for item in made:

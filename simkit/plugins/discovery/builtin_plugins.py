@@ -10,6 +10,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from simkit.diagnostics import Diagnostics
+from simkit.plugins.classic.server_services import ClassicServices
+from simkit.plugins.drives.robot_transforms import StaticTransforms
+from simkit.plugins.gz.sensors import with_sensors_colours
+from simkit.plugins.world.clock import ClockPublisher
+from simkit.plugins.world.world_statistics import WorldStats
 from simkit.scene import Scene, SceneWorld
 
 if TYPE_CHECKING:
@@ -19,11 +24,7 @@ if TYPE_CHECKING:
 def plugins_of_every_world(world: SceneWorld) -> tuple[tuple[Plugin, ...], tuple[Plugin, ...]]:
     """Plugins that a world has by itself: those that run before the file's own, and those that run after them."""
     from simkit.plugins.actors import ActorMover
-    from simkit.plugins.classic.server_services import ClassicServices
-    from simkit.plugins.drives.robot_transforms import StaticTransforms
-    from simkit.plugins.world.clock import ClockPublisher
     from simkit.plugins.world.world_services import WorldServices
-    from simkit.plugins.world.world_statistics import WorldStats
 
     actors = (ActorMover(),) if world.actors else ()
     return (ClockPublisher(), StaticTransforms(), *actors), (WorldStats(), WorldServices(), ClassicServices())
@@ -31,7 +32,6 @@ def plugins_of_every_world(world: SceneWorld) -> tuple[tuple[Plugin, ...], tuple
 
 def apply_scene_plugins(scene: Scene) -> Scene:
     """The scene with what its plugins say of it: the colours of gz-sim's Sensors system."""
-    from simkit.plugins.gz.sensors import with_sensors_colours
 
     return with_sensors_colours(scene)
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from simkit.diagnostics import Diagnostics, closest
 from simkit.plugins.base import ParentKind, Plugin
 from simkit.plugins.discovery.unsupported_plugins import GAZEBO_PLUGINS, UNSUPPORTED_REASONS
+from simkit.plugins.discovery.user_plugins import find_user_plugin
 from simkit.plugins.plugin_names import ENTRY_POINT_GROUP, aliases, normalise
 from simkit.registry import Kinds, discover
 from simkit.scene import ScenePlugin
@@ -49,7 +50,6 @@ def find_plugin(
     cls = next((kinds[alias] for alias in aliases(plugin) if alias in kinds), None)
     if cls is None:
         # loads the code of gz's Python, which few worlds need
-        from simkit.plugins.discovery.user_plugins import find_user_plugin
 
         said = len(found)
         cls = find_user_plugin(plugin, plugin_paths, found)

@@ -14,6 +14,10 @@ from typing import TYPE_CHECKING, Any, Final
 from simkit.params import Params
 from simkit.plugins.base import Plugin
 from simkit.plugins.gz_python import import_hook, simulation_context
+from simkit.plugins.gz_python.sdformat import Element
+from simkit.plugins.gz_python.sim.entity_table import WORLD_ENTITY
+from simkit.plugins.gz_python.sim.system_hub import hub_of
+from simkit.plugins.gz_python.sim.update_info import EventManager
 from simkit.plugins.joint_states import JointStatePublisher
 
 if TYPE_CHECKING:
@@ -58,9 +62,6 @@ class GzSystem(Plugin):
         return self._given
 
     def load(self, parent: Any, params: Params) -> None:
-        from simkit.plugins.gz_python.sdformat import Element
-        from simkit.plugins.gz_python.sim.system_hub import hub_of
-        from simkit.plugins.gz_python.sim.update_info import EventManager
 
         self._hub = hub_of(self.sim)
         self._hub.ecm.published = _joint_state_publishers
@@ -179,7 +180,6 @@ def _joint_state_publishers(sim: Simulation) -> frozenset[str]:
 
 def _entity_of(ecm: Any, parent: Any) -> int:
     """The number of what a plugin hangs on."""
-    from simkit.plugins.gz_python.sim.entity_table import WORLD_ENTITY
 
     scoped = getattr(parent, "scoped", "")
     if not scoped:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from simkit.params import Params
 from simkit.plugins.base import Plugin
 from simkit.plugins.options import Options, OptionsOf, boolean, vector
+from simkit.plugins.plugin_names import aliases
 from simkit.scene import Scene, SceneModel, ScenePlugin, SceneWorld, Surroundings
 from simkit.scene.model import Colour
 
@@ -101,7 +102,6 @@ def _coloured(world: SceneWorld, plugins: tuple[ScenePlugin, ...], models: tuple
 
 
 def _is_sensors_system(plugin: ScenePlugin) -> bool:
-    from simkit.plugins.plugin_names import aliases
 
     return any(name in (*SensorsSystem.filenames, *SensorsSystem.names) for name in aliases(plugin))
 

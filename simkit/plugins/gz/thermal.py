@@ -6,6 +6,8 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from simkit.compiler.meshes.companion_files import read_pixels
+from simkit.compiler.meshes.mesh_part import MeshFileError
 from simkit.params import Params
 from simkit.plugins.base import Plugin, SensorPlugin
 from simkit.plugins.options import Options, OptionsOf, number, text
@@ -96,8 +98,6 @@ def _read_range(params: Params) -> tuple[float | None, float | None]:
 
 def _find_picture(params: Params, builder: SpecBuilder) -> Path | None:
     """The file of a heat signature; where there is none that can be read, its surface is as warm as the air."""
-    from simkit.compiler.meshes.companion_files import read_pixels
-    from simkit.compiler.meshes.mesh_part import MeshFileError
 
     element, uri = params.block("heat_signature"), params.text("heat_signature")
     folder = Path(element.where.file).parent if element.where.file else None

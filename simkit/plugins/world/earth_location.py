@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 from simkit.plugins.world.entities import RequestRefused, require_finite
 from simkit.pose import Pose, quat_from_rpy
 from simkit.scene import SphericalCoordinates
+from simkit.sensors.environment.geodesy import WorldOnPlanet
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
@@ -41,7 +42,6 @@ def set_world_location(sim: Simulation, request: Any) -> None:
 
 def set_entity_location(sim: Simulation, handle: Any, request: Any) -> None:
     """Puts a model or a light at a place on the planet, upright, turned by the heading about z. Raises Refused."""
-    from simkit.sensors.environment.geodesy import WorldOnPlanet
 
     if sim.control.origin.place is None:
         raise RequestRefused("the world has no spherical coordinates, by which an entity could be placed")

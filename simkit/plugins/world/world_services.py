@@ -12,6 +12,7 @@ from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import WorldPlugin
 from simkit.plugins.drives.wheel_slip import set_compliances
+from simkit.plugins.world.earth_location import set_entity_location, set_world_location
 from simkit.plugins.world.entities import (
     KINDS,
     RequestRefused,
@@ -318,7 +319,6 @@ class WorldServices(WorldPlugin):
     # ------------------------------------------------------------------ the place on Earth
 
     def _set_spherical_coordinates(self, request: Any) -> None:
-        from simkit.plugins.world.earth_location import set_entity_location, set_world_location
 
         entity = request.entity
         if entity.name or entity.id:

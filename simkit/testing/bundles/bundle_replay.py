@@ -12,6 +12,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from simkit.errors import InputError, PluginError, SimkitError
+from simkit.recording.bags.reader import open_bag_to_read
+from simkit.recording.bags.recorder import Recorder
 from simkit.runtime.engine.snapshot import state_hash
 from simkit.testing.bundles.archive import Bundle, open_bundle
 from simkit.testing.bundles.journal_player import JournalPlayer
@@ -103,7 +105,6 @@ class _Replay:
 
     def run(self, on_slice: Callable[[Simulation], None] | None, record: Path | None) -> ReplayResult:
         """Loads the world, plays the journal, and compares."""
-        from simkit.recording.bags.recorder import Recorder
 
         said = self._said
         numbers = sorted({int(n) for name in said.code if (n := name.split("/")[1]).isdecimal()})
@@ -229,7 +230,6 @@ class _Replay:
         return [f"{topic}: {text}" for _, text, topic in sorted(told)], len(messages)
 
     def _recorded(self) -> dict[str, list[WindowMessage]]:
-        from simkit.recording.bags.reader import open_bag_to_read
 
         found: dict[str, list[WindowMessage]] = defaultdict(list)
         with open_bag_to_read(self._folder / BAG) as bag:

@@ -10,11 +10,15 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+from simkit.build import describe
 from simkit.diagnostics import Diagnostics
 from simkit.errors import InputError, SimkitError
+from simkit.loaders import Resolver
+from simkit.loaders.spawn_option import parse_spawn
 from simkit.run_spec import RunSpec, SourceOptions
 from simkit.testing.bundles.manifest import PackedModel
 from simkit.testing.bundles.packed_world import load_packed_world, model_hash, packed_run_spec
+from simkit.writers.vendor import vendor
 
 if TYPE_CHECKING:
     from simkit.testing.bundles.bundle_recorder import BundleRecorder
@@ -80,7 +84,6 @@ class WorldStager:
         return found
 
     def _spawned(self, found: StagedWorld) -> None:
-        from simkit.loaders.spawn_option import parse_spawn
 
         for number, one in enumerate(self._spec.spawn):
             spawn = parse_spawn(one, Diagnostics()) if isinstance(one, str) else one
@@ -96,8 +99,6 @@ class WorldStager:
 
     def _vendored(self, source: Any, target: str, base: str = "auto") -> str:
         """The place of a file in the stage, with all that it names."""
-        from simkit.build import describe
-        from simkit.writers.vendor import vendor
 
         spec, paths = self._spec, self._paths
         with tempfile.TemporaryDirectory() as folder:
@@ -124,7 +125,6 @@ class WorldStager:
 
     def _found(self, uri: str) -> Path:
         """The file or folder of a URI."""
-        from simkit.loaders import Resolver
 
         path, _ = Resolver(self._paths, package_paths=self._spec.options.get("package_paths", {})).search(uri, None)
         if path is None:

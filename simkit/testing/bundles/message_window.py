@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from simkit import msgs
 from simkit.recording.bags.recorder import matches_topic
+from simkit.recording.bags.writer import McapBag
 from simkit.recording.message_taps import TopicTaps
 from simkit.recording.topic_counts import RENDERED
 from simkit.runtime.communication.topic_bus import NO_MESSAGE, LazyMessage
@@ -159,7 +160,6 @@ def topic_digests(messages: Iterator[WindowMessage]) -> dict[str, dict[str, Any]
 
 def write_bag(path: Path, messages: Iterator[WindowMessage], latched: frozenset[str]) -> None:
     """Writes messages to one MCAP file."""
-    from simkit.recording.bags.writer import McapBag
 
     bag = McapBag(path)
     try:

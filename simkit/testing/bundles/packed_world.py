@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from simkit.build import load
+from simkit.loaders.spawn_option import SpawnedModel
 from simkit.run_spec import LoadOptions, RunSpec
 from simkit.testing.bundles.manifest import PackedModel
 
@@ -40,7 +42,6 @@ def packed_run_spec(
         original: seed, overrides and options of the run.
         code: folders of plugins whose code may run.
     """
-    from simkit.loaders.spawn_option import SpawnedModel
 
     options: LoadOptions = {
         "base": original.options.get("base", "auto"),
@@ -64,7 +65,6 @@ def load_packed_world(spec: RunSpec) -> Simulation:
     Raises:
         LoadError, PluginError: as `simkit.load`.
     """
-    from simkit.build import load
 
     with _without_user_folders():
         return load(spec.world, **spec.load_arguments())

@@ -10,13 +10,18 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+from simkit import msgs
 from simkit.errors import InputError, SimkitError
 from simkit.run_spec import RunSpec
+from simkit.runtime.engine.snapshot import state_hash
 from simkit.testing.certify.outcome import RunOutcome
 from simkit.testing.certify.plugin_calls import PluginCallRecorder, TickHashes, plugin_attributes, record_plugin_calls
 from simkit.testing.certify.topic_hashes import TopicHashes, plugin_title
 from simkit.testing.certify.value_hash import attribute_hashes, short_hash
 from simkit.testing.certify.variations import Variation
+from simkit.testing.run_record.fingerprint import fingerprint
+from simkit.testing.scenarios.scenario_file import read_scenario
+from simkit.testing.scenarios.scenario_run import ScenarioCommands, open_scenario, run_scenario
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
@@ -82,12 +87,9 @@ def _picklable_error(error: SimkitError) -> SimkitError:
 
 
 def _open_world(request: ChildRequest) -> Simulation:
-    from simkit.testing.scenarios.scenario_run import open_scenario
 
     scenario = request.scenario
     if request.plugins_from is not None:
-        from simkit.testing.scenarios.scenario_file import read_scenario
-
         scenario = replace(scenario, plugins=read_scenario(request.plugins_from).plugins)
     return open_scenario(scenario, render_thread=request.variation.render_thread)
 
@@ -129,7 +131,6 @@ class _ChildRun:
 
     def _run_until(self) -> None:
         """As `simkit run` does, for only that knows when the run is over."""
-        from simkit.testing.scenarios.scenario_run import run_scenario
 
         run_scenario(self._scenario, self._sim, self._take)
 
@@ -152,7 +153,6 @@ class _ChildRun:
                 self._take()
 
     def _sender(self) -> Any:
-        from simkit.testing.scenarios.scenario_run import ScenarioCommands
 
         return ScenarioCommands(self._scenario, self._sim)
 
@@ -210,9 +210,6 @@ class _ChildRun:
             self._ears.take()
 
     def _gather(self) -> None:
-        from simkit import msgs
-        from simkit.runtime.engine.snapshot import state_hash
-        from simkit.testing.run_record.fingerprint import fingerprint
 
         sim, outcome = self._sim, self._outcome
         outcome.ticks, outcome.timestep = sim.tick, sim.timestep

@@ -9,7 +9,9 @@ from zlib import crc32
 
 import numpy as np
 
+from simkit.runtime.engine import grouped_hooks
 from simkit.runtime.engine.held_state import applied_forces
+from simkit.runtime.engine.plugin_faults import PluginFaults
 from simkit.testing.certify.outcome import PluginCall
 from simkit.testing.certify.topic_hashes import plugin_title
 from simkit.testing.certify.value_hash import short_value_text, value_hash
@@ -71,8 +73,6 @@ class PluginCallRecorder:
 @contextmanager
 def record_plugin_calls(witness: PluginCallRecorder) -> Iterator[None]:
     """Has every call of a plugin go by a witness; for simulations that are opened within."""
-    from simkit.runtime.engine import grouped_hooks
-    from simkit.runtime.engine.plugin_faults import PluginFaults
 
     task, guard, least = PluginFaults.task, PluginFaults.guard, grouped_hooks.MIN_GROUP_SIZE
 

@@ -11,6 +11,7 @@ import numpy as np
 from simkit import msgs
 from simkit.recording.bags.recorder import matches_topic
 from simkit.recording.message_taps import TopicTaps
+from simkit.runtime.communication.topic_bus import NO_MESSAGE, LazyMessage
 from simkit.testing.certify.outcome import TopicOutcome
 from simkit.testing.certify.value_hash import short_hash
 from simkit.testing.certify.variations import Listening
@@ -90,7 +91,6 @@ class _TopicHash:
             self._kept.append(message)
 
     def take(self) -> None:
-        from simkit.runtime.communication.topic_bus import NO_MESSAGE, LazyMessage
 
         kept, self._kept = self._kept, []
         for message in kept:

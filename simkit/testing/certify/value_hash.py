@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import math
+from collections import deque
 from collections.abc import Mapping
 from typing import Any, Final
 
@@ -80,7 +81,6 @@ def _update_hash_of_items(value: Any, seen: dict[int, tuple[int, Any]], depth: i
 
 
 def _is_row(value: Any) -> bool:
-    from collections import deque
 
     return isinstance(value, (list, tuple, deque))
 

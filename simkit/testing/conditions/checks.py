@@ -13,8 +13,9 @@ from simkit.errors import InputError
 from simkit.runtime.communication.topic_bus import absolute_name
 from simkit.testing.conditions.binder import bind
 from simkit.testing.conditions.bound_expression import BoundNode, findings, value_text
+from simkit.testing.conditions.contact_query import ContactQuery
 from simkit.testing.conditions.parser import parse
-from simkit.testing.conditions.syntax_tree import Comparison, Span, UndecidedValue
+from simkit.testing.conditions.syntax_tree import Comparison, Span, UndecidedValue, expression_error
 from simkit.testing.conditions.value_types import TRUTH
 from simkit.testing.conditions.world_view import AbsentTopic
 
@@ -124,8 +125,6 @@ class Condition:
             self._topic = absent.topic
             return
         if part.kind is not TRUTH:
-            from simkit.testing.conditions.syntax_tree import expression_error
-
             message = f"the expression is {part.kind}, where true or false is wanted"
             span = part.node.span
             raise expression_error("SK-COND-004", message, self.source, span, "compare it: < <= > >= == !=")
@@ -277,7 +276,6 @@ class SeparationCheck(RunningCheck):
     """Models or links that must not touch."""
 
     def __init__(self, check: Any, view: WorldView) -> None:
-        from simkit.testing.conditions.contact_query import ContactQuery
 
         super().__init__(check, view)
         names, source = check.models, " ".join(map(repr, check.models))

@@ -14,9 +14,10 @@ from simkit.testing.conditions.bound_expression import (
     ExpressionBinder,
     Function,
     as_numbers,
+    as_vector,
 )
 from simkit.testing.conditions.syntax_tree import Call, UndecidedValue
-from simkit.testing.conditions.value_types import NUMBER, TRUTH
+from simkit.testing.conditions.value_types import NUMBER, TRUTH, is_vector_like
 
 Reduction = Callable[[Any], float]
 
@@ -98,8 +99,6 @@ def _isfinite(binder: ExpressionBinder, call: Call) -> BoundNode:
     if part.kind is NUMBER:
         get = part.get
         return BoundNode(call, TRUTH, lambda: math.isfinite(get()), (part,))
-    from simkit.testing.conditions.bound_expression import as_vector
-    from simkit.testing.conditions.value_types import is_vector_like
 
     if not is_vector_like(part.kind):
         raise binder.not_a_number(part)

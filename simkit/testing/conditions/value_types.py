@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Any, Final
 
+from simkit import msgs
+
 _BASE, _NAME, _ARRAY = 1, 2, 3  # rosbags.interfaces.Nodetype
 _NUMBERS = ("int", "uint", "float")
 
@@ -77,7 +79,6 @@ def is_orientation_like(kind: ValueType) -> bool:
 @cache
 def fields_of(type_name: str) -> dict[str, tuple[str, ValueType]]:
     """Field of a message type -> the attribute that holds it, and its kind."""
-    from simkit import msgs
 
     name = msgs.full_name(type_name)
     found: dict[str, tuple[str, ValueType]] = {}

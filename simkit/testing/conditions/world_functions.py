@@ -15,6 +15,7 @@ from simkit.testing.conditions.bound_expression import (
     as_vector,
     quoted_argument,
 )
+from simkit.testing.conditions.contact_query import ContactQuery
 from simkit.testing.conditions.syntax_tree import Call, Node, Text, UndecidedValue
 from simkit.testing.conditions.value_types import (
     JOINT,
@@ -26,6 +27,7 @@ from simkit.testing.conditions.value_types import (
     TWIST,
     VECTOR,
     is_pose_like,
+    is_vector_like,
     message_type,
 )
 
@@ -129,7 +131,6 @@ def _point_argument(binder: ExpressionBinder, node: Node, part: BoundNode) -> Ca
 
 
 def _has_vector(part: BoundNode) -> bool:
-    from simkit.testing.conditions.value_types import is_vector_like
 
     return is_vector_like(part.kind)
 
@@ -203,7 +204,6 @@ WORLD_FUNCTIONS: Final[dict[str, Function]] = {
 
 
 def _contact_query(binder: ExpressionBinder, call: Call) -> ContactQuery:
-    from simkit.testing.conditions.contact_query import ContactQuery
 
     nodes = [
         quoted_argument(binder, call, place, "the name of a model or a link") for place in range(len(call.arguments))

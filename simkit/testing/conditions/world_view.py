@@ -10,6 +10,7 @@ import numpy as np
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
 from simkit.runtime.communication.topic_bus import absolute_name
+from simkit.runtime.contact.collision_contacts import collision_table
 from simkit.testing.conditions.syntax_tree import REMOVED_CODE, Span, UndecidedValue, expression_error
 
 if TYPE_CHECKING:
@@ -195,7 +196,6 @@ class WorldView:
 
     def scoped(self, name: str, source: str, span: Span) -> str:
         """The scoped name of a model, a link, or a collision."""
-        from simkit.runtime.contact.collision_contacts import collision_table
 
         if name in collision_table(self.sim.engine.structure.compiled).names:
             return name

@@ -13,12 +13,14 @@ from typing import Any, Final
 
 from simkit.errors import InputError, SimkitError
 from simkit.run_spec import RunSpec
+from simkit.testing.golden.cause import explain, world_changes
 from simkit.testing.golden.compare.difference import Verdict
 from simkit.testing.golden.compare.runs import compare
 from simkit.testing.golden.store import golden_folder, read_golden, read_history, write_golden
 from simkit.testing.run_record.fingerprint import RENDERER
 from simkit.testing.run_record.record import RunRecord
 from simkit.testing.run_record.run_recorder import ENVIRONMENT_VARIABLES, run_record
+from simkit.testing.scenarios.scenario_file import read_scenario
 
 CAUSE_BUDGET_SECONDS: Final = 60.0
 """Wall time [s] that looking for causes may take."""
@@ -78,8 +80,6 @@ def _verdict(
         if not comparison.passed and bless is not None:
             make_golden(place, verdict, bless.strip(), other_renderer=other_renderer)
         elif not comparison.passed and budget_s is not None:
-            from simkit.testing.golden.cause import explain
-
             verdict.explanation = explain(golden, run, comparison, budget_s=budget_s)
         return verdict
     finally:
@@ -90,7 +90,6 @@ def _verdict(
 
 def _append_world_changes(error: InputError, golden: RunRecord, scenario: RunSpec) -> InputError:
     """Why a run was not even begun, with what has changed in its world: a topic that it needs may have gone with it."""
-    from simkit.testing.golden.cause import world_changes
 
     still = replace(scenario, commands=(), play="", play_topics=(), checks=(), until="", timeout=None, duration=0.0)
     try:
@@ -126,7 +125,6 @@ def _current_scenario(place: Path, golden: RunRecord, given: RunSpec | None) -> 
                 "    help: put it back, or record anew",
                 "SK-GOLDEN-006",
             )
-        from simkit.testing.scenarios.scenario_file import read_scenario
 
         return read_scenario(stored.file)
     if stored.test:

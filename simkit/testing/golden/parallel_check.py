@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import sys
+import threading
 from collections.abc import Sequence
 from contextlib import redirect_stdout
 from dataclasses import dataclass
@@ -100,8 +102,6 @@ def _check_in_parallel(folders: list[Path], wanted: CheckOptions, jobs: int) -> 
 def _end_with_parent() -> None:
     """In another process: ends it once the one that began it is gone, however that went."""
     import multiprocessing
-    import os
-    import threading
     from multiprocessing.connection import wait
 
     parent = multiprocessing.parent_process()

@@ -17,8 +17,12 @@ import pytest
 
 from simkit.errors import InputError
 from simkit.run_spec import LoadOptions, RunSpec, Tolerance
+from simkit.testing.golden.cause import explain
 from simkit.testing.golden.compare.difference import Explanation, Verdict
+from simkit.testing.golden.compare.runs import compare
+from simkit.testing.golden.report import text_report, write_html
 from simkit.testing.run_record.record import RunRecord
+from simkit.testing.scenarios.scenario_file import read_scenario
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
@@ -201,8 +205,6 @@ class SensorRegression:
                 return RunSpec(text, folder=self._place.beside), None
             beside = self._place.beside / text
             if beside.suffix.lower() in _FILES:
-                from simkit.testing.scenarios.scenario_file import read_scenario
-
                 return read_scenario(beside if beside.is_file() else Path(text)), None
             return RunSpec(text, folder=self._place.beside if beside.exists() else Path.cwd()), None
         if not hasattr(what, "mj_model"):
@@ -226,7 +228,6 @@ class SensorRegression:
     def _judged(self, place: Path, record: RunRecord, elapsed: float, *, again: bool) -> Verdict:
         """Compares a run with its golden one, or makes it the golden one."""
         from simkit.testing.golden.check import refuse_failed
-        from simkit.testing.golden.compare.runs import compare
         from simkit.testing.golden.store import is_golden, read_golden, write_golden
 
         writes = self._place.reason is not None
@@ -255,7 +256,6 @@ class SensorRegression:
         self._place.done.append(f"changed: {_short_path(place)}: {verdict.comparison.differences[0].words}")
 
     def _fail(self, place: Path, verdict: Verdict, *, again: bool) -> None:
-        from simkit.testing.golden.report import text_report, write_html
 
         if not verdict.comparison.passed:
             verdict.explanation = _explain(verdict, again=again)
@@ -287,7 +287,6 @@ def safe_name(text: str) -> str:
 
 def _explain(verdict: Verdict, *, again: bool) -> Explanation:
     """Where differences come from; what only the test can do again is not tried again."""
-    from simkit.testing.golden.cause import explain
 
     golden, run, comparison = verdict.golden, verdict.run, verdict.comparison
     if again:

@@ -10,6 +10,7 @@ import numpy as np
 
 from simkit.run_spec import RunSpec
 from simkit.testing.golden.array_packing import Packer, PackingError, Unpacker
+from simkit.testing.golden.compare.tolerances import storage_step
 from simkit.testing.golden.scenario_encoding import is_long_text
 from simkit.testing.run_record.model_fields import ModelFields
 from simkit.testing.run_record.noise_statistics import NoiseStatistics
@@ -82,7 +83,6 @@ def decode_record(said: Mapping[str, Any], data: bytes, scenario: RunSpec) -> Ru
 
 
 def _pack_stream(packer: Packer, stream: Stream, scenario: RunSpec) -> dict[str, Any]:
-    from simkit.testing.golden.compare.tolerances import storage_step
 
     columns = {}
     for path, column in stream.columns.items():

@@ -6,10 +6,12 @@ import hashlib
 import platform
 from collections.abc import Mapping
 from functools import cache
+from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Final
 
+from simkit.errors import RenderError
 from simkit.version import __version__
 
 RENDERER: Final = "renderer"
@@ -80,7 +82,6 @@ def _version(package: str) -> str:
 
 def _cpu_features() -> str:
     """What of the processor's instructions NumPy and the mathematics library choose by: the widest of each family."""
-    from importlib import import_module
 
     try:
         features = import_module("numpy._core._multiarray_umath").__cpu_features__
@@ -103,7 +104,6 @@ def code_hash() -> str:
 
 @cache
 def _renderer() -> str:
-    from simkit.errors import RenderError
     from simkit.sensors.cameras.rendering import gl_context
 
     try:

@@ -9,7 +9,9 @@ from zlib import crc32
 
 import numpy as np
 
-from simkit.testing.run_record.message_columns import MessageRows, join_arrays
+from simkit.testing.run_record.message_columns import MessageRows, join_arrays, message_fields
+from simkit.testing.run_record.noise_statistics import noise_statistics
+from simkit.testing.run_record.pictures import shrink, tile_hashes
 from simkit.testing.run_record.record import Array, Pictures, Stream
 
 if TYPE_CHECKING:
@@ -111,7 +113,6 @@ class _ImageRecorder:
         self._encoding, self._is_odd = "", False
 
     def take(self, message: Any) -> None:
-        from simkit.testing.run_record.pictures import shrink, tile_hashes
 
         number = len(self._hashes)
         self._plain.take(message)
@@ -210,7 +211,6 @@ def points_of_cloud(message: Any) -> Any:
 
 def noise_recorder_for(scenario: RunSpec, sim: Simulation, topic: str, type_name: str) -> NoiseRecorder | None:
     """What keeps the statistics of a topic's noise; None where nobody asks for them, or no sensor publishes it."""
-    from simkit.testing.run_record.message_columns import message_fields
 
     fields = message_fields(type_name)
     paths = [
@@ -244,7 +244,6 @@ class NoiseRecorder:
 
     def fill(self, stream: Stream) -> None:
         """Puts statistics in the place of the samples."""
-        from simkit.testing.run_record.noise_statistics import noise_statistics
 
         read, true = self._read.columns()[0], self._true.columns()[0]
         times = stream.times_ns * 1e-9

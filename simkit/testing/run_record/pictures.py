@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import zlib
 from typing import Any, Final
 
 import numpy as np
@@ -19,7 +20,6 @@ def tile_hashes(image: Array, tile: int = TILE) -> npt.NDArray[np.uint32]:
         image: shape (height, width) or (height, width, channels), of any type.
         tile: length of a tile's side [px].
     """
-    import zlib
 
     rows, columns = -(-image.shape[0] // tile), -(-image.shape[1] // tile)
     found = np.empty((rows, columns), np.uint32)

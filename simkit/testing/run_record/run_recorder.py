@@ -18,7 +18,14 @@ from simkit import msgs
 from simkit.errors import PluginError, SimulationDiverged, SubscriberError
 from simkit.recording.bags.recorder import matches_topic
 from simkit.recording.message_taps import MessageQueue, TopicTaps
+from simkit.testing.run_record.fingerprint import fingerprint
+from simkit.testing.run_record.message_recorder import message_recorder_for
+from simkit.testing.run_record.model_fields import fields_of_model
 from simkit.testing.run_record.record import RunRecord, Stream
+from simkit.testing.run_record.source_files import source_hashes
+from simkit.testing.run_record.state_recorder import StateRecorder
+from simkit.testing.run_record.world_values import values_of_simulation
+from simkit.testing.scenarios.scenario_run import open_scenario, run_scenario
 
 if TYPE_CHECKING:
     from simkit.run_spec import RunSpec
@@ -129,7 +136,6 @@ def run_record(scenario: RunSpec, *, sim: Simulation | None = None) -> RunRecord
 
 
 def _run_and_record(scenario: RunSpec, sim: Simulation | None) -> RunRecord:
-    from simkit.testing.scenarios.scenario_run import open_scenario, run_scenario
 
     opened = open_scenario(scenario) if sim is None else sim
     results: tuple[Any, ...] = ()
@@ -160,10 +166,6 @@ class RunRecorder:
     """
 
     def __init__(self, scenario: RunSpec, sim: Simulation, longest: float) -> None:
-        from simkit.testing.run_record.model_fields import fields_of_model
-        from simkit.testing.run_record.source_files import source_hashes
-        from simkit.testing.run_record.state_recorder import StateRecorder
-        from simkit.testing.run_record.world_values import values_of_simulation
 
         self._scenario, self._sim = scenario, sim
         self._streams: dict[str, StreamRecorder] = {}
@@ -193,7 +195,6 @@ class RunRecorder:
         Args:
             end: why the run ended.
         """
-        from simkit.testing.run_record.fingerprint import fingerprint
 
         published = {topic for topic, _, _, does in self._sim.communication.bus.endpoints() if does == "publishes"}
         streams = {}
@@ -268,8 +269,6 @@ class StreamRecorder:
     def _keep(self, now: int, message: Any) -> None:
         type_name = msgs.type_name(message)
         if self._taker is None:
-            from simkit.testing.run_record.message_recorder import message_recorder_for
-
             self._type_name = type_name
             self._taker = message_recorder_for(self._scenario, self._sim, self._topic, type_name)
         message = sort_message(message, type_name)

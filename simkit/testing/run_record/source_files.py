@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from simkit.params import Params
-from simkit.testing.run_record.world_values import file_hash
+from simkit.testing.run_record.world_values import file_hash, plugin_value_files, values_of_files
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
@@ -25,7 +25,6 @@ def source_hashes(sim: Simulation) -> dict[str, str]:
 
     A name is a file's last parts, as many as tell it from the others.
     """
-    from simkit.testing.run_record.world_values import plugin_value_files, values_of_files
 
     of_plugins = plugin_value_files(sim)
     are_leaves = values_of_files(of_plugins)[2]

@@ -14,6 +14,7 @@ from simkit.diagnostics import Where
 from simkit.params import Params
 from simkit.pose import Pose
 from simkit.scene import SceneSensor, SceneWorld
+from simkit.yaml_reader import yaml_loader
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
@@ -273,8 +274,6 @@ def _parse_document(path: Path) -> Any:
     if path.suffix.lower() not in _SUFFIXES:
         return None
     import yaml
-
-    from simkit.yaml_reader import yaml_loader
 
     try:
         if path.stat().st_size > _MAX_FILE_BYTES:

@@ -9,8 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from simkit.child_process import exit_immediately, exit_with_parent
+from simkit.diagnostics import Diagnostics, Where
 from simkit.errors import InputError, LoadError, PluginError, SimkitError
 from simkit.testing.scenarios.exercise import Exercise, ExerciseRun, read_exercise
+from simkit.testing.scenarios.scenario_run import open_scenario, run_scenario
 
 
 def main(job_file: str) -> None:
@@ -36,7 +38,6 @@ def _run_exercise(asked: Exercise, variation: ExerciseRun, hand_in: Path | None,
     """What became of each check, or what went wrong."""
     from simkit.recording.run_picture import DrivenPath, save_picture
     from simkit.runtime.engine.snapshot import state_hash
-    from simkit.testing.scenarios.scenario_run import open_scenario, run_scenario
 
     sim: Any = None
     try:
@@ -76,7 +77,6 @@ def _run_exercise(asked: Exercise, variation: ExerciseRun, hand_in: Path | None,
 def _is_sound_without_plugin(variation: ExerciseRun) -> bool:
     """Whether the exercise's world opens and has what its checks name where nothing was handed in."""
     from simkit.testing.conditions import Watch
-    from simkit.testing.scenarios.scenario_run import open_scenario
 
     asked = variation.scenario
     try:
@@ -93,7 +93,6 @@ def _make_plugin(file: Path, parameters: Any) -> Any:
     Raises:
         LoadError: SK-PLUGIN-008 it has none, or running or making it failed.
     """
-    from simkit.diagnostics import Diagnostics, Where
     from simkit.params import Params
     from simkit.plugins.discovery.user_plugins import find_user_plugin
     from simkit.scene import ScenePlugin

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from simkit.testing.junit import JunitCase
 from simkit.testing.scenarios.grading import Grade, RunGrade
 
 
@@ -60,7 +61,6 @@ def _run_json(outcome: RunGrade) -> dict[str, Any]:
 
 def junit_cases(graded: Grade) -> list[Any]:
     """One case of JUnit for each check of each run."""
-    from simkit.testing.junit import JunitCase
 
     suite = graded.label or Path(graded.hand_in).stem or graded.exercise.file.stem
     return [

@@ -10,6 +10,7 @@ from typing import Any, Final, get_args
 
 from simkit.diagnostics import Diagnostics, Where
 from simkit.errors import InputError, LoadError
+from simkit.recording.commands import validate_items
 from simkit.run_spec import Check, CheckKind, RunSpec, Tolerance
 from simkit.testing.scenarios.yaml_document import resolve_spawn_file, short_repr
 from simkit.yaml_reader import finite_number
@@ -67,7 +68,6 @@ def _validate_numbers(label: str, of: Any, **may_be_none: bool) -> Iterator[str]
 
 
 def _validate_commands(commands: Any) -> Iterator[str]:
-    from simkit.recording.commands import validate_items
 
     if not isinstance(commands, (tuple, list)) or not all(isinstance(one, Mapping) for one in commands):
         yield _problem("commands", commands, "a tuple of mappings with at, topic and message")

@@ -12,6 +12,8 @@ from typing import Any, Final, cast
 
 from simkit.diagnostics import Diagnostics, Where
 from simkit.errors import InputError, LoadError
+from simkit.recording.bags.reader import open_bag_to_read
+from simkit.recording.commands import script_items, validate_items
 from simkit.run_spec import Check, CheckKind, LoadOptions, RunSpec, Tolerance
 from simkit.testing.scenarios.python_file import load_python_scenario
 from simkit.testing.scenarios.yaml_document import Document, ValueReader, resolve_spawn_file
@@ -159,7 +161,6 @@ class ScenarioReader(ValueReader):
         return found
 
     def _commands(self) -> tuple[Mapping[str, Any], ...]:
-        from simkit.recording.commands import script_items, validate_items
 
         value = self._said.get("commands", ())
         try:
@@ -180,7 +181,6 @@ class ScenarioReader(ValueReader):
 
     def _played(self) -> float:
         """How long the recording is that is played [s]; 10 s where none is."""
-        from simkit.recording.bags.reader import open_bag_to_read
 
         said = self._said.get("play")
         if said is None and "play_topics" in self._said:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Literal
 
+from simkit.recording.commands import Commands, commands_of, read_script, steady_velocity
 from simkit.run_spec import RunSpec
 
 if TYPE_CHECKING:
@@ -112,7 +113,6 @@ def resolve_commands(spec: RunSpec, topics: Mapping[str, str]) -> RunSpec:
     """
     if spec.velocity is None and spec.script is None:
         return spec
-    from simkit.recording.commands import read_script, steady_velocity
 
     found = [] if spec.velocity is None else [steady_velocity(spec.velocity, topics)]
     if spec.script is not None:
@@ -133,7 +133,6 @@ class ScenarioCommands:
     """
 
     def __init__(self, scenario: RunSpec, sim: Simulation) -> None:
-        from simkit.recording.commands import Commands, commands_of
 
         topics = sim.topics()
         self._commands = Commands(sim, commands_of(resolve_commands(scenario, topics).commands, topics))

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from simkit.diagnostics import Diagnostics, Where, did_you_mean, shorten
-from simkit.yaml_reader import finite_number
+from simkit.yaml_reader import NotYaml, compose_nodes, finite_number, node_value
 
 MAX_BYTES = 1 << 20  # bytes of a file that people write by hand
 _MAX_DEPTH = 6  # levels whose lines are known
@@ -70,7 +70,6 @@ class Document:
             return None
 
     def _read(self, text: str) -> None:
-        from simkit.yaml_reader import NotYaml, compose_nodes, node_value
 
         try:
             root = compose_nodes(text)

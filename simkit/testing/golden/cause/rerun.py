@@ -17,8 +17,11 @@ from simkit.scene import SceneWorld
 from simkit.testing.golden.cause.changes import Change
 from simkit.testing.golden.cause.world_patch import patch_world
 from simkit.testing.golden.compare.difference import Comparison
+from simkit.testing.golden.compare.runs import compare
+from simkit.testing.golden.compare.tolerances import tolerance_of
 from simkit.testing.golden.compare.world_edits import ABSENT
 from simkit.testing.run_record.record import Column, RunRecord, Stream
+from simkit.testing.scenarios.scenario_run import open_scenario
 
 ChangeWorld = Callable[[SceneWorld], SceneWorld]
 RunChangedWorld = Callable[[RunSpec, ChangeWorld | None], RunRecord]
@@ -37,7 +40,6 @@ def rerun_scenario(scenario: RunSpec, change_world: ChangeWorld | None) -> RunRe
         SimkitError: the world, or what is done in it, cannot be used.
     """
     from simkit.testing.run_record.run_recorder import run_record
-    from simkit.testing.scenarios.scenario_run import open_scenario
 
     if scenario.plugins:
         scenario = replace(scenario, plugins=tuple(copy.deepcopy(p) for p in scenario.plugins))
@@ -130,7 +132,6 @@ class ScenarioRerun:
     def _is_golden(self, record: RunRecord) -> bool:
         if self._comparison.tier == "exact":
             return _same_bits(self._golden, record, self.horizon)
-        from simkit.testing.golden.compare.runs import compare
 
         golden, mine = cut_record(self._golden, self.horizon), cut_record(record, self.horizon)
         found = compare(
@@ -153,7 +154,6 @@ def _same_bits(golden: RunRecord, run: RunRecord, until: float) -> bool:
 
 
 def _counts(topic: str, golden: RunRecord, run: RunRecord) -> bool:
-    from simkit.testing.golden.compare.tolerances import tolerance_of
 
     stream = run.streams.get(topic) or golden.streams[topic]
     return not tolerance_of(run.scenario, topic, stream.type_name, "").ignore

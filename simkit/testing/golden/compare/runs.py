@@ -13,6 +13,8 @@ from simkit.testing.golden.compare.physics import compare_physics
 from simkit.testing.golden.compare.streams import StreamPair, compare_stream
 from simkit.testing.golden.compare.times import begin_time
 from simkit.testing.golden.compare.tolerances import tolerance_of
+from simkit.testing.golden.compare.world_edits import field_edits
+from simkit.testing.run_record.fingerprint import fingerprint_differences
 from simkit.testing.run_record.record import RunRecord, Stream
 
 _PICTURES = ("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage")
@@ -28,7 +30,6 @@ def compare(golden: RunRecord, run: RunRecord, *, exact: bool | None = None) -> 
         exact: whether bits must be equal; None for where the machine and the versions are the same, unless the run's
             scenario says that tolerances count there too.
     """
-    from simkit.testing.run_record.fingerprint import fingerprint_differences
 
     if exact is None and not run.scenario.bits:
         exact = False
@@ -168,7 +169,6 @@ def _compare_meaning(golden: RunRecord, run: RunRecord, found: Comparison) -> No
 
 def _compare_fields(golden: RunRecord, run: RunRecord, found: Comparison) -> None:
     """What the engine was given, of a world that says the same as before: parts that are the engine's own language."""
-    from simkit.testing.golden.compare.world_edits import field_edits
 
     edits = field_edits(golden, run) if golden.fields and run.fields else []
     if not edits:

@@ -13,10 +13,11 @@ from simkit.run_spec import RunSpec, Tolerance
 from simkit.testing.golden.compare.difference import Difference, DifferenceKind
 from simkit.testing.golden.compare.numbers import compare_column
 from simkit.testing.golden.compare.orientations import compare_orientation, quaternion_paths
+from simkit.testing.golden.compare.pictures import compare_pictures
 from simkit.testing.golden.compare.times import begin_time, compare_times, shift_allowed
 from simkit.testing.golden.compare.tolerances import FieldFinding, FieldTerms, tolerance_of
 from simkit.testing.golden.compare.units import joint_unit, quantity_text, time_text, unit_of, value_text
-from simkit.testing.run_record.noise_statistics import NoiseStatistics, StatisticDifference
+from simkit.testing.run_record.noise_statistics import NoiseStatistics, StatisticDifference, statistic_differences
 from simkit.testing.run_record.record import Column, Stream
 
 
@@ -129,8 +130,6 @@ def compare_stream(pair: StreamPair) -> StreamComparison:
         found.differences.append(timing)
     ranked = [*_compare_numbers(pair, count, found), *_missing_fields(pair), *_compare_texts(pair, count)]
     if golden.pictures is not None or run.pictures is not None:
-        from simkit.testing.golden.compare.pictures import compare_pictures
-
         ranked += compare_pictures(golden, run, whole, pair.is_exact, count, found.notes)
     if golden.statistics or run.statistics:
         ranked += _compare_statistics(pair, found)
@@ -232,7 +231,6 @@ def _line(text: str) -> str:
 
 def _compare_statistics(pair: StreamPair, found: StreamComparison) -> Ranked:
     """Statistics of the noise, where both have them."""
-    from simkit.testing.run_record.noise_statistics import statistic_differences
 
     golden, run = pair.golden, pair.run
     ranked: Ranked = []

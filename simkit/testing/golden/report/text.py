@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Final
 
 from simkit.testing.golden.compare.difference import Cause, Comparison, Difference, Explanation, Verdict
+from simkit.testing.junit import JunitCase
 
 if TYPE_CHECKING:
     from simkit.testing.junit import JunitCase
@@ -203,7 +204,6 @@ def junit_cases(verdicts: Verdict | Iterable[Verdict]) -> list[JunitCase]:
 
 
 def _cases_of_verdict(verdict: Verdict) -> list[JunitCase]:
-    from simkit.testing.junit import JunitCase
 
     scenario = verdict.run.scenario
     classname, file = f"golden.{verdict.name}", str(scenario.file) if scenario.file is not None else ""
