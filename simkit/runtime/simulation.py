@@ -91,26 +91,23 @@ class Simulation:
         return self.engine.time_ns
 
     @property
+    def seed(self) -> int:
+        """Seed of all random streams."""
+        return self.engine.streams.seed
+
+    @property
     def timestep(self) -> float:
         """Length of a step [s]."""
         return self.engine.clock.timestep
 
     def step(self, count: int = 1) -> None:
-        """Advances `count` steps.
-
-        Raises:
-            SimulationDiverged: the physics left the numbers.
-            PluginError: a plugin raised.
-        """
+        """Advances `count` steps; raises SimulationDiverged, and PluginError where a plugin raised."""
         if count < 0:
             raise ValueError(f"count must not be negative, got {count}")
         self._advance(self.tick + int(count))
 
     def run(self, duration: float) -> None:
-        """Advances a duration [s] of simulated time, to the nearest whole step.
-
-        Where a hook goes back to an earlier time it goes on from there, for what is left of the duration.
-        """
+        """Advances a duration [s] of simulated time, to the nearest whole step; also where a hook goes back in time."""
         if not duration >= 0:
             raise ValueError(f"duration must be a number of seconds that is not negative, got {duration}")
         self._advance(self.tick + self.engine.clock.ticks(duration))
@@ -191,13 +188,16 @@ class Simulation:
 
     def _stateful(self) -> list[Stateful]:
         """Every part with a state besides sensors and plugins, in the order in which they are restored."""
-        engine, communication, control, handles = self.engine, self.communication, self.control, self.contents.handles
-        return [
-            *handles.stateful(),
-            *(engine.faults, communication.live_parameters, communication.actions),
-            *(control.pausing, control.origin, engine.velocity_servos),
-            *handles.tables["model"].values(),
-        ]
+        engine, talk, control, handles = self.engine, self.communication, self.control, self.contents.handles
+        own = (
+            engine.faults,
+            talk.live_parameters,
+            talk.actions,
+            control.pausing,
+            control.origin,
+            engine.velocity_servos,
+        )
+        return [*handles.stateful(), *own, *handles.tables["model"].values()]
 
     def _loaded_state(self) -> Snapshot:
         self.engine.check_open()
@@ -265,6 +265,11 @@ class Simulation:
     @gravity.setter
     def gravity(self, value: Sequence[float] | Vector) -> None:
         self.control.gravity = value
+
+    @property
+    def plugins(self) -> dict[str, Any]:
+        """Plugins that the file made, by scoped name."""
+        return self.contents.plugins
 
     @property
     def paused(self) -> bool:

@@ -127,12 +127,12 @@ def printed(found: list[Any]) -> None:
 
 def loaded(sim: Any) -> dict[str, str]:
     """Looks at what was compiled, says what the physics lint says, and steps."""
-    from simkit.compiler.lint import lint
+    from simkit.compiler.lint import lint_world
 
     bad = numbers_that_are_none(sim.mj_model)
     if bad:
         return {"outcome": f"not finite in the compiled model: {bad}"}
-    printed([*sim.diagnostics, *lint(sim)])
+    printed([*sim.diagnostics, *lint_world(sim.world, sim.engine.compiled)])
     until = time.perf_counter() + STEPPING
     sim.step(3)
     while sim.tick < STEPS and time.perf_counter() < until:

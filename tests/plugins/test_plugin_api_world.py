@@ -346,7 +346,7 @@ def test_a_thousand_spawned_and_removed_leave_nothing_behind(closer: Path) -> No
             sim.remove(f"n{i}")
         owners = [p.owner for ends in sim.communication.bus._publishers.values() for p in ends if p.owner is not None]
         assert not [o for o in owners if type(o).__name__ == "Closer"]
-        assert len(sim.contents.handles._made) == 1
+        assert len(sim.contents.handles._by_scene) == 1
 
 
 # ---------------------------------------------------------------------- what nobody read

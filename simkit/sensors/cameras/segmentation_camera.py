@@ -190,8 +190,8 @@ def make_palette(items: LabelledObjects, kind: str) -> Palette:
         codes[:, :3] = labels[:, None]
     else:
         numbers = np.where(labels > 0, labels * 65536 + instances % 65536, 0)
-        numbers = np.where(labels > 0, instances, 0)
-        codes[:, 0], codes[:, 1], codes[:, 2] = numbers & 255, numbers >> 8 & 255, labels
+        counts = np.where(labels > 0, instances, 0)
+        codes[:, 0], codes[:, 1], codes[:, 2] = counts & 255, counts >> 8 & 255, labels
     found = {0: BACKGROUND, **label_colours(sorted({int(n) for n in numbers} - {0}))}
     colours = np.zeros_like(codes)
     colours[:, :3] = [found[int(n)] for n in numbers]

@@ -100,7 +100,7 @@ def driven(rate: float = 50.0, **values: Any) -> tuple[GazeboRosDiffDrive, dict[
     """A drive without a simulation, its wheel commands, and the clock."""
     plugin = GazeboRosDiffDrive()
     controls: dict[int, float] = {}
-    plugin.sim = sim = SimpleNamespace(time_ns=0, set_control=controls.__setitem__)  # type: ignore[assignment]
+    plugin.sim = sim = SimpleNamespace(time_ns=0, engine=SimpleNamespace(set_control=controls.__setitem__))  # type: ignore[assignment]
     plugin.options = options(update_rate=rate, wheel_separation=0.5, wheel_diameter=0.2, **values)
     plugin._servos, plugin._rims, plugin._last_ns = [0, 1], [0.0, 0.0], 0
     plugin._command = (0.0, 0.0)

@@ -63,7 +63,7 @@ def on_imu(message):
 def test_a_subscriber_that_raises_stops_the_run_with_its_topic_its_name_and_its_place():
     sim = simkit.load(WORLD)
     sim.subscribe("/imu", on_imu)
-    told = r"'on_imu' \(.*test_topics_faults\.py:\d+\) of '/imu' raised at t=0"
+    told = r"'on_imu' \(.*test_topic_failures\.py:\d+\) of '/imu' raised at t=0"
     with pytest.raises(SubscriberError, match=told) as e:
         sim.step(10)
     assert e.value.exit_code == 4

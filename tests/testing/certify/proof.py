@@ -148,7 +148,7 @@ def proven(
 def differences(one: Seen, other: Seen) -> list[str]:
     """What is other, in words."""
     found = []
-    if one.physics != other.engine.physics or one.state != other.state:
+    if one.physics != other.physics or one.state != other.state:
         found.append("the physics")
     for mine, yours in zip(one.messages, other.messages, strict=False):
         if mine != yours:
@@ -157,7 +157,7 @@ def differences(one: Seen, other: Seen) -> list[str]:
     if len(one.messages) != len(other.messages):
         found.append(f"{len(one.messages)} messages became {len(other.messages)}")
     found += [f"the reading of {name}" for name, value in one.readings.items() if other.readings[name] != value]
-    found += [name for name, value in one.parameters.items() if other.communication.parameters.get(name) != value]
+    found += [name for name, value in one.parameters.items() if other.parameters.get(name) != value]
     for name, memory in one.memory.items():
         for attribute in sorted({*memory, *other.memory[name]}):
             if memory.get(attribute) != other.memory[name].get(attribute):
