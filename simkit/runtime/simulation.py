@@ -189,15 +189,8 @@ class Simulation:
     def _stateful(self) -> list[Stateful]:
         """Every part with a state besides sensors and plugins, in the order in which they are restored."""
         engine, talk, control, handles = self.engine, self.communication, self.control, self.contents.handles
-        own = (
-            engine.faults,
-            talk.live_parameters,
-            talk.actions,
-            control.pausing,
-            control.origin,
-            engine.velocity_servos,
-        )
-        return [*handles.stateful(), *own, *handles.tables["model"].values()]
+        own = (engine.faults, talk.live_parameters, talk.actions, control.pausing, control.origin)
+        return [*handles.stateful(), *own, engine.velocity_servos, *handles.tables["model"].values()]
 
     def _loaded_state(self) -> Snapshot:
         self.engine.check_open()
