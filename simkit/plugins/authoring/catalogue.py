@@ -140,7 +140,7 @@ def _origin(cls: type[Plugin]) -> str:
 
 
 @functools.cache
-def facts_of(cls: type[Any]) -> Facts:
+def facts_of(cls: type[Plugin]) -> Facts:
     """What a plugin reads and opens: the options that it declares, and what its source says literally; it does not run.
 
     Args:
@@ -196,7 +196,7 @@ def _declared(options: type[Options], above: tuple[str, ...] = ()) -> Iterator[P
             yield from _declared(option.options, path)
 
 
-def _default(option: Option, fields: Mapping[str, Option]) -> Any:
+def _default(option: Option, fields: Mapping[str, Option]) -> object:
     """The default that is shown: of a field that is read instead, that one's."""
     while option.instead:
         option = fields[option.instead]

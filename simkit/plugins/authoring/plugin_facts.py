@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import Any
 
 _NARROWER = ("", "block", "text")  # any other kind is narrower still
 
@@ -31,12 +30,12 @@ class Parameter:
 
     path: tuple[str, ...]
     kind: str
-    default: Any = None
+    default: object = None
     instead: tuple[str, ...] = ()
     required: bool = False
     minimum: float | None = None
     maximum: float | None = None
-    choices: tuple[Any, ...] = ()
+    choices: tuple[str, ...] = ()
     size: int | None = None
     repeated: bool = False
     live: bool = False
@@ -123,7 +122,7 @@ def _both(one: Parameter, other: Parameter) -> Parameter:
 
 def merged_topics(found: Iterable[Topic]) -> tuple[Topic, ...]:
     """Each topic once, with all the parameters that may name it."""
-    table: dict[tuple[Any, ...], Topic] = {}
+    table: dict[tuple[str, tuple[str, ...], bool], Topic] = {}
     for topic in found:
         key = (topic.name, topic.types, topic.published)
         before = table.get(key, topic)

@@ -6,19 +6,22 @@ import inspect
 import linecache
 import sys
 import traceback
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from simkit.diagnostics import Diagnostics
+from simkit.diagnostics import Diagnostic, Diagnostics
 from simkit.errors import LoadError, SimkitError
 from simkit.params import Params
+from simkit.plugins.discovery.attachment import SceneEntity
 from simkit.plugins.discovery.plugin_kinds import find_plugin
 from simkit.plugins.gz_python.import_hook import importable
+from simkit.scene import SceneModel, SceneSensor, SceneVisual
 
 if TYPE_CHECKING:
+    from simkit.plugins.base import Plugin
     from simkit.runtime import Simulation
 
 _BROKEN, _REFUSED = "SK-PLUGIN-071", "SK-PLUGIN-076"
@@ -133,7 +136,7 @@ class PluginReloader:
         sys.modules[name] = old
         return False
 
-    def _exchange(self, old: Any, before: dict[str, ModuleType]) -> bool:
+    def _exchange(self, old: Plugin, before: dict[str, ModuleType]) -> bool:
         """Puts the new code's plugin in the place of the old one's."""
         from simkit.runtime.plugin_replacement import replace_plugin
 
@@ -166,11 +169,11 @@ class PluginReloader:
         self._say(f"{file.name}: {new.name!r} reloaded at {sim.time:.6g} s")
         return True
 
-    def _made_anew(self, old: Any, found: Diagnostics) -> Any:
+    def _made_anew(self, old: Plugin, found: Diagnostics) -> Plugin | None:
         """An instance of the new class, with the parameters that the file gives it."""
-        new: Any
+        new: Plugin | None
         if old.source is None:
-            cls = getattr(sys.modules[type(old).__module__], type(old).__name__, None)
+            cls: type[Plugin] | None = getattr(sys.modules[type(old).__module__], type(old).__name__, None)
             new = cls(**vars(old).get("_values", {})) if inspect.isclass(cls) else None
             if new is not None:
                 new.hand_over(found, old.scoped)
@@ -184,7 +187,7 @@ class PluginReloader:
             new._order, new.plugin_paths = old._order, old.plugin_paths
         return new
 
-    def _say_all(self, found: Any) -> None:
+    def _say_all(self, found: Iterable[Diagnostic]) -> None:
         for diagnostic in found:
             self._say(str(diagnostic))
 
@@ -192,7 +195,7 @@ class PluginReloader:
 _MODULE_ATTRIBUTES = {"__name__", "__file__", "__spec__", "__loader__", "__package__", "__path__", "__cached__"}
 
 
-def modules_of(plugin: Any) -> set[str]:
+def modules_of(plugin: object) -> set[str]:
     """Names of the modules that hold a plugin's code: its class's, and of what stands behind a system of gz."""
     system = getattr(plugin, "system", None)
     behind = [system] if system is not None else []
@@ -243,12 +246,16 @@ def with_diagnostics(params: Params, diagnostics: Diagnostics) -> Params:
     return Params(params.name, params.value, params.attributes, children, params.where, diagnostics)
 
 
-def scene_of(sim: Simulation, scoped: str) -> Any:
+def scene_of(sim: Simulation, scoped: str) -> SceneEntity:
     """What a plugin hangs on, as the file has it: the world, a model, a visual or a sensor."""
     for top in sim.engine.structure.models.values():
         if scoped != top.scoped and not scoped.startswith(f"{top.scoped}::"):
             continue
-        things: list[Any] = [*top.all_models(), *top.all_sensors(), *(v for k in top.all_links() for v in k.visuals)]
+        things: list[SceneModel | SceneSensor | SceneVisual] = [
+            *top.all_models(),
+            *top.all_sensors(),
+            *(v for k in top.all_links() for v in k.visuals),
+        ]
         found = next((thing for thing in things if thing.scoped == scoped), None)
         if found is not None:
             return found

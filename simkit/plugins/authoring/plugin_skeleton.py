@@ -16,42 +16,12 @@ _TYPES = {"number": "float", "boolean": "bool", "text": "str", "pose": "Pose", "
 _RATES = {"update_rate", "updateRate", "updateRateHZ", "update_frequency", "rate"}
 _WIDEST = 118
 DEEPEST = 3  # blocks within blocks that are read at once
-_OWN = frozenset(
-    [
-        "sim",
-        "name",
-        "scoped",
-        "params",
-        "where",
-        "ros",
-        "log",
-        "source",
-        "period",
-        "parent_kind",
-        "filenames",
-        "names",
-        "before_step",
-        "after_step",
-        "reset",
-        "load",
-        "prepare",
-        "close",
-        "advertise",
-        "listen",
-        "offer",
-        "act",
-        "declare",
-        "random",
-        "get_state",
-        "set_state",
-        "before_step_rate",
-        "after_step_rate",
-        "lets_sleep",
-        "drives",
-        "reads_parameter_files",
-        "has_hook",
-    ]
-)
+_NAMES_OF_PLUGIN = """
+sim name scoped params where ros log source period parent_kind filenames names before_step after_step reset load
+prepare close advertise listen offer act declare random get_state set_state before_step_rate after_step_rate
+lets_sleep drives reads_parameter_files has_hook
+"""
+_OWN = frozenset(_NAMES_OF_PLUGIN.split())
 """Names that a plugin has already."""
 
 

@@ -70,7 +70,7 @@ class _Function:
         )
 
 
-def scan(cls: type[Any], parent: str) -> Facts:
+def scan(cls: type, parent: str) -> Facts:
     """What the source of a class reads and opens.
 
     Args:
@@ -80,7 +80,7 @@ def scan(cls: type[Any], parent: str) -> Facts:
     return _Scan(parent).run([c for c in reversed(cls.__mro__) if c not in Plugin.__mro__])
 
 
-def scan_function(function: Any) -> Facts:
+def scan_function(function: object) -> Facts:
     """What a function reads."""
     return _Scan("model").run([function]) if isinstance(function, FunctionType) else Facts()
 
@@ -101,7 +101,7 @@ class _Scan:
         self._function: _Function
 
     def run(self, starts: list[Any]) -> Facts:
-        functions: dict[Any, _Function] = {}
+        functions: dict[FunctionType, _Function] = {}
         waiting = [f for start in starts for f in (_methods(start) if inspect.isclass(start) else [start])]
         while waiting:
             function = waiting.pop(0)
@@ -235,8 +235,6 @@ class _Scan:
             if name == "read_topic" and len(node.args) > 2:
                 topic, elements = self._topic(node.args[2], depth + 1)
                 return topic, (_shown(self._value(node.args[1])), *elements)
-            if name == "private_topic" and len(node.args) > 2:
-                return f"~/{_shown(self._value(node.args[1]))}", (_shown(self._value(node.args[2])),)
             if name == "text" and node.args:
                 default = self._topic(node.args[1], depth + 1)[0] if len(node.args) > 1 else ""
                 return default, (_shown(self._value(node.args[0])),)
@@ -294,7 +292,7 @@ def _is_own(module: str) -> bool:
     return module.startswith("simkit.")
 
 
-def _methods(cls: type[Any]) -> list[FunctionType]:
+def _methods(cls: type) -> list[FunctionType]:
     found = (getattr(f, "__func__", getattr(f, "fget", f)) for f in vars(cls).values())
     return [f for f in found if isinstance(f, FunctionType)]
 
@@ -379,13 +377,13 @@ def _hole(node: ast.expr) -> str:
     return "{" + word.strip("_").rsplit("_", 1)[-1] + "}"
 
 
-def _shown(value: Any) -> str:
+def _shown(value: object) -> str:
     return value if isinstance(value, str) else str(value)
 
 
-def _plain(value: Any) -> Any:
+def _plain(value: object) -> object:
     return value if isinstance(value, (bool, int, float, str, tuple)) else str(value)
 
 
-def _bound(value: Any) -> float | None:
+def _bound(value: object) -> float | None:
     return float(value) if isinstance(value, (int, float)) and not isinstance(value, bool) else None

@@ -4,12 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 from simkit.diagnostics import Diagnostics, did_you_mean
 from simkit.plugins.base import Plugin
 from simkit.plugins.discovery.gz_hooks import as_plugin
-from simkit.scene import SceneModel, SceneWorld
+from simkit.scene import SceneModel, SceneSensor, SceneVisual, SceneWorld
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+
+
+SceneEntity = SceneWorld | SceneModel | SceneSensor | SceneVisual
+"""What a plugin may hang on, as a file has it."""
+
+ParentGetter = Callable[["Simulation"], object]
+"""Gives the handle of what a plugin hangs on."""
 
 
 @dataclass(frozen=True)
@@ -27,11 +37,11 @@ class Attachment:
     plugin: Plugin
     top: str
     scoped: str
-    scene: Any
-    parent: Callable[[Any], Any]
+    scene: SceneEntity
+    parent: ParentGetter
 
 
-def attach_plugins(made: Iterable[Any], world: SceneWorld, diagnostics: Diagnostics) -> list[Attachment]:
+def attach_plugins(made: Iterable[object], world: SceneWorld, diagnostics: Diagnostics) -> list[Attachment]:
     """What each plugin hangs on: what it was handed over with, `("robot", MyPlugin())`, else the world, else the only.
 
     Args:
@@ -39,8 +49,6 @@ def attach_plugins(made: Iterable[Any], world: SceneWorld, diagnostics: Diagnost
         world: what there is.
         diagnostics: gets errors; who has one is left out.
     """
-    # loads the code of gz's Python, which few worlds need
-
     found = []
     for item in made:
         name, one = item if isinstance(item, tuple) and len(item) == 2 else ("", item)
@@ -80,24 +88,17 @@ def _is_top_level(hung: Attachment) -> bool:
 def _candidates_of_kind(kind: str, plugin: Plugin, world: SceneWorld) -> Mapping[str, Attachment]:
     """Everything of a kind that a plugin might hang on, by scoped name."""
     found: dict[str, Attachment] = {}
+    entities: Iterable[SceneEntity]
     for top in world.models:
-        if kind in ("model", "any"):
-            for model in top.all_models():
-                found[model.scoped] = Attachment(
-                    plugin, top.name, model.scoped, model, _handle_getter("model", model.scoped)
-                )
-        if kind in ("sensor", "any"):
-            for sensor in top.all_sensors():
-                found[sensor.scoped] = Attachment(
-                    plugin, top.name, sensor.scoped, sensor, _handle_getter("sensor", sensor.scoped)
-                )
-        if kind in ("visual", "any"):
-            for visual in (v for link in top.all_links() for v in link.visuals):
-                found[visual.scoped] = Attachment(
-                    plugin, top.name, visual.scoped, visual, _handle_getter("visual", visual.scoped)
-                )
+        visuals = [visual for link in top.all_links() for visual in link.visuals]
+        for own, entities in (("model", top.all_models()), ("sensor", top.all_sensors()), ("visual", visuals)):
+            if kind in (own, "any"):
+                for entity in entities:
+                    getter = handle_getter(own, entity.scoped)
+                    found[entity.scoped] = Attachment(plugin, top.name, entity.scoped, entity, getter)
     return found
 
 
-def _handle_getter(kind: str, scoped: str) -> Callable[[Any], Any]:
+def handle_getter(kind: str, scoped: str) -> ParentGetter:
+    """What gives the handle of a model, a visual or a sensor."""
     return lambda sim: getattr(sim, kind)(scoped)

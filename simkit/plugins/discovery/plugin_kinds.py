@@ -49,8 +49,6 @@ def find_plugin(
     kinds = plugin_kinds()
     cls = next((kinds[alias] for alias in aliases(plugin) if alias in kinds), None)
     if cls is None:
-        # loads the code of gz's Python, which few worlds need
-
         said = len(found)
         cls = find_user_plugin(plugin, plugin_paths, found)
         if cls is None and len(found) == said:

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simkit.diagnostics import Diagnostics, did_you_mean
 from simkit.errors import SimkitError
 from simkit.params import Params
-from simkit.plugins.discovery.attachment import Attachment, attach_plugins
+from simkit.plugins.discovery.attachment import Attachment, ParentGetter, SceneEntity, attach_plugins, handle_getter
 from simkit.plugins.discovery.builtin_plugins import plugins_of_every_world
 from simkit.plugins.discovery.plugin_kinds import find_plugin
 from simkit.scene import SceneJoint, SceneLink, SceneModel, ScenePlugin, SceneSensor, SceneWorld
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.plugins.base import ParentKind, Plugin
     from simkit.runtime import SensorsAndPlugins
+    from simkit.sensors.base import Sensor
 
 
 def make_model_parts(
@@ -44,14 +45,14 @@ def make_model_parts(
         if diagnostics.error_count == faults:
             parts.sensors.append(sensor)
         owner = scene.parent.rpartition("::")[0]
-        found += [_PluginSite(p, "sensor", scene, owner, _sensor_parent(scene.scoped)) for p in scene.plugins]
+        found += [_PluginSite(p, "sensor", scene, owner, handle_getter("sensor", scene.scoped)) for p in scene.plugins]
     for nested in model.all_models():
         owners: list[SceneLink | SceneJoint] = [*nested.links, *nested.joints]
         below = [plugin for owner in owners for plugin in owner.plugins]
-        parent = _model_parent(nested.scoped)
+        parent = handle_getter("model", nested.scoped)
         found += [_PluginSite(p, "model", nested, nested.scoped, parent) for p in (*below, *nested.plugins)]
         for visual in (v for link in nested.links for v in link.visuals if v.plugins):
-            parent = _visual_parent(visual.scoped)
+            parent = handle_getter("visual", visual.scoped)
             found += [_PluginSite(p, "visual", visual, nested.scoped, parent) for p in visual.plugins]
     for one in sorted(found, key=lambda one: _document_order(one, places)):
         _add_plugin(parts, one, _document_order(one, places), builder, diagnostics, plugin_paths)
@@ -64,9 +65,9 @@ class _PluginSite:
 
     plugin: ScenePlugin
     kind: ParentKind
-    scene: Any
+    scene: SceneEntity
     model: str
-    parent: Callable[[Any], Any]
+    parent: ParentGetter
 
 
 _DocumentPosition = tuple[tuple[bool, int], ...]
@@ -113,7 +114,7 @@ def make_world_parts(
 
 def add_python_plugins(
     parts: Mapping[str, SensorsAndPlugins],
-    made: Iterable[Any],
+    made: Iterable[object],
     world: SceneWorld,
     builder: SpecBuilder,
     diagnostics: Diagnostics,
@@ -135,7 +136,7 @@ def _add_python_plugin(
     parts.plugins.append((plugin, hung.parent))
 
 
-def _make_sensor(scene: SceneSensor, diagnostics: Diagnostics) -> Any | None:
+def _make_sensor(scene: SceneSensor, diagnostics: Diagnostics) -> Sensor | None:
     kinds = sensor_kinds()
     if scene.kind not in kinds:
         if report_unsimulated(scene, diagnostics):
@@ -168,7 +169,7 @@ def _add_plugin(
     cls = find_plugin(plugin, plugin_paths, diagnostics, one.kind)
     if cls is None:
         return
-    if cls.drives and getattr(scene, "static", False):
+    if cls.drives and isinstance(scene, SceneModel) and scene.static:
         message = f"plugin {plugin.name!r} drives joints of {scene.scoped!r}, which is static; it is left out"
         diagnostics.warning("SK-PLUGIN-010", message, plugin.where, "nothing moves in a static model")
         return
@@ -195,7 +196,7 @@ def _make_plugin(cls: type[Plugin], plugin: ScenePlugin) -> Plugin:
 
 
 def _prepare_plugin(
-    instance: Plugin, scene: Any, params: Params, builder: SpecBuilder, diagnostics: Diagnostics
+    instance: Plugin, scene: SceneEntity, params: Params, builder: SpecBuilder, diagnostics: Diagnostics
 ) -> None:
     """Lets a plugin prepare the spec, and notes which servos and motors it adds."""
     from simkit.runtime.engine.plugin_faults import call_plugin
@@ -213,18 +214,6 @@ def _prepare_plugin(
         instance._failed = "prepare", error  # met when it would be loaded, there is no simulation yet
     after = [ref for record in builder.records.values() for ref in record.actuators]
     instance._actuators = tuple(ref for ref in after if id(ref) not in before)
-
-
-def _sensor_parent(scoped: str) -> Callable[[Any], Any]:
-    return lambda sim: sim.sensor(scoped)
-
-
-def _model_parent(scoped: str) -> Callable[[Any], Any]:
-    return lambda sim: sim.model(scoped)
-
-
-def _visual_parent(scoped: str) -> Callable[[Any], Any]:
-    return lambda sim: sim.visual(scoped)
 
 
 def report_unread(parts: Iterable[SensorsAndPlugins]) -> None:

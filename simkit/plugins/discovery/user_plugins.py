@@ -10,7 +10,6 @@ import sys
 from collections.abc import Sequence
 from importlib.metadata import EntryPoint
 from pathlib import Path
-from typing import Any
 
 from simkit.diagnostics import Diagnostics
 from simkit.plugins.base import Plugin
@@ -131,7 +130,7 @@ def _import_file(name: str, file: Path, plugin: ScenePlugin, diagnostics: Diagno
     return module
 
 
-def _classes_of(module: object) -> list[type[Any]]:
+def _classes_of(module: object) -> list[type]:
     """The classes of a module that can be plugins; those with hooks of gz only where none derives from `Plugin`."""
     own = [c for _, c in inspect.getmembers(module, inspect.isclass) if c.__module__ == getattr(module, "__name__", "")]
     derived = [c for c in own if issubclass(c, Plugin) and not inspect.isabstract(c)]

@@ -31,7 +31,11 @@ _MAX_MODELS_SEARCHED = 5000
 
 
 def make_all_parts(
-    world: SceneWorld, builder: SpecBuilder, diagnostics: Diagnostics, allowed: Sequence[Path], plugins: Sequence[Any]
+    world: SceneWorld,
+    builder: SpecBuilder,
+    diagnostics: Diagnostics,
+    allowed: Sequence[Path],
+    plugins: Sequence[object],
 ) -> dict[str, SensorsAndPlugins]:
     """The sensors and plugins of every model, of the world (under no name), and those made in Python."""
     parts: dict[str, SensorsAndPlugins] = {}
@@ -89,5 +93,5 @@ def _load_sound_parts(
     diagnostics.drop(d for d in tuple(diagnostics)[len(before) :] if d.code in _ENGINE_CODES)
 
 
-def _unused_callback(*_: Any, **__: Any) -> Any:
+def _unused_callback(*_: object, **__: object) -> Any:
     """Stands for what a simulation that nobody steps never asks for."""
