@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from simkit.plugins.world.entities import RequestRefused, colour_of, find_entity
 from simkit.pose import Pose
 
 if TYPE_CHECKING:
+    from simkit import msgs
     from simkit.runtime import Joint, Simulation
 
 _TYPES: Final = {"revolute": 0, "continuous": 1, "prismatic": 2, "fixed": 3, "ball": 4, "universal": 5}
@@ -18,7 +19,7 @@ _STOPS: Final = {"hi_stop": "upper", "lo_stop": "lower"}
 _OF_ODE: Final = ("erp", "cfm", "stop_erp", "stop_cfm", "fudge_factor", "fmax", "vel")
 
 
-def model_properties(sim: Simulation, request: Any) -> dict[str, Any]:
+def model_properties(sim: Simulation, request: msgs.GetModelProperties_Request) -> dict[str, object]:
     scoped = find_entity(sim, request.model_name, ("model",))[1]
     scene = sim.model(scoped).scene
     return {
@@ -33,7 +34,7 @@ def model_properties(sim: Simulation, request: Any) -> dict[str, Any]:
     }
 
 
-def joint_properties(sim: Simulation, request: Any) -> dict[str, Any]:
+def joint_properties(sim: Simulation, request: msgs.GetJointProperties_Request) -> dict[str, object]:
     joint = joint_of(sim, request.joint_name)
     if joint.type not in _TYPES:
         message = f"GetJointProperties: got properties; {joint.type} joints have no type in this message"
@@ -48,7 +49,7 @@ def joint_properties(sim: Simulation, request: Any) -> dict[str, Any]:
     }
 
 
-def set_joint_properties(sim: Simulation, request: Any) -> str:
+def set_joint_properties(sim: Simulation, request: msgs.SetJointProperties_Request) -> str:
     """Sets damping and position limits; of ODE's parameters nothing, which is said. Raises Refused."""
     joint, config = joint_of(sim, request.joint_name), request.ode_joint_config
     dofs = list(joint.mj_dofs)
@@ -68,24 +69,19 @@ def set_joint_properties(sim: Simulation, request: Any) -> str:
     return "SetJointProperties: properties set" + (f"; not used: {', '.join(unused)}" if unused else "")
 
 
-def link_properties(sim: Simulation, request: Any) -> dict[str, Any]:
+def link_properties(sim: Simulation, request: msgs.GetLinkProperties_Request) -> dict[str, object]:
     scene = sim.link(find_entity(sim, request.link_name, ("link",))[1]).scene
-    ixx, iyy, izz, ixy, ixz, iyz = scene.inertial.inertia
+    moments = dict(zip(("ixx", "iyy", "izz", "ixy", "ixz", "iyz"), scene.inertial.inertia, strict=True))
     return {
         "com": pose_fields(Pose(scene.inertial.com)),
         "gravity_mode": scene.gravity,
         "mass": scene.inertial.mass,
-        "ixx": ixx,
-        "ixy": ixy,
-        "ixz": ixz,
-        "iyy": iyy,
-        "iyz": iyz,
-        "izz": izz,
+        **moments,
         "status_message": "GetLinkProperties: got properties",
     }
 
 
-def light_properties(sim: Simulation, request: Any) -> dict[str, Any]:
+def light_properties(sim: Simulation, request: msgs.GetLightProperties_Request) -> dict[str, object]:
     scene = sim.light(find_entity(sim, request.light_name, ("light",))[1]).scene
     _, constant, linear, quadratic = scene.attenuation
     return {
@@ -96,7 +92,7 @@ def light_properties(sim: Simulation, request: Any) -> dict[str, Any]:
     }
 
 
-def set_light_properties(sim: Simulation, request: Any) -> None:
+def set_light_properties(sim: Simulation, request: msgs.SetLightProperties_Request) -> None:
     light = sim.light(find_entity(sim, request.light_name, ("light",))[1])
     names = ("attenuation_constant", "attenuation_linear", "attenuation_quadratic")
     constant, linear, quadratic = (require_finite(getattr(request, name), name, 0.0) for name in names)

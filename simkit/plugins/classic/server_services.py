@@ -22,7 +22,10 @@ if TYPE_CHECKING:
     from simkit.runtime import Simulation
     from simkit.scene import ScenePlugin, SceneWorld
 
-Table = Mapping[str, tuple[str, Callable[[Any], Any]]]
+Handler = Callable[[Any], Any]
+"""What answers a request; each takes and gives a type of its own."""
+
+Table = Mapping[str, tuple[str, Handler]]
 """Short name -> type, and what it does with a request."""
 
 _ROS_1: Final = re.compile(r"libgazebo_ros_(api|paths)_plugin\.so$")
@@ -84,7 +87,7 @@ def offer_table(prefix: str, sim: Simulation, *tables: Table, named: Callable[[s
         for short, (type_name, does) in table.items():
             name = f"{prefix}/{short}" if named is None else named(short)
             if type_name == _EMPTY or type_name.endswith(("LinkRequest", "BodyRequest", "JointRequest")):
-                handler: Callable[[Any], Any] = command_handler(sim, name, does)
+                handler: Handler = command_handler(sim, name, does)
             else:
                 says_why = not type_name.endswith(("GetModelList", "GetEntityState", "SetEntityState"))
                 handler = answer_handler(sim, name, does, says_why)
@@ -110,18 +113,18 @@ def _server_services(sim: Simulation) -> Table:
     }
 
 
-def _spawn_entity(sim: Simulation, request: Any) -> str:
+def _spawn_entity(sim: Simulation, request: msgs.gazebo_msgs__srv__SpawnEntity_Request) -> str:
     pose, frame = request.initial_pose, request.reference_frame
     name = states.spawn_model(sim, request.xml, request.name, request.robot_namespace, pose, frame)
     return f"SpawnEntity: Successfully spawned entity [{name}]"
 
 
-def _delete_entity(sim: Simulation, request: Any) -> str:
+def _delete_entity(sim: Simulation, request: msgs.gazebo_msgs__srv__DeleteEntity_Request) -> str:
     states.delete_model(sim, request.name)
     return f"Successfully deleted entity [{request.name}]"
 
 
-def _model_list(sim: Simulation, _: Any) -> dict[str, Any]:
+def _model_list(sim: Simulation, _: object) -> dict[str, object]:
     return {"header": msgs.header(sim.time_ns, ""), "model_names": list(sim.models)}
 
 
@@ -142,12 +145,14 @@ def _wrench_services(plugin: ClassicServices) -> Table:
     }
 
 
-def _push_link(plugin: ClassicServices, request: Any, link: str) -> str:
+def _push_link(
+    plugin: ClassicServices, request: msgs.ApplyLinkWrench_Request | msgs.ApplyBodyWrench_Request, link: str
+) -> str:
     plugin.push(link_wrench(plugin.sim, link, request))
     return ""
 
 
-def _push_joint(plugin: ClassicServices, request: Any) -> str:
+def _push_joint(plugin: ClassicServices, request: msgs.ApplyJointEffort_Request) -> str:
     plugin.push(joint_effort(plugin.sim, request))
     return f"Effort on joint [{request.joint_name}] set"
 
@@ -178,19 +183,19 @@ def state_services(sim: Simulation) -> Table:
     }
 
 
-def _get_state(sim: Simulation, request: Any) -> dict[str, Any]:
+def _get_state(sim: Simulation, request: msgs.GetEntityState_Request) -> dict[str, object]:
     pose, linear, angular = states.state_of(sim, request.name, request.reference_frame)
     frame, twist = request.reference_frame, states.twist_fields(linear, angular)
     state = {"name": request.name, "pose": pose_fields(pose), "twist": twist, "reference_frame": frame}
     return {"header": msgs.header(sim.time_ns, frame), "state": state}
 
 
-def _set_state(sim: Simulation, request: Any) -> None:
+def _set_state(sim: Simulation, request: msgs.SetEntityState_Request) -> None:
     state = request.state
     states.set_state(sim, state.name, state.pose, state.twist, state.reference_frame)
 
 
-def _set_joints(sim: Simulation, request: Any) -> str:
+def _set_joints(sim: Simulation, request: msgs.SetModelConfiguration_Request) -> str:
     states.set_joints(sim, request.model_name, list(request.joint_names), request.joint_positions)
     return "set_joint_positions: success"
 
@@ -210,11 +215,11 @@ def property_services(sim: Simulation) -> Table:
     }
 
 
-def _set_physics(sim: Simulation, request: Any) -> str:
+def _set_physics(sim: Simulation, request: msgs.SetPhysicsProperties_Request) -> str:
     return set_physics(sim, request) or "physics engine updated"
 
 
-def _world_properties(sim: Simulation, _: Any) -> dict[str, Any]:
+def _world_properties(sim: Simulation, _: object) -> dict[str, object]:
     found = {"sim_time": sim.time, "model_names": list(sim.models), "rendering_enabled": True}
     return {**found, "status_message": "GetWorldProperties: got properties"}
 
@@ -242,18 +247,18 @@ def _ros_1_services(plugin: ClassicServices) -> Table:
     }
 
 
-def _spawn_model(sim: Simulation, request: Any) -> str:
+def _spawn_model(sim: Simulation, request: msgs.SpawnModel_Request) -> str:
     pose, frame = request.initial_pose, request.reference_frame
     states.spawn_model(sim, request.model_xml, request.model_name, request.robot_namespace, pose, frame)
     return "SpawnModel: Successfully spawned entity"
 
 
-def _delete_model(sim: Simulation, request: Any) -> str:
+def _delete_model(sim: Simulation, request: msgs.DeleteModel_Request) -> str:
     states.delete_model(sim, request.model_name)
     return "DeleteModel: successfully deleted model"
 
 
-def _get_model_state(sim: Simulation, request: Any) -> dict[str, Any]:
+def _get_model_state(sim: Simulation, request: msgs.GetModelState_Request) -> dict[str, object]:
     frame = request.relative_entity_name
     pose, linear, angular = states.state_of(sim, request.model_name, frame, ("model",))
     found = {"pose": pose_fields(pose), "twist": states.twist_fields(linear, angular)}
@@ -261,12 +266,12 @@ def _get_model_state(sim: Simulation, request: Any) -> dict[str, Any]:
     return {"header": msgs.header(sim.time_ns, frame), **found, "status_message": message}
 
 
-def _set_model_state(sim: Simulation, state: Any) -> str:
+def _set_model_state(sim: Simulation, state: msgs.ModelState) -> str:
     states.set_state(sim, state.model_name, state.pose, state.twist, state.reference_frame, ("model",))
     return "SetModelState: set model state done"
 
 
-def _get_link_state(sim: Simulation, request: Any) -> dict[str, Any]:
+def _get_link_state(sim: Simulation, request: msgs.GetLinkState_Request) -> dict[str, object]:
     name, frame = request.link_name, request.reference_frame
     pose, linear, angular = states.state_of(sim, name, frame, ("link",))
     twist = states.twist_fields(linear, angular)
@@ -274,19 +279,22 @@ def _get_link_state(sim: Simulation, request: Any) -> dict[str, Any]:
     return {"link_state": state, "status_message": "GetLinkState: got state"}
 
 
-def _set_link_state(sim: Simulation, state: Any) -> str:
+def _set_link_state(sim: Simulation, state: msgs.LinkState) -> str:
     states.set_state(sim, state.link_name, state.pose, state.twist, state.reference_frame, ("link",))
     return "SetLinkState: success"
 
 
-def _configure_model(sim: Simulation, request: Any) -> str:
+def _configure_model(sim: Simulation, request: msgs.SetModelConfiguration_Request) -> str:
     _set_joints(sim, request)
     return "SetModelConfiguration: success"
 
 
 def listen_to_states(prefix: str, sim: Simulation) -> None:
     """ROS 1's commands by topic."""
-    inputs = {"set_model_state": ("ModelState", _set_model_state), "set_link_state": ("LinkState", _set_link_state)}
+    inputs: dict[str, tuple[str, Callable[..., str]]] = {
+        "set_model_state": ("ModelState", _set_model_state),
+        "set_link_state": ("LinkState", _set_link_state),
+    }
     for short, (kind, does) in inputs.items():
         topic = f"{prefix}/{short}"
         sim.communication.bus.aside.add(topic)

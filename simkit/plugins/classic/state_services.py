@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import re
 from html import escape
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
+import numpy.typing as npt
 
 from simkit import msgs
 from simkit.plugins.world.entities import (
@@ -39,7 +40,7 @@ _KINDS: Final = ("model", "link", "light", "visual")
 # ---------------------------------------------------------------------- spawning
 
 
-def spawn_model(sim: Simulation, xml: str, name: str, namespace: str, pose_message: Any, frame: str) -> str:
+def spawn_model(sim: Simulation, xml: str, name: str, namespace: str, pose_message: msgs.Pose, frame: str) -> str:
     """Spawns a model as Classic does: its own pose counts in the initial one, that one in the frame.
 
     Returns:
@@ -123,7 +124,7 @@ def velocity_of(sim: Simulation, kind: str, scoped: str) -> tuple[Vector, Vector
     return link.linear_velocity + np.cross(angular, arm), angular
 
 
-def twist_fields(linear: Vector, angular: Vector) -> dict[str, Any]:
+def twist_fields(linear: Vector, angular: Vector) -> dict[str, object]:
     """The fields of a `Twist` message."""
     return {"linear": vector_fields(linear.tolist()), "angular": vector_fields(angular.tolist())}
 
@@ -143,8 +144,8 @@ def state_of(sim: Simulation, name: str, frame: str, kinds: tuple[str, ...] = _K
 def set_state(
     sim: Simulation,
     name: str,
-    pose_message: Any,
-    twist: Any,
+    pose_message: msgs.Pose,
+    twist: msgs.Twist,
     frame: str,
     kinds: tuple[str, ...] = ("model", "link", "light"),
 ) -> None:
@@ -160,7 +161,7 @@ def set_state(
         handle.set_velocity(linear, angular)
 
 
-def set_joints(sim: Simulation, model: str, names: list[str], positions: Any) -> None:
+def set_joints(sim: Simulation, model: str, names: list[str], positions: npt.NDArray[np.float64]) -> None:
     """Puts joints of a model at positions [rad or m]. Raises Refused."""
     handle = sim.model(find_entity(sim, model, ("model",))[1])
     if len(names) != len(positions):
@@ -175,17 +176,17 @@ def set_joints(sim: Simulation, model: str, names: list[str], positions: Any) ->
     handle.set_joint_positions(wanted)
 
 
-def model_states(sim: Simulation) -> Any:
+def model_states(sim: Simulation) -> object:
     """A `gazebo_msgs/msg/ModelStates` of the top-level models."""
     return _states(sim, MODEL_STATES, "model", list(sim.models))
 
 
-def link_states(sim: Simulation) -> Any:
+def link_states(sim: Simulation) -> object:
     """A `gazebo_msgs/msg/LinkStates` of all links, by their scoped names."""
     return _states(sim, LINK_STATES, "link", list(sim.contents.handles.tables["link"]))
 
 
-def _states(sim: Simulation, type_name: str, kind: str, names: list[str]) -> Any:
+def _states(sim: Simulation, type_name: str, kind: str, names: list[str]) -> object:
     return msgs.make(
         type_name,
         name=names,

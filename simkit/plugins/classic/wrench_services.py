@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -35,7 +35,9 @@ class TimedWrench:
     end: int | None
 
 
-def link_wrench(sim: Simulation, link_name: str, request: Any) -> TimedWrench | None:
+def link_wrench(
+    sim: Simulation, link_name: str, request: msgs.ApplyLinkWrench_Request | msgs.ApplyBodyWrench_Request
+) -> TimedWrench | None:
     """What a request for a wrench means; None where it lasts no time.
 
     In the world's frame the reference point is a lever from the link's centre of mass, as Classic takes it; in the
@@ -59,7 +61,7 @@ def link_wrench(sim: Simulation, link_name: str, request: Any) -> TimedWrench | 
     return None if span is None else TimedWrench(scoped, "", values, *span)
 
 
-def joint_effort(sim: Simulation, request: Any) -> TimedWrench | None:
+def joint_effort(sim: Simulation, request: msgs.ApplyJointEffort_Request) -> TimedWrench | None:
     """What a request for an effort means; None where it lasts no time. Raises Refused."""
     joint = joint_of(sim, request.joint_name)
     if joint.dof != 1:
@@ -68,7 +70,10 @@ def joint_effort(sim: Simulation, request: Any) -> TimedWrench | None:
     return None if span is None else TimedWrench("", joint.scoped, (effort,), *span)
 
 
-def _tick_range(sim: Simulation, request: Any) -> tuple[int, int | None] | None:
+def _tick_range(
+    sim: Simulation,
+    request: msgs.ApplyLinkWrench_Request | msgs.ApplyBodyWrench_Request | msgs.ApplyJointEffort_Request,
+) -> tuple[int, int | None] | None:
     """First tick, and the one at which it ends; a duration below zero is for ever, of zero nothing."""
     duration, start_ns = msgs.stamp_ns(request.duration), msgs.stamp_ns(request.start_time)
     start = sim.tick
