@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simkit import msgs
 from simkit.params import Params
@@ -28,6 +28,7 @@ from simkit.scene import Cylinder, Sphere
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.compiler.name_map import ActuatorRef
     from simkit.msgs import Twist, TwistStamped
     from simkit.runtime import Model
     from simkit.scene import SceneJoint, SceneLink, SceneModel
@@ -88,14 +89,14 @@ class GazeboRosAckermannDrive(ModelPlugin):
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         self._canonical = scene.canonical_link
         self._read(params)
-        named = {name.replace("_joint", " wheel").replace("_", " "): [params.text(name, name)] for name in _WHEELS}
+        named = {name.replace("_joint", " wheel").replace("_", " "): [getattr(self.options, name)] for name in _WHEELS}
         wheels = [joint for joints in find_wheels(scene, named, params).values() for joint in joints]
-        steering = [find_drive_joint(scene, params.text(name, name), "steered wheel", params) for name in _STEERING]
+        steering = [find_drive_joint(scene, getattr(self.options, name), "steered wheel", params) for name in _STEERING]
         self._turned = [joint for joint in steering if joint is not None]
         self._wheels = wheels
         if len(wheels) == len(_WHEELS) and len(self._turned) == len(_STEERING):
             self._measure(scene, wheels, params)
-        self._hand: Any = self._prepare_hand(scene, params, builder)
+        self._hand = self._prepare_hand(scene, params, builder)
 
     def _read(self, params: Params) -> None:
         self._most_speed = self.options.max_speed
@@ -103,7 +104,12 @@ class GazeboRosAckermannDrive(ModelPlugin):
         hand = self.options.max_steering_angle
         self._ratio = self._most_steer / hand
         self._rate = self.options.update_rate
-        self._gains = {name: _read_pid(params, name) for name in ("left_steering", "right_steering", "linear_velocity")}
+        options = self.options
+        self._gains = {
+            "left_steering": _pid_numbers(options.left_steering_pid_gain, options.left_steering_i_range),
+            "right_steering": _pid_numbers(options.right_steering_pid_gain, options.right_steering_i_range),
+            "linear_velocity": _pid_numbers(options.linear_velocity_pid_gain, options.linear_velocity_i_range),
+        }
         self._tells_distance = self.options.publish_distance
         self._tells_angle = self.options.publish_steerangle
         x, y = (params.number(f"covariance_{axis}", 1e-5, minimum=0) for axis in "xy")
@@ -144,14 +150,16 @@ class GazeboRosAckermannDrive(ModelPlugin):
         if self._base <= 0.0:
             params.error("SK-PLUGIN-093", "the front and the rear wheels are at the same place; there is no wheel base")
 
-    def _prepare_hand(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> Any:
+    def _prepare_hand(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> ActuatorRef | None:
         """The servo of the driver's wheel, where there is one; Classic's default is no demand."""
         name = self.options.steering_wheel_joint
         there = any(name in (joint.name, joint.scoped) for joint in scene.all_joints())
         if not (params.has("steering_wheel_joint") or there):
             return None
         joint = find_drive_joint(scene, name, "steering wheel", params)
-        return joint and builder.add_position_servo(joint.scoped, max_effort=math.inf, owner=self.name)
+        if joint is None:
+            return None
+        return builder.add_position_servo(joint.scoped, max_effort=math.inf, owner=self.name)
 
     def load(self, parent: Model, params: Params) -> None:
         self.once = OneTimeWarnings(self)
@@ -214,10 +222,9 @@ class GazeboRosAckermannDrive(ModelPlugin):
                 out.publish_later(partial(msgs.make, _FLOAT, data=value))
 
 
-def _read_pid(params: Params, name: str) -> dict[str, float]:
+def _pid_numbers(gains: tuple[float, float, float], bounds: tuple[float, ...]) -> dict[str, float]:
     """Gains (p, i, d), bounds of the integral (least, most), and of the output where there are some."""
-    p, i, d = params.vector3(f"{name}_pid_gain", (0.0, 0.0, 0.0))
-    least, most = params.vector(f"{name}_i_range", 2, (0.0, 0.0))
+    (p, i, d), (least, most) = gains, bounds
     numbers = {"p_gain": p, "i_gain": i, "d_gain": d, "i_min": least, "i_max": most}
     return {**numbers, "cmd_min": 0.0, "cmd_max": -1.0, "cmd_offset": 0.0}
 

@@ -7,9 +7,9 @@ wheel is held), and an encoder twist is negative when the robot drives backwards
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
@@ -55,6 +55,7 @@ from simkit.pose import Pose, Vector
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.compiler.name_map import ActuatorRef
     from simkit.msgs import Twist, TwistStamped
     from simkit.runtime import Model
     from simkit.scene import SceneModel
@@ -96,13 +97,47 @@ class DriveSettings:
 
 
 class CommonDiffDriveOptions(Options):
-    """Options in either spelling."""
+    """Options in either spelling, with what holds where a spelling has no element for it."""
+
+    command_topic: str = "cmd_vel"
+    odometry_topic: str = "odom"
+    max_wheel_acceleration: float = 0.0
+    odometry_source: str | int = "world"
+    publish_odom: bool = True
+    publish_wheel_tf: bool = False
+    publish_wheel_joint_state: bool = False
+    publish_odom_tf: bool
+    update_rate: float
+    max_wheel_torque: float
+    odometry_frame: str
+    robot_base_frame: str
 
     publish_ground_truth: bool = boolean()
     covariance_x: float = number(1e-5, minimum=0)
     covariance_y: float = number(1e-5, minimum=0)
     covariance_yaw: float = number(1e-3, minimum=0)
     odometry_noise: OdometryNoiseOptions = block(OdometryNoiseOptions)
+
+    def settings(self, pairs: tuple[Pair, ...]) -> DriveSettings:
+        """The settings of a drive with these wheels."""
+        return DriveSettings(
+            update_rate=self.update_rate,
+            pairs=pairs,
+            max_torque=self.max_wheel_torque,
+            max_acceleration=self.max_wheel_acceleration,
+            command_topic=self.command_topic,
+            odometry_topic=self.odometry_topic,
+            odometry_frame=self.odometry_frame,
+            base_frame=self.robot_base_frame,
+            from_encoders=self.odometry_source in (0, "0", "encoder"),
+            publish_odom=self.publish_odom,
+            publish_odom_tf=self.publish_odom_tf,
+            publish_wheel_tf=self.publish_wheel_tf,
+            publish_wheel_joint_state=self.publish_wheel_joint_state,
+            publish_ground_truth=self.publish_ground_truth,
+            covariance=(self.covariance_x, self.covariance_y, self.covariance_yaw),
+            noise=odometry_noise(self.odometry_noise),
+        )
 
 
 class DiffDriveOptions(CommonDiffDriveOptions):
@@ -129,29 +164,12 @@ def read_options(params: Params) -> DriveSettings:
     given = DiffDriveOptions(params)
     if is_ros_1(params, _ROS_1):
         return _read_ros_1(params)
-    command_topic, odometry_topic = "cmd_vel", "odom"
-    for name, fixed in (("command_topic", command_topic), ("odometry_topic", odometry_topic)):
+    for name, fixed in (("command_topic", given.command_topic), ("odometry_topic", given.odometry_topic)):
         # the ROS 2 plugin has no such element; one that only repeats the name it uses anyway is no loss
         if any(c.name == name and c.value.strip("/") == fixed for c in params.children):
             params.child(name)
-    return DriveSettings(
-        update_rate=given.update_rate,
-        pairs=_read_pairs(given),
-        max_torque=given.max_wheel_torque,
-        max_acceleration=given.max_wheel_acceleration,
-        command_topic=command_topic,
-        odometry_topic=odometry_topic,
-        odometry_frame=given.odometry_frame,
-        base_frame=given.robot_base_frame,
-        from_encoders=given.odometry_source == 0,
-        publish_odom=given.publish_odom,
-        publish_odom_tf=given.publish_odom_tf,
-        publish_wheel_tf=given.publish_wheel_tf,
-        publish_wheel_joint_state=False,
-        publish_ground_truth=given.publish_ground_truth,
-        covariance=(given.covariance_x, given.covariance_y, given.covariance_yaw),
-        noise=odometry_noise(given.odometry_noise),
-    )
+    _ = given.update_rate  # read first, so that its report stays before those of the wheels
+    return given.settings(_read_pairs(given))
 
 
 class DiffDriveRos1Options(CommonDiffDriveOptions):
@@ -162,10 +180,10 @@ class DiffDriveRos1Options(CommonDiffDriveOptions):
     legacy_mode: bool = boolean(element="legacyMode")
     wheel_separation: float = number(0.34, "m", element="wheelSeparation", minimum=1e-6)
     wheel_diameter: float = number(0.15, "m", element="wheelDiameter", minimum=1e-6)
-    publish_tf: bool = boolean(True, element="publishTf")
+    publish_odom: bool = boolean(True, element="publishTf")
     update_rate: float = number(100.0, "Hz", element="updateRate", minimum=0)
-    wheel_torque: float = number(5.0, "N·m", element="wheelTorque", minimum=0)
-    wheel_acceleration: float = number(0.0, "m/s²", element="wheelAcceleration", minimum=0)
+    max_wheel_torque: float = number(5.0, "N·m", element="wheelTorque", minimum=0)
+    max_wheel_acceleration: float = number(0.0, "m/s²", element="wheelAcceleration", minimum=0)
     command_topic: str = text("cmd_vel", element="commandTopic")
     odometry_topic: str = text("odom", element="odometryTopic")
     odometry_frame: str = text("odom", element="odometryFrame")
@@ -184,31 +202,10 @@ def _read_ros_1(params: Params) -> DriveSettings:
         # for files of before 2016, whose wheels were named the other way round
         left, right = right, left
     _ = given.ros_debug_level  # of the plugin's log
-    pair = Pair(
-        left=left,
-        right=right,
-        separation=given.wheel_separation,
-        radius=given.wheel_diameter / 2,
-    )
-    publish_tf = given.publish_tf
-    return DriveSettings(
-        update_rate=given.update_rate,
-        pairs=(pair,),
-        max_torque=given.wheel_torque,
-        max_acceleration=given.wheel_acceleration,
-        command_topic=given.command_topic,
-        odometry_topic=given.odometry_topic,
-        odometry_frame=given.odometry_frame,
-        base_frame=given.robot_base_frame,
-        from_encoders=given.odometry_source in {"encoder", "0"},
-        publish_odom=publish_tf,  # Gazebo's element of that name is of both
-        publish_odom_tf=given.publish_odom_tf and publish_tf,
-        publish_wheel_tf=given.publish_wheel_tf,
-        publish_wheel_joint_state=given.publish_wheel_joint_state,
-        publish_ground_truth=given.publish_ground_truth,
-        covariance=(given.covariance_x, given.covariance_y, given.covariance_yaw),
-        noise=odometry_noise(given.odometry_noise),
-    )
+    pair = Pair(left=left, right=right, separation=given.wheel_separation, radius=given.wheel_diameter / 2)
+    publish_odom = given.publish_odom  # Gazebo's <publishTf> is of both
+    found = given.settings((pair,))
+    return replace(found, publish_odom_tf=found.publish_odom_tf and publish_odom)
 
 
 def _read_pairs(given: DiffDriveOptions) -> tuple[Pair, ...]:
@@ -254,7 +251,7 @@ class GazeboRosDiffDrive(ModelPlugin):
         sides = {"left wheel": [p.left for p in options.pairs], "right wheel": [p.right for p in options.pairs]}
         wheels = find_wheels(scene, sides, params)
         self._joints: list[tuple[str, str, str]] = []  # scoped names: joint, parent link, child link
-        self._servos: list[Any] = []
+        self._servos: list[ActuatorRef] = []
         self._canonical = scene.canonical_link
         for joint in (joint for pair in zip(*wheels.values(), strict=False) for joint in pair):
             self._joints.append((joint.scoped, joint.parent_link, joint.child_link))

@@ -84,11 +84,7 @@ def read_options(params: Params) -> DriveSettings:
     given = PlanarMoveOptions(params)
     if is_ros_1(params, _ROS_1):
         return _read_ros_1(params)
-    variances = (
-        given.covariance_x,
-        given.covariance_y,
-        given.covariance_yaw,
-    )
+    variances = given.covariance_x, given.covariance_y, given.covariance_yaw
     return DriveSettings(
         command_topic="cmd_vel",
         odometry_topic="odom",

@@ -5,7 +5,6 @@ from __future__ import annotations
 from simkit.params import Params
 from simkit.plugins.classic.diff_drive import CommonDiffDriveOptions, DriveSettings, GazeboRosDiffDrive, Pair
 from simkit.plugins.drives.odometry import COMMAND_TYPES
-from simkit.plugins.drives.odometry_noise import odometry_noise
 from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.options import boolean, number, text
 
@@ -20,12 +19,12 @@ class SkidSteerOptions(CommonDiffDriveOptions):
     right_front_joint: str = text("right_front_joint", element="rightFrontJoint")
     right_rear_joint: str = text("right_rear_joint", element="rightRearJoint")
     update_rate: float = number(100.0, "Hz", element="updateRate", minimum=0)
-    torque: float = number(5.0, "N·m", minimum=0)
+    max_wheel_torque: float = number(5.0, "N·m", element="torque", minimum=0)
     command_topic: str = text("cmd_vel", element="commandTopic")
     odometry_topic: str = text("odom", element="odometryTopic")
     odometry_frame: str = text("odom", element="odometryFrame")
     robot_base_frame: str = text("base_footprint", element="robotBaseFrame")
-    broadcast_tf: bool = boolean(element="broadcastTF")
+    publish_odom_tf: bool = boolean(element="broadcastTF")
     covariance_x: float = number(1e-4, minimum=0)
     covariance_y: float = number(1e-4, minimum=0)
     covariance_yaw: float = number(1e-2, minimum=0)
@@ -52,21 +51,4 @@ class GazeboRosSkidSteerDrive(GazeboRosDiffDrive):
         given = SkidSteerOptions(params)
         left, right = (given.left_front_joint, given.left_rear_joint), (given.right_front_joint, given.right_rear_joint)
         separation, radius = given.wheel_separation, given.wheel_diameter / 2
-        return DriveSettings(
-            update_rate=given.update_rate,
-            pairs=tuple(Pair(a, b, separation, radius) for a, b in zip(left, right, strict=True)),
-            max_torque=given.torque,
-            max_acceleration=0.0,
-            command_topic=given.command_topic,
-            odometry_topic=given.odometry_topic,
-            odometry_frame=given.odometry_frame,
-            base_frame=given.robot_base_frame,
-            from_encoders=False,
-            publish_odom=True,
-            publish_odom_tf=given.broadcast_tf,
-            publish_wheel_tf=False,
-            publish_wheel_joint_state=False,
-            publish_ground_truth=given.publish_ground_truth,
-            covariance=(given.covariance_x, given.covariance_y, given.covariance_yaw),
-            noise=odometry_noise(given.odometry_noise),
-        )
+        return given.settings(tuple(Pair(a, b, separation, radius) for a, b in zip(left, right, strict=True)))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import abc
 import math
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simkit import msgs
 from simkit.compiler.contact_friction import MU_MOST, directional_friction, friction_priority
@@ -25,12 +25,26 @@ from simkit.scene import Cylinder, SceneJoint, SceneLink
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.compiler.name_map import ActuatorRef
+    from simkit.msgs import Twist, TwistStamped
     from simkit.runtime import Model
     from simkit.scene import SceneModel
 
 _SIDES = ("left", "right")
 _STRAIGHT, _STANDING = 0.1, 0.1  # rate of turning [rad/s] and speed [m/s] below which Gazebo takes them for none
 _SPEEDS = "geometry_msgs/msg/Vector3"
+
+
+class TrackedVehicleOptions(Options):
+    """Options of both."""
+
+    robot_namespace: str = text("{model}")
+    steering_efficiency: float = number(0.5, minimum=1e-06)
+    tracks_separation: float = number(0.4, "m", minimum=1e-06)
+    max_linear_speed: float = number(1.0, minimum=1e-06)
+    max_angular_speed: float = number(1.0, minimum=0.0)
+    track_mu: float = number(minimum=0.0)
+    track_mu2: float = number(minimum=0.0)
 
 
 class _TrackedVehicle(ModelPlugin):
@@ -45,18 +59,16 @@ class _TrackedVehicle(ModelPlugin):
         listens("/{model}/cmd_vel_twist", *COMMAND_TYPES),
         publishes("/{model}/tracks_speed", _SPEEDS),
     )
+    options = OptionsOf(TrackedVehicleOptions)
     drives = True
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         self._namespace = params.text("robot_namespace", scene.name).strip("/")
-        self._efficiency = params.number("steering_efficiency", 0.5, minimum=1e-6)
-        self._separation = params.number("tracks_separation", 0.4, minimum=1e-6)
-        self._fastest = params.number("max_linear_speed", 1.0, minimum=1e-6)
-        self._fastest_turn = params.number("max_angular_speed", 1.0, minimum=0)
-        self._asked = [
-            min(MU_MOST, params.number(name, minimum=0)) if params.has(name) else None
-            for name in ("track_mu", "track_mu2")
-        ]
+        options = self.options
+        self._efficiency, self._separation = options.steering_efficiency, options.tracks_separation
+        self._fastest, self._fastest_turn = options.max_linear_speed, options.max_angular_speed
+        frictions = {"track_mu": options.track_mu, "track_mu2": options.track_mu2}
+        self._asked = [min(MU_MOST, mu) if params.has(name) else None for name, mu in frictions.items()]
 
     def load(self, parent: Model, params: Params) -> None:
         self.once = OneTimeWarnings(self)
@@ -65,7 +77,7 @@ class _TrackedVehicle(ModelPlugin):
         self.listen(f"{own}/cmd_vel_twist", COMMAND_TYPES, partial(self._on_command, -1.0))
         self._told = self.advertise(f"{own}/tracks_speed", _SPEEDS)
 
-    def _on_command(self, sense: float, message: Any) -> None:
+    def _on_command(self, sense: float, message: Twist | TwistStamped) -> None:
         command = command_of(message)
         if command is None:
             self.once.not_finite()
@@ -88,16 +100,9 @@ class _TrackedVehicle(ModelPlugin):
         self.sim.engine.physics.changed_model()
 
 
-class SimpleTrackedVehiclePluginOptions(Options):
+class SimpleTrackedVehiclePluginOptions(TrackedVehicleOptions):
     """Options of `SimpleTrackedVehiclePlugin`."""
 
-    robot_namespace: str = text("{model}")
-    steering_efficiency: float = number(0.5, minimum=1e-06)
-    tracks_separation: float = number(0.4, "m", minimum=1e-06)
-    max_linear_speed: float = number(1.0, minimum=1e-06)
-    max_angular_speed: float = number(1.0, minimum=0.0)
-    track_mu: float = number(minimum=0.0)
-    track_mu2: float = number(minimum=0.0)
     collide_without_contact_bitmask: int = integer(1)
     body: str = text(required=True)
     left_track: str = text(required=True)
@@ -140,7 +145,7 @@ class SimpleTrackedVehiclePlugin(_TrackedVehicle):
         along, across = (old if new is None else new for new, old in zip(self._asked, of_file, strict=True))
         return along, across
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         super().load(parent, params)
         links = [link for link, _ in self._tracks]
         self._rubs = [self._friction(link) for link in links]
@@ -198,16 +203,9 @@ class SimpleTrackedVehiclePlugin(_TrackedVehicle):
             self.sim.engine.physics.changed_surface()
 
 
-class WheelTrackedVehiclePluginOptions(Options):
+class WheelTrackedVehiclePluginOptions(TrackedVehicleOptions):
     """Options of `WheelTrackedVehiclePlugin`."""
 
-    robot_namespace: str = text("{model}")
-    steering_efficiency: float = number(0.5, minimum=1e-06)
-    tracks_separation: float = number(0.4, "m", minimum=1e-06)
-    max_linear_speed: float = number(1.0, minimum=1e-06)
-    max_angular_speed: float = number(1.0, minimum=0.0)
-    track_mu: float = number(minimum=0.0)
-    track_mu2: float = number(minimum=0.0)
     max_torque: float = number(5.0, "N·m", minimum=0)
     left_joint: tuple[str, ...] = texts(required=True)
     right_joint: tuple[str, ...] = texts(required=True)
@@ -225,14 +223,11 @@ class WheelTrackedVehiclePlugin(_TrackedVehicle):
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         super().prepare(scene, params, builder)
         torque = self.options.max_torque
-        named = {f"{side} wheel": [one.value for one in params.all(f"{side}_joint")] for side in _SIDES}
-        for side in _SIDES:
-            if not named[f"{side} wheel"]:
-                params.text(f"{side}_joint", required=True)
+        named = {"left wheel": self.options.left_joint, "right wheel": self.options.right_joint}
         wheels = find_wheels(scene, named, params)
         links = {link.scoped: link for link in scene.all_links()}
         self._links: list[SceneLink] = []
-        self._servos: list[tuple[Any, int, float]] = []
+        self._servos: list[tuple[ActuatorRef, int, float]] = []
         for index, joints in enumerate(wheels.values()):
             for joint in joints:
                 link = links[joint.child_link]
@@ -255,7 +250,7 @@ class WheelTrackedVehiclePlugin(_TrackedVehicle):
             return 1.0
         return max(sizes)
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         super().load(parent, params)
         if self._mu is not None:
             for link in self._links:

@@ -79,8 +79,10 @@ class DriveSettings:
 
 
 class TricycleOptions(Options):
-    """Options in the spelling of ROS 2."""
+    """Options in the spelling of ROS 2; its topics have fixed names."""
 
+    command_topic = "cmd_vel"
+    odometry_topic = "odom"
     max_wheel_acceleration: float = number(0.0, "m/s²", minimum=0)
     publish_odom: bool = boolean()
     steering_joint: str = text("front_steering_joint")
@@ -103,13 +105,37 @@ class TricycleOptions(Options):
     publish_wheel_joint_state: bool = boolean()
 
 
+class TricycleRos1Options(Options):
+    """Options in the spelling of ROS 1; it always publishes its odometry."""
+
+    publish_odom = True
+    max_wheel_acceleration: float = number(0.0, "m/s²", element="wheelAcceleration", minimum=0)
+    steering_joint: str = text("front_steering_joint", element="steeringJoint")
+    actuated_wheel_joint: str = text("front_wheel_joint", element="actuatedWheelJoint")
+    encoder_wheel_left_joint: str = text("left_wheel_joint", element="encoderWheelLeftJoint")
+    encoder_wheel_right_joint: str = text("right_wheel_joint", element="encoderWheelRightJoint")
+    actuated_wheel_diameter: float = number(0.15, "m", element="actuatedWheelDiameter", minimum=1e-6)
+    encoder_wheel_diameter: float = number(0.15, "m", element="encoderWheelDiameter", minimum=1e-6)
+    wheel_separation: float = number(0.5, "m", element="encoderWheelSeparation", minimum=1e-6)
+    max_wheel_deceleration: float = number(element="wheelDeceleration", minimum=0, instead="max_wheel_acceleration")
+    max_wheel_speed_tolerance: float = number(0.01, element="wheelSpeedTolerance", minimum=0)
+    max_steering_speed: float = number(0.0, element="steeringSpeed", minimum=0)
+    max_steering_angle_tolerance: float = number(0.01, "rad", element="steeringAngleTolerance", minimum=0)
+    max_wheel_torque: float = number(5.0, "N·m", element="wheelTorque", minimum=0)
+    update_rate: float = number(100.0, "Hz", element="updateRate", minimum=0)
+    odometry_source: str = choice(("world", "encoder"), "world", element="odometrySource")
+    command_topic: str = text("cmd_vel", element="commandTopic")
+    odometry_topic: str = text("odom", element="odometryTopic")
+    odometry_frame: str = text("odom", element="odometryFrame")
+    robot_base_frame: str = text("base_link", element="robotBaseFrame")
+    publish_wheel_tf: bool = boolean(element="publishWheelTF")
+    publish_wheel_joint_state: bool = boolean(element="publishWheelJointState")
+
+
 def read_options(params: Params) -> DriveSettings:
     """Reads either spelling."""
-    given = TricycleOptions(params)
-    if is_ros_1(params, _ROS_1):
-        return _read_ros_1(params)
-    acceleration = given.max_wheel_acceleration
-    odometry = given.publish_odom
+    given = TricycleRos1Options(params) if is_ros_1(params, _ROS_1) else TricycleOptions(params)
+    acceleration, odometry = given.max_wheel_acceleration, given.publish_odom
     return DriveSettings(
         joints=(
             given.steering_joint,
@@ -127,75 +153,14 @@ def read_options(params: Params) -> DriveSettings:
         angle_tolerance=given.max_steering_angle_tolerance,
         torque=given.max_wheel_torque,
         rate=given.update_rate,
-        from_encoders=given.odometry_source == 0,
-        command_topic="cmd_vel",
-        told=DriveOutputOptions(
-            odometry_topic="odom",
-            odometry_frame=given.odometry_frame,
-            base_frame=given.robot_base_frame,
-            odometry=odometry,
-            odometry_tf=odometry,
-            wheel_tf=given.publish_wheel_tf,
-            joint_states=given.publish_wheel_joint_state,
-            covariance=_COVARIANCE,
-        ),
-    )
-
-
-class TricycleRos1Options(Options):
-    """Options in the spelling of ROS 1."""
-
-    wheel_acceleration: float = number(0.0, "m/s²", element="wheelAcceleration", minimum=0)
-    steering_joint: str = text("front_steering_joint", element="steeringJoint")
-    actuated_wheel_joint: str = text("front_wheel_joint", element="actuatedWheelJoint")
-    encoder_wheel_left_joint: str = text("left_wheel_joint", element="encoderWheelLeftJoint")
-    encoder_wheel_right_joint: str = text("right_wheel_joint", element="encoderWheelRightJoint")
-    actuated_wheel_diameter: float = number(0.15, "m", element="actuatedWheelDiameter", minimum=1e-6)
-    encoder_wheel_diameter: float = number(0.15, "m", element="encoderWheelDiameter", minimum=1e-6)
-    encoder_wheel_separation: float = number(0.5, "m", element="encoderWheelSeparation", minimum=1e-6)
-    wheel_deceleration: float = number(element="wheelDeceleration", minimum=0, instead="wheel_acceleration")
-    wheel_speed_tolerance: float = number(0.01, element="wheelSpeedTolerance", minimum=0)
-    steering_speed: float = number(0.0, element="steeringSpeed", minimum=0)
-    steering_angle_tolerance: float = number(0.01, "rad", element="steeringAngleTolerance", minimum=0)
-    wheel_torque: float = number(5.0, "N·m", element="wheelTorque", minimum=0)
-    update_rate: float = number(100.0, "Hz", element="updateRate", minimum=0)
-    odometry_source: str = choice(("world", "encoder"), "world", element="odometrySource")
-    command_topic: str = text("cmd_vel", element="commandTopic")
-    odometry_topic: str = text("odom", element="odometryTopic")
-    odometry_frame: str = text("odom", element="odometryFrame")
-    robot_base_frame: str = text("base_link", element="robotBaseFrame")
-    publish_wheel_tf: bool = boolean(element="publishWheelTF")
-    publish_wheel_joint_state: bool = boolean(element="publishWheelJointState")
-
-
-def _read_ros_1(params: Params) -> DriveSettings:
-    given = TricycleRos1Options(params)
-    acceleration = given.wheel_acceleration
-    return DriveSettings(
-        joints=(
-            given.steering_joint,
-            given.actuated_wheel_joint,
-            given.encoder_wheel_left_joint,
-            given.encoder_wheel_right_joint,
-        ),
-        driven_radius=given.actuated_wheel_diameter / 2,
-        encoder_radius=given.encoder_wheel_diameter / 2,
-        separation=given.encoder_wheel_separation,
-        acceleration=acceleration,
-        deceleration=given.wheel_deceleration,
-        speed_tolerance=given.wheel_speed_tolerance,
-        steering_speed=given.steering_speed,
-        angle_tolerance=given.steering_angle_tolerance,
-        torque=given.wheel_torque,
-        rate=given.update_rate,
-        from_encoders=given.odometry_source == "encoder",
+        from_encoders=given.odometry_source in (0, "encoder"),
         command_topic=given.command_topic,
         told=DriveOutputOptions(
             odometry_topic=given.odometry_topic,
             odometry_frame=given.odometry_frame,
             base_frame=given.robot_base_frame,
-            odometry=True,
-            odometry_tf=True,
+            odometry=odometry,
+            odometry_tf=odometry,
             wheel_tf=given.publish_wheel_tf,
             joint_states=given.publish_wheel_joint_state,
             covariance=_COVARIANCE,
