@@ -139,9 +139,3 @@ def link_name(sensor: Any) -> str:
     """The plain name of a sensor's link."""
     scoped: str = sensor.scene.parent
     return scoped.rsplit("::", 1)[-1]
-
-
-def private_topic(plugin: Plugin, private: str, old_element: str) -> str:
-    """The topic behind `~/<private>`; ROS 1 files name it in `old_element` instead."""
-    old = plugin.params.text(old_element, "")
-    return plugin.ros.topic(old if old else f"~/{private}")

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 from simkit.diagnostics import did_you_mean
 from simkit.params import Params
 from simkit.plugins.base import SensorPlugin
 from simkit.plugins.endpoints import publishes
 from simkit.plugins.options import Options, OptionsOf, text, without_effect
+
+if TYPE_CHECKING:
+    from simkit.sensors.devices.contact import Contact
 
 
 class GazeboRosBumperOptions(Options):
@@ -30,10 +33,10 @@ class GazeboRosBumper(SensorPlugin):
     options = OptionsOf(GazeboRosBumperOptions)
     filenames = ("libgazebo_ros_bumper.so",)
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Contact, params: Params) -> None:
         topic = self.ros.topic(self.options.bumper_topic_name or "bumper_states")
         frame = self.options.frame_name or self.options.frame_name_ros_1 or "world"
-        params.child("alwaysOn")
+        _ = self.options.always_on
         if not hasattr(parent, "publish_states"):
             self.refuse(parent, "contact")
             return

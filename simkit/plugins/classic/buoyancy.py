@@ -52,15 +52,14 @@ class BuoyancyPlugin(BuoyancyBase, ModelPlugin):
         self._fluid = Fluid((self.options.fluid_density,))
         self._links = [link.scoped for link in scene.all_links()]
         self._given: dict[str, Hull] = {}
-        for element in params.all("link"):
-            name = element.attribute("name")
-            link = find_link(scene, name, element) if name else None
-            if not name:
+        for given in self.options.link:
+            element = given.params
+            link = find_link(scene, given.name, element) if given.name else None
+            if not given.name:
                 element.error("SK-PARAM-001", '<link> needs name="…": the link whose volume it is')
-            volume = element.number("volume", required=True, minimum=1e-15, maximum=1e15)
-            centre = element.vector3("center_of_volume", required=True)
+            hull = Hull(given.volume, np.array(given.center_of_volume))
             if link is not None:
-                self._given.setdefault(link.scoped, Hull(volume, np.array(centre)))
+                self._given.setdefault(link.scoped, hull)
 
     def load(self, parent: Model, params: Params) -> None:
         self.start()

@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
 from simkit.params import Params
 from simkit.plugins.classic import camera_settings
 from simkit.plugins.classic.camera_settings import CameraNames, CameraOptions, CameraPlugin
 from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.options import OptionsOf, boolean, number, text, without_effect
+
+if TYPE_CHECKING:
+    from simkit.sensors.cameras.multicamera import MultiCamera
+    from simkit.sensors.cameras.rendered_camera import RenderedCamera
 
 _NEAREST = 0.4  # [m] where <min_depth> says nothing
 
@@ -34,8 +39,7 @@ class GazeboRosCamera(CameraPlugin):
     """
 
     endpoints = (
-        publishes("{camera_name}/image_raw", "sensor_msgs/msg/Image", named_by=("imageTopicName",)),
-        publishes("{camera_name}/camera_info", "sensor_msgs/msg/CameraInfo", named_by=("cameraInfoTopicName",)),
+        *CameraPlugin.endpoints,
         publishes("{camera_name}/depth/image_raw", "sensor_msgs/msg/Image"),
         publishes("{camera_name}/depth/camera_info", "sensor_msgs/msg/CameraInfo"),
         publishes("{camera_name}/points", "sensor_msgs/msg/PointCloud2"),
@@ -56,6 +60,7 @@ class GazeboRosCamera(CameraPlugin):
                 topics["depth_image"] = names.topic("depth/image_raw")
                 topics["depth_camera_info"] = names.topic("depth/camera_info")
                 topics["points"] = names.topic("points")
+                parent.use_optical_cloud_axes()
             connect_camera(self, parent, names, topics)
         if self.options.triggered and hasattr(parent, "trigger_on"):
             parent.trigger_on(CameraNames(self, parent).topic("image_trigger"), camera_settings.EMPTY, counts=True)
@@ -73,7 +78,7 @@ class GazeboRosTriggeredCamera(CameraPlugin):
     options = OptionsOf(TriggeredCameraOptions)
     filenames = ("libgazebo_ros_triggered_camera.so",)
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: RenderedCamera, params: Params) -> None:
         if camera_settings.is_camera(self, parent, "camera"):
             names = CameraNames(self, parent, is_ros_1=True)
             connect_camera(self, parent, names, image_topics(names))
@@ -93,7 +98,7 @@ class GazeboRosProsilica(CameraPlugin):
     options = OptionsOf(ProsilicaOptions)
     filenames = ("libgazebo_ros_prosilica.so",)
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: RenderedCamera, params: Params) -> None:
         if camera_settings.is_camera(self, parent, "camera"):
             names = CameraNames(self, parent, is_ros_1=True)
             connect_camera(self, parent, names, image_topics(names))
@@ -106,7 +111,7 @@ def image_topics(names: CameraNames) -> dict[str, str]:
     return {"image": names.topic(names.image), "camera_info": names.topic(names.info)}
 
 
-def connect_camera(plugin: CameraPlugin, sensor: Any, names: CameraNames, topics: dict[str, str]) -> None:
+def connect_camera(plugin: CameraPlugin, sensor: RenderedCamera, names: CameraNames, topics: dict[str, str]) -> None:
     """Names a camera's topics and frame, and reads what all camera plugins do with it."""
     baseline = plugin.options.hack_baseline
     camera_settings.name_frame(plugin, sensor)
@@ -116,12 +121,10 @@ def connect_camera(plugin: CameraPlugin, sensor: Any, names: CameraNames, topics
     camera_settings.report_without_effect(plugin, camera_settings.CROP)
     if baseline:
         sensor.set_baseline(baseline)
-    if "points" in topics:
-        sensor.use_optical_cloud_axes()
     sensor.publish_on(topics)
 
 
-def connect_stereo(plugin: CameraPlugin, sensor: Any, names: CameraNames, folder: Any) -> None:
+def connect_stereo(plugin: CameraPlugin, sensor: MultiCamera, names: CameraNames, folder: Callable[[str], str]) -> None:
     """The same for a multicamera.
 
     Args:
@@ -134,7 +137,7 @@ def connect_stereo(plugin: CameraPlugin, sensor: Any, names: CameraNames, folder
     connect_camera(plugin, sensor, names, topics)
 
 
-def connect_trigger(plugin: CameraPlugin, sensor: Any, names: CameraNames) -> None:
+def connect_trigger(plugin: CameraPlugin, sensor: RenderedCamera, names: CameraNames) -> None:
     """ROS 1: pictures only after a message on `<triggerTopicName>`."""
     topic = TriggeredCameraOptions(plugin.params).trigger_topic_name
     sensor.trigger_on(names.topic(topic), camera_settings.EMPTY)

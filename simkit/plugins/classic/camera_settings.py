@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any, ClassVar, Final
+from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 import numpy as np
 
@@ -14,6 +14,10 @@ from simkit.plugins.base import Plugin, SensorPlugin
 from simkit.plugins.endpoints import Endpoint, publishes
 from simkit.plugins.lookups import link_name
 from simkit.plugins.options import Options, OptionsOf, boolean, number, text, without_effect
+
+if TYPE_CHECKING:
+    from simkit.sensors.cameras.camera_model import CameraModel
+    from simkit.sensors.cameras.rendered_camera import RenderedCamera
 
 EMPTY: Final = ("std_msgs/msg/Empty", "std_msgs/msg/Bool")
 """What triggers a camera of Classic; the first is Classic's own."""
@@ -81,7 +85,7 @@ class CameraNames:
         camera: topics are below it; empty where a ROS 1 file names none.
     """
 
-    def __init__(self, plugin: CameraPlugin, sensor: Any, *, is_ros_1: bool | None = None) -> None:
+    def __init__(self, plugin: CameraPlugin, sensor: RenderedCamera, *, is_ros_1: bool | None = None) -> None:
         params, options = plugin.params, plugin.options
         self._ros = plugin.ros
         if is_ros_1 is None:
@@ -98,7 +102,7 @@ class CameraNames:
         return self._ros.topic("/".join(part.strip("/") for part in (self.camera, below, name) if part.strip("/")))
 
 
-def is_camera(plugin: SensorPlugin, sensor: Any, wanted: str, product: str = "image") -> bool:
+def is_camera(plugin: SensorPlugin, sensor: RenderedCamera, wanted: str, product: str = "image") -> bool:
     """Whether the sensor has what a plugin publishes; reported where it has not."""
     fits = hasattr(sensor, "set_baseline") and product in sensor.products()
     if not fits:
@@ -106,7 +110,7 @@ def is_camera(plugin: SensorPlugin, sensor: Any, wanted: str, product: str = "im
     return fits
 
 
-def name_frame(plugin: CameraPlugin, sensor: Any) -> None:
+def name_frame(plugin: CameraPlugin, sensor: RenderedCamera) -> None:
     """`<frame_name>` of all messages, else the link's name; an `<optical_frame_id>` of the camera then stays."""
     frame = (plugin.options.frame_name or plugin.options.frame_name_ros_1 or link_name(sensor)).lstrip("/")
     is_named = any(plugin.params.has(name) for name in ("frame_name", "frameName"))
@@ -116,14 +120,14 @@ def name_frame(plugin: CameraPlugin, sensor: Any) -> None:
         sensor.frame_id = frame
 
 
-def apply_update_rate(plugin: CameraPlugin, sensor: Any) -> None:
+def apply_update_rate(plugin: CameraPlugin, sensor: RenderedCamera) -> None:
     """`<updateRate>` [Hz] of ROS 1 slows a sensor down; 0 is as fast as the sensor goes."""
     rate, _ = plugin.options.update_rate, plugin.options.always_on
     if rate > 0 and (sensor.update_rate == 0 or rate < sensor.update_rate):
         sensor.set_rate(rate)
 
 
-def override_intrinsics(plugin: CameraPlugin, sensor: Any, *, is_ros_1: bool) -> None:
+def override_intrinsics(plugin: CameraPlugin, sensor: RenderedCamera, *, is_ros_1: bool) -> None:
     """What the plugin's parameters make `CameraInfo` say; pictures are the sensor's own business.
 
     `<focalLength>`, `<Cx>`, `<Cy>` (`<focal_length>`, `<cx>`, `<cy>` in ROS 2) [px], 0 for the picture's own, and in
@@ -140,7 +144,7 @@ def override_intrinsics(plugin: CameraPlugin, sensor: Any, *, is_ros_1: bool) ->
     lens = _read_distortion(options) if is_ros_1 else {}
     is_off = bool(plugin.sim.world.gazebo_quirks)
 
-    def change(model: Any) -> Any:
+    def change(model: CameraModel) -> CameraModel:
         own = model.info_model or model
         middle = ((own.width + 1) / 2, (own.height + 1) / 2) if is_off else (own.cx, own.cy)
         return replace(
@@ -159,7 +163,7 @@ def override_intrinsics(plugin: CameraPlugin, sensor: Any, *, is_ros_1: bool) ->
     _report_difference(params, drawn, told, names)
 
 
-def _read_distortion(options: CameraOptions) -> dict[str, float]:
+def _read_distortion(options: CameraOptions) -> dict[str, Any]:
     """D of ROS 1, where it says something; `<autoDistortion>` takes the lens of the sensor."""
     found = {
         "k1": options.distortion_k1,
@@ -173,7 +177,7 @@ def _read_distortion(options: CameraOptions) -> dict[str, float]:
     return found
 
 
-def _report_difference(params: Params, drawn: Any, told: Any, names: Sequence[str]) -> None:
+def _report_difference(params: Params, drawn: CameraModel, told: CameraModel, names: Sequence[str]) -> None:
     off = []
     if abs(told.fx - drawn.fx) > _LITTLE * drawn.fx:
         off.append(f"<{names[0]}>{told.fx:g}, where the picture has {drawn.fx:g}")

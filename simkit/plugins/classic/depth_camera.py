@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING
 
 from simkit.params import Params
 from simkit.plugins.classic import camera_settings
@@ -11,6 +11,9 @@ from simkit.plugins.classic.camera import connect_camera, image_topics
 from simkit.plugins.classic.camera_settings import CameraNames, CameraOptions, CameraPlugin
 from simkit.plugins.endpoints import publishes
 from simkit.plugins.options import OptionsOf, boolean, number, text, without_effect
+
+if TYPE_CHECKING:
+    from simkit.sensors.cameras.rgbd_camera import RgbdCamera
 
 _CUTOFF, _CUTOFF_MAX = 0.4, 5.0  # [m] where the file says nothing
 _NOT_DRAWN = {
@@ -50,8 +53,7 @@ class Ros1DepthCamera(CameraPlugin):
     """Base of the depth cameras of ROS 1."""
 
     endpoints = (
-        publishes("{camera_name}/image_raw", "sensor_msgs/msg/Image", named_by=("imageTopicName",)),
-        publishes("{camera_name}/camera_info", "sensor_msgs/msg/CameraInfo", named_by=("cameraInfoTopicName",)),
+        *CameraPlugin.endpoints,
         publishes("{camera_name}/depth/image_raw", "sensor_msgs/msg/Image", named_by=("depthImageTopicName",)),
         publishes(
             "{camera_name}/depth/camera_info", "sensor_msgs/msg/CameraInfo", named_by=("depthImageCameraInfoTopicName",)
@@ -73,7 +75,7 @@ class GazeboRosDepthCamera(Ros1DepthCamera):
     options = OptionsOf(GazeboRosDepthCameraOptions)
     filenames = ("libgazebo_ros_depth_camera.so",)
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: RgbdCamera, params: Params) -> None:
         connect_depth_camera(self, parent, self.options.point_cloud_cutoff, math.inf)
         camera_settings.report_without_effect(self, _NOT_DRAWN)
 
@@ -84,12 +86,12 @@ class GazeboRosOpenniKinect(Ros1DepthCamera):
     options = OptionsOf(KinectOptions)
     filenames = ("libgazebo_ros_openni_kinect.so",)
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: RgbdCamera, params: Params) -> None:
         depths = camera_settings.read_depths(self.options, "point_cloud_cutoff", "point_cloud_cutoff_max")
         connect_depth_camera(self, parent, *depths)
 
 
-def connect_depth_camera(plugin: Ros1DepthCamera, sensor: Any, near: float, far: float) -> None:
+def connect_depth_camera(plugin: Ros1DepthCamera, sensor: RgbdCamera, near: float, far: float) -> None:
     """Publishes a depth camera, with depths between `near` and `far` [m] only."""
     options = plugin.options
     in_millimetres = options.use_depth_16_uc_1_format
@@ -98,6 +100,7 @@ def connect_depth_camera(plugin: Ros1DepthCamera, sensor: Any, near: float, far:
     names = CameraNames(plugin, sensor, is_ros_1=True)
     sensor.crop_depth_images(near, far, in_millimetres=in_millimetres)
     sensor.crop_clouds(near, far)
+    sensor.use_optical_cloud_axes()
     topics = {
         "depth_image": options.depth_image_topic_name,
         "depth_camera_info": options.depth_image_camera_info_topic_name,

@@ -159,8 +159,6 @@ class ElevatorPlugin(ModelPlugin):
 class GazeboRosElevatorOptions(ElevatorPluginOptions):
     """Options of `GazeboRosElevator`."""
 
-    door_wait_time: float = number(5.0, "s", minimum=0.0, maximum=1000000000.0)
-    floor_height: float = number(3.0, "m", minimum=-1000000.0, maximum=1000000.0)
     bottom_floor: int = integer()
     top_floor: int = integer()
 

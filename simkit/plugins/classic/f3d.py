@@ -40,4 +40,4 @@ class GazeboRosF3D(GazeboRosFtSensor):
         self._joint, self._link = "", find_named_link(scene, "bodyName", params)
         self._frame = self.options.frame_name.strip("/") or "world"
         self._deviation = 0.0
-        params.child("alwaysOn")
+        _ = self.options.always_on

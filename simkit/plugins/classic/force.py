@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -74,7 +74,7 @@ class GazeboRosForce(ModelPlugin):
     def _standing(self) -> dict[str, Vector]:
         return {self._scoped: self._wrench} if self._wrench.any() else {}
 
-    def set_state(self, state: Mapping[str, Any]) -> None:
+    def set_state(self, state: Mapping[str, object]) -> None:
         """Back to a state from `get_state`."""
         super().set_state(state)
         if not self._turns:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import mujoco
 import numpy as np
@@ -117,7 +117,7 @@ class GazeboRosFtSensor(ModelPlugin):
         torque = moments * acceleration[:3] + np.cross(turning, moments * turning)
         return force, axes @ torque
 
-    def _message(self, time_ns: int, values: Vector, index: int) -> Any:
+    def _message(self, time_ns: int, values: Vector, index: int) -> object:
         if self._stream is not None:
             values = values + self._deviation * self._stream.normal(index)
         names = ("geometry_msgs/msg/Wrench", "geometry_msgs/msg/Vector3")

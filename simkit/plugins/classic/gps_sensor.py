@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING
 
 from simkit.params import Params
 from simkit.plugins.base import SensorPlugin
 from simkit.plugins.endpoints import publishes
-from simkit.plugins.lookups import read_frame
+from simkit.plugins.lookups import link_name
 from simkit.plugins.options import Options, OptionsOf, text
+
+if TYPE_CHECKING:
+    from simkit.sensors.environment.navsat import NavSat
 
 _KINDS = ("gps", "navsat")
 _BACKWARDS = -0.999  # cosine of a heading of 180 degrees, or nearly
@@ -35,11 +38,11 @@ class GazeboRosGpsSensor(SensorPlugin):
     options = OptionsOf(GazeboRosGpsSensorOptions)
     filenames = ("libgazebo_ros_gps_sensor.so",)
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: NavSat, params: Params) -> None:
         if parent.kind not in _KINDS:
             self.refuse(parent, "gps")
             return
-        parent.frame_id = read_frame(parent, params)
+        parent.frame_id = self.options.frame_name or self.options.frame_name_ros_1 or link_name(parent)
         parent.use_classic_noise()
         self._check_heading(params)
         parent.publish_on({"fix": self.ros.topic("~/out"), "velocity": self.ros.topic("~/vel")})

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from functools import partial
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from simkit.pose import IDENTITY, Pose
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.msgs import TFMessage
     from simkit.runtime import Model
     from simkit.scene import SceneModel
 
@@ -53,8 +54,8 @@ class GazeboRosHandOfGod(ModelPlugin):
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         old = is_ros_1(params, ("linkName", "frameId"))
         self._scoped = find_named_link(scene, "linkName" if old else "link_name", params)
-        self._frame = params.text("frameId" if old else "frame_id", _WORLD)
-        self._stiffness = np.array([params.number(name, 200.0, minimum=0.0, maximum=1e9) for name in ("kl", "ka")])
+        self._frame = self.options.frame_id_ros_1 if old else self.options.frame_id
+        self._stiffness = np.array([self.options.kl, self.options.ka])
         link = next((one for one in scene.all_links() if one.scoped == self._scoped), None)
         self._mass, self._inertia = (1.0, 1.0) if link is None else (link.inertial.mass, link.inertial.inertia[0])
         self._has_weight = link is not None and link.gravity
@@ -73,7 +74,7 @@ class GazeboRosHandOfGod(ModelPlugin):
     def reset(self) -> None:
         self.sim.engine.reschedule()
 
-    def set_state(self, state: Mapping[str, Any]) -> None:
+    def set_state(self, state: Mapping[str, object]) -> None:
         """Back to a state from `get_state`."""
         super().set_state(state)
         self._stand(are_applied=True)
@@ -84,7 +85,7 @@ class GazeboRosHandOfGod(ModelPlugin):
         lift = {self._scoped: np.array([*force, 0.0, 0.0, 0.0])} if force.any() else {}
         self.sim.engine.wrenches.set(self, lift, are_applied=are_applied)
 
-    def _on_transforms(self, message: Any) -> None:
+    def _on_transforms(self, message: TFMessage) -> None:
         own = f"{self._frame}_actual"
         for one in message.transforms:
             child = one.child_frame_id.lstrip("/")

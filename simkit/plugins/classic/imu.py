@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -64,7 +64,7 @@ class GazeboRosImu(ModelPlugin):
         self._deviation = self.options.gaussian_noise
         self._turn = quat_from_rpy(*self.options.rpy_offset)
         self.after_step_rate = self.options.update_rate
-        params.child("alwaysOn")
+        _ = self.options.always_on
         if any(self.options.xyz_offset):
             message = f"plugin {self.name!r}: <xyzOffset> changes no reading, as in Gazebo"
             params.diagnostics.note("SK-SENSOR-072", message, params.block("xyzOffset").where)
@@ -100,7 +100,7 @@ class GazeboRosImu(ModelPlugin):
         motion = np.concatenate((rate @ axes, acceleration @ axes))
         self._out.publish_later(partial(self._message, self.sim.time_ns, attitude, motion, self._index))
 
-    def _message(self, time_ns: int, attitude: Vector, motion: Vector, index: int) -> Any:
+    def _message(self, time_ns: int, attitude: Vector, motion: Vector, index: int) -> object:
         if self._stream is not None:
             motion = motion + self._deviation * self._stream.normal(index)
         vector, quaternion = (msgs.type_of(f"geometry_msgs/msg/{name}") for name in ("Vector3", "Quaternion"))

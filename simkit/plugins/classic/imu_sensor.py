@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 from simkit.params import LARGEST, Params
 from simkit.plugins.base import SensorPlugin
 from simkit.plugins.endpoints import publishes
-from simkit.plugins.lookups import private_topic, read_frame
+from simkit.plugins.lookups import link_name
 from simkit.plugins.options import Options, OptionsOf, boolean, number, text, vector3
+
+if TYPE_CHECKING:
+    from simkit.sensors.inertial.imu_measurement import ImuMeasurement
 
 _WORLD = (1.0, 0.0, 0.0, 0.0)
 
@@ -40,21 +43,21 @@ class GazeboRosImuSensor(SensorPlugin):
     options = OptionsOf(GazeboRosImuSensorOptions)
     filenames = ("libgazebo_ros_imu_sensor.so",)
 
-    def load(self, parent: Any, params: Params) -> None:
-        topic = private_topic(self, "out", "topicName")
+    def load(self, parent: ImuMeasurement, params: Params) -> None:
+        topic = self.ros.topic(self.options.topic_name or "~/out")
         from_start = self.options.initial_orientation_as_reference
         body = self.options.body_name
         if not hasattr(parent, "set_orientation_reference"):
             self.refuse(parent, "imu")
             return
         is_named = any(params.has(name) for name in ("frame_name", "frameName"))
-        frame = read_frame(parent, params)
+        frame = self.options.frame_name or self.options.frame_name_ros_1 or link_name(parent)
         parent.frame_id = body if body and not is_named else frame
         parent.set_orientation_reference(parent.scene.pose_world.quaternion if from_start else _WORLD)
         parent.publish_on({"imu": topic})
         self._read_ros_1(parent, params)
 
-    def _read_ros_1(self, imu: Any, params: Params) -> None:
+    def _read_ros_1(self, imu: ImuMeasurement, params: Params) -> None:
         stddev = self.options.gaussian_noise
         if stddev:
             imu.add_white_noise(stddev)

@@ -41,11 +41,10 @@ class ClassicLinearBattery(Battery):
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         find_named_link(scene, "link_name", params)
         self.battery = read_required_name(params, "battery_name")
-        capacity = self.options.capacity or 1.0
-        charge = self.options.initial_charge
-        constant, linear = (params.number(f"open_circuit_voltage_{n}_coef", 0.0) for n in ("constant", "linear"))
-        resistance = self.options.resistance
-        tau = self.options.smooth_current_tau
+        options = self.options
+        capacity, charge = options.capacity or 1.0, options.initial_charge
+        constant, linear = options.open_circuit_voltage_constant_coef, options.open_circuit_voltage_linear_coef
+        resistance, tau = options.resistance, options.smooth_current_tau
         voltage = constant + linear * (1.0 - charge / capacity)
         self.cell = Cell(constant, linear, capacity, resistance, tau, voltage, charge)
 

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 from simkit.params import Params
 from simkit.plugins.classic.camera import TriggeredCameraOptions, connect_stereo, connect_trigger
 from simkit.plugins.classic.camera_settings import CameraNames, CameraPlugin
 from simkit.plugins.options import OptionsOf
+
+if TYPE_CHECKING:
+    from simkit.sensors.cameras.multicamera import MultiCamera
 
 
 class GazeboRosMultiCamera(CameraPlugin):
@@ -19,7 +22,7 @@ class GazeboRosMultiCamera(CameraPlugin):
 
     filenames = ("libgazebo_ros_multicamera.so",)
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: MultiCamera, params: Params) -> None:
         if connect_multicamera(self, parent) is None:
             self.refuse(parent, "multicamera")
 
@@ -30,7 +33,7 @@ class GazeboRosTriggeredMultiCamera(CameraPlugin):
     options = OptionsOf(TriggeredCameraOptions)
     filenames = ("libgazebo_ros_triggered_multicamera.so",)
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: MultiCamera, params: Params) -> None:
         names = connect_multicamera(self, parent)
         if names is None:
             self.refuse(parent, "multicamera")
@@ -38,7 +41,7 @@ class GazeboRosTriggeredMultiCamera(CameraPlugin):
             connect_trigger(self, parent, names)
 
 
-def connect_multicamera(plugin: CameraPlugin, sensor: Any) -> CameraNames | None:
+def connect_multicamera(plugin: CameraPlugin, sensor: MultiCamera) -> CameraNames | None:
     """Names the topics; None where the sensor is no multicamera."""
     if not hasattr(sensor, "eyes"):
         return None

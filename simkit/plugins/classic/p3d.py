@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from simkit.diagnostics import did_you_mean
-from simkit.params import LARGEST, Params
+from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.drives.odometry import ODOMETRY, BodyTwist, odometry_message
 from simkit.plugins.endpoints import publishes
@@ -69,19 +69,20 @@ class GazeboRosP3D(ModelPlugin):
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         is_old = is_ros_1(params, _ROS_1)
+        options = self.options
         if is_old:
-            body, frame = "bodyName", self.options.frame_name_ros_1
-            self._topic = self.options.topic_name
-            deviation, rate = "gaussianNoise", "updateRate"
+            body, frame = "bodyName", options.frame_name_ros_1
+            self._topic = options.topic_name
+            _ = options.always_on_ros_1
+            self._deviation, self._rate = options.gaussian_noise_ros_1, options.update_rate_ros_1
+            shift, turn = options.xyz_offset_ros_1, options.rpy_offset_ros_1
         else:
-            body, frame = "body_name", self.options.frame_name
+            body, frame = "body_name", options.frame_name
             self._topic = "odom"
-            deviation, rate = "gaussian_noise", "update_rate"
-        params.child("alwaysOn" if is_old else "always_on")
-        self._deviation = params.number(deviation, 0.0, minimum=0, maximum=LARGEST)
-        self._rate = params.number(rate, 0.0, minimum=0)
-        self._shift = np.array(_offset(params, "xyz", is_old))
-        self._turn = quat_from_rpy(*_offset(params, "rpy", is_old))
+            _ = options.always_on
+            self._deviation, self._rate = options.gaussian_noise, options.update_rate
+            shift, turn = options.xyz_offset, options.rpy_offset
+        self._shift, self._turn = np.array(shift), quat_from_rpy(*turn)
         self._is_shifted = bool(self._shift.any()) or self._turn.tolist() != [1.0, 0.0, 0.0, 0.0]
         self._body = find_named_link(scene, body, params)
         self._frame, self._reference = frame.strip("/"), self._find_reference(scene, frame.strip("/"), params)
@@ -130,7 +131,7 @@ class GazeboRosP3D(ModelPlugin):
         shifted = Pose(pose.position + self._shift, quat_multiply(self._turn, pose.quaternion))
         return shifted, np.concatenate((linear, angular))
 
-    def _message(self, time_ns: int, pose: Pose, motion: Vector, index: int) -> Any:
+    def _message(self, time_ns: int, pose: Pose, motion: Vector, index: int) -> object:
         if self._stream is not None:
             motion = motion + self._deviation * self._stream.normal(index)
         twist = BodyTwist(motion[:3].tolist(), motion[3:].tolist())
@@ -141,13 +142,3 @@ def _is_whole(pose: Pose) -> bool:
     """Whether no bit of a pose changes where an offset of nothing is added: no zero has a sign, and it is unit."""
     turn = pose.quaternion
     return abs(math.sqrt(turn.dot(turn)) - 1.0) <= 1e-15 and bool(pose.position.all() and turn.all())
-
-
-def _offset(params: Params, kind: str, is_old: bool) -> tuple[float, float, float]:
-    """`<xyz_offset>`, or `<xyz_offsets>` as it was called before; `<xyzOffset>` on ROS 1."""
-    zero = (0.0, 0.0, 0.0)
-    if is_old:
-        x, y, z = params.vector3(f"{kind}Offset", zero)
-    else:
-        x, y, z = params.vector3(f"{kind}_offset", params.vector3(f"{kind}_offsets", zero))
-    return float(x), float(y), float(z)

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 from simkit.params import Params
 from simkit.plugins.base import SensorPlugin
 from simkit.plugins.classic.ray_sensor import RADIATION
 from simkit.plugins.endpoints import publishes
-from simkit.plugins.lookups import read_frame
+from simkit.plugins.lookups import link_name
 from simkit.plugins.options import Options, OptionsOf, choice, number, text
+
+if TYPE_CHECKING:
+    from simkit.sensors.rays.lidar import Lidar
 
 
 class GazeboRosRangeOptions(Options):
@@ -35,7 +38,7 @@ class GazeboRosRange(SensorPlugin):
     options = OptionsOf(GazeboRosRangeOptions)
     filenames = ("libgazebo_ros_range.so",)
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Lidar, params: Params) -> None:
         topic = self.ros.topic(self.options.topic_name)
         radiation = RADIATION[self.options.radiation]
         view = self.options.fov
@@ -44,7 +47,7 @@ class GazeboRosRange(SensorPlugin):
         if not hasattr(parent, "range_noise"):
             self.refuse(parent, "ray")
             return
-        parent.frame_id = read_frame(parent, params)
+        parent.frame_id = self.options.frame_name or self.options.frame_name_ros_1 or link_name(parent)
         parent.radiation, parent.field_of_view = radiation, view
         if stddev > 0:
             parent.add_range_noise(stddev)

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING
 
 from simkit.params import LARGEST, Params
 from simkit.plugins.base import SensorPlugin
 from simkit.plugins.endpoints import publishes
-from simkit.plugins.lookups import private_topic, read_frame
+from simkit.plugins.lookups import read_frame
 from simkit.plugins.options import Options, OptionsOf, boolean, choice, number, text
+
+if TYPE_CHECKING:
+    from simkit.sensors.rays.lidar import Lidar
 
 _OUTPUTS = {
     "sensor_msgs/LaserScan": "scan",
@@ -51,11 +54,11 @@ class GazeboRosRaySensor(SensorPlugin):
     options = OptionsOf(GazeboRosRaySensorOptions)
     filenames = ("libgazebo_ros_ray_sensor.so",)
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Lidar, params: Params) -> None:
         output = _OUTPUTS[self.options.output_type]
         radiation = RADIATION[self.options.radiation_type]
         least = self.options.min_intensity
-        topic = private_topic(self, "out", "topicName")
+        topic = self.ros.topic(self.options.topic_name or "~/out")
         _connect(self, parent, {output: topic}, least, radiation)
 
 
@@ -74,8 +77,8 @@ class GazeboRosLaser(SensorPlugin):
     options = OptionsOf(GazeboRosLaserOptions)
     filenames = ("libgazebo_ros_laser.so", "libgazebo_ros_gpu_laser.so")
 
-    def load(self, parent: Any, params: Params) -> None:
-        _connect(self, parent, {"scan": _named_topic(self)}, 0.0, RADIATION["infrared"])
+    def load(self, parent: Lidar, params: Params) -> None:
+        _connect(self, parent, {"scan": _named_topic(self, self.options.topic_name)}, 0.0, RADIATION["infrared"])
 
 
 class GazeboRosBlockLaserOptions(Options):
@@ -101,7 +104,7 @@ class GazeboRosBlockLaser(SensorPlugin):
     options = OptionsOf(GazeboRosBlockLaserOptions)
     filenames = ("libgazebo_ros_block_laser.so",)
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Lidar, params: Params) -> None:
         noise = self.options.gaussian_noise
         for name in ("hokuyoMinIntensity", "updateRate"):
             params.number(name, 0.0)
@@ -109,13 +112,13 @@ class GazeboRosBlockLaser(SensorPlugin):
                 message = f"plugin {self.name!r}: <{name}> changes nothing, as in Gazebo"
                 hint = "the sensor's <update_rate> counts" if name == "updateRate" else ""
                 params.diagnostics.note("SK-PLUGIN-061", message, params.block(name).where, hint)
-        if _connect(self, parent, {"block": _named_topic(self)}, 0.0, RADIATION["infrared"]) and noise > 0:
+        topic = _named_topic(self, self.options.topic_name)
+        if _connect(self, parent, {"block": topic}, 0.0, RADIATION["infrared"]) and noise > 0:
             parent.add_point_noise(noise)
 
 
-def _named_topic(plugin: SensorPlugin) -> str:
+def _named_topic(plugin: SensorPlugin, topic: str) -> str:
     """`<topicName>`, which in Gazebo is `/world` where it is not given."""
-    topic = plugin.params.text("topicName", "")
     if not topic:
         message = f"plugin {plugin.name!r} has no <topicName>: it publishes on '/world', as in Gazebo"
         plugin.params.diagnostics.note("SK-PLUGIN-062", message, plugin.where, "<topicName>scan</topicName>")
@@ -146,19 +149,19 @@ class GazeboRosVelodyneLaser(SensorPlugin):
     options = OptionsOf(GazeboRosVelodyneLaserOptions)
     filenames = ("libgazebo_ros_velodyne_laser.so", "libgazebo_ros_velodyne_gpu_laser.so")
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Lidar, params: Params) -> None:
         limits = self.options.min_range, self.options.max_range
         keeps_order = self.options.organize_cloud
         least = self.options.min_intensity
         noise = self.options.gaussian_noise
-        topic = private_topic(self, "out", "topicName")
+        topic = self.ros.topic(self.options.topic_name or "~/out")
         if _connect(self, parent, {"velodyne": topic}, least, RADIATION["infrared"]):
             parent.cloud_range, parent.keeps_order = limits, keeps_order
             if noise > 0:
                 parent.add_ray_noise(noise)
 
 
-def _connect(plugin: SensorPlugin, sensor: Any, topics: dict[str, str], min_intensity: float, radiation: int) -> bool:
+def _connect(plugin: SensorPlugin, sensor: Lidar, topics: dict[str, str], min_intensity: float, radiation: int) -> bool:
     if not hasattr(sensor, "min_intensity"):
         plugin.refuse(sensor, "ray")
         return False

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simkit.diagnostics import did_you_mean
 from simkit.params import Params
@@ -13,15 +13,15 @@ from simkit.plugins.endpoints import publishes
 from simkit.plugins.options import Options, OptionsOf, boolean, number, text
 
 if TYPE_CHECKING:
+    from simkit.msgs import Image
     from simkit.runtime import Model
+    from simkit.sensors.cameras.rgbd_camera import RgbdCamera
 
 _STREAMS = {"color": "color", "infrared1": "ired1", "infrared2": "ired2", "depth": "depth"}
 """What the parameters of a stream begin with -> how its sensor's name ends."""
 
-_TOPICS = {
-    "color": "color/image_raw", "depth": "depth/image_raw",
-    "infrared1": "infra1/image_raw", "infrared2": "infra2/image_raw",
-}  # fmt: skip
+_FOLDERS = {"color": "color", "infrared1": "infra1", "infrared2": "infra2", "depth": "depth"}
+_MESSAGES = (("image_raw", "Image", "TopicName"), ("camera_info", "CameraInfo", "CameraInfoTopicName"))
 _CUTOFF_MAX = 5.0  # [m] where the file says nothing
 _SENSORS_OWN = "a stream comes at its sensor's <update_rate>, as with the plugin itself"
 
@@ -60,18 +60,11 @@ class RealSense(ModelPlugin):
     """
 
     endpoints = (
-        publishes("{prefix}/color/image_raw", "sensor_msgs/msg/Image", named_by=("colorTopicName",)),
-        publishes("{prefix}/color/camera_info", "sensor_msgs/msg/CameraInfo", named_by=("colorCameraInfoTopicName",)),
-        publishes("{prefix}/infra1/image_raw", "sensor_msgs/msg/Image", named_by=("infrared1TopicName",)),
-        publishes(
-            "{prefix}/infra1/camera_info", "sensor_msgs/msg/CameraInfo", named_by=("infrared1CameraInfoTopicName",)
+        *(
+            publishes(f"{{prefix}}/{folder}/{name}", f"sensor_msgs/msg/{kind}", named_by=(f"{stream}{element}",))
+            for stream, folder in _FOLDERS.items()
+            for name, kind, element in _MESSAGES
         ),
-        publishes("{prefix}/infra2/image_raw", "sensor_msgs/msg/Image", named_by=("infrared2TopicName",)),
-        publishes(
-            "{prefix}/infra2/camera_info", "sensor_msgs/msg/CameraInfo", named_by=("infrared2CameraInfoTopicName",)
-        ),
-        publishes("{prefix}/depth/image_raw", "sensor_msgs/msg/Image", named_by=("depthTopicName",)),
-        publishes("{prefix}/depth/camera_info", "sensor_msgs/msg/CameraInfo", named_by=("depthCameraInfoTopicName",)),
         publishes("{prefix}/points", "sensor_msgs/msg/PointCloud2", named_by=("pointCloudTopicName",)),
     )
     options = OptionsOf(RealSenseOptions)
@@ -80,12 +73,14 @@ class RealSense(ModelPlugin):
     def load(self, parent: Model, params: Params) -> None:
         prefix = self.options.prefix
         near, far = camera_settings.read_depths(self.options, "range_min_depth", "range_max_depth")
-        cloud = self._read_cloud(params)
+        cloud = self._read_cloud()
         for stream, ending in _STREAMS.items():
-            topic = self._below(prefix, params.text(f"{stream}TopicName", "") or _TOPICS[stream])
-            info = params.text(f"{stream}CameraInfoTopicName", "")
+            topic = self._below(
+                prefix, getattr(self.options, f"{stream}_topic_name") or f"{_FOLDERS[stream]}/image_raw"
+            )
+            info = getattr(self.options, f"{stream}_camera_info_topic_name")
             topics = topic, self._below(prefix, info) if info else topic.rsplit("/", 1)[0] + "/camera_info"
-            frame = params.text(f"{stream}OpticalframeName", "")
+            frame = getattr(self.options, f"{stream}_opticalframe_name")
             sensor = self._find(parent, prefix + ending, "points" if stream == "depth" else "image")
             if sensor is None:
                 continue
@@ -100,7 +95,7 @@ class RealSense(ModelPlugin):
         rates = ("depthUpdateRate", "colorUpdateRate", "infraredUpdateRate")
         camera_settings.report_without_effect(self, dict.fromkeys(rates, _SENSORS_OWN))
 
-    def _read_cloud(self, params: Params) -> tuple[str, float, float]:
+    def _read_cloud(self) -> tuple[str, float, float]:
         """Topic, nearest and farthest depth [m] of the cloud; without a topic there is none."""
         is_wanted = self.options.point_cloud
         topic = self.options.point_cloud_topic_name
@@ -108,7 +103,7 @@ class RealSense(ModelPlugin):
         return topic if is_wanted else "", *depths
 
     def _publish_depth(
-        self, sensor: Any, prefix: str, topics: tuple[str, str], cloud: tuple[str, float, float]
+        self, sensor: RgbdCamera, prefix: str, topics: tuple[str, str], cloud: tuple[str, float, float]
     ) -> None:
         topic, near, far = cloud
         wanted = {"depth_image": topics[0], "depth_camera_info": topics[1]}
@@ -121,12 +116,12 @@ class RealSense(ModelPlugin):
     def _below(self, prefix: str, name: str) -> str:
         return self.ros.topic(f"{prefix}/{name.lstrip('/')}" if prefix else name)
 
-    def _find(self, model: Any, name: str, product: str) -> Any | None:
+    def _find(self, model: Model, name: str, product: str) -> RgbdCamera | None:
         """The model's camera of that name, or None after a warning."""
         inside = model.scoped + "::"
         within = [s for scoped, s in self.sim.contents.sensors.items() if scoped.startswith(inside)]
         sensors = [sensor for sensor in within if hasattr(sensor, "transform_messages")]
-        fitting = {s.name: s for s in sensors if product in s.products()}
+        fitting: dict[str, RgbdCamera] = {s.name: s for s in sensors if product in s.products()}
         if name in fitting:
             return fitting[name]
         kind = "depth camera" if product == "points" else "camera"
@@ -136,7 +131,7 @@ class RealSense(ModelPlugin):
         return None
 
 
-def _as_driver(image: Any) -> Any:
+def _as_driver(image: Image) -> Image:
     """Grey as the driver names it."""
     if image.encoding == "mono8":
         image.encoding = "8UC1"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,8 +21,9 @@ from simkit.sensors.environment import solar_irradiance
 from simkit.sensors.environment.solar_irradiance import SolarReading, SolarView
 
 if TYPE_CHECKING:
-    from simkit.compiler import SpecBuilder
+    from simkit.compiler import Compiled, SpecBuilder
     from simkit.runtime import Light, Model, Simulation
+    from simkit.runtime.communication.publisher import Publisher
     from simkit.scene import SceneModel
 
 IMU = "sensor_msgs/msg/Imu"
@@ -102,7 +103,7 @@ class SolarSensor(ModelPlugin):
         self.after_step_rate = self.options.update_rate
 
     def load(self, parent: Model, params: Params) -> None:
-        self._light = _find_light(self.sim, params)
+        self._light = _find_light(self.sim, params, self.options.light_name)
         self._link = self.sim.link(self._link_name)
         self._turn = quat_from_rpy(*self._rpy)
         self._turn_matrix = quat_to_matrix(self._turn)
@@ -120,8 +121,8 @@ class SolarSensor(ModelPlugin):
         options = self._options
         judges = options.shadow or params.has("field_of_view")
         self._view: SolarView | None = None
-        self._compiled: Any = None
-        self._more: list[tuple[Any, Any, Callable[[SolarReading], Any]]] = []
+        self._compiled: Compiled | None = None
+        self._more: list[tuple[Publisher, type, Callable[[SolarReading], object]]] = []
         if self._light is None:
             return
         solar_irradiance.report_unused_options(params, options, self._light)
@@ -164,7 +165,7 @@ class SolarSensor(ModelPlugin):
         time_ns, index = self.sim.time_ns, self._index
         self._readings.publish_later(partial(self._message, time_ns, index, pose, light, is_valid))
 
-    def _message(self, time_ns: int, index: int, pose: Pose, light: Pose, is_valid: bool) -> Any:
+    def _message(self, time_ns: int, index: int, pose: Pose, light: Pose, is_valid: bool) -> object:
         imu, quaternion, vector = self._types
         orientation, covariance = np.array((1.0, 0.0, 0.0, 0.0)), np.zeros(9)
         if is_valid:
@@ -207,9 +208,8 @@ class SolarSensor(ModelPlugin):
         return math.asin(-max(-1.0, min(1.0, z))), math.atan2(y, x)
 
 
-def _find_light(sim: Simulation, params: Params) -> Light | None:
+def _find_light(sim: Simulation, params: Params, name: str) -> Light | None:
     """The light that `<light_name>` names; None after an error that lists the lights, or a note for a bare model."""
-    name = params.text("light_name", "")
     if name and not sim.contents.lights and sim.world.where == NOWHERE:
         message = f"a bare model has no light {name!r}: no reading is published until it stands in a world that has it"
         params.diagnostics.note("SK-PLUGIN-009", message, params.where)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from simkit.diagnostics import did_you_mean
 from simkit.params import Params
@@ -12,6 +12,7 @@ from simkit.plugins.options import Options, OptionsOf, boolean, number, text
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.runtime import Model
     from simkit.scene import SceneModel
 
 
@@ -54,6 +55,6 @@ class ClassicTouchPlugin(TouchTimer):
                 message = f"model {scene.scoped!r} has no contact sensor {element.value!r}; it has: {listed}"
                 element.error("SK-PLUGIN-003", message, did_you_mean(element.value, sensors.values()))
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         sensors = [self.sim.sensor(scoped) for scoped in self._sensors]
         self._watch([name for sensor in sensors for name in sensor.collisions], params)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 import weakref
-from typing import TYPE_CHECKING, Any, Final
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from simkit.diagnostics import Where
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.lookups import find_joint
@@ -16,7 +16,10 @@ from simkit.plugins.options import Options, OptionsOf, block, blocks, number, te
 from simkit.runtime.engine.physics import CONTROL
 
 if TYPE_CHECKING:
+    import mujoco
+
     from simkit.compiler import SpecBuilder
+    from simkit.compiler.name_map import ActuatorRef
     from simkit.runtime import Model
     from simkit.scene import SceneJoint, SceneModel
 
@@ -70,23 +73,22 @@ class UnderactuatedFinger(ModelPlugin):
         motor = params.child("actuatedJoint")
         found = None if motor is None else _of_one_axis(scene, motor)
         self._motor = "" if found is None else found.scoped
-        self._servos: list[tuple[str, float, Any]] = []
+        self._servos: list[tuple[str, float, ActuatorRef]] = []
         self._loops: list[tuple[str, float, tuple[float, ...]]] = []
-        virtual = params.all("virtualJoint")
-        if not virtual:
+        if not self.options.virtual_joint:
             params.error("SK-PARAM-001", f"plugin {self.name!r} needs a <virtualJoint>")
-        for one in virtual:
-            self._take(one, scene, builder)
+        for given in self.options.virtual_joint:
+            self._take(given, scene, builder)
 
-    def _take(self, one: Params, scene: SceneModel, builder: SpecBuilder) -> None:
+    def _take(self, given: UnderactuatedFingerVirtualJointOptions, scene: SceneModel, builder: SpecBuilder) -> None:
         """One finger joint."""
-        one.text("name", required=True)
-        named = one.child("name")
+        given.params.text("name", required=True)
+        named = given.params.child("name")
         joint = None if named is None else _of_one_axis(scene, named)
-        scale = one.number("scale_factor", 1.0, required=True)
+        scale = given.scale_factor
         if scale == 0.0:
-            one.error("SK-PARAM-002", "found <scale_factor> 0, allowed is any other number")
-        gains = self._gains(one)
+            given.params.error("SK-PARAM-002", "found <scale_factor> 0, allowed is any other number")
+        gains = self._gains(given.pid_gains)
         if joint is None or scale == 0.0:
             return
         if gains is not None:
@@ -95,18 +97,17 @@ class UnderactuatedFinger(ModelPlugin):
         ref = builder.add_position_servo(joint.scoped, max_effort=math.inf, owner=self.name)
         self._servos.append((joint.scoped, scale, ref))
 
-    def _gains(self, one: Params) -> tuple[float, ...] | None:
+    def _gains(self, given: UnderactuatedFingerPidGainsOptions) -> tuple[float, ...] | None:
         """Those of the joint's loop; None where it has no whole set, which Gazebo does not take."""
-        if not one.has("pid_gains"):
+        if not given.is_given:
             return None
-        block = one.block("pid_gains")
+        block = given.params
         missing = [name for name in _GAINS if not block.has(name)]
-        gains = tuple(block.number(name, 0.0) for name in _GAINS)
+        gains = given.p, given.i, given.d, given.i_max, given.i_min
         if not missing:
             return gains
         message = f"<pid_gains> without {', '.join(f'<{name}>' for name in missing)} is not taken: a servo is"
-        where: Where = block.where
-        one.diagnostics.warning("SK-PLUGIN-047", message, where, "all of p, i, d, i_max and i_min are needed")
+        block.diagnostics.warning("SK-PLUGIN-047", message, block.where, "all of p, i, d, i_max and i_min are needed")
         return None
 
     def load(self, parent: Model, params: Params) -> None:
@@ -122,7 +123,8 @@ class UnderactuatedFinger(ModelPlugin):
         self._sums = np.zeros(len(self._loops))
         self._errors = np.zeros(len(self._loops))
         self._gain = np.array([gains for *_, gains in self._loops]).reshape(-1, len(_GAINS)).T
-        self._seen: Any = _nothing  # the engine's model that the numbers of the servos are of, weakly
+        # the engine's model that the numbers of the servos are of, weakly
+        self._seen: Callable[[], mujoco.MjModel | None] = _nothing
 
     def before_step(self) -> None:
         now, physics = float(self._actuated.position), self.sim.engine.physics

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import numpy.typing as npt
@@ -22,7 +22,9 @@ if TYPE_CHECKING:
     import mujoco
 
     from simkit.compiler import SpecBuilder
-    from simkit.runtime import Model, Simulation
+    from simkit.compiler.name_map import NameMap
+    from simkit.msgs import SetBool_Request
+    from simkit.runtime import Model, Simulation, WorldStructure
     from simkit.scene import SceneModel
 
 BOOL: Final = "std_msgs/msg/Bool"
@@ -70,7 +72,7 @@ class GazeboRosVacuumGripper(ModelPlugin):
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         self._is_ros_1 = is_ros_1(params, _ROS_1)
         self._topic, self._rate = "grasping", _RATE
-        fixed: list[str] = []
+        fixed: tuple[str, ...] = ()
         if self._is_ros_1:
             self._grippers = [find_named_link(scene, "bodyName", params)]
             self._topic, self._rate = self.options.topic_name, 0.0
@@ -81,13 +83,13 @@ class GazeboRosVacuumGripper(ModelPlugin):
                     message = f"plugin {self.name!r}: <{name}> has no effect: what is near is held by a joint"
                     params.diagnostics.note("SK-PLUGIN-138", message, self.where)
         else:
-            named = params.all("link_name") if params.has("link_name") else []
+            named = params.all("link_name")
             if not named:
                 _ = self.options.link_name
             found = [find_link(scene, one.value, one) for one in named]
             self._grippers = [link.scoped for link in found if link is not None]
             self._reach = self.options.max_distance
-            fixed = [one.value for one in params.all("fixed")]
+            fixed = self.options.fixed
         self._fixed = frozenset(fixed)
         self._own = scene.scoped.split("::")[0]
 
@@ -128,11 +130,11 @@ class GazeboRosVacuumGripper(ModelPlugin):
         grippers = [p for p in self.sim.engine.structure.all_plugins() if isinstance(p, GazeboRosVacuumGripper)]
         return [p for p in grippers if p._services == self._services]
 
-    def _on_switch(self, request: Any) -> dict[str, Any]:
+    def _on_switch(self, request: SetBool_Request) -> dict[str, object]:
         is_new = max([gripper._switch(bool(request.data)) for gripper in self._together()])
         return {"success": is_new, "message": "" if is_new else f"it is {'on' if request.data else 'off'} already"}
 
-    def _on_empty(self, is_on: bool, _: Any) -> None:
+    def _on_empty(self, is_on: bool, _: object) -> None:
         for gripper in self._together():
             gripper._switch(is_on)
 
@@ -185,9 +187,9 @@ class _GrippableLinks:
     """Where grippers and what they may hold are in the engine; a handle, without state of its own."""
 
     def __init__(self) -> None:
-        self._known: Any = None
+        self._known: WorldStructure | None = None
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> _GrippableLinks:
+    def __deepcopy__(self, memo: dict[int, object]) -> _GrippableLinks:
         return self
 
     def bind(self, sim: Simulation, own: str, fixed: frozenset[str], grippers: list[str]) -> None:
@@ -222,7 +224,7 @@ class _GrippableLinks:
 Numbers = npt.NDArray[np.float64]
 
 
-def _frames(names: Any, links: list[str]) -> tuple[npt.NDArray[np.intp], Numbers]:
+def _frames(names: NameMap, links: list[str]) -> tuple[npt.NDArray[np.intp], Numbers]:
     """Bodies of links, and the links' origins in them, shape (n, 3)."""
     found = [names.link(link) for link in links]
     bodies = np.array([int(one.body) for one in found], dtype=np.intp)
