@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from simkit.runtime.communication.subscription import Subscription
     from simkit.runtime.engine.random_streams import RandomStream
     from simkit.scene import ScenePlugin
+    from simkit.sensors.base import Sensor
 
 T = TypeVar("T", bound="bool | int | float | str | tuple[float, ...]")
 
@@ -85,8 +86,8 @@ class Plugin(abc.ABC):
     on_error: PluginErrorPolicy | None = None
 
     _failed: tuple[str, Exception] | None = None  # what it raised before there was a simulation, and where
-    _actuators: tuple[Any, ...] = ()  # servos and motors that its `prepare` added
-    _order: tuple[Any, ...] = ()  # where it stands among all plugins
+    _actuators: tuple[object, ...] = ()  # servos and motors that its `prepare` added
+    _order: tuple[object, ...] = ()  # where it stands among all plugins
     plugin_paths: tuple[Path, ...] = ()  # folders whose Python the user allows
     _source: ScenePlugin | None = None
     sim: Simulation
@@ -148,7 +149,7 @@ class Plugin(abc.ABC):
             )
         return publisher
 
-    def listen(self, topic: str, types: str | Sequence[str], callback: Callable[[Any], None]) -> Listener:
+    def listen(self, topic: str, types: str | Sequence[str], callback: Callable[[Any], object]) -> Listener:
         """Calls `callback(message)` between two steps for each message on `topic`; the first type is the listed one."""
         name = self.ros.topic(topic)
         guarded = self.sim.engine.faults.guard(self, f"its callback for {name!r}", callback)
@@ -338,7 +339,7 @@ class Plugin(abc.ABC):
             delattr(self, key)
         vars(self).update(copy.deepcopy(dict(state), {id(self): self}))
 
-    def _state_by_attribute(self, own: dict[str, Any]) -> dict[str, Any]:
+    def _state_by_attribute(self, own: dict[str, object]) -> dict[str, Any]:
         memo: dict[int, Any] = {id(self): self}
         state, uncopied = {}, set()
         for key, value in own.items():
@@ -359,7 +360,7 @@ class Plugin(abc.ABC):
         """After `load`: an attribute that cannot be copied is reported now and not at the first snapshot."""
         self.get_state()
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> Plugin:
+    def __deepcopy__(self, memo: dict[int, object]) -> Plugin:
         return self
 
 
@@ -392,7 +393,7 @@ class SensorPlugin(Plugin):
 
     parent_kind = "sensor"
 
-    def refuse(self, sensor: Any, wanted: str) -> None:
+    def refuse(self, sensor: Sensor, wanted: str) -> None:
         """Reports that it hangs on a sensor of another type than the one it is for."""
         message = f"plugin {self.name!r} is for a sensor of type {wanted}, this is {sensor.kind!r}"
         self.params.error("SK-PLUGIN-003", message)

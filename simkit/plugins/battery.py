@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import deque
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, Final
+from typing import ClassVar, Final
 
 from simkit import msgs
 from simkit.msgs.topics import valid_topic
@@ -162,7 +162,7 @@ class Battery(ModelPlugin):
             status = _DISCHARGING
         else:
             status = _IS_FULL if cell.soc > FULL else _NOT_CHARGING
-        fields: dict[str, Any] = {
+        fields: dict[str, object] = {
             "header": msgs.header(self.sim.time_ns, ""),
             "voltage": cell.voltage,
             "temperature": math.nan,

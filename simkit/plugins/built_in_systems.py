@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simkit.params import Params
 from simkit.plugins.base import Plugin
@@ -47,7 +47,7 @@ class BuiltInSystem(Plugin):
     )
     names = tuple(f"gz::sim::systems::{name}" for name in _SYSTEMS.values())
 
-    def prepare(self, scene: Any, params: Params, builder: SpecBuilder) -> None:
+    def prepare(self, scene: object, params: Params, builder: SpecBuilder) -> None:
         unused = ", ".join(sorted({f"<{child.name}>" for child in params.children}))
         params.mark_all_read()
         label = self.name.rsplit("::", 1)[-1] if "::" in self.name else self._library()
@@ -57,5 +57,5 @@ class BuiltInSystem(Plugin):
     def _library(self) -> str:
         return self.source.filename if self.source is not None else self.name
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: object, params: Params) -> None:
         """Nothing to do."""

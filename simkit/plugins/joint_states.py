@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,19 +16,25 @@ from simkit.plugins.lookups import find_joint
 from simkit.plugins.options import Options, OptionsOf, number, text, texts
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from simkit.compiler import SpecBuilder
-    from simkit.runtime import Model
+    from simkit.msgs import JointState
+    from simkit.pose import Vector
+    from simkit.runtime import Joint, Model
     from simkit.scene import SceneJoint, SceneModel
 
 JOINT_STATE = "sensor_msgs/msg/JointState"
+JointReading = tuple[str, "float | Vector", "float | Vector", "float | Vector"]
+"""Name, position, velocity and applied effort of a joint."""
 
 
-def joint_readings(joints: list[Any]) -> list[tuple[str, Any, Any, Any]]:
+def joint_readings(joints: Sequence[Joint]) -> list[JointReading]:
     """Name, position, velocity and applied effort of each joint, now."""
     return [(joint.name, joint.position, joint.velocity, joint.effort) for joint in joints]
 
 
-def joint_state_message(time_ns: int, joints: list[tuple[str, Any, Any, Any]]) -> Any:
+def joint_state_message(time_ns: int, joints: list[JointReading]) -> JointState:
     """A `sensor_msgs/msg/JointState` of `joint_readings`, in their order; efforts are those applied [N·m or N].
 
     A joint of several degrees of freedom gives `name[0]`, `name[1]`, …; one of none gives one zero.
@@ -41,7 +47,9 @@ def joint_state_message(time_ns: int, joints: list[tuple[str, Any, Any, Any]]) -
         names += [name] if count < 2 else [f"{name}[{i}]" for i in range(count)]
         for column, numbers in zip(columns, read, strict=True):
             column += numbers or [0.0]
-    return msgs.type_of(JOINT_STATE)(msgs.header(time_ns, ""), names, *(np.array(column) for column in columns))
+    arrays = (np.array(column) for column in columns)
+    message: JointState = msgs.type_of(JOINT_STATE)(msgs.header(time_ns, ""), names, *arrays)
+    return message
 
 
 class _JointStates(ModelPlugin):
@@ -119,6 +127,6 @@ class JointStatePublisher(_JointStates):
         self._path = "".join(f"/model/{name}" for name in scene.scoped.split("::"))
         self.after_step_rate = self.options.update_rate
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         self._topic = valid_topic(self._given or f"/world/{self.sim.world.name}{self._path}/joint_state")
         super().load(parent, params)

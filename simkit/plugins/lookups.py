@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 from simkit.diagnostics import did_you_mean
 from simkit.msgs.topics import valid_topic
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.plugins.base import Plugin
     from simkit.runtime import Light, Simulation
+    from simkit.sensors.base import Sensor
 
 
 def find_joint(scene: SceneModel, name: str, params: Params) -> SceneJoint | None:
@@ -129,13 +130,12 @@ def read_numbers(params: Params, name: str, minimum: float | None = None) -> lis
     return [one.number(name, minimum=minimum) for one in params.each(name)]
 
 
-def read_frame(sensor: Any, params: Params) -> str:
+def read_frame(sensor: Sensor, params: Params) -> str:
     """`<frame_name>` (`<frameName>` in ROS 1), else the plain name of the sensor's link."""
     name = params.text("frame_name", "") or params.text("frameName", "")
     return name or link_name(sensor)
 
 
-def link_name(sensor: Any) -> str:
+def link_name(sensor: Sensor) -> str:
     """The plain name of a sensor's link."""
-    scoped: str = sensor.scene.parent
-    return scoped.rsplit("::", 1)[-1]
+    return sensor.scene.parent.rsplit("::", 1)[-1]

@@ -4,20 +4,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from simkit.plugins.base import Plugin
-    from simkit.runtime import Simulation
+    from simkit.runtime import Publisher, Simulation
 
 
 _NS = 1_000_000_000
 
 
 def publish_while_subscribed(
-    plugin: Plugin, publisher: Any, rate: float, method: str, also: Callable[[], bool] = lambda: False
+    plugin: Plugin, publisher: Publisher, rate: float, method: str, also: Callable[[], bool] = lambda: False
 ) -> None:
     """Calls a method of a plugin after steps, as `after_step` would be, while somebody hears its publisher.
 
@@ -56,7 +56,7 @@ class Watcher(Protocol):
         """Takes the present state for that of the step before."""
 
 
-def watch_while_subscribed(plugin: Watcher, publishers: Sequence[Any], method: str) -> None:
+def watch_while_subscribed(plugin: Watcher, publishers: Sequence[Publisher], method: str) -> None:
     """Calls a method of a plugin after every step while somebody hears one of its publishers.
 
     When that begins, `plugin.begin()` is called first, so that an event in the very next step is told too, and the

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from simkit.plugins.base import Plugin
 
 
 class OneTimeWarnings:
     """Reports of a plugin that are made once each, in spite of resets; a handle, without state that a reset forgets."""
 
-    def __init__(self, plugin: Any) -> None:
+    def __init__(self, plugin: Plugin) -> None:
         self._plugin = plugin
         self._said: set[str] = set()
 
@@ -27,5 +30,5 @@ class OneTimeWarnings:
         """Says that a command with a number that is none cannot be used."""
         self.left_out("finite", f"{command} with a number that is not finite is left out")
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> OneTimeWarnings:
+    def __deepcopy__(self, memo: dict[int, object]) -> OneTimeWarnings:
         return self

@@ -17,12 +17,13 @@ is reported. `simkit plugin info` shows the fields, and the report of an element
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Any, Generic, Literal, TypeVar, overload
+from typing import Any, Generic, Literal, Protocol, TypeVar, overload
 
 from simkit.params import Params
 from simkit.pose import IDENTITY, Pose
 
 OptionKind = Literal["number", "integer", "boolean", "text", "vector", "pose", "choice", "block", ""]
+Value = TypeVar("Value")
 OptionsKind = TypeVar("OptionsKind", bound="Options")
 OptionsKind_co = TypeVar("OptionsKind_co", bound="Options", covariant=True)
 
@@ -40,7 +41,7 @@ class Options:
     def __init__(self, params: Params) -> None:
         self.params = params
         self.is_given = True
-        self._values: dict[str, Any] = {}
+        self._values: dict[str, object] = {}
 
     @classmethod
     def fields(cls) -> dict[str, Option]:
@@ -151,6 +152,12 @@ class Option:
         return params.child(name) is not None
 
 
+class HasParams(Protocol):
+    """A plugin, as far as options know it."""
+
+    params: Params
+
+
 class OptionsOf(Generic[OptionsKind_co]):
     """The options of a plugin, read from its parameters; an attribute of its class.
 
@@ -162,12 +169,12 @@ class OptionsOf(Generic[OptionsKind_co]):
         self.kind = kind
 
     @overload
-    def __get__(self, plugin: None, owner: type[Any]) -> OptionsOf[OptionsKind_co]: ...
+    def __get__(self, plugin: None, owner: type[object]) -> OptionsOf[OptionsKind_co]: ...
 
     @overload
-    def __get__(self, plugin: Any, owner: type[Any]) -> OptionsKind_co: ...
+    def __get__(self, plugin: HasParams, owner: type[object]) -> OptionsKind_co: ...
 
-    def __get__(self, plugin: Any, owner: type[Any]) -> OptionsOf[OptionsKind_co] | OptionsKind_co:
+    def __get__(self, plugin: HasParams | None, owner: type[object]) -> OptionsOf[OptionsKind_co] | OptionsKind_co:
         if plugin is None:
             return self
         made = vars(plugin).setdefault("_read_options", {})
@@ -178,11 +185,18 @@ class OptionsOf(Generic[OptionsKind_co]):
         return known
 
 
-def option_types_of(cls: type[Any]) -> list[type[Options]]:
+def option_types_of(cls: type[object]) -> list[type[Options]]:
     """The classes of options that a plugin class declares, those of its bases first."""
     attributes = {name: v for c in reversed(cls.__mro__) for name, v in vars(c).items()}
     declared = (v.kind for v in attributes.values() if isinstance(v, OptionsOf))
     return list(dict.fromkeys((*declared, *getattr(cls, "option_types", ()))))
+
+
+def _declare(kind: type[Value], option: Option) -> Value:  # noqa: ARG001 - for type checkers
+    """Return an option that a type checker takes for the value of its field, which has the type `kind`."""
+    declared: Any = option
+    value: Value = declared
+    return value
 
 
 def number(
@@ -199,21 +213,28 @@ def number(
     description: str = "",
 ) -> float:
     """A number."""
-    bounds: dict[str, Any] = {"minimum": minimum, "maximum": maximum, "finite": finite}
-    more: dict[str, Any] = {"required": required, "instead": instead, "is_live": is_live, "description": description}
-    option: Any = Option("number", element, default, unit, **bounds, **more)
-    found: float = option
-    return found
+    option = Option(
+        "number",
+        element,
+        default,
+        unit,
+        minimum=minimum,
+        maximum=maximum,
+        finite=finite,
+        required=required,
+        instead=instead,
+        is_live=is_live,
+        description=description,
+    )
+    return _declare(float, option)
 
 
 def numbers(
     unit: str = "", *, element: str = "", minimum: float | None = None, maximum: float | None = None
 ) -> tuple[float, ...]:
     """The number in each element of that name."""
-    bounds: dict[str, Any] = {"minimum": minimum, "maximum": maximum}
-    option: Any = Option("number", element, None, unit, **bounds, repeated=True)
-    found: tuple[float, ...] = option
-    return found
+    option = Option("number", element, None, unit, minimum=minimum, maximum=maximum, repeated=True)
+    return _declare(tuple[float, ...], option)
 
 
 def integer(
@@ -225,37 +246,27 @@ def integer(
     required: bool = False,
 ) -> int:
     """A whole number."""
-    option: Any = Option("integer", element, default, minimum=minimum, maximum=maximum, required=required)
-    found: int = option
-    return found
+    return _declare(int, Option("integer", element, default, minimum=minimum, maximum=maximum, required=required))
 
 
 def boolean(default: bool = False, *, element: str = "", instead: str = "") -> bool:
     """True or false."""
-    option: Any = Option("boolean", element, default, instead=instead)
-    found: bool = option
-    return found
+    return _declare(bool, Option("boolean", element, default, instead=instead))
 
 
 def text(default: str | None = "", *, element: str = "", required: bool = False, instead: str = "") -> str:
     """A text."""
-    option: Any = Option("text", element, default, required=required, instead=instead)
-    found: str = option
-    return found
+    return _declare(str, Option("text", element, default, required=required, instead=instead))
 
 
 def texts(*, element: str = "", required: bool = False) -> tuple[str, ...]:
     """The text of each element of that name."""
-    option: Any = Option("text", element, required=required, repeated=True)
-    found: tuple[str, ...] = option
-    return found
+    return _declare(tuple[str, ...], Option("text", element, required=required, repeated=True))
 
 
 def choice(allowed: Sequence[str], default: str | None = None, *, element: str = "", required: bool = False) -> str:
     """One of a few words."""
-    option: Any = Option("choice", element, default, choices=tuple(allowed), required=required)
-    found: str = option
-    return found
+    return _declare(str, Option("choice", element, default, choices=allowed, required=required))
 
 
 def vector(
@@ -264,9 +275,7 @@ def vector(
     """Several numbers."""
     count = size or len(default or ())
     start = None if default is None else tuple(float(value) for value in default)
-    option: Any = Option("vector", element, start, unit, size=count, required=required)
-    found: tuple[float, ...] = option
-    return found
+    return _declare(tuple[float, ...], Option("vector", element, start, unit, size=count, required=required))
 
 
 def vector3(
@@ -279,23 +288,18 @@ def vector3(
 ) -> tuple[float, float, float]:
     """Three numbers."""
     x, y, z = map(float, default)
-    option: Any = Option("vector", element, (x, y, z), unit, size=3, required=required, instead=instead)
-    found: tuple[float, float, float] = option
-    return found
+    option = Option("vector", element, (x, y, z), unit, size=3, required=required, instead=instead)
+    return _declare(tuple[float, float, float], option)
 
 
 def pose(default: Pose = IDENTITY, *, element: str = "") -> Pose:
     """A pose: `x y z roll pitch yaw` [m, rad]."""
-    option: Any = Option("pose", element, default, "m, rad")
-    found: Pose = option
-    return found
+    return _declare(Pose, Option("pose", element, default, "m, rad"))
 
 
 def block(options: type[OptionsKind], *, element: str = "") -> OptionsKind:
     """The options within an element, at their defaults where it is absent."""
-    option: Any = Option("block", element, options=options)
-    found: OptionsKind = option
-    return found
+    return _declare(options, Option("block", element, options=options))
 
 
 def blocks(options: type[OptionsKind], *, element: str = "") -> tuple[OptionsKind, ...]:
@@ -307,6 +311,4 @@ def blocks(options: type[OptionsKind], *, element: str = "") -> tuple[OptionsKin
 
 def without_effect(*, element: str = "") -> bool:
     """An element that is known and changes nothing; true where the file has it."""
-    option: Any = Option("", element)
-    found: bool = option
-    return found
+    return _declare(bool, Option("", element))

@@ -8,7 +8,6 @@ import inspect
 import sys
 from collections.abc import Iterator
 from types import ModuleType
-from typing import Any
 
 from simkit.diagnostics import did_you_mean
 from simkit.params import Params
@@ -25,7 +24,7 @@ def _is_reader(method: str) -> bool:
     return method in _READERS or method.startswith("get_")
 
 
-def names_read(cls: Any) -> frozenset[str]:
+def names_read(cls: type[object]) -> frozenset[str]:
     """Names of elements and attributes that the modules of a class and its bases ask for; the source is only parsed."""
     own = (c for c in cls.__mro__ if c.__module__ != "simkit.plugins.base")
     modules = dict.fromkeys(c.__module__ for c in own if c is not object)

@@ -13,6 +13,9 @@ from simkit.plugins.base import WorldPlugin
 from simkit.runtime.engine.physics import STALE
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from simkit.msgs import SetBool_Request
     from simkit.params import Params
     from simkit.runtime import Simulation
 
@@ -32,7 +35,7 @@ class ActorMover(WorldPlugin):
     def load(self, parent: Simulation, params: Params) -> None:
         self._began: dict[str, float] = {}
         self._stopped: dict[str, float] = {}
-        self._known: tuple[Any, tuple[_Moving, ...]] = (None, ())
+        self._known: tuple[object, tuple[_Moving, ...]] = (None, ())
         for cast, _ in self._moving():
             self._began |= {cast.name: 0.0} if cast.script.starts_by_itself else {}
             self.offer(f"/{cast.name}/play", _SERVICE, partial(self._play, cast.name))
@@ -40,7 +43,7 @@ class ActorMover(WorldPlugin):
     def get_state(self) -> dict[str, Any]:
         return {"_began": dict(self._began), "_stopped": dict(self._stopped)}
 
-    def set_state(self, state: Any) -> None:
+    def set_state(self, state: Mapping[str, Any]) -> None:
         self._began, self._stopped = dict(state["_began"]), dict(state["_stopped"])
 
     def reset(self) -> None:
@@ -78,7 +81,7 @@ class ActorMover(WorldPlugin):
             return self._stopped[name]
         return now - self._began[name] if name in self._began else 0.0
 
-    def _play(self, name: str, request: Any) -> dict[str, Any]:
+    def _play(self, name: str, request: SetBool_Request) -> dict[str, object]:
         if request.data:
             self._stopped.pop(name, None)
             self._began[name] = float(self.sim.time)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simkit.plugins.drives.odometry import (
     ODOMETRY,
@@ -62,7 +62,7 @@ class DriveOutputs:
         self._tf = plugin.advertise("/tf", TRANSFORMS) if told.odometry_tf or told.wheel_tf else None
         self._states = plugin.advertise("joint_states", JOINT_STATE) if told.joint_states else None
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> DriveOutputs:
+    def __deepcopy__(self, memo: dict[int, object]) -> DriveOutputs:
         return self
 
     @property

@@ -16,7 +16,11 @@ from simkit.plugins.drives.odometry import TRANSFORMS
 from simkit.pose import Pose, Vector
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from simkit.msgs import TFMessage, TransformStamped
     from simkit.runtime import Link, Model, Simulation
+    from simkit.scene import SceneJoint
 
 PoseNumbers = tuple[float, float, float, float, float, float, float]
 """A pose as plain numbers, x, y, z [m] and a unit quaternion w, x, y, z: sooner multiplied than a `Pose`."""
@@ -180,7 +184,7 @@ class PoseSample:
         return placed
 
 
-def transforms_message(time_ns: int, taken: PoseSample, others: Sequence[FramePose] = ()) -> Any:
+def transforms_message(time_ns: int, taken: PoseSample, others: Sequence[FramePose] = ()) -> TFMessage:
     """A `tf2_msgs/msg/TFMessage` of all parts, and others after them."""
     message, transform, vector, quaternion = _stamped_types()
     header = msgs.headers(time_ns)
@@ -188,14 +192,17 @@ def transforms_message(time_ns: int, taken: PoseSample, others: Sequence[FramePo
         message(header(frame), child, transform(vector(x, y, z), quaternion(i, j, k, w)))
         for frame, child, (x, y, z, w, i, j, k) in (*taken.placed, *others)
     ]
-    return msgs.type_of(TRANSFORMS)(made)
+    transforms: TFMessage = msgs.type_of(TRANSFORMS)(made)
+    return transforms
 
 
-def stamped_transform(time_ns: int, frame: str, child: str, seven: PoseNumbers) -> Any:
+def stamped_transform(time_ns: int, frame: str, child: str, seven: PoseNumbers) -> TransformStamped:
     """A `geometry_msgs/msg/TransformStamped` of one part."""
     message, transform, vector, quaternion = _stamped_types()
     x, y, z, w, i, j, k = seven
-    return message(msgs.header(time_ns, frame), child, transform(vector(x, y, z), quaternion(i, j, k, w)))
+    place = transform(vector(x, y, z), quaternion(i, j, k, w))
+    stamped: TransformStamped = message(msgs.header(time_ns, frame), child, place)
+    return stamped
 
 
 @functools.cache
@@ -204,7 +211,7 @@ def _stamped_types() -> tuple[Any, ...]:
     return tuple(msgs.type_of(f"geometry_msgs/msg/{name}") for name in names)
 
 
-def links_moved_by_joints(joints: Sequence[Any]) -> frozenset[str]:
+def links_moved_by_joints(joints: Iterable[SceneJoint]) -> frozenset[str]:
     """Scoped names of the links at either end of a joint that is not fixed."""
     return frozenset(end for joint in joints if joint.type != "fixed" for end in (joint.parent_link, joint.child_link))
 

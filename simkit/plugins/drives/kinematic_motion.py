@@ -6,7 +6,7 @@ import functools
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
@@ -41,12 +41,12 @@ class KinematicMotion:
         self._sim, self.links, self._carrier, self._frame = sim, tuple(links), carrier, frame
         names = sim.engine.names
         self._roots = [name for name in self.links if names.link(name).root_joint_dof >= 0]
-        self._bound: Any = None
+        self._bound: object = None
 
     def __bool__(self) -> bool:
         return bool(self._roots)
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> KinematicMotion:
+    def __deepcopy__(self, memo: dict[int, object]) -> KinematicMotion:
         return self
 
     @property
@@ -96,9 +96,9 @@ class KinematicMover:
 
     def __init__(self, sim: Simulation) -> None:
         self._sim = sim
-        self._bound: tuple[Any, tuple[KinematicMotion, ...]] = (None, ())
+        self._bound: tuple[object, tuple[KinematicMotion, ...]] = (None, ())
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> KinematicMover:
+    def __deepcopy__(self, memo: dict[int, object]) -> KinematicMover:
         return self
 
     def move(self, moves: Sequence[VelocityTarget]) -> None:

@@ -15,6 +15,7 @@ from simkit import msgs
 from simkit.pose import Pose, Vector, quat_conjugate, quat_from_rpy, quat_rotate
 
 if TYPE_CHECKING:
+    from simkit.msgs import Odometry, TFMessage, TransformStamped
     from simkit.runtime import Joint, Link, Model
 
 ODOMETRY = "nav_msgs/msg/Odometry"
@@ -152,7 +153,7 @@ class WheelOdometry:
         self._at, self._recent = at, list(recent)
         self.twist = BodyTwist((twist[0], 0.0, 0.0), (0.0, 0.0, twist[1]))
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> WheelOdometry:
+    def __deepcopy__(self, memo: dict[int, object]) -> WheelOdometry:
         """A state of its own, for a snapshot."""
         self.catch_up()
         made = WheelOdometry(self._radius, self._separation, self._step)
@@ -190,7 +191,7 @@ class TrueMotion:
         there = model.scene.pose_world.inverse().transform(canonical.scene.pose_world.position)
         self._arm = (-there).tolist()
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> TrueMotion:
+    def __deepcopy__(self, memo: dict[int, object]) -> TrueMotion:
         return self
 
     def place(self) -> tuple[float, ...]:
@@ -223,12 +224,12 @@ def odometry_message(
     twist: BodyTwist,
     covariance: Vector | None = None,
     twist_covariance: Vector | None = None,
-) -> Any:
+) -> Odometry:
     """A `nav_msgs/msg/Odometry`: pose of `child` in `frame`, twist in `child`'s axes.
 
     Covariances are row-major, shape (36,): zeros without one, and the twist's is the pose's where it has none.
     """
-    types = _message_types()
+    types = message_types()
     point, vector, quaternion = types["Point"], types["Vector3"], types["Quaternion"]
     w, x, y, z = pose.quaternion.tolist()
     # each message its own arrays: who receives one may keep or change it
@@ -236,30 +237,34 @@ def odometry_message(
     second = first.copy() if twist_covariance is None else twist_covariance.copy()
     place = types["Pose"](point(*pose.position.tolist()), quaternion(x, y, z, w))
     motion = types["Twist"](vector(*map(float, twist.linear)), vector(*map(float, twist.angular)))
-    return types["Odometry"](
+    message: Odometry = types["Odometry"](
         msgs.header(time_ns, frame),
         child,
         types["PoseWithCovariance"](place, first),
         types["TwistWithCovariance"](motion, second),
     )
+    return message
 
 
-def transform(time_ns: int, frame: str, child: str, pose: Pose) -> Any:
+def transform(time_ns: int, frame: str, child: str, pose: Pose) -> TransformStamped:
     """A `geometry_msgs/msg/TransformStamped`: where `child` is in `frame`."""
-    types = _message_types()
+    types = message_types()
     w, x, y, z = pose.quaternion.tolist()
     place = types["Transform"](types["Vector3"](*pose.position.tolist()), types["Quaternion"](x, y, z, w))
-    return types["TransformStamped"](msgs.header(time_ns, frame), child, place)
+    message: TransformStamped = types["TransformStamped"](msgs.header(time_ns, frame), child, place)
+    return message
 
 
-def transforms(time_ns: int, *items: tuple[str, str, Pose]) -> Any:
+def transforms(time_ns: int, *items: tuple[str, str, Pose]) -> TFMessage:
     """A `tf2_msgs/msg/TFMessage`: for each (frame, child, pose), where `child` is in `frame`."""
-    return msgs.type_of(TRANSFORMS)([transform(time_ns, *item) for item in items])
+    message: TFMessage = msgs.type_of(TRANSFORMS)([transform(time_ns, *item) for item in items])
+    return message
 
 
 @functools.cache
-def _message_types() -> Mapping[str, Any]:
+def message_types() -> Mapping[str, Any]:
     """The classes themselves: filling them directly is several times faster than `msgs.make`."""
     geometry = "Point Vector3 Quaternion Pose Twist PoseWithCovariance TwistWithCovariance Transform TransformStamped"
-    names = {name: f"geometry_msgs/msg/{name}" for name in geometry.split()}
-    return {name: msgs.type_of(full) for name, full in {**names, "Odometry": ODOMETRY}.items()}
+    others = (ODOMETRY, TRANSFORMS, "std_msgs/msg/Header", "builtin_interfaces/msg/Time")
+    names = (*(f"geometry_msgs/msg/{name}" for name in geometry.split()), *others)
+    return {name.rsplit("/", 1)[1]: msgs.type_of(name) for name in names}

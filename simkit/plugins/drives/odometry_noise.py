@@ -11,13 +11,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from simkit.plugins.drives.odometry import UNKNOWN, BodyTwist, DeadReckoning
 from simkit.plugins.options import Options, number
 from simkit.pose import Pose, Vector, quat_from_rpy, quat_multiply
+
+if TYPE_CHECKING:
+    from simkit.runtime.engine.random_streams import RandomStream
 
 _PLANAR = np.ix_((0, 1, 5), (0, 1, 5))
 _FAR = 0.9  # of itself; a wheel is not taken for one of no size
@@ -89,7 +92,7 @@ class NoisyOdometry:
         noise: OdometryNoise,
         radius: float,
         separation: float,
-        stream: Any,
+        stream: RandomStream,
         angles: tuple[float, float] = (0.0, 0.0),
         start: DeadReckoning | None = None,
     ) -> None:

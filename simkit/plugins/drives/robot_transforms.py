@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin, WorldPlugin
@@ -130,7 +130,7 @@ class RobotStatePublisher(ModelPlugin):
 
     def tell(self) -> None:
         """Publishes."""
-        poses: Any = self.sim.engine.names.shared(f"joint frames {id(self)}", self._poses)
+        poses: EntityPoses = self.sim.engine.names.shared(f"joint frames {id(self)}", self._poses)
         self._out.publish_later(partial(transforms_message, self.sim.time_ns, poses.take()))
 
     def _poses(self) -> EntityPoses:

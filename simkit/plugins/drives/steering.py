@@ -6,7 +6,7 @@ import abc
 import math
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simkit.params import Params
 from simkit.plugins.drives.odometry import LONGEST, MEAN_STEPS, BodyTwist, DeadReckoning
@@ -14,6 +14,7 @@ from simkit.plugins.lookups import find_axis_joint
 from simkit.pose import Pose
 
 if TYPE_CHECKING:
+    from simkit.pose import Vector
     from simkit.runtime import Joint
     from simkit.scene import SceneJoint, SceneModel
 
@@ -85,7 +86,7 @@ class TravelOdometry(abc.ABC):
 
 def joint_angles(joints: Sequence[Joint]) -> tuple[float, ...]:
     """Of joints with one axis [rad]: cheaper than their positions, for every step."""
-    qpos: Any = joints[0]._physics.data.qpos
+    qpos: Vector = joints[0]._physics.data.qpos
     return tuple(qpos.item(joint._one_qpos) for joint in joints)
 
 
@@ -127,10 +128,9 @@ class AckermannOdometry(TravelOdometry):
 
 def find_drive_joint(scene: SceneModel, name: str, what: str, params: Params) -> SceneJoint | None:
     """A joint that is to be steered or turned; None after an error."""
-    joint: Any = find_axis_joint(scene, name, params)
+    joint = find_axis_joint(scene, name, params)
     if joint is not None and joint.type == "prismatic":
         message = f"joint {name!r} is prismatic, it does not turn; a {what}'s is revolute or continuous"
         params.error("SK-PLUGIN-051", message)
         return None
-    found: SceneJoint | None = joint
-    return found
+    return joint

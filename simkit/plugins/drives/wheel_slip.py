@@ -7,7 +7,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -25,7 +25,9 @@ from simkit.scene import Cylinder, SceneJoint, SceneLink, SceneModel, Sphere
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.msgs import Float64
     from simkit.runtime import Model, Simulation
+    from simkit.runtime.communication.parameter_server import Parameter
 
 
 LATERAL, LONGITUDINAL = "slip_compliance_unitless_lateral", "slip_compliance_unitless_longitudinal"
@@ -118,7 +120,7 @@ class WheelSlipBase(ModelPlugin):
         if self.wheels:
             self.sim.engine.friction.add_wheels(self, [wheel.contact for wheel in self.wheels], self.slips)
 
-    def _own(self, name: str, wheel: Wheel, value: float) -> Any:
+    def _own(self, name: str, wheel: Wheel, value: float) -> Parameter[float]:
         ahead = "along" if name == LATERAL else "across"
         text = f"slip of wheel {wheel.name}, {ahead} its axle, where the force is {wheel.force:g} N"
         return self.declare(f"{name}/{wheel.name}", value, minimum=0.0, maximum=_MOST, description=text)
@@ -293,7 +295,7 @@ class ClassicWheelSlip(_ClassicWheelSlip):
         for out in self._outs:
             publish_while_subscribed(self, out, 0.0, "tell")
 
-    def _on_compliance(self, side: int, message: Any) -> None:
+    def _on_compliance(self, side: int, message: Float64) -> None:
         value = float(message.data)
         if math.isfinite(value) and value >= 0.0:
             self.set_all(side, value)

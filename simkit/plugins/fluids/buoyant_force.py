@@ -5,7 +5,7 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -96,7 +96,7 @@ class BuoyantForces:
         self._parts = [_part(*part) for part in parts] if len(parts) <= _FEW else []
         self._evens, self._wholes = self._is_even.tolist(), self._whole.tolist()
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> BuoyantForces:
+    def __deepcopy__(self, memo: dict[int, object]) -> BuoyantForces:
         return self
 
     def _find_even(self, model: mujoco.MjModel) -> npt.NDArray[np.bool_]:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from simkit.diagnostics import Diagnostics
 from simkit.plugins.fluids.submerged_volume import Solid, Triangles, solid_of
@@ -45,7 +45,7 @@ class HullFactory:
         self._tell = tell
         self._solids: dict[Geometry, Solid | None] = {}
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> HullFactory:
+    def __deepcopy__(self, memo: dict[int, object]) -> HullFactory:
         return self
 
     def hulls(self, link: SceneLink) -> list[Hull]:
@@ -79,7 +79,7 @@ class HullFactory:
         return corners
 
 
-def _surface(shape: Geometry, collision: SceneCollision) -> tuple[Any, Any]:
+def _surface(shape: Geometry, collision: SceneCollision) -> tuple[Vector, npt.NDArray[np.int32]]:
     """Vertices and faces; what is wrong with a file was said when the world was compiled."""
     from simkit.compiler.meshes.mesh_part import join_parts
     from simkit.compiler.meshes.mesh_reader import load_mesh

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+import mujoco
 import numpy as np
 
 from simkit.pose import Vector
@@ -19,7 +20,7 @@ Three = tuple[float, float, float]
 _YZX, _ZXY = [1, 2, 0], [2, 0, 1]
 
 
-def moving_data(sim: Simulation) -> Any:
+def moving_data(sim: Simulation) -> mujoco.MjData:
     """The engine's data with places and velocities computed; the step that follows goes on from there."""
     physics = sim.engine.physics
     return physics.data if physics.fresh_velocities() else physics.fresh()
@@ -53,7 +54,7 @@ class PushedLinks:
     def __len__(self) -> int:
         return len(self.names)
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> PushedLinks:
+    def __deepcopy__(self, memo: dict[int, object]) -> PushedLinks:
         return self
 
     @property

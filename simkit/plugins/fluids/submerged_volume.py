@@ -243,7 +243,7 @@ class SolidOfRevolution(Solid):
         return volume, out * x, out * y, up
 
 
-def _segments(squares: Any, room: Any, aside: float) -> tuple[Any, Any]:
+def _segments(squares: Vector, room: Vector, aside: float) -> tuple[Vector, Vector]:
     """Of discs of radius² `squares`, the part with aside · u <= room: areas, and areas times their middle in u."""
     radii = np.sqrt(squares)
     cut = np.clip(room / np.maximum(aside * radii, 1e-300), -1.0, 1.0)

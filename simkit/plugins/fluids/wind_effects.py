@@ -10,7 +10,7 @@ import numpy as np
 
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
-from simkit.plugins.base import NEVER, WorldPlugin
+from simkit.plugins.base import NEVER, Plugin, WorldPlugin
 from simkit.plugins.endpoints import listens, offers
 from simkit.plugins.fluids.link_forces import PushedLinks, moving_data
 from simkit.plugins.fluids.wind_field import WindField, WindFieldOptions, read_field
@@ -19,8 +19,11 @@ from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import OptionsOf, block
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     import mujoco
 
+    from simkit.pose import Vector
     from simkit.runtime import Simulation
 
 
@@ -82,7 +85,7 @@ class WindPluginBase(WorldPlugin):
     def before_step_rate(self, rate: float | None) -> None:
         raise AttributeError("a wind is called as long as something feels it")
 
-    def _before(self) -> list[Any]:
+    def _before(self) -> list[Plugin]:
         """The plugins that stand before this one."""
         return list(takewhile(lambda plugin: plugin is not self, self.sim.engine.structure.all_plugins()))
 
@@ -99,7 +102,7 @@ class WindPluginBase(WorldPlugin):
             self._felt = tick, self._gusts.at(self._seed, tick, self._draw)
         return self._felt[1]
 
-    def _draw(self, channel: str, index: int) -> Any:
+    def _draw(self, channel: str, index: int) -> Vector:
         return self._streams[channel].normal(index)
 
     def before_step(self) -> None:
@@ -137,7 +140,7 @@ class WindPluginBase(WorldPlugin):
         self._links = PushedLinks(self.sim, list(windy))
         self._masses = np.array([windy[name].inertial.mass for name in self._links.names], float)
 
-    def set_state(self, state: Any) -> None:
+    def set_state(self, state: Mapping[str, Any]) -> None:
         """Back to a state from `get_state`."""
         super().set_state(state)
         self._felt = None
@@ -157,7 +160,7 @@ class WindPluginBase(WorldPlugin):
         self._felt = None
         self.sim.engine.reschedule()
 
-    def _tell(self, request: Any) -> dict[str, Any]:
+    def _tell(self, request: object) -> dict[str, object]:
         seed = self._seed
         wind = {"linear_velocity": _fields(seed.velocity), "enable_wind": seed.blows}
         return {"wind": wind, "velocity": _fields(self.velocity(self.sim.tick))}

@@ -5,10 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 from simkit.params import LARGEST
 from simkit.plugins.options import Options, block, number, text, without_effect
+
+if TYPE_CHECKING:
+    from simkit.pose import Vector
 
 Velocity = tuple[float, float, float]
 _BACK = 360.0  # degrees
@@ -119,7 +122,7 @@ class Gusts:
         has_begun = seed.heading is not None or (seed.blows and tick > seed.tick)
         return WindTarget(velocity, blows, tick, strength, rising, heading if has_begun else None)
 
-    def at(self, seed: WindTarget, tick: int, draw: Callable[[str, int], Any]) -> Velocity:
+    def at(self, seed: WindTarget, tick: int, draw: Callable[[str, int], Vector]) -> Velocity:
         """Velocity of the air [m/s] in the step that follows a tick; none while it is off.
 
         Args:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
@@ -26,6 +26,7 @@ from simkit.plugins.options import OptionsOf, boolean, integer, number, text, te
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.compiler.name_map import ActuatorRef
     from simkit.msgs import Actuators, Float32, Float64, Twist, TwistStamped
     from simkit.runtime import Model
     from simkit.scene import SceneModel
@@ -91,7 +92,7 @@ class AckermannSteering(ModelPlugin):
         self._steering = [self._prepare_steering(f"{side}_steering_joint", scene, params, builder) for side in _SIDES]
         self._width = self._radius = 1.0
         self._driven: list[list[str]] = [[], []]
-        self._motors: list[list[Any]] = [[], []]
+        self._motors: list[list[ActuatorRef]] = [[], []]
         self.after_step_rate = NEVER
         if not self._only:
             self._width = self.options.kingpin_width
@@ -102,7 +103,7 @@ class AckermannSteering(ModelPlugin):
 
     def _prepare_steering(
         self, element: str, scene: SceneModel, params: Params, builder: SpecBuilder
-    ) -> list[tuple[str, Any]]:
+    ) -> list[tuple[str, ActuatorRef]]:
         """Joints of one side's steering, and their servos."""
         named = params.all(element)
         if not named:

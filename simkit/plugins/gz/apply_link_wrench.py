@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import numpy as np
 
@@ -18,11 +18,13 @@ from simkit.plugins.world.entities import RequestRefused, entity_of
 from simkit.pose import Vector
 
 if TYPE_CHECKING:
-    from simkit.msgs import Entity, EntityWrench
+    from simkit.msgs import Entity, EntityWrench, Vector3
     from simkit.runtime import Link, Simulation
 
 ENTITY: Final = "ros_gz_interfaces/msg/Entity"
 ENTITY_WRENCH: Final = "ros_gz_interfaces/msg/EntityWrench"
+T = TypeVar("T")
+
 _ANY, _MODEL, _LINK = 0, 2, 3
 _TYPES: Final = {"model": _MODEL, "link": _LINK}
 
@@ -100,7 +102,7 @@ class ApplyLinkWrench(WorldPlugin):
         """The link that a name means: exactly, or the first whose scoped name ends so."""
         tables = self.sim.contents.handles.tables
         if kind != _MODEL:
-            link: Link | None = _find_entity(tables["link"], name)
+            link = _find_entity(tables["link"], name)
             if link is not None or kind == _LINK:
                 return link
         model = _find_entity(tables["model"], name)
@@ -155,7 +157,7 @@ class ApplyLinkWrench(WorldPlugin):
 
     # ------------------------------------------------------------------ inside
 
-    def _of(self, message: Any) -> _Wrench | None:
+    def _of(self, message: EntityWrench) -> _Wrench | None:
         found = self._entity(message.entity)
         force, torque = _xyz(message.wrench.force), _xyz(message.wrench.torque)
         if not all(map(math.isfinite, (*force, *torque))):
@@ -163,7 +165,7 @@ class ApplyLinkWrench(WorldPlugin):
             return None
         return None if found is None else _Wrench(*found, force, torque)
 
-    def _entity(self, entity: Any) -> tuple[str, int] | None:
+    def _entity(self, entity: Entity) -> tuple[str, int] | None:
         """Name and type of what a message means; None, and a line in the log, where that cannot be pushed."""
         if entity.type not in (_ANY, _MODEL, _LINK):
             self.log.warning("%s: only models and links can be pushed, found type %d", self.name, entity.type)
@@ -199,11 +201,11 @@ class ApplyLinkWrench(WorldPlugin):
             self.log.info("%s: " + text, self.name, name)
 
 
-def _xyz(vector: Any) -> tuple[float, float, float]:
+def _xyz(vector: Vector3) -> tuple[float, float, float]:
     return float(vector.x), float(vector.y), float(vector.z)
 
 
-def _find_entity(table: dict[str, Any], name: str) -> Any:
+def _find_entity(table: Mapping[str, T], name: str) -> T | None:
     if name in table:
         return table[name]
     return next((handle for scoped, handle in table.items() if scoped.endswith("::" + name)), None)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from simkit import msgs
 from simkit.msgs.topics import valid_topic
@@ -109,13 +109,13 @@ class DetachableJoint(ModelPlugin):
 
     # ------------------------------------------------------------------ commands
 
-    def _on_detach(self, _: Any) -> None:
+    def _on_detach(self, _: object) -> None:
         if self._is_attached and self._is_there():
             self.sim.contents.set_weld(self._weld, False)
             self._is_attached = False
             self._tell("detached")
 
-    def _on_attach(self, _: Any) -> None:
+    def _on_attach(self, _: object) -> None:
         if not (self._is_attached and self._is_there()):
             self._wanted, self._is_attached = True, False
             self._set_pace()

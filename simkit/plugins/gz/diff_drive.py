@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from simkit import msgs
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
@@ -22,6 +21,7 @@ from simkit.plugins.drives.odometry import (
     TrueMotion,
     WheelOdometry,
     command_of,
+    message_types,
     odometry_message,
     transforms,
     wheel_angles,
@@ -38,7 +38,7 @@ _NS = 1_000_000_000
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
-    from simkit.msgs import Bool, Twist, TwistStamped
+    from simkit.msgs import Bool, Odometry, TFMessage, Twist, TwistStamped
     from simkit.runtime import Model
     from simkit.scene import SceneModel
 
@@ -332,39 +332,28 @@ def _attitude(yaw: float) -> tuple[float, float, float, float]:
 
 def planar_odometry(
     time_ns: int, frame: str, child: str, x: float, y: float, yaw: float, ahead: float, turn: float
-) -> Any:
+) -> Odometry:
     """A `nav_msgs/msg/Odometry` in the plane, without covariance: pose [m, rad], speed ahead [m/s], turning [rad/s]."""
-    types = _types()
+    types = message_types()
     w, qx, qy, qz = _attitude(yaw)
     place = types["Pose"](types["Point"](x, y, 0.0), types["Quaternion"](qx, qy, qz, w))
     vector = types["Vector3"]
     motion = types["Twist"](vector(ahead, 0.0, 0.0), vector(0.0, 0.0, turn))
-    return types["Odometry"](
+    message: Odometry = types["Odometry"](
         types["Header"](types["Time"](*divmod(time_ns, _NS)), frame),
         child,
         types["PoseWithCovariance"](place, np.zeros(36)),
         types["TwistWithCovariance"](motion, np.zeros(36)),
     )
+    return message
 
 
-def planar_transform(time_ns: int, frame: str, child: str, x: float, y: float, yaw: float) -> Any:
+def planar_transform(time_ns: int, frame: str, child: str, x: float, y: float, yaw: float) -> TFMessage:
     """A `tf2_msgs/msg/TFMessage` of one transform in the plane [m, rad]."""
-    types = _types()
+    types = message_types()
     w, qx, qy, qz = _attitude(yaw)
     place = types["Transform"](types["Vector3"](x, y, 0.0), types["Quaternion"](qx, qy, qz, w))
     stamped = types["TransformStamped"]
-    return types["TFMessage"]([stamped(types["Header"](types["Time"](*divmod(time_ns, _NS)), frame), child, place)])
-
-
-_made: dict[str, Any] = {}
-
-
-def _types() -> dict[str, Any]:
-    """The classes themselves: filling them directly is several times faster than `msgs.make`."""
-    if not _made:
-        geometry = "Point Vector3 Quaternion Pose Twist PoseWithCovariance TwistWithCovariance Transform"
-        names = {name: f"geometry_msgs/msg/{name}" for name in (*geometry.split(), "TransformStamped")}
-        others = ("nav_msgs/msg/Odometry", "tf2_msgs/msg/TFMessage", "std_msgs/msg/Header")
-        names |= {full.rsplit("/", 1)[1]: full for full in (*others, "builtin_interfaces/msg/Time")}
-        _made.update({name: msgs.type_of(full) for name, full in names.items()})
-    return _made
+    header = types["Header"](types["Time"](*divmod(time_ns, _NS)), frame)
+    message: TFMessage = types["TFMessage"]([stamped(header, child, place)])
+    return message

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from functools import partial
-from typing import TYPE_CHECKING, Any, Final, Literal
+from typing import TYPE_CHECKING, Final, Literal
 
 from simkit import msgs
 from simkit.msgs.topics import valid_topic
@@ -19,7 +19,7 @@ from simkit.plugins.options import Options, OptionsOf, number, text
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
-    from simkit.msgs import Int32
+    from simkit.msgs import Int32, LaserScan
     from simkit.runtime import Model
     from simkit.scene import SceneModel
 
@@ -160,7 +160,7 @@ class Elevator(ModelPlugin):
             before = stop
         self._targets = [*self._targets, target]
 
-    def _on_scan(self, door: int, scan: Any) -> None:
+    def _on_scan(self, door: int, scan: LaserScan) -> None:
         if len(scan.ranges):
             blocked = bool(scan.ranges[0] < scan.range_max - _FREE)
             if blocked != self._blocked[door]:

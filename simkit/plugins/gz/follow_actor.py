@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from itertools import chain
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -20,7 +22,7 @@ from simkit.runtime.engine.physics import STALE
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.plugins.actors.script import Floats
-    from simkit.runtime import Model, Simulation
+    from simkit.runtime import Link, Model, Simulation
     from simkit.scene import SceneModel
 
 _RATE: Final = 50.0  # [Hz]
@@ -130,15 +132,16 @@ class FollowActor(ModelPlugin):
             self._way, self._left = (x / far, y / far), far - self._least
             self._yaw = math.atan2(y, x)
 
-    def _find(self) -> Any:
+    def _find(self) -> Model | Link | None:
         """The model or link of that name: exactly, or the first whose scoped name ends so."""
         tables = self.sim.contents.handles.tables
-        for table in (tables["model"], tables["link"]):
+        tables_by_name: tuple[dict[str, Model | Link], ...] = (tables["model"], tables["link"])
+        for table in tables_by_name:
             if self._target in table:
                 return table[self._target]
         ending = f"::{self._target}"
-        found = (thing for kind in ("model", "link") for name, thing in tables[kind].items() if name.endswith(ending))
-        return next(found, None)
+        things: Iterator[tuple[str, Model | Link]] = chain(tables["model"].items(), tables["link"].items())
+        return next((thing for name, thing in things if name.endswith(ending)), None)
 
     # ------------------------------------------------------------------ what is seen
 
@@ -161,9 +164,9 @@ class _ActorBodies:
     """Where an actor's links are among the engine's movable bodies; a handle, without state of its own."""
 
     def __init__(self) -> None:
-        self._known: tuple[Any, Any] = (None, None)
+        self._known: tuple[object, Any] = (None, None)
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> _ActorBodies:
+    def __deepcopy__(self, memo: dict[int, object]) -> _ActorBodies:
         return self
 
     def find(self, sim: Simulation, links: list[str]) -> Floats:

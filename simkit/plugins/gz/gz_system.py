@@ -21,6 +21,7 @@ from simkit.plugins.gz_python.sim.update_info import EventManager
 from simkit.plugins.joint_states import JointStatePublisher
 
 if TYPE_CHECKING:
+    from simkit.plugins.gz_python.sim.entity_component_manager import EntityComponentManager
     from simkit.runtime import Simulation
 
 HOOKS: Final = ("configure", "pre_update", "update", "post_update", "reset", "shutdown")
@@ -61,7 +62,7 @@ class GzSystem(Plugin):
         """The system to hang here; None where there is none, which has been reported."""
         return self._given
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: object, params: Params) -> None:
 
         self._hub = hub_of(self.sim)
         self._hub.ecm.published = _joint_state_publishers
@@ -104,7 +105,7 @@ class GzSystem(Plugin):
         if "shutdown" in self._calls:
             self.call("shutdown")
 
-    def call(self, hook: str, *info: Any) -> None:
+    def call(self, hook: str, *info: object) -> None:
         """Calls a hook of the system, where it has it; what it raises is the plugin's."""
         method = self._calls.get(hook)
         if method is None:
@@ -125,8 +126,8 @@ class GzSystem(Plugin):
         """The system's attributes (a module's variables), each copied by itself; the first has the entities too."""
         if self._hub is None:
             return {}  # it was never loaded
-        memo: dict[int, Any] = {id(self): self, id(self.system): self.system}
-        state: dict[str, Any] = {}
+        memo: dict[int, object] = {id(self): self, id(self.system): self.system}
+        state: dict[str, object] = {}
         for name, value in _variables(self.system).items():
             if isinstance(value, _STATELESS):
                 self._outside.add(name)
@@ -143,7 +144,7 @@ class GzSystem(Plugin):
         """Back to a state from `get_state`; attributes made since are dropped, uncopied ones stay as they are."""
         if not state:
             return
-        memo: dict[int, Any] = {id(self): self, id(self.system): self.system}
+        memo: dict[int, object] = {id(self): self, id(self.system): self.system}
         kept, own = copy.deepcopy(dict(state["variables"]), memo), getattr(self.system, "__dict__", {})
         for name in [n for n in _variables(self.system) if n not in kept and n not in self._outside]:
             del own[name]
@@ -165,7 +166,7 @@ def line_of(error: BaseException) -> str:
     return f" at {frames[-1].filename}:{frames[-1].lineno}" if frames else ""
 
 
-def _variables(system: Any) -> dict[str, Any]:
+def _variables(system: object) -> dict[str, object]:
     """What of a system is state: an object's attributes, a module's variables that are data."""
     own = getattr(system, "__dict__", {})
     if not isinstance(system, types.ModuleType):
@@ -178,7 +179,7 @@ def _joint_state_publishers(sim: Simulation) -> frozenset[str]:
     return frozenset(name for p in plugins if isinstance(p, JointStatePublisher) for name in p._joints)
 
 
-def _entity_of(ecm: Any, parent: Any) -> int:
+def _entity_of(ecm: EntityComponentManager, parent: object) -> int:
     """The number of what a plugin hangs on."""
 
     scoped = getattr(parent, "scoped", "")

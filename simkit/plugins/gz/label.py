@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from simkit.params import Params
 from simkit.plugins.base import Plugin
@@ -11,6 +11,8 @@ from simkit.runtime.handles.visual_properties import MAX_LABEL
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.runtime import Model, Visual
+    from simkit.scene import SceneModel, SceneVisual
 
 
 class LabelOptions(Options):
@@ -33,13 +35,13 @@ class Label(Plugin):
     filenames = ("gz-sim-label-system",)
     names = ("gz::sim::systems::Label",)
 
-    def prepare(self, scene: Any, params: Params, builder: SpecBuilder) -> None:
+    def prepare(self, scene: SceneModel | SceneVisual, params: Params, builder: SpecBuilder) -> None:
         self._label = self.options.label
         self._is_lost = self.scoped != scene.scoped
         if self._is_lost:
             message = f"plugin {self.name!r} labels a model or a visual, it hangs on {self.scoped!r}; it has no effect"
             params.diagnostics.warning("SK-PLUGIN-007", message, self.where, "move it into the <model> or a <visual>")
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model | Visual, params: Params) -> None:
         if not self._is_lost:
             self.sim.contents.labels[parent.scoped] = self._label

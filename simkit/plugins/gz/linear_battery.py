@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import mujoco
 import numpy as np
+import numpy.typing as npt
 
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
@@ -18,7 +19,7 @@ from simkit.plugins.options import Options, OptionsOf, boolean, number, text, te
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.pose import Vector
-    from simkit.runtime import Model
+    from simkit.runtime import Joint, Model
     from simkit.scene import SceneModel
 
 BOOL: Final = "std_msgs/msg/Bool"
@@ -139,18 +140,18 @@ class LinearBattery(Battery):
 
     # ------------------------------------------------------------------ commands
 
-    def _on_charge(self, _: Any) -> Any:
+    def _on_charge(self, _: object) -> dict[str, object]:
         self.charger = self._charger
         return {"success": True}
 
-    def _on_uncharge(self, _: Any) -> Any:
+    def _on_uncharge(self, _: object) -> dict[str, object]:
         self.charger = None
         return {"success": True}
 
-    def _on_drain(self, _: Any) -> None:
+    def _on_drain(self, _: object) -> None:
         self.is_drained = True
 
-    def _on_stop(self, _: Any) -> None:
+    def _on_stop(self, _: object) -> None:
         self.is_drained = False
 
     # ------------------------------------------------------------------ steps
@@ -181,14 +182,14 @@ class LinearBattery(Battery):
         pushed = np.abs(physics.last_applied[dofs]) > _LEAST_EFFORT
         return self.sim.engine.velocity_servos.is_commanded(actuators) or bool(pushed.any())
 
-    def _find_parts(self) -> tuple[Any, Any]:
+    def _find_parts(self) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
         """Degrees of freedom of the model's joints, and the actuators on them."""
         handles = [self.sim.joint(name) for name in self._joints]
         dofs = [dof for joint in handles for dof in joint.mj_dofs]
         actuators = [self._actuators_of(joint) for joint in handles]
         return np.array(dofs, dtype=int), np.concatenate([np.zeros(0, dtype=int), *actuators])
 
-    def _actuators_of(self, joint: Any) -> Any:
+    def _actuators_of(self, joint: Joint) -> npt.NDArray[np.intp]:
         model = self.sim.mj_model
         ids = model.dof_jntid[list(joint.mj_dofs)]
         on_joint = model.actuator_trntype == mujoco.mjtTrn.mjTRN_JOINT

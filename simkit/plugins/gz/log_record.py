@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -37,7 +37,7 @@ class _Log:
         self.recorder: Recorder | None = None
         self.was_begun = False
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> _Log:
+    def __deepcopy__(self, memo: dict[int, object]) -> _Log:
         return self
 
 
@@ -65,7 +65,7 @@ class LogRecord(WorldPlugin):
     options = OptionsOf(LogRecordOptions)
     names = ("gz::sim::systems::LogRecord",)  # its file holds LogPlayback too
 
-    def prepare(self, scene: Any, params: Params, builder: SpecBuilder) -> None:
+    def prepare(self, scene: object, params: Params, builder: SpecBuilder) -> None:
         self._path = self._read_path(params)
         self._period = self.options.record_period
         self._plain, self._patterns = self._read_topics(params)
@@ -200,7 +200,7 @@ class LogPlayback(WorldPlugin):
 
     names = ("gz::sim::systems::LogPlayback",)
 
-    def prepare(self, scene: Any, params: Params, builder: SpecBuilder) -> None:
+    def prepare(self, scene: object, params: Params, builder: SpecBuilder) -> None:
         params.mark_all_read()
         message = f"plugin {self.name!r}: logs of Gazebo are not played back; the world runs as it is"
         hint = "run the world with the same seed, or read a bag with `simkit topic echo --bag`"

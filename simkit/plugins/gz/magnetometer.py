@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simkit.params import Params
 from simkit.plugins.base import Plugin
@@ -33,7 +33,7 @@ class MagnetometerSystem(Plugin):
     filenames = ("gz-sim-magnetometer-system",)
     names = ("gz::sim::systems::Magnetometer",)
 
-    def prepare(self, scene: Any, params: Params, builder: SpecBuilder) -> None:
+    def prepare(self, scene: object, params: Params, builder: SpecBuilder) -> None:
         given = [name for name in SWITCHES if params.has(name)]
         for name in SWITCHES:
             params.boolean(name, True)
@@ -41,5 +41,5 @@ class MagnetometerSystem(Plugin):
             message = "plugin 'Magnetometer' is not needed: simkit does what it stands for by itself"
             params.diagnostics.note("SK-PLUGIN-005", message, self.where)
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: object, params: Params) -> None:
         """Nothing to do."""

@@ -17,6 +17,7 @@ from simkit.pose import Pose, quat_rotate
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.msgs import PerformerStatus
     from simkit.runtime import Model, Simulation
     from simkit.scene import SceneModel, SceneWorld
 
@@ -201,7 +202,7 @@ class PerformerDetector(ModelPlugin):
             self._details.publish(msgs.make(STATUS, header=header, **told, keys=keys, values=values))
 
 
-def pose_of_status(status: Any) -> Message:
+def pose_of_status(status: PerformerStatus) -> Message:
     """The `gz.msgs.Pose` that a detector publishes in gz, with what gz has in its header."""
     found: Any = MESSAGE_CLASSES["Pose"](name=status.name)
     for ours, theirs in ((found.position, status.pose.position), (found.orientation, status.pose.orientation)):

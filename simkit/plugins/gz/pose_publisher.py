@@ -24,7 +24,7 @@ from simkit.plugins.options import Options, OptionsOf, boolean, choice, number, 
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
-    from simkit.runtime import Model
+    from simkit.runtime import Model, Publisher
     from simkit.scene import SceneCollision, SceneLink, SceneModel, SceneSensor, SceneVisual
 
 STAMPED: Final = "geometry_msgs/msg/TransformStamped"
@@ -122,7 +122,7 @@ class PosePublisher(ModelPlugin):
         grid, tick = self.sim.engine.clock.grid(rate), self.sim.tick
         return grid is None or grid.next(tick - 1) == tick
 
-    def _publish(self, out: Any, which: str, parts: list[PosedEntity]) -> None:
+    def _publish(self, out: Publisher, which: str, parts: list[PosedEntity]) -> None:
         poses = self.sim.engine.names.shared(f"{which} poses {id(self)}", partial(EntityPoses, self.sim, parts))
         taken, time_ns = poses.take(), self.sim.time_ns
         if self._is_vector:

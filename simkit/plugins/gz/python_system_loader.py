@@ -47,7 +47,7 @@ class PythonSystemLoader(GzSystem):
     filenames = ("gz-sim-python-system-loader-system",)
     names = ("gz::sim::systems::PythonSystemLoader",)
 
-    def prepare(self, scene: Any, params: Params, builder: SpecBuilder) -> None:
+    def prepare(self, scene: object, params: Params, builder: SpecBuilder) -> None:
         self._module_name = self.options.module_name
         asked = os.environ.get(SHADOW, "") not in ("", "0")
         self.shadow = params.boolean("shadow_gz", asked)

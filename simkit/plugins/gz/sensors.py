@@ -43,7 +43,7 @@ class SensorsSystem(Plugin):
     names = ("gz::sim::systems::Sensors",)
     stops_without_power = False
 
-    def prepare(self, scene: Any, params: Params, builder: SpecBuilder) -> None:
+    def prepare(self, scene: object, params: Params, builder: SpecBuilder) -> None:
         given = {child.name for child in params.children} - {"disable_on_drained_battery"}
         self.stops_without_power = self.options.disable_on_drained_battery
         params.mark_all_read()
@@ -66,7 +66,7 @@ class SensorsSystem(Plugin):
             hint = "one Sensors plugin, in the world; --set scene.ambient and scene.background come before it"
             params.diagnostics.warning("SK-PLUGIN-011", message, self.where, hint)
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: object, params: Params) -> None:
         """Nothing to do."""
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simkit.compiler.meshes.companion_files import read_pixels
 from simkit.compiler.meshes.mesh_part import MeshFileError
@@ -17,6 +17,8 @@ from simkit.scene import Atmosphere, SceneModel, SceneVisual
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.runtime import Simulation
+    from simkit.scene import SceneModel, SceneVisual
+    from simkit.sensors.base import Sensor
 
 _WITHOUT_EFFECT = "SK-SENSOR-141"
 
@@ -42,7 +44,7 @@ class Thermal(Plugin):
     filenames = ("gz-sim-thermal-system",)
     names = ("gz::sim::systems::Thermal",)
 
-    def prepare(self, scene: Any, params: Params, builder: SpecBuilder) -> None:
+    def prepare(self, scene: SceneModel | SceneVisual, params: Params, builder: SpecBuilder) -> None:
         self._temperature: Temperature | None = None
         self._range: tuple[float | None, float | None] = (None, None)
         self._picture: Path | None = None
@@ -71,7 +73,7 @@ class Thermal(Plugin):
             return True
         return not quirks and self.scoped in (scene.scoped, *(link.scoped for link in scene.links))
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: object, params: Params) -> None:
         found = self._temperature
         if self._picture is not None:
             found = HeatSignature(self._picture, *_sorted_range(self._range, self.sim))
@@ -137,7 +139,7 @@ class ThermalSensor(SensorPlugin):
     filenames = ("gz-sim-thermal-sensor-system",)
     names = ("gz::sim::systems::ThermalSensor",)
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Sensor, params: Params) -> None:
         if not hasattr(parent, "set_temperatures"):
             self.refuse(parent, "thermal_camera")
             params.mark_all_read()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any, ClassVar, Final
+from typing import TYPE_CHECKING, ClassVar, Final
 
 from simkit import msgs
 from simkit.diagnostics import did_you_mean
@@ -17,6 +17,8 @@ from simkit.runtime.contact.collision_contacts import Bools, collision_table, fi
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.msgs import Bool, SetBool_Request
+    from simkit.runtime import Model, Publisher
     from simkit.scene import SceneCollision, SceneModel
 
 BOOL: Final = "std_msgs/msg/Bool"
@@ -34,7 +36,7 @@ class TouchTimer(ModelPlugin):
     _links: frozenset[str]
     _world: str
     _is_enabled: bool
-    _touched: Any
+    _touched: Publisher
 
     def _read_common(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         self._target = read_required_name(params, "target")
@@ -101,7 +103,7 @@ class TouchTimer(ModelPlugin):
         long = f"world/{self._world}{kinds}/link/{link}/collision/{collision}"
         return any(self._target in name for name in (scoped, long, "/" + scoped.replace("::", "/")))
 
-    def _on_enable(self, message: Any) -> None:
+    def _on_enable(self, message: Bool) -> None:
         self._enable(bool(message.data))
 
     def _enable(self, enabled: bool) -> None:
@@ -163,7 +165,7 @@ class TouchPlugin(TouchTimer):
                 element.error("SK-PLUGIN-003", message, did_you_mean(element.value, listed))
         return tuple(found)
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         sensors = [
             s for s in self.sim.contents.sensors.values() if s.kind == "contact" and s.scene.parent in self._links
         ]
@@ -183,7 +185,7 @@ class TouchPlugin(TouchTimer):
         detectors = [p for p in self.sim.engine.structure.all_plugins() if isinstance(p, TouchPlugin)]
         return [p for p in detectors if p._topic == self._topic]
 
-    def _on_call(self, request: Any) -> dict[str, Any]:
+    def _on_call(self, request: SetBool_Request) -> dict[str, object]:
         for detector in self._together():
             detector._enable(bool(request.data))
         return {"success": True}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import MessageError
@@ -21,7 +21,10 @@ from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, OptionsOf, blocks, integer, text
 
 if TYPE_CHECKING:
-    from simkit.runtime import Simulation
+    from collections.abc import Iterable
+
+    from simkit.msgs import PerformerStatus
+    from simkit.runtime import Publisher, Simulation
 
 _MS: Final = 1_000_000  # [ns]
 
@@ -30,7 +33,7 @@ _MS: Final = 1_000_000  # [ns]
 class _Output:
     """What is published, by whom."""
 
-    publisher: Any
+    publisher: Publisher
     message: Message
     ros: str
 
@@ -181,7 +184,7 @@ class TriggeredPublisher(WorldPlugin):
         message = _message(kind, text, element, "reqMsg")
         return None if message is None else _Request(valid_topic(name), message, answer)
 
-    def _kind(self, element: Params, attribute: str, known: Any = None) -> type[Message] | None:
+    def _kind(self, element: Params, attribute: str, known: Iterable[str] | None = None) -> type[Message] | None:
         """The message class that an attribute names; None after an error."""
         written = element.attribute(attribute)
         if not written:
@@ -202,10 +205,10 @@ class TriggeredPublisher(WorldPlugin):
 
     # ------------------------------------------------------------------ what comes
 
-    def _on_message(self, message: Any) -> None:
+    def _on_message(self, message: object) -> None:
         self._hear(from_ros(self._kind_heard, message) if self._matchers else None)
 
-    def _on_status(self, message: Any) -> None:
+    def _on_status(self, message: PerformerStatus) -> None:
         self._hear(pose_of_status(message))
 
     def _hear(self, message: Message | None) -> None:

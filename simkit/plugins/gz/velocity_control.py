@@ -18,7 +18,6 @@ from simkit.plugins.options import Options, OptionsOf, text, texts
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
-    from simkit.msgs import Twist, TwistStamped
     from simkit.runtime import Model, Simulation
     from simkit.scene import SceneModel
 
@@ -83,7 +82,7 @@ class VelocityControl(ModelPlugin):
 
     # ------------------------------------------------------------------ commands
 
-    def _on_command(self, message: Twist | TwistStamped) -> None:
+    def _on_command(self, message: Any) -> None:
         motion = self._motion_of(message)
         if motion is not None:
             self._target = motion
@@ -139,7 +138,7 @@ class VelocityControl(ModelPlugin):
         return self._rests[commanded]
 
 
-def _float_triple(vector: Any) -> Triple:
+def _float_triple(vector: Iterable[float]) -> Triple:
     x, y, z = map(float, vector)
     return x, y, z
 

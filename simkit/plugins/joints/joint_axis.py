@@ -10,6 +10,7 @@ import numpy as np
 from simkit.diagnostics import did_you_mean
 from simkit.params import LARGEST, Params
 from simkit.plugins.lookups import find_joint
+from simkit.pose import Vector
 from simkit.scene import SceneJoint, SceneModel
 
 
@@ -50,7 +51,7 @@ class JointAxis:
     def velocity_limit(self) -> float:
         return self._limit(self.joint._velocity_limit)
 
-    def _limit(self, limits: Any) -> float:
+    def _limit(self, limits: Vector) -> float:
         # asked for at every step, and much cheaper than by the joint's property
         value: float = limits.item(self.index if len(limits) > 1 else 0)
         return value
@@ -76,11 +77,11 @@ class JointAxis:
         """Adds to the effort of the next step."""
         self.push(effort + float(self._pending()[self.index]))
 
-    def _pending(self) -> Any:
+    def _pending(self) -> Vector:
         applied = self.joint._physics.data.qfrc_applied
         return np.array([applied[dof] for dof in self.joint.mj_dofs])
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> JointAxis:
+    def __deepcopy__(self, memo: dict[int, object]) -> JointAxis:
         return self
 
 

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from simkit.compiler import SpecBuilder
+    from simkit.diagnostics import Where
     from simkit.msgs import Actuators, Float64
     from simkit.runtime import Model
     from simkit.scene import SceneModel
@@ -32,7 +33,7 @@ class ControlledJoints:
     """Mixin of plugins with controllers: which joints they drive, and what is said where one runs away."""
 
     name: str
-    where: Any
+    where: Where
     once: OneTimeWarnings
 
     def controllers(self) -> list[tuple[JointAxis, Pid]]:
@@ -222,11 +223,11 @@ class JointCommander(ControlledJoints, ModelPlugin):
 class _VelocityGroup:
     """The plugins that command velocities in one structure, and how what they move lies in the engine's model."""
 
-    def __init__(self, structure: Any, members: list[JointCommander]) -> None:
+    def __init__(self, structure: object, members: list[JointCommander]) -> None:
         self.structure, self.members = structure, members
         self.layouts: dict[tuple[int, ...], KinematicTrees] = {}
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> _VelocityGroup:
+    def __deepcopy__(self, memo: dict[int, object]) -> _VelocityGroup:
         return self
 
 

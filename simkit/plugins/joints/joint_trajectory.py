@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
 from dataclasses import dataclass
-from typing import Any, Final, Literal
+from typing import TYPE_CHECKING, Final, Literal
+
+if TYPE_CHECKING:
+    from simkit.msgs import Duration, JointTrajectory, Time
 
 Interpolation = Literal["none", "linear", "cubic", "quintic"]
 INTERPOLATIONS: Final = ("none", "linear", "cubic", "quintic")
@@ -36,7 +39,7 @@ class TrajectoryPoint:
     efforts: tuple[float, ...] = ()
 
 
-def read_points(message: Any) -> list[TrajectoryPoint]:
+def read_points(message: JointTrajectory) -> list[TrajectoryPoint]:
     """The points of a `trajectory_msgs/msg/JointTrajectory`."""
     return [
         TrajectoryPoint(
@@ -47,7 +50,7 @@ def read_points(message: Any) -> list[TrajectoryPoint]:
     ]
 
 
-def nanoseconds(stamp: Any) -> int:
+def nanoseconds(stamp: Duration | Time) -> int:
     """A time or duration message in [ns]."""
     return int(stamp.sec) * SECOND + int(stamp.nanosec)
 

@@ -8,9 +8,13 @@ from typing import Any, Final
 
 import mujoco
 import numpy as np
+import numpy.typing as npt
 
 from simkit.plugins.joints.joint_axis import JointAxis
 from simkit.pose import Vector
+
+Integers = npt.NDArray[np.intp]
+Flags = npt.NDArray[np.bool_]
 
 Keys = tuple[tuple[str, int], ...]
 """Scoped name and axis of each of some joints."""
@@ -41,20 +45,20 @@ class KinematicTrees:
     """
 
     axes: tuple[JointAxis, ...]
-    order: Any
+    order: Integers
     keys: Keys
-    dofs: Any
-    joints: Any
-    positions: Any
+    dofs: Integers
+    joints: Integers
+    positions: Integers
     bodies: tuple[int, ...]
-    tree: Any
-    starts: Any
-    is_used: Any
-    damped: Any
+    tree: Integers
+    starts: Integers
+    is_used: Flags
+    damped: Flags
     is_damped: bool
-    all: Any
+    all: Integers
     is_any: Any
-    place: Any
+    place: Integers
     units: Vector
     hold: Vector
 
@@ -114,9 +118,10 @@ class KinematicTrees:
         found: Vector = (matrices @ self.spread(values)[..., None])[..., 0][self.is_used]
         return found
 
-    def any_of_tree(self, flags: Any) -> Any:
+    def any_of_tree(self, flags: Flags) -> Flags:
         """Whether a flag of a tree's joints (n,) is set (trees,)."""
-        return np.logical_or.reduceat(flags, self.starts)
+        found: Flags = np.logical_or.reduceat(flags, self.starts)
+        return found
 
     def most_of_tree(self, values: Vector) -> Vector:
         """The largest of the values of each tree's joints (trees,)."""
@@ -124,7 +129,7 @@ class KinematicTrees:
         return found
 
 
-def _padded(rows: list[list[int]]) -> tuple[Any, Any]:
+def _padded(rows: list[list[int]]) -> tuple[Integers, Flags]:
     """Rows of different lengths as one table, and which of it is in use; the rest is 0."""
     width = max(map(len, rows))
     table = np.array([[*row, *[0] * (width - len(row))] for row in rows])

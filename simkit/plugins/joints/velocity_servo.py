@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import mujoco
 import numpy as np
@@ -16,6 +16,7 @@ from simkit.pose import Vector
 from simkit.runtime.engine.physics import CONTROL
 
 if TYPE_CHECKING:
+    from simkit.plugins.joints.kinematic_trees import Flags
     from simkit.runtime import Simulation
 
 _ENOUGH: Final = 3e-6
@@ -45,7 +46,7 @@ class VelocityServo:
     keys: Keys = ()
     efforts: Vector = field(default_factory=lambda: np.zeros(0))
     learnt: Vector = field(default_factory=lambda: np.zeros((0, 0, 0)))
-    is_learnt: Any = field(default_factory=lambda: np.zeros(0, bool))
+    is_learnt: Flags = field(default_factory=lambda: np.zeros(0, bool))
 
     def drive(
         self,

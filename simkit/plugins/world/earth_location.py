@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from simkit.plugins.world.entities import RequestRefused, require_finite
 from simkit.pose import Pose, quat_from_rpy
@@ -12,13 +12,14 @@ from simkit.scene import SphericalCoordinates
 from simkit.sensors.environment.geodesy import WorldOnPlanet
 
 if TYPE_CHECKING:
-    from simkit.runtime import Simulation
+    from simkit.msgs import SetSphericalCoordinates_Request
+    from simkit.runtime import Light, Model, Simulation
 
 _MOON: Final = 1737400.0, 1737400.0  # semi-axes [m], as `<surface_model>MOON_SCS</surface_model>` has them
 _EARTH: Final = 6378137.0, 6356752.314245  # of WGS 84
 
 
-def set_world_location(sim: Simulation, request: Any) -> None:
+def set_world_location(sim: Simulation, request: SetSphericalCoordinates_Request) -> None:
     """Lays the world's origin somewhere else; sensors of position and field go by it from now on. Raises Refused."""
     latitude, longitude, elevation, heading = _numbers(request)
     surface = int(request.surface_model)
@@ -40,7 +41,7 @@ def set_world_location(sim: Simulation, request: Any) -> None:
     )
 
 
-def set_entity_location(sim: Simulation, handle: Any, request: Any) -> None:
+def set_entity_location(sim: Simulation, handle: Model | Light, request: SetSphericalCoordinates_Request) -> None:
     """Puts a model or a light at a place on the planet, upright, turned by the heading about z. Raises Refused."""
 
     if sim.control.origin.place is None:
@@ -51,7 +52,7 @@ def set_entity_location(sim: Simulation, handle: Any, request: Any) -> None:
     handle.set_pose(Pose(position, quat_from_rpy(0.0, 0.0, heading)))
 
 
-def _numbers(request: Any) -> tuple[float, float, float, float]:
+def _numbers(request: SetSphericalCoordinates_Request) -> tuple[float, float, float, float]:
     """Latitude, longitude [rad], elevation [m], heading [rad]."""
     latitude = require_finite(request.latitude_deg, "latitude_deg")
     longitude = require_finite(request.longitude_deg, "longitude_deg")

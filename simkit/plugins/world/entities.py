@@ -5,14 +5,18 @@ from __future__ import annotations
 import hashlib
 import math
 from collections.abc import Callable, Iterable, Sequence
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError, PluginError
 from simkit.pose import IDENTITY, Pose, Vector
 
 if TYPE_CHECKING:
+    from simkit import msgs
+    from simkit.msgs import ColorRGBA, Entity, Point, Vector3
     from simkit.runtime import Simulation
+
+T = TypeVar("T")
 
 KINDS: Final = ("none", "light", "model", "link", "visual", "collision", "sensor", "joint")
 """Kinds of entities at their numbers in `ros_gz_interfaces/msg/Entity`."""
@@ -25,8 +29,8 @@ class RequestRefused(Exception):
 
 
 def answer_handler(
-    sim: Simulation, name: str, does: Callable[[Any], dict[str, Any] | str | None], says_why: bool = True
-) -> Callable[[Any], dict[str, Any]]:
+    sim: Simulation, name: str, does: Callable[[Any], dict[str, object] | str | None], says_why: bool = True
+) -> Callable[[object], dict[str, object]]:
     """A handler that answers `success` and says why not, where something cannot be done.
 
     Args:
@@ -36,7 +40,7 @@ def answer_handler(
         says_why: whether the response has a `status_message`; without one it is logged, as Gazebo does.
     """
 
-    def handle(request: Any) -> dict[str, Any]:
+    def handle(request: object) -> dict[str, object]:
         from simkit.runtime.handles.handle import UnknownName
 
         try:
@@ -56,17 +60,17 @@ def answer_handler(
     return handle
 
 
-def command_handler(sim: Simulation, name: str, does: Callable[[Any], Any]) -> Callable[[Any], None]:
+def command_handler(sim: Simulation, name: str, does: Callable[[Any], str | None]) -> Callable[[object], None]:
     """The same for what has no answer, a command by topic or an empty response: what cannot be done is logged."""
     answer = answer_handler(sim, name, does, says_why=False)
 
-    def handle(message: Any) -> None:
+    def handle(message: object) -> None:
         answer(message)
 
     return handle
 
 
-def spawn_entities(make: Callable[..., Any], *values: Any) -> Any:
+def spawn_entities(make: Callable[..., T], *values: object) -> T:
     """What `sim.spawn`, `sim.contents.spawn_all` or `sim.contents.clone` adds.
 
     Raises:
@@ -120,7 +124,7 @@ def find_entity(sim: Simulation, name: str, kinds: Sequence[str], what: str = ""
     raise RequestRefused(f"there is no {what} {name!r}; {near or 'there is ' + (listed or 'none')}")
 
 
-def entity_of(sim: Simulation, message: Any, kinds: Sequence[str]) -> tuple[str, str]:
+def entity_of(sim: Simulation, message: Entity, kinds: Sequence[str]) -> tuple[str, str]:
     """Kind and scoped name of what an `Entity` message means, by its name, or else by its id.
 
     Raises:
@@ -175,13 +179,13 @@ def require_finite(value: float, what: str, minimum: float | None = None) -> flo
     return number
 
 
-def vector_of(message: Any, what: str) -> tuple[float, float, float]:
+def vector_of(message: Vector3 | Point, what: str) -> tuple[float, float, float]:
     """The numbers of a Vector3 or a Point message; raises Refused."""
     x, y, z = (require_finite(getattr(message, axis), f"{what}.{axis}") for axis in "xyz")
     return x, y, z
 
 
-def pose_of(message: Any, what: str = "pose") -> Pose:
+def pose_of(message: msgs.Pose, what: str = "pose") -> Pose:
     """The pose of a `Pose` message; a rotation of only zeros is none, any other is brought to unit length.
 
     Raises:
@@ -195,7 +199,7 @@ def pose_of(message: Any, what: str = "pose") -> Pose:
     return Pose(vector_of(message.position, f"{what}.position"), quaternion)
 
 
-def pose_fields(pose: Pose) -> dict[str, Any]:
+def pose_fields(pose: Pose) -> dict[str, object]:
     """The fields of a `Pose` message."""
     x, y, z = pose.position.tolist()
     qw, qx, qy, qz = pose.quaternion.tolist()
@@ -208,7 +212,7 @@ def vector_fields(vector: Sequence[float] | Vector) -> dict[str, float]:
     return {"x": x, "y": y, "z": z}
 
 
-def colour_of(message: Any, what: str) -> tuple[float, float, float, float] | None:
+def colour_of(message: ColorRGBA, what: str) -> tuple[float, float, float, float] | None:
     """A colour RGBA from 0 to 1; None where all four are zero, which says nothing. Raises Refused."""
     r, g, b, a = (require_finite(getattr(message, part), f"{what}.{part}", 0.0) for part in "rgba")
     return None if r == g == b == a == 0.0 else (r, g, b, a)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from simkit.plugins.world.entities import RequestRefused, require_finite, vector_fields, vector_of
 
 if TYPE_CHECKING:
+    from simkit.msgs import SetPhysicsProperties_Request
     from simkit.runtime import Simulation
 
 _SAME: Final = 1e-9  # of two step sizes, relative
@@ -24,7 +25,7 @@ _OF_ODE: Final = (
 )
 
 
-def set_physics(sim: Simulation, request: Any, *, keeps_gravity: bool = False) -> str:
+def set_physics(sim: Simulation, request: SetPhysicsProperties_Request, *, keeps_gravity: bool = False) -> str:
     """Changes gravity and the pace; a step of another length is refused, and then nothing is changed.
 
     Args:
@@ -69,7 +70,7 @@ def _config_fields(sim: Simulation) -> dict[str, float]:
     }
 
 
-def physics_fields(sim: Simulation) -> dict[str, Any]:
+def physics_fields(sim: Simulation) -> dict[str, object]:
     """The fields of a `gazebo_msgs/srv/GetPhysicsProperties_Response`; of ODE's settings those with a counterpart."""
     pace = sim.control.pausing.pace or 0.0  # none: as fast as it goes, which is a rate of 0 in Gazebo
     return {

@@ -114,7 +114,7 @@ class SunPath:
         level = np.cos(elevation)
         return np.stack((level * np.sin(azimuth), level * np.cos(azimuth), np.sin(elevation)), axis=-1)
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> SunPath:
+    def __deepcopy__(self, memo: dict[int, object]) -> SunPath:
         return self
 
 

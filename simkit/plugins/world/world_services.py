@@ -35,7 +35,26 @@ from simkit.plugins.world.physics_settings import set_physics
 from simkit.pose import IDENTITY, Pose
 
 if TYPE_CHECKING:
+    from simkit.msgs import (
+        ControlWorld_Request,
+        Entity,
+        EntityFactory,
+        EntityRequest_Request,
+        Light,
+        MaterialColor,
+        SetEntityPose_Request,
+        SetEntityPoses_Request,
+        SetLight_Request,
+        SetMaterialColor_Request,
+        SetPhysicsProperties_Request,
+        SetSphericalCoordinates_Request,
+        SetWheelSlip_Request,
+        SpawnEntities_Request,
+        ros_gz_interfaces__srv__DeleteEntity_Request,
+        ros_gz_interfaces__srv__SpawnEntity_Request,
+    )
     from simkit.runtime import Simulation
+    from simkit.scene import SceneJoint
 
 LIGHT: Final = "ros_gz_interfaces/msg/Light"
 MATERIAL: Final = "ros_gz_interfaces/msg/MaterialColor"
@@ -72,7 +91,7 @@ class WorldServices(WorldPlugin):
         self._prefix = prefix = valid_topic(f"/world/{self.sim.world.name}")
         offer = self.sim.communication.services.offer_by_default
         for short, type_name in _TABLE.items():
-            does: Callable[[Any], Any] = getattr(self, f"_{short}")
+            does: Callable[..., dict[str, object] | str | None] = getattr(self, f"_{short}")
             name = f"{prefix}/{short}"
             says_why = type_name.startswith(("simkit_msgs", "gazebo_msgs"))
             handler = answer_handler(self.sim, name, does, says_why)
@@ -82,16 +101,19 @@ class WorldServices(WorldPlugin):
         offer(f"{prefix}/scene/info", "simkit_msgs/srv/GetScene", self._scene_info)
         writing = answer_handler(self.sim, f"{prefix}/generate_world_sdf", lambda _: {"sdf": self.sim.control.to_sdf()})
         offer(f"{prefix}/generate_world_sdf", "simkit_msgs/srv/GenerateWorldSdf", writing)
-        inputs = {"light_config": (LIGHT, self._configure_light), "material_color": (MATERIAL, self._paint)}
-        for short, (type_name, does) in inputs.items():
+        inputs: dict[str, tuple[str, Callable[..., str | None]]] = {
+            "light_config": (LIGHT, self._configure_light),
+            "material_color": (MATERIAL, self._paint),
+        }
+        for short, (type_name, configure) in inputs.items():
             topic = f"{prefix}/{short}"
             self.sim.communication.bus.aside.add(topic)
             self.sim.communication.bus.unlisted.add(topic)
-            self.sim.communication.bus.listen(topic, (type_name,), command_handler(self.sim, topic, does))
+            self.sim.communication.bus.listen(topic, (type_name,), command_handler(self.sim, topic, configure))
 
     # ------------------------------------------------------------------ running
 
-    def _control(self, request: Any) -> None:
+    def _control(self, request: ControlWorld_Request) -> None:
         asked, sim = request.world_control, self.sim
         pausing, reset, seed = sim.control.pausing, asked.reset, int(asked.seed)
         time_ns = msgs.stamp_ns(asked.run_to_sim_time)
@@ -113,17 +135,17 @@ class WorldServices(WorldPlugin):
             sim.paused = bool(asked.pause)
         pausing.catch_up()
 
-    def _set_physics(self, request: Any) -> str:
+    def _set_physics(self, request: SetPhysicsProperties_Request) -> str:
         # gz's own message says nothing of gravity: none is no wish for weightlessness here
         gravity = request.gravity
         return set_physics(self.sim, request, keeps_gravity=not (gravity.x or gravity.y or gravity.z))
 
     # ------------------------------------------------------------------ entities
 
-    def _create(self, request: Any) -> None:
+    def _create(self, request: ros_gz_interfaces__srv__SpawnEntity_Request) -> None:
         self._spawn(request.entity_factory)
 
-    def _create_multiple(self, request: Any) -> None:
+    def _create_multiple(self, request: SpawnEntities_Request) -> None:
         with self.sim.contents.all_or_none():
             waiting: dict[str, tuple[str, Pose | None]] = {}
             for factory in request.entity_factories:
@@ -145,7 +167,7 @@ class WorldServices(WorldPlugin):
             )
             waiting.clear()
 
-    def _spawn(self, factory: Any) -> None:
+    def _spawn(self, factory: EntityFactory) -> None:
         if factory.clone_name:
             pose = self._asked_pose(factory)
             _, old = find_entity(self.sim, factory.clone_name, ("model",))
@@ -153,7 +175,7 @@ class WorldServices(WorldPlugin):
         else:
             spawn_entities(self.sim.spawn, *self._wanted(factory))
 
-    def _wanted(self, factory: Any, waiting: Container[str] = ()) -> tuple[str, str | None, Pose | None]:
+    def _wanted(self, factory: EntityFactory, waiting: Container[str] = ()) -> tuple[str, str | None, Pose | None]:
         """The source, name and pose of a model to be spawned, as `sim.spawn` takes them."""
         pose = self._asked_pose(factory)
         source, name = factory.sdf or factory.sdf_filename, factory.name or None
@@ -163,7 +185,7 @@ class WorldServices(WorldPlugin):
             self._free_name(name, False, waiting)
         return source, name, pose
 
-    def _asked_pose(self, factory: Any) -> Pose | None:
+    def _asked_pose(self, factory: EntityFactory) -> Pose | None:
         """Where a model is to be spawned; None for the file's own."""
         ways = {"sdf": factory.sdf, "sdf_filename": factory.sdf_filename, "clone_name": factory.clone_name}
         given = [way for way, value in ways.items() if value]
@@ -187,7 +209,7 @@ class WorldServices(WorldPlugin):
             name, number = f"{wanted}_{number}", number + 1
         return name
 
-    def _remove(self, request: Any) -> None:
+    def _remove(self, request: ros_gz_interfaces__srv__DeleteEntity_Request) -> None:
         kind, name = entity_of(self.sim, request.entity, ("model", "light"))
         if kind == "light":
             raise RequestRefused(f"the light {name!r} cannot be removed; light_config can darken it")
@@ -195,10 +217,10 @@ class WorldServices(WorldPlugin):
             raise RequestRefused(f"{name!r} is not a direct child of the world; remove {name.split('::')[0]!r}")
         self.sim.remove(name)
 
-    def _set_pose(self, request: Any) -> None:
+    def _set_pose(self, request: SetEntityPose_Request) -> None:
         self._place(request.entity, pose_of(request.pose))
 
-    def _set_pose_vector(self, request: Any) -> None:
+    def _set_pose_vector(self, request: SetEntityPoses_Request) -> None:
         if len(request.entities) != len(request.poses):
             raise RequestRefused(
                 f"found {len(request.entities)} entities and {len(request.poses)} poses, allowed are as many"
@@ -209,16 +231,16 @@ class WorldServices(WorldPlugin):
         for entity, pose in zip(request.entities, poses, strict=True):
             self._place(entity, pose)
 
-    def _place(self, entity: Any, pose: Pose) -> None:
+    def _place(self, entity: Entity, pose: Pose) -> None:
         handle_of(self.sim, *entity_of(self.sim, entity, ("model", "light"))).set_pose(pose)
 
-    def _enable_collision(self, request: Any) -> None:
+    def _enable_collision(self, request: EntityRequest_Request) -> None:
         self._switch_collision(request.entity, True)
 
-    def _disable_collision(self, request: Any) -> None:
+    def _disable_collision(self, request: EntityRequest_Request) -> None:
         self._switch_collision(request.entity, False)
 
-    def _switch_collision(self, entity: Any, enabled: bool) -> None:
+    def _switch_collision(self, entity: Entity, enabled: bool) -> None:
         kind, name = entity_of(self.sim, entity, ("collision", "link", "model"))
         if kind == "model":
             self.sim.control.enable_collisions(
@@ -229,7 +251,7 @@ class WorldServices(WorldPlugin):
         else:
             self.sim.control.enable_collisions([name.rpartition("::")[0]], enabled, only=name)
 
-    def _wheel_slip(self, request: Any) -> None:
+    def _wheel_slip(self, request: SetWheelSlip_Request) -> None:
         kind, name = entity_of(self.sim, request.entity, ("model", "link"))
         links = {link.scoped for link in self.sim.model(name).scene.all_links()} if kind == "model" else {name}
         values = float(request.slip_compliance_lateral), float(request.slip_compliance_longitudinal)
@@ -238,10 +260,10 @@ class WorldServices(WorldPlugin):
 
     # ------------------------------------------------------------------ looks
 
-    def _light_config(self, request: Any) -> None:
+    def _light_config(self, request: SetLight_Request) -> None:
         self._configure_light(request.light)
 
-    def _configure_light(self, asked: Any) -> None:
+    def _configure_light(self, asked: Light) -> None:
         """What is zero in the message stays as it is: ROS cannot leave a field out."""
         sim = self.sim
         name = asked.name
@@ -276,10 +298,10 @@ class WorldServices(WorldPlugin):
         if pose != IDENTITY:
             light.set_pose(pose)
 
-    def _visual_config(self, request: Any) -> str | None:
+    def _visual_config(self, request: SetMaterialColor_Request) -> str | None:
         return self._paint(request.material_color)
 
-    def _paint(self, asked: Any) -> str | None:
+    def _paint(self, asked: MaterialColor) -> str | None:
         sim, entity = self.sim, asked.entity
         kind, name = entity_of(sim, entity, ("visual", "link", "model"))
         diffuse = colour_of(asked.diffuse, "diffuse")
@@ -300,7 +322,7 @@ class WorldServices(WorldPlugin):
             return f"painted; {unused} stay as they are"
         return None
 
-    def _scene_info(self, _: Any) -> dict[str, Any]:
+    def _scene_info(self, _: object) -> dict[str, object]:
         sim = self.sim
         entities = [_entity_description(sim, kind, scoped) for kind in KINDS[1:] for scoped in scoped_names(sim, kind)]
         around = sim.world.surroundings
@@ -318,7 +340,7 @@ class WorldServices(WorldPlugin):
 
     # ------------------------------------------------------------------ the place on Earth
 
-    def _set_spherical_coordinates(self, request: Any) -> None:
+    def _set_spherical_coordinates(self, request: SetSphericalCoordinates_Request) -> None:
 
         entity = request.entity
         if entity.name or entity.id:
@@ -331,7 +353,7 @@ class WorldServices(WorldPlugin):
 _SPOT: Final = ("inner_angle", "outer_angle", "falloff")
 
 
-def _entity_description(sim: Simulation, kind: str, scoped: str) -> dict[str, Any]:
+def _entity_description(sim: Simulation, kind: str, scoped: str) -> dict[str, object]:
     """A `SceneEntity`: what it is, what it is part of, where it is in the world."""
     outer = scoped.rpartition("::")[0]
     if kind == "collision":
@@ -351,9 +373,9 @@ def _entity_description(sim: Simulation, kind: str, scoped: str) -> dict[str, An
     }
 
 
-def _joint_pose(sim: Simulation, scene: Any) -> Pose:
+def _joint_pose(sim: Simulation, scene: SceneJoint) -> Pose:
     """Where a joint's frame is now: it goes with its child link."""
     if scene.child_link not in sim.contents.handles.tables["link"]:
-        return scene.pose_world  # type: ignore[no-any-return]
+        return scene.pose_world
     link = sim.link(scene.child_link)
-    return link.pose @ link.scene.pose_world.inverse() @ scene.pose_world  # type: ignore[no-any-return]
+    return link.pose @ link.scene.pose_world.inverse() @ scene.pose_world
