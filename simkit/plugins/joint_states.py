@@ -87,14 +87,14 @@ class GazeboRosJointStatePublisher(_JointStates):
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         names = [c.value for c in params.all("joint_name")]
-        names += [name for c in params.all("jointName") for name in c.value.replace(",", " ").split()]
+        names += [name for value in self.options.joint_name_ros_1 for name in value.replace(",", " ").split()]
         if not names:
             _ = self.options.joint_name
         found = [find_joint(scene, name, params) for name in names]
         self._joints = [joint.scoped for joint in found if joint is not None]
         self._topic = "joint_states"
-        rate = "updateRate" if params.has("updateRate") else "update_rate"
-        self.after_step_rate = params.number(rate, 100.0, minimum=0)
+        is_ros_1 = params.has("updateRate")
+        self.after_step_rate = self.options.update_rate_ros_1 if is_ros_1 else self.options.update_rate
 
 
 class JointStatePublisherOptions(Options):

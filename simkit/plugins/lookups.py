@@ -125,11 +125,6 @@ def find_plugin_file(plugin: Plugin, uri: str, builder: SpecBuilder, places: Seq
         return None
 
 
-def read_numbers(params: Params, name: str, minimum: float | None = None) -> list[float]:
-    """The numbers of all elements of that name, in document order."""
-    return [one.number(name, minimum=minimum) for one in params.each(name)]
-
-
 def read_frame(sensor: Sensor, params: Params) -> str:
     """`<frame_name>` (`<frameName>` in ROS 1), else the plain name of the sensor's link."""
     name = params.text("frame_name", "") or params.text("frameName", "")

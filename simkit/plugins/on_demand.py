@@ -34,6 +34,20 @@ def publish_while_subscribed(
     sim.communication.on_demand.add(lambda: publisher.active and (publisher.wanted or also()), rate or None, task)
 
 
+def set_before_step_rate(plugin: Plugin, rate: float | None) -> None:
+    """Has `before_step` of a plugin called at this rate [Hz] from now on."""
+    if rate != plugin.before_step_rate:
+        plugin.before_step_rate = rate
+        plugin.sim.engine.reschedule()
+
+
+def set_after_step_rate(plugin: Plugin, rate: float | None) -> None:
+    """Has `after_step` of a plugin called at this rate [Hz] from now on."""
+    if rate != plugin.after_step_rate:
+        plugin.after_step_rate = rate
+        plugin.sim.engine.reschedule()
+
+
 def count_instants(plugin: Plugin, rate: float) -> int:
     """How many instants of a rate [Hz] (0: steps) have come since t = 0, whether anybody was there or not."""
     if rate <= 0:

@@ -4,7 +4,6 @@ later.
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -12,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from simkit import msgs
-from simkit.plugins.drives.odometry import TRANSFORMS
+from simkit.plugins.drives.odometry import message_types
 from simkit.pose import Pose, Vector
 
 if TYPE_CHECKING:
@@ -186,29 +185,25 @@ class PoseSample:
 
 def transforms_message(time_ns: int, taken: PoseSample, others: Sequence[FramePose] = ()) -> TFMessage:
     """A `tf2_msgs/msg/TFMessage` of all parts, and others after them."""
-    message, transform, vector, quaternion = _stamped_types()
+    types = message_types()
+    message, transform = types["TransformStamped"], types["Transform"]
+    vector, quaternion = types["Vector3"], types["Quaternion"]
     header = msgs.headers(time_ns)
     made = [
         message(header(frame), child, transform(vector(x, y, z), quaternion(i, j, k, w)))
         for frame, child, (x, y, z, w, i, j, k) in (*taken.placed, *others)
     ]
-    transforms: TFMessage = msgs.type_of(TRANSFORMS)(made)
+    transforms: TFMessage = types["TFMessage"](made)
     return transforms
 
 
 def stamped_transform(time_ns: int, frame: str, child: str, seven: PoseNumbers) -> TransformStamped:
     """A `geometry_msgs/msg/TransformStamped` of one part."""
-    message, transform, vector, quaternion = _stamped_types()
+    types = message_types()
     x, y, z, w, i, j, k = seven
-    place = transform(vector(x, y, z), quaternion(i, j, k, w))
-    stamped: TransformStamped = message(msgs.header(time_ns, frame), child, place)
+    place = types["Transform"](types["Vector3"](x, y, z), types["Quaternion"](i, j, k, w))
+    stamped: TransformStamped = types["TransformStamped"](msgs.header(time_ns, frame), child, place)
     return stamped
-
-
-@functools.cache
-def _stamped_types() -> tuple[Any, ...]:
-    names = ("TransformStamped", "Transform", "Vector3", "Quaternion")
-    return tuple(msgs.type_of(f"geometry_msgs/msg/{name}") for name in names)
 
 
 def links_moved_by_joints(joints: Iterable[SceneJoint]) -> frozenset[str]:

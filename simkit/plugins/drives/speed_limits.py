@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from simkit.plugins.options import Options, number
@@ -89,6 +90,18 @@ def speed_limits(options: SpeedLimitOptions) -> tuple[SpeedLimiter, SpeedLimiter
 def speed_limiter(options: LimiterOptions) -> SpeedLimiter:
     """The limiter of one speed."""
     return SpeedLimiter(*((getattr(options, f"min_{q}"), getattr(options, f"max_{q}")) for q in _QUANTITIES))
+
+
+def limit_each(
+    limiters: Sequence[SpeedLimiter],
+    targets: Sequence[float],
+    last: Sequence[float],
+    before_last: Sequence[float],
+    step: float,
+) -> tuple[float, ...]:
+    """The speeds to command now, each bounded by its limiter; arguments as those of `SpeedLimiter.limit`."""
+    speeds = zip(limiters, targets, last, before_last, strict=True)
+    return tuple(limiter.limit(target, one, before, step) for limiter, target, one, before in speeds)
 
 
 def _clamp(value: float, bounds: tuple[float, float]) -> float:

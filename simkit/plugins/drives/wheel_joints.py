@@ -4,10 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from simkit.params import Params
 from simkit.plugins.lookups import find_axis_joint
 from simkit.scene import SceneJoint, SceneModel
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.compiler.name_map import ActuatorRef
 
 _CONTINUOUS_TYPES = 1e6  # [rad]; files write 1e16 and the like for a wheel that turns for ever
 
@@ -38,6 +43,16 @@ def find_wheels(scene: SceneModel, sides: Mapping[str, Sequence[str]], params: P
         _report_position_limits(joint, params)
         found[side].append(joint)
     return found
+
+
+def add_wheel_servos(
+    builder: SpecBuilder, wheels: Mapping[str, Sequence[SceneJoint]], owner: str
+) -> list[list[ActuatorRef]]:
+    """A velocity servo, as strong as its joint, for each wheel of each side."""
+    return [
+        [builder.add_velocity_servo(joint.scoped, max_effort=joint.axes[0].effort, owner=owner) for joint in joints]
+        for joints in wheels.values()
+    ]
 
 
 def _report_position_limits(joint: SceneJoint, params: Params) -> None:

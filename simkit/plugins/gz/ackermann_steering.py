@@ -16,9 +16,9 @@ from simkit.plugins.drives.odometry import (
     odometry_message,
     transforms,
 )
-from simkit.plugins.drives.speed_limits import SpeedLimitOptions, speed_limits
+from simkit.plugins.drives.speed_limits import SpeedLimitOptions, limit_each, speed_limits
 from simkit.plugins.drives.steering import AckermannOdometry, find_drive_joint, joint_angles, steering_angles
-from simkit.plugins.drives.wheel_joints import find_wheels
+from simkit.plugins.drives.wheel_joints import add_wheel_servos, find_wheels
 from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.lookups import read_topic
 from simkit.plugins.one_time_warnings import OneTimeWarnings
@@ -119,10 +119,7 @@ class AckermannSteering(ModelPlugin):
         named = {"left wheel": self.options.left_joint, "right wheel": self.options.right_joint}
         wheels = find_wheels(scene, named, params)
         self._driven = [[joint.scoped for joint in joints] for joints in wheels.values()]
-        self._motors = [
-            [builder.add_velocity_servo(j.scoped, max_effort=j.axes[0].effort, owner=self.name) for j in joints]
-            for joints in wheels.values()
-        ]
+        self._motors = add_wheel_servos(builder, wheels, self.name)
 
     def load(self, parent: Model, params: Params) -> None:
         self.once = OneTimeWarnings(self)
@@ -200,13 +197,7 @@ class AckermannSteering(ModelPlugin):
         """Takes the limited command one step further, and turns wheels and steering."""
         if not self._only:
             self._odometry.note(joint_angles((*self._wheels, *self._turners)))
-        speeds = tuple(
-            limiter.limit(target, last, before, self.period)
-            for limiter, target, last, before in zip(
-                self._limits, self._target, self._last, self._before_last, strict=True
-            )
-        )
-        forward, turn = speeds
+        forward, turn = limit_each(self._limits, self._target, self._last, self._before_last, self.period)
         if self._only:
             turn = max(-self._limit, min(self._limit, turn))
             angles = steering_angles(math.tan(turn), self._base, self._separation)

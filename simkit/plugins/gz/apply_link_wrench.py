@@ -12,6 +12,7 @@ import numpy as np
 from simkit.params import Params
 from simkit.plugins.base import NEVER, WorldPlugin
 from simkit.plugins.lookups import read_required_name, read_topic
+from simkit.plugins.on_demand import set_before_step_rate
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, OptionsOf, blocks, boolean, choice, text, vector3
 from simkit.plugins.world.entities import RequestRefused, entity_of
@@ -191,10 +192,7 @@ class ApplyLinkWrench(WorldPlugin):
                 both = np.array((*wrench.force, *wrench.torque))
                 total[link.scoped] = total.get(link.scoped, np.zeros(6)) + both
         self.sim.engine.wrenches.set(self, total, are_applied=are_applied)
-        pace = None if is_missing else NEVER
-        if pace != self.before_step_rate:
-            self.before_step_rate = pace
-            self.sim.engine.reschedule()
+        set_before_step_rate(self, None if is_missing else NEVER)
 
     def _say(self, text: str, name: str) -> None:
         if self._verbose:

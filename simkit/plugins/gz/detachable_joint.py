@@ -11,6 +11,7 @@ from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.lookups import find_named_link, read_required_name, read_topic
+from simkit.plugins.on_demand import set_before_step_rate
 from simkit.plugins.options import Options, OptionsOf, boolean, text
 
 if TYPE_CHECKING:
@@ -148,10 +149,7 @@ class DetachableJoint(ModelPlugin):
 
     def _set_pace(self) -> None:
         """Asked at every step only while there is something to attach."""
-        pace = None if self._wanted and not self._is_attached else NEVER
-        if pace != self.before_step_rate:
-            self.before_step_rate = pace
-            self.sim.engine.reschedule()
+        set_before_step_rate(self, None if self._wanted and not self._is_attached else NEVER)
 
     def _tell(self, state: str) -> None:
         if self._state.wanted:

@@ -27,8 +27,8 @@ from simkit.plugins.drives.odometry import (
     wheel_angles,
 )
 from simkit.plugins.drives.odometry_noise import NoisyOdometry, OdometryNoiseOptions, odometry_noise
-from simkit.plugins.drives.speed_limits import SpeedLimitOptions, speed_limits
-from simkit.plugins.drives.wheel_joints import find_wheels
+from simkit.plugins.drives.speed_limits import SpeedLimitOptions, limit_each, speed_limits
+from simkit.plugins.drives.wheel_joints import add_wheel_servos, find_wheels
 from simkit.plugins.lookups import read_topic
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import OptionsOf, block, boolean, number, text, texts
@@ -82,10 +82,7 @@ class DiffDrive(ModelPlugin):
         sides = {"left wheel": self.options.left_joint, "right wheel": self.options.right_joint}
         wheels = find_wheels(scene, sides, params)
         self._sides = [[joint.scoped for joint in joints] for joints in wheels.values()]
-        self._servos = [
-            [builder.add_velocity_servo(j.scoped, max_effort=j.axes[0].effort, owner=self.name) for j in joints]
-            for joints in wheels.values()
-        ]
+        self._servos = add_wheel_servos(builder, wheels, self.name)
 
     def load(self, parent: Model, params: Params) -> None:
         self.once = OneTimeWarnings(self)
@@ -149,13 +146,7 @@ class DiffDrive(ModelPlugin):
         return fleet_of(drives).after_step
 
     def _command(self) -> None:
-        step = self.period
-        linear, angular = (
-            limiter.limit(target, last, before, step)
-            for limiter, target, last, before in zip(
-                self._limits, self._target, self._last, self._before_last, strict=True
-            )
-        )
+        linear, angular = limit_each(self._limits, self._target, self._last, self._before_last, self.period)
         self._settled = (linear, angular) == self._last == self._before_last
         self._before_last, self._last = self._last, (linear, angular)
         half = angular * self._separation / 2

@@ -9,6 +9,7 @@ from simkit import msgs
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
+from simkit.plugins.on_demand import set_after_step_rate
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.pose import rpy_from_quat
 
@@ -95,10 +96,7 @@ class DriveToPoseController(ModelPlugin):
 
     def _set_pace(self) -> None:
         """Works at every step only while there is a target."""
-        pace = NEVER if self._target is None else None
-        if pace != self.after_step_rate:
-            self.after_step_rate = pace
-            self.sim.engine.reschedule()
+        set_after_step_rate(self, NEVER if self._target is None else None)
 
     # ------------------------------------------------------------------ driving
 

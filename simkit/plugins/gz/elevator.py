@@ -13,7 +13,7 @@ from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.joints.joint_axis import JointAxis
 from simkit.plugins.lookups import find_axis_joint, find_link, read_topic
-from simkit.plugins.on_demand import publish_while_subscribed
+from simkit.plugins.on_demand import publish_while_subscribed, set_after_step_rate
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, OptionsOf, number, text
 
@@ -223,7 +223,4 @@ class Elevator(ModelPlugin):
 
     def _set_pace(self) -> None:
         """Looks only while it is under way."""
-        pace = NEVER if self._phase == "idle" else self._update_rate
-        if pace != self.after_step_rate:
-            self.after_step_rate = pace
-            self.sim.engine.reschedule()
+        set_after_step_rate(self, NEVER if self._phase == "idle" else self._update_rate)

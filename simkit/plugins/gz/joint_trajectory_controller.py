@@ -24,7 +24,7 @@ from simkit.plugins.joints.joint_trajectory import (
     trajectory_faults,
 )
 from simkit.plugins.joints.pid import FIELDS, Pid, declare_pid
-from simkit.plugins.lookups import find_joint, read_numbers
+from simkit.plugins.lookups import find_joint
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, OptionsOf, choice, numbers, text, texts
 
@@ -133,7 +133,7 @@ class JointTrajectoryController(ControlledJoints, ModelPlugin):
     def load(self, parent: Model, params: Params) -> None:
         self.once = OneTimeWarnings(self)
         self._axes = self._read_axes(params)
-        attribute = params.attribute("use_header_start_time")  # gz looks for it there, its manual has an element
+        attribute = self.options.use_header_start_time_attribute  # gz looks for it there, its manual has an element
         self._by_header = params.boolean("use_header_start_time", attribute.lower() in ("true", "1"))
         self._rule: Any = self.options.interpolation
         topic = valid_topic(self.options.topic or f"/model/{parent.name}/joint_trajectory")
@@ -174,12 +174,13 @@ class JointTrajectoryController(ControlledJoints, ModelPlugin):
 
     def _repeated(self, params: Params, element: str, default: float) -> list[float]:
         """A number for each joint: those of the elements in order, then the default."""
-        found, count = read_numbers(params, element), len(self._scoped)
+        found: tuple[float, ...] = getattr(self.options, element)
+        count = len(self._scoped)
         if len(found) > count:
             message = f"plugin {self.name!r}: {len(found)} times <{element}> for {count} joint{'s'[: count != 1]}"
             hint = "one each, in the order of <joint_name>; those too many have no effect"
             params.diagnostics.warning("SK-PLUGIN-044", message, params.all(element)[count].where, hint)
-        return (found + [default] * count)[:count]
+        return [*found, *[default] * count][:count]
 
     def controllers(self) -> list[tuple[JointAxis, Pid]]:
         pairs = [(a.joint, pid) for a in self._axes.values() for pid in (a.position_pid, a.velocity_pid)]

@@ -115,10 +115,10 @@ class LinearBattery(Battery):
             self._offer_recharge(base, by_topic=params.has("recharge_by_topic"))
         _ = self.options.recharge_by_topic
         self._supply(parent.scene)
-        for element in params.all("power_draining_topic"):
-            self.subscribe(valid_topic(element.value), self._on_drain, keep=1)
-        for element in params.all("stop_power_draining_topic"):
-            self.subscribe(valid_topic(element.value), self._on_stop, keep=1)
+        for topic in self.options.power_draining_topic:
+            self.subscribe(valid_topic(topic), self._on_drain, keep=1)
+        for topic in self.options.stop_power_draining_topic:
+            self.subscribe(valid_topic(topic), self._on_stop, keep=1)
 
     def _supply(self, scene: SceneModel) -> None:
         """Has the model's rendered sensors rest while the battery is empty, where the Sensors system asks for it."""

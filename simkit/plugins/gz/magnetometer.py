@@ -35,8 +35,7 @@ class MagnetometerSystem(Plugin):
 
     def prepare(self, scene: object, params: Params, builder: SpecBuilder) -> None:
         given = [name for name in SWITCHES if params.has(name)]
-        for name in SWITCHES:
-            params.boolean(name, True)
+        _ = self.options.use_units_gauss, self.options.use_earth_frame_ned
         if not given:
             message = "plugin 'Magnetometer' is not needed: simkit does what it stands for by itself"
             params.diagnostics.note("SK-PLUGIN-005", message, self.where)

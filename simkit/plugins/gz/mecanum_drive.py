@@ -15,9 +15,9 @@ from simkit.compiler.contact_friction import has_directional_friction
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.drives.odometry import COMMAND_TYPES, ODOMETRY, TRANSFORMS, odometry_message, transforms
-from simkit.plugins.drives.speed_limits import SpeedLimitOptions, speed_limits
+from simkit.plugins.drives.speed_limits import SpeedLimitOptions, limit_each, speed_limits
 from simkit.plugins.drives.steering import Motion, TravelOdometry, joint_angles
-from simkit.plugins.drives.wheel_joints import find_wheels
+from simkit.plugins.drives.wheel_joints import add_wheel_servos, find_wheels
 from simkit.plugins.lookups import read_topic
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import OptionsOf, number, text, texts
@@ -101,10 +101,7 @@ class MecanumDrive(ModelPlugin):
         }
         wheels = find_wheels(scene, named, params)
         self._joints = [[joint.scoped for joint in joints] for joints in wheels.values()]
-        self._servos = [
-            [builder.add_velocity_servo(j.scoped, max_effort=j.axes[0].effort, owner=self.name) for j in joints]
-            for joints in wheels.values()
-        ]
+        self._servos = add_wheel_servos(builder, wheels, self.name)
         _report_rubber(scene, [joint for joints in wheels.values() for joint in joints], params)
 
     def load(self, parent: Model, params: Params) -> None:
@@ -141,12 +138,8 @@ class MecanumDrive(ModelPlugin):
 
     def _command(self) -> None:
         linear, angular = self._limits
-        ahead, left, turn = (
-            limiter.limit(target, last, before, self.period)
-            for limiter, target, last, before in zip(
-                (linear, linear, angular), self._target, self._last, self._before_last, strict=True
-            )
-        )
+        limiters = (linear, linear, angular)
+        ahead, left, turn = limit_each(limiters, self._target, self._last, self._before_last, self.period)
         speeds = (ahead, left, turn)
         self._settled = speeds == self._last == self._before_last
         self._before_last, self._last = self._last, speeds

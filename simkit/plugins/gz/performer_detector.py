@@ -13,6 +13,7 @@ from simkit.plugins.gz_python.msgs.message import MESSAGE_CLASSES, Message
 from simkit.plugins.lookups import read_required_name, read_topic
 from simkit.plugins.on_demand import watch_while_subscribed
 from simkit.plugins.options import Options, OptionsOf, block, blocks, pose, text, texts, vector3
+from simkit.plugins.world.entities import pose_fields
 from simkit.pose import Pose, quat_rotate
 
 if TYPE_CHECKING:
@@ -189,11 +190,8 @@ class PerformerDetector(ModelPlugin):
 
     def _tell(self, name: str, pose: Pose, state: bool) -> None:
         own = self._model.pose
-        relative = own.inverse() @ pose
         header = msgs.header(self.sim.time_ns, self._model.name)
-        x, y, z = relative.position.tolist()
-        qw, qx, qy, qz = relative.quaternion.tolist()
-        fields = {"position": {"x": x, "y": y, "z": z}, "orientation": {"x": qx, "y": qy, "z": qz, "w": qw}}
+        fields = pose_fields(own.inverse() @ pose)
         if self._poses.wanted:
             self._poses.publish(msgs.make(POSE, header=header, pose=fields))
         if self._details.wanted:

@@ -54,7 +54,7 @@ class Thermal(Plugin):
                 message = "found both <temperature> and <heat_signature>: the latter is used, as in Gazebo"
                 params.diagnostics.warning(_WITHOUT_EFFECT, message, params.block("temperature").where)
             self._range = _read_range(params)
-            self._picture = _find_picture(params, builder)
+            self._picture = _find_picture(self.options, builder)
         elif params.has("temperature"):
             self._temperature = _read_kelvins(params, "temperature")
             for name in ("min_temp", "max_temp"):
@@ -98,10 +98,10 @@ def _read_range(params: Params) -> tuple[float | None, float | None]:
     return low, high
 
 
-def _find_picture(params: Params, builder: SpecBuilder) -> Path | None:
+def _find_picture(options: ThermalOptions, builder: SpecBuilder) -> Path | None:
     """The file of a heat signature; where there is none that can be read, its surface is as warm as the air."""
-
-    element, uri = params.block("heat_signature"), params.text("heat_signature")
+    params, uri = options.params, options.heat_signature
+    element = params.block("heat_signature")
     folder = Path(element.where.file).parent if element.where.file else None
     path = builder.find_file(uri, folder)
     problem = "is not found"

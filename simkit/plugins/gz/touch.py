@@ -12,6 +12,7 @@ from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.endpoints import listens, offers, publishes
 from simkit.plugins.lookups import read_required_name
+from simkit.plugins.on_demand import set_after_step_rate
 from simkit.plugins.options import Options, OptionsOf, boolean, number, text, texts
 from simkit.runtime.contact.collision_contacts import Bools, collision_table, find_contacts
 
@@ -112,10 +113,7 @@ class TouchTimer(ModelPlugin):
 
     def _set_pace(self) -> None:
         """Looks at every step only while it is enabled."""
-        pace = None if self._is_enabled else NEVER
-        if pace != self.after_step_rate:
-            self.after_step_rate = pace
-            self.sim.engine.reschedule()
+        set_after_step_rate(self, None if self._is_enabled else NEVER)
 
 
 class TouchPluginOptions(Options):

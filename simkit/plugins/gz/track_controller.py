@@ -13,7 +13,7 @@ from simkit.plugins.drives.speed_limits import LimiterOptions, speed_limiter
 from simkit.plugins.drives.tracks import belt_of, needs_direction, report_missing_collisions
 from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.lookups import find_link, read_topic
-from simkit.plugins.on_demand import publish_while_subscribed
+from simkit.plugins.on_demand import publish_while_subscribed, set_before_step_rate
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import OptionsOf, boolean, number, text, vector3
 from simkit.pose import Pose
@@ -118,9 +118,7 @@ class TrackController(ModelPlugin):
         """A command has come, between two steps: for the step to come already."""
         self._told_tick = self.sim.tick
         self.before_step()
-        if self.before_step_rate is not None:
-            self.before_step_rate = None
-            self.sim.engine.reschedule()
+        set_before_step_rate(self, None)
 
     def before_step(self) -> None:
         """Takes the limited speed one step towards the command; called no more once it is there."""

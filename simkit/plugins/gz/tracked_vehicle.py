@@ -19,12 +19,12 @@ from simkit.plugins.drives.odometry import (
     odometry_message,
     transforms,
 )
-from simkit.plugins.drives.speed_limits import LimiterOptions, speed_limiter
+from simkit.plugins.drives.speed_limits import LimiterOptions, limit_each, speed_limiter
 from simkit.plugins.drives.tracks import TrackOdometry
 from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.gz.track_controller import CENTRE, SPEED
 from simkit.plugins.lookups import find_link, find_named_link, read_topic
-from simkit.plugins.on_demand import publish_while_subscribed
+from simkit.plugins.on_demand import publish_while_subscribed, set_after_step_rate
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, OptionsOf, block, blocks, boolean, number, text
 
@@ -177,19 +177,11 @@ class TrackedVehicle(ModelPlugin):
 
     def _begin(self) -> None:
         self._is_new = True
-        if self.after_step_rate is not None:
-            self.after_step_rate = None
-            self.sim.engine.reschedule()
+        set_after_step_rate(self, None)
 
     def after_step(self) -> None:
         """Takes the limited speeds one step towards the command, and tells the tracks, for the next step."""
-        step = self.period
-        speeds = tuple(
-            limiter.limit(target, last, before, step)
-            for limiter, target, last, before in zip(
-                self._limiters, self._target, self._last, self._before_last, strict=True
-            )
-        )
+        speeds = limit_each(self._limiters, self._target, self._last, self._before_last, self.period)
         changes = any(abs(now - last) > _STILL for now, last in zip(speeds, self._last, strict=True))
         tells, self._is_new = self._is_new or changes, False
         rests = speeds == self._last == self._before_last

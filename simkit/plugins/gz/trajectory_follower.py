@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.lookups import find_named_link, read_topic
+from simkit.plugins.on_demand import set_before_step_rate
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, OptionsOf, block, boolean, number, text, vector
 
@@ -109,10 +110,7 @@ class TrajectoryFollower(ModelPlugin):
 
     def _set_pace(self) -> None:
         """Looks at every step unless it is paused, or has nowhere to go."""
-        pace = NEVER if self._is_paused or not self._way else None
-        if pace != self.before_step_rate:
-            self.before_step_rate = pace
-            self.sim.engine.reschedule()
+        set_before_step_rate(self, NEVER if self._is_paused or not self._way else None)
 
     def before_step(self) -> None:
         if not self._way or self._is_paused:

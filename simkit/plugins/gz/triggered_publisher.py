@@ -17,6 +17,7 @@ from simkit.plugins.gz_python.msgs.message import MESSAGE_CLASSES, Message
 from simkit.plugins.gz_python.msgs.message_matcher import TOLERANCE, MessageMatcher
 from simkit.plugins.gz_python.msgs.ros_conversion import SERVICE_REQUEST_TYPES, call_service, from_ros, to_ros, twins_of
 from simkit.plugins.gz_python.msgs.text_format import parse_message
+from simkit.plugins.on_demand import set_before_step_rate
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, OptionsOf, blocks, integer, text
 
@@ -231,10 +232,7 @@ class TriggeredPublisher(WorldPlugin):
 
     def _set_pace(self) -> None:
         """Looks at the time at every step only while something waits for it."""
-        pace = None if self._due else NEVER
-        if pace != self.before_step_rate:
-            self.before_step_rate = pace
-            self.sim.engine.reschedule()
+        set_before_step_rate(self, None if self._due else NEVER)
 
     def _answer(self) -> None:
         for out in self._outputs:

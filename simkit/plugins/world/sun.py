@@ -41,7 +41,7 @@ class SunOptions(Options):
     elevation: float = number(0.0, "m", minimum=-500.0, maximum=11000.0)
     heading_deg: float = number(0.0, "deg", minimum=-360.0, maximum=360.0)
     pressure: float = number(unit="Pa", minimum=0.0, maximum=1000000.0)
-    temperature: float = number(285.15, "K", minimum=1.0, maximum=1000.0)
+    temperature: float = number(285.15, "K", minimum=1.0, maximum=_MOST_KELVIN)
     irradiance: str = text("clear_sky")
     light_name: str = text()
 
@@ -63,11 +63,11 @@ class Sun(WorldPlugin):
     filenames = ("simkit-sun",)
 
     def prepare(self, scene: SceneWorld, params: Params, builder: SpecBuilder) -> None:
-        self._start = _start(params)
+        self._start = _start(self.options)
         self._scale = self.options.time_scale
         self.before_step_rate = self.options.update_rate
-        self._site = _site(params, scene.spherical_coordinates)
-        self._irradiance = _irradiance(params)
+        self._site = _site(self.options, scene.spherical_coordinates)
+        self._irradiance = _irradiance(self.options)
         self._path: SunPath | None = None
         try:
             self._path = SunPath(self._site)
@@ -75,7 +75,7 @@ class Sun(WorldPlugin):
             params.diagnostics.error("SK-SENSOR-084", f"the sun's position needs pvlib: {error}", self.where, _INSTALL)
 
     def load(self, parent: Simulation, params: Params) -> None:
-        self._light = _find_sun(self.sim, params)
+        self._light = _find_sun(self.sim, self.options)
         self._known: tuple[int, LightState] | None = None
         if self._light is None or self._path is None:
             return
@@ -105,9 +105,9 @@ class Sun(WorldPlugin):
         return self._known[1]
 
 
-def _start(params: Params) -> float:
+def _start(options: SunOptions) -> float:
     """`<start>` in seconds since 1970-01-01 UTC."""
-    text = params.text("start", "")
+    text, params = options.start, options.params
     if not text:
         params.error("SK-PARAM-001", f"<{params.name}> needs <start>: {_DATE}")
         return 0.0
@@ -119,8 +119,9 @@ def _start(params: Params) -> float:
         return 0.0
 
 
-def _site(params: Params, world: SphericalCoordinates | None) -> Site:
+def _site(options: SunOptions, world: SphericalCoordinates | None) -> Site:
     """The plugin's own place, or the world's."""
+    params = options.params
     own = params.has("latitude_deg"), params.has("longitude_deg")
     if world is None and not all(own):
         hint = "or give the world <spherical_coordinates>"
@@ -143,13 +144,13 @@ def _site(params: Params, world: SphericalCoordinates | None) -> Site:
         elevation=elevation,
         heading=angle("heading_deg", world.heading if world else 0.0, 360),
         pressure=params.number("pressure", air_column(Atmosphere()).at(elevation).pressure, minimum=0, maximum=1e6),
-        temperature=params.number("temperature", 285.15, minimum=1, maximum=_MOST_KELVIN),
+        temperature=options.temperature,
     )
 
 
-def _irradiance(params: Params) -> float | None:
+def _irradiance(options: SunOptions) -> float | None:
     """`<irradiance>` [W/m²], or None for a clear sky's."""
-    text = params.text("irradiance", "clear_sky")
+    text = options.irradiance
     if text == "clear_sky":
         return None
     try:
@@ -160,13 +161,13 @@ def _irradiance(params: Params) -> float | None:
         return value
     allowed = f"clear_sky, or a number from 0 to {LARGEST:g} [W/m²]"
     message = f"found <irradiance>{text}</irradiance>, allowed is {allowed}"
-    params.block("irradiance").error("SK-PARAM-002", message)
+    options.params.block("irradiance").error("SK-PARAM-002", message)
     return None
 
 
-def _find_sun(sim: Simulation, params: Params) -> Light | None:
+def _find_sun(sim: Simulation, options: SunOptions) -> Light | None:
     """The light to move, or None after an error."""
-    name = params.text("light_name", "")
+    name, params = options.light_name, options.params
     suns = [
         light for light in sim.contents.lights.values() if light.scene.type == "directional" and not light.scene.link
     ]
