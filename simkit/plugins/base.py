@@ -326,7 +326,7 @@ class Plugin(abc.ABC):
         `set_state` to keep it.
         """
         own = {k: v for k, v in vars(self).items() if k not in _OWNED}
-        memo: dict[int, Any] = {id(self): self}
+        memo: dict[int, object] = {id(self): self}
         try:
             return copy.deepcopy(own, memo)
         except Exception:  # noqa: BLE001 - a foreign object may raise anything when copied
@@ -340,7 +340,7 @@ class Plugin(abc.ABC):
         vars(self).update(copy.deepcopy(dict(state), {id(self): self}))
 
     def _state_by_attribute(self, own: dict[str, object]) -> dict[str, Any]:
-        memo: dict[int, Any] = {id(self): self}
+        memo: dict[int, object] = {id(self): self}
         state, uncopied = {}, set()
         for key, value in own.items():
             try:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simkit.plugins.base import NEVER, Plugin
 from simkit.plugins.fluids.buoyant_force import BuoyantForces, Fluid, Immersion
@@ -34,7 +34,7 @@ class BuoyancyBase(Plugin):
         self.once = OneTimeWarnings(self)
         self._yard = HullFactory(self._tell_open)
         self._found: BuoyantForces | None = None
-        self._stood: tuple[Any, ...] | None = None
+        self._stood: tuple[object, ...] | None = None
         self._standing: dict[str, tuple[float, ...]] = {}
         self._bind()
         if not self._fluid.heights:
@@ -94,7 +94,7 @@ class BuoyancyBase(Plugin):
             self.sim.engine.wrenches.set(self, self._standing)
         return lie
 
-    def set_state(self, state: Mapping[str, Any]) -> None:
+    def set_state(self, state: Mapping[str, object]) -> None:
         """Back to a state from `get_state`."""
         super().set_state(state)
         self.sim.engine.wrenches.set(self, self._standing, are_applied=True)

@@ -140,7 +140,7 @@ class WindPluginBase(WorldPlugin):
         self._links = PushedLinks(self.sim, list(windy))
         self._masses = np.array([windy[name].inertial.mass for name in self._links.names], float)
 
-    def set_state(self, state: Mapping[str, Any]) -> None:
+    def set_state(self, state: Mapping[str, object]) -> None:
         """Back to a state from `get_state`."""
         super().set_state(state)
         self._felt = None

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final, TypeVar
+from typing import TYPE_CHECKING, Final, TypeVar
 
 import numpy as np
 
@@ -111,7 +111,7 @@ class ApplyLinkWrench(WorldPlugin):
             return None
         return self.sim.link(model.scene.canonical_link)
 
-    def set_state(self, state: Mapping[str, Any]) -> None:
+    def set_state(self, state: Mapping[str, object]) -> None:
         """Back to a state from `get_state`."""
         super().set_state(state)
         self._stand(are_applied=True)

@@ -17,6 +17,9 @@ if TYPE_CHECKING:
     from simkit.msgs import Pose, PoseArray, PoseStamped, TFMessage
     from simkit.runtime import Model
 
+PoseMessage = Any
+"""A message of poses, a pose or a transform in it, or a part of that: types that share no base."""
+
 Planar = tuple[float, float, float]
 """x, y [m] and yaw [rad]."""
 
@@ -54,7 +57,7 @@ class DriveToPoseController(ModelPlugin):
         )
         self._target: Planar | None = None
         self._place: Planar | None = None
-        self._pose: Any = None
+        self._pose: PoseMessage = None
         own = f"/model/{parent.name}"
         self._speed = self.advertise(valid_topic(f"{own}/cmd_vel"), TWIST)
         self._reached = self.advertise(valid_topic(f"{own}/reached_pose"), POSE)
@@ -77,7 +80,7 @@ class DriveToPoseController(ModelPlugin):
             self._check_ends()
             self._set_pace()
 
-    def _on_place(self, message: Any) -> None:
+    def _on_place(self, message: PoseMessage) -> None:
         found = _first_pose(message)
         place = None if found is None else _planar(found)
         if place is not None:
@@ -125,7 +128,7 @@ class DriveToPoseController(ModelPlugin):
         return (0.0 if is_there else left), 0.0
 
 
-def _first_pose(message: Any) -> Any:
+def _first_pose(message: PoseMessage) -> PoseMessage:
     """The first pose of a message of poses: a Pose or a Transform; None where there is none."""
     if hasattr(message, "transforms"):
         return message.transforms[0].transform if message.transforms else None
@@ -134,11 +137,11 @@ def _first_pose(message: Any) -> Any:
     return getattr(message, "pose", message)
 
 
-def _place_and_turn(pose: Any) -> tuple[Any, Any]:
+def _place_and_turn(pose: PoseMessage) -> tuple[PoseMessage, PoseMessage]:
     return (pose.position, pose.orientation) if hasattr(pose, "position") else (pose.translation, pose.rotation)
 
 
-def _planar(pose: Any) -> Planar | None:
+def _planar(pose: PoseMessage) -> Planar | None:
     """x, y and yaw; None where they are no numbers. A quaternion of zeros, as an empty message has, is no turn."""
     place, turn = _place_and_turn(pose)
     quaternion = (turn.w, turn.x, turn.y, turn.z)
@@ -147,7 +150,7 @@ def _planar(pose: Any) -> Planar | None:
     return found if all(map(math.isfinite, found)) else None
 
 
-def _as_pose(pose: Any) -> Any:
+def _as_pose(pose: PoseMessage) -> PoseMessage:
     place, turn = _place_and_turn(pose)
     return msgs.make(
         POSE,

@@ -27,6 +27,9 @@ if TYPE_CHECKING:
 HOOKS: Final = ("configure", "pre_update", "update", "post_update", "reset", "shutdown")
 """What a system may have; without one of them it is none."""
 
+System = Any
+"""An object or a module with some of the hooks, which a user wrote."""
+
 _OWN: Final = str(Path(__file__).resolve().parents[2]) + os.sep
 _MODULE = (types.ModuleType, types.FunctionType, types.BuiltinFunctionType, type)
 
@@ -49,16 +52,16 @@ class GzSystem(Plugin):
     is_gz_system = True
     shadow = False
 
-    def __init__(self, system: Any = None) -> None:
+    def __init__(self, system: System = None) -> None:
         self._given = system
-        self.system: Any = None
+        self.system: System = None
         self._calls: dict[str, Callable[..., None]] = {}
         self._outside: set[str] = set()  # attributes that snapshots leave as they are
         self._hub: Any = None  # what the systems of a simulation share
 
     # ------------------------------------------------------------------ simkit's hooks
 
-    def find_system(self) -> Any:
+    def find_system(self) -> System:
         """The system to hang here; None where there is none, which has been reported."""
         return self._given
 

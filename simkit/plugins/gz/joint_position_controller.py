@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simkit.params import Params
 from simkit.plugins.endpoints import listens
@@ -13,6 +13,7 @@ from simkit.plugins.options import OptionsOf, boolean, integer, number
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.runtime import Model
+    from simkit.runtime.communication.parameter_server import Parameter
     from simkit.scene import SceneModel
 
 
@@ -58,7 +59,7 @@ class JointPositionController(JointCommander):
     def load(self, parent: Model, params: Params) -> None:
         super().load(parent, params)
         self._by_velocity = self.options.use_velocity_commands
-        self._fastest: Any = None
+        self._fastest: Parameter[float] | None = None
         if not self._by_velocity:
             self._pid = declare_pid(self, Pid(1.0, 0.1, 0.01, 1.0, -1.0, 1000.0, -1000.0), self._present_pid)
             return

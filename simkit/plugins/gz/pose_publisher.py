@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import partial
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from simkit import msgs
 from simkit.msgs.topics import valid_topic
@@ -168,7 +168,7 @@ def _common_rate(rate: float, other: float) -> float:
     return high if low > 0 and (high / low).is_integer() else 0.0
 
 
-def _message(type_name: str, time_ns: int, taken: PoseSample, index: int) -> Any:
+def _message(type_name: str, time_ns: int, taken: PoseSample, index: int) -> object:
     """The message of one part."""
     frame, child, seven = taken.placed[index]
     if type_name == STAMPED:

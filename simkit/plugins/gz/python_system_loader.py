@@ -11,10 +11,10 @@ import sys
 import types
 from importlib.metadata import entry_points
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from simkit.params import Params
-from simkit.plugins.gz.gz_system import HOOKS, GzSystem, line_of
+from simkit.plugins.gz.gz_system import HOOKS, GzSystem, System, line_of
 from simkit.plugins.gz_python import import_hook
 from simkit.plugins.options import Options, OptionsOf, text
 from simkit.plugins.plugin_names import ENTRY_POINT_GROUP
@@ -113,7 +113,7 @@ class PythonSystemLoader(GzSystem):
             else:
                 params.diagnostics.note("SK-PLUGIN-083", message, self.where, hint)
 
-    def find_system(self) -> Any:
+    def find_system(self) -> System:
         if self._module is None:
             return None
         system = self._module.get_system()

@@ -18,6 +18,7 @@ from simkit.plugins.options import Options, OptionsOf, text, texts
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.msgs import Twist, TwistStamped
     from simkit.runtime import Model, Simulation
     from simkit.scene import SceneModel
 
@@ -82,12 +83,12 @@ class VelocityControl(ModelPlugin):
 
     # ------------------------------------------------------------------ commands
 
-    def _on_command(self, message: Any) -> None:
+    def _on_command(self, message: Twist | TwistStamped) -> None:
         motion = self._motion_of(message)
         if motion is not None:
             self._target = motion
 
-    def _on_link_command(self, link: str, message: Any) -> None:
+    def _on_link_command(self, link: str, message: Twist | TwistStamped) -> None:
         motion = self._motion_of(message)
         if motion is not None:
             self._link_targets.pop(link, None)  # the last command stands last

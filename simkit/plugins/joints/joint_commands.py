@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import abc
 import math
-from typing import TYPE_CHECKING, Any, ClassVar, Final
+from typing import TYPE_CHECKING, ClassVar, Final
 
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
@@ -124,7 +124,7 @@ class JointCommander(ControlledJoints, ModelPlugin):
         axis = f"_{self._index}" if self._index else ""
         return valid_topic(f"{joint}/{self.actuator_field}_controller{axis}")
 
-    def _listen(self, parent: Any, params: Params) -> None:
+    def _listen(self, parent: Model, params: Params) -> None:
         """Opens the topic that commands come on, by gz's rules: `<topic>`, else `<sub_topic>`, else its own."""
         self._number = -1
         if self.options.use_actuator_msg:
