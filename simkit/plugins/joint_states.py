@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from simkit.compiler import SpecBuilder
-    from simkit.msgs import JointState
     from simkit.pose import Vector
     from simkit.runtime import Joint, Model
     from simkit.scene import SceneJoint, SceneModel
@@ -34,7 +33,7 @@ def joint_readings(joints: Sequence[Joint]) -> list[JointReading]:
     return [(joint.name, joint.position, joint.velocity, joint.effort) for joint in joints]
 
 
-def joint_state_message(time_ns: int, joints: list[JointReading]) -> JointState:
+def joint_state_message(time_ns: int, joints: list[JointReading]) -> msgs.JointState:
     """A `sensor_msgs/msg/JointState` of `joint_readings`, in their order; efforts are those applied [N·m or N].
 
     A joint of several degrees of freedom gives `name[0]`, `name[1]`, …; one of none gives one zero.
@@ -48,7 +47,7 @@ def joint_state_message(time_ns: int, joints: list[JointReading]) -> JointState:
         for column, numbers in zip(columns, read, strict=True):
             column += numbers or [0.0]
     arrays = (np.array(column) for column in columns)
-    message: JointState = msgs.type_of(JOINT_STATE)(msgs.header(time_ns, ""), names, *arrays)
+    message: msgs.JointState = msgs.type_of(JOINT_STATE)(msgs.header(time_ns, ""), names, *arrays)
     return message
 
 

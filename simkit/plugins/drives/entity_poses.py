@@ -17,7 +17,6 @@ from simkit.pose import Pose, Vector
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from simkit.msgs import TFMessage, TransformStamped
     from simkit.runtime import Link, Model, Simulation
     from simkit.scene import SceneJoint
 
@@ -183,7 +182,7 @@ class PoseSample:
         return placed
 
 
-def transforms_message(time_ns: int, taken: PoseSample, others: Sequence[FramePose] = ()) -> TFMessage:
+def transforms_message(time_ns: int, taken: PoseSample, others: Sequence[FramePose] = ()) -> msgs.TFMessage:
     """A `tf2_msgs/msg/TFMessage` of all parts, and others after them."""
     types = message_types()
     message, transform = types["TransformStamped"], types["Transform"]
@@ -193,16 +192,16 @@ def transforms_message(time_ns: int, taken: PoseSample, others: Sequence[FramePo
         message(header(frame), child, transform(vector(x, y, z), quaternion(i, j, k, w)))
         for frame, child, (x, y, z, w, i, j, k) in (*taken.placed, *others)
     ]
-    transforms: TFMessage = types["TFMessage"](made)
+    transforms: msgs.TFMessage = types["TFMessage"](made)
     return transforms
 
 
-def stamped_transform(time_ns: int, frame: str, child: str, seven: PoseNumbers) -> TransformStamped:
+def stamped_transform(time_ns: int, frame: str, child: str, seven: PoseNumbers) -> msgs.TransformStamped:
     """A `geometry_msgs/msg/TransformStamped` of one part."""
     types = message_types()
     x, y, z, w, i, j, k = seven
     place = types["Transform"](types["Vector3"](x, y, z), types["Quaternion"](i, j, k, w))
-    stamped: TransformStamped = types["TransformStamped"](msgs.header(time_ns, frame), child, place)
+    stamped: msgs.TransformStamped = types["TransformStamped"](msgs.header(time_ns, frame), child, place)
     return stamped
 
 

@@ -15,7 +15,6 @@ from simkit import msgs
 from simkit.pose import Pose, Vector, quat_conjugate, quat_from_rpy, quat_rotate
 
 if TYPE_CHECKING:
-    from simkit.msgs import Odometry, TFMessage, TransformStamped
     from simkit.runtime import Joint, Link, Model
 
 ODOMETRY = "nav_msgs/msg/Odometry"
@@ -224,7 +223,7 @@ def odometry_message(
     twist: BodyTwist,
     covariance: Vector | None = None,
     twist_covariance: Vector | None = None,
-) -> Odometry:
+) -> msgs.Odometry:
     """A `nav_msgs/msg/Odometry`: pose of `child` in `frame`, twist in `child`'s axes.
 
     Covariances are row-major, shape (36,): zeros without one, and the twist's is the pose's where it has none.
@@ -237,7 +236,7 @@ def odometry_message(
     second = first.copy() if twist_covariance is None else twist_covariance.copy()
     place = types["Pose"](point(*pose.position.tolist()), quaternion(x, y, z, w))
     motion = types["Twist"](vector(*map(float, twist.linear)), vector(*map(float, twist.angular)))
-    message: Odometry = types["Odometry"](
+    message: msgs.Odometry = types["Odometry"](
         msgs.header(time_ns, frame),
         child,
         types["PoseWithCovariance"](place, first),
@@ -246,18 +245,18 @@ def odometry_message(
     return message
 
 
-def transform(time_ns: int, frame: str, child: str, pose: Pose) -> TransformStamped:
+def transform(time_ns: int, frame: str, child: str, pose: Pose) -> msgs.TransformStamped:
     """A `geometry_msgs/msg/TransformStamped`: where `child` is in `frame`."""
     types = message_types()
     w, x, y, z = pose.quaternion.tolist()
     place = types["Transform"](types["Vector3"](*pose.position.tolist()), types["Quaternion"](x, y, z, w))
-    message: TransformStamped = types["TransformStamped"](msgs.header(time_ns, frame), child, place)
+    message: msgs.TransformStamped = types["TransformStamped"](msgs.header(time_ns, frame), child, place)
     return message
 
 
-def transforms(time_ns: int, *items: tuple[str, str, Pose]) -> TFMessage:
+def transforms(time_ns: int, *items: tuple[str, str, Pose]) -> msgs.TFMessage:
     """A `tf2_msgs/msg/TFMessage`: for each (frame, child, pose), where `child` is in `frame`."""
-    message: TFMessage = msgs.type_of(TRANSFORMS)([transform(time_ns, *item) for item in items])
+    message: msgs.TFMessage = msgs.type_of(TRANSFORMS)([transform(time_ns, *item) for item in items])
     return message
 
 

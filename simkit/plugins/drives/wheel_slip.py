@@ -25,7 +25,6 @@ from simkit.scene import Cylinder, SceneJoint, SceneLink, SceneModel, Sphere
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
-    from simkit.msgs import Float64
     from simkit.runtime import Model, Simulation
     from simkit.runtime.communication.parameter_server import Parameter
 
@@ -295,7 +294,7 @@ class ClassicWheelSlip(_ClassicWheelSlip):
         for out in self._outs:
             publish_while_subscribed(self, out, 0.0, "tell")
 
-    def _on_compliance(self, side: int, message: Float64) -> None:
+    def _on_compliance(self, side: int, message: msgs.Float64) -> None:
         value = float(message.data)
         if math.isfinite(value) and value >= 0.0:
             self.set_all(side, value)

@@ -14,7 +14,6 @@ from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.pose import rpy_from_quat
 
 if TYPE_CHECKING:
-    from simkit.msgs import Pose, PoseArray, PoseStamped, TFMessage
     from simkit.runtime import Model
 
 PoseMessage = Any
@@ -68,7 +67,7 @@ class DriveToPoseController(ModelPlugin):
 
     # ------------------------------------------------------------------ messages
 
-    def _on_target(self, message: PoseArray | PoseStamped | Pose | TFMessage) -> None:
+    def _on_target(self, message: msgs.PoseArray | msgs.PoseStamped | msgs.Pose | msgs.TFMessage) -> None:
         found = _first_pose(message)
         target = None if found is None else _planar(found)
         if found is None:

@@ -19,7 +19,6 @@ from simkit.plugins.options import Options, OptionsOf, number, text
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
-    from simkit.msgs import Int32, LaserScan
     from simkit.runtime import Model
     from simkit.scene import SceneModel
 
@@ -129,7 +128,7 @@ class Elevator(ModelPlugin):
 
     # ------------------------------------------------------------------ messages
 
-    def _on_command(self, message: Int32) -> None:
+    def _on_command(self, message: msgs.Int32) -> None:
         target = int(message.data)
         if not 0 <= target < len(self._heights):
             top = len(self._heights) - 1
@@ -160,7 +159,7 @@ class Elevator(ModelPlugin):
             before = stop
         self._targets = [*self._targets, target]
 
-    def _on_scan(self, door: int, scan: LaserScan) -> None:
+    def _on_scan(self, door: int, scan: msgs.LaserScan) -> None:
         if len(scan.ranges):
             blocked = bool(scan.ranges[0] < scan.range_max - _FREE)
             if blocked != self._blocked[door]:

@@ -30,7 +30,6 @@ from simkit.plugins.options import Options, OptionsOf, choice, numbers, text, te
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
-    from simkit.msgs import JointTrajectory
     from simkit.runtime import Model
     from simkit.scene import SceneJoint, SceneModel
 
@@ -188,7 +187,7 @@ class JointTrajectoryController(ControlledJoints, ModelPlugin):
 
     # ------------------------------------------------------------------ commands
 
-    def _on_trajectory(self, message: JointTrajectory) -> None:
+    def _on_trajectory(self, message: msgs.JointTrajectory) -> None:
         names, points = [str(name) for name in message.joint_names], read_points(message)
         fault = trajectory_faults(names, points) if names else "it names no joints"
         if fault:

@@ -18,7 +18,6 @@ from simkit.pose import Pose, quat_rotate
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
-    from simkit.msgs import PerformerStatus
     from simkit.runtime import Model, Simulation
     from simkit.scene import SceneModel, SceneWorld
 
@@ -200,7 +199,7 @@ class PerformerDetector(ModelPlugin):
             self._details.publish(msgs.make(STATUS, header=header, **told, keys=keys, values=values))
 
 
-def pose_of_status(status: PerformerStatus) -> Message:
+def pose_of_status(status: msgs.PerformerStatus) -> Message:
     """The `gz.msgs.Pose` that a detector publishes in gz, with what gz has in its header."""
     found: Any = MESSAGE_CLASSES["Pose"](name=status.name)
     for ours, theirs in ((found.position, status.pose.position), (found.orientation, status.pose.orientation)):

@@ -18,7 +18,6 @@ from simkit.runtime.contact.collision_contacts import Bools, collision_table, fi
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
-    from simkit.msgs import Bool, SetBool_Request
     from simkit.runtime import Model, Publisher
     from simkit.scene import SceneCollision, SceneModel
 
@@ -104,7 +103,7 @@ class TouchTimer(ModelPlugin):
         long = f"world/{self._world}{kinds}/link/{link}/collision/{collision}"
         return any(self._target in name for name in (scoped, long, "/" + scoped.replace("::", "/")))
 
-    def _on_enable(self, message: Bool) -> None:
+    def _on_enable(self, message: msgs.Bool) -> None:
         self._enable(bool(message.data))
 
     def _enable(self, enabled: bool) -> None:
@@ -183,7 +182,7 @@ class TouchPlugin(TouchTimer):
         detectors = [p for p in self.sim.engine.structure.all_plugins() if isinstance(p, TouchPlugin)]
         return [p for p in detectors if p._topic == self._topic]
 
-    def _on_call(self, request: SetBool_Request) -> dict[str, object]:
+    def _on_call(self, request: msgs.SetBool_Request) -> dict[str, object]:
         for detector in self._together():
             detector._enable(bool(request.data))
         return {"success": True}

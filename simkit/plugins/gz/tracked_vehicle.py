@@ -30,7 +30,6 @@ from simkit.plugins.options import Options, OptionsOf, block, blocks, boolean, n
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
-    from simkit.msgs import Float64, Twist, TwistStamped
     from simkit.runtime import Model
     from simkit.scene import SceneModel
 
@@ -159,7 +158,7 @@ class TrackedVehicle(ModelPlugin):
 
     # ------------------------------------------------------------------ commands
 
-    def _on_command(self, message: Twist | TwistStamped) -> None:
+    def _on_command(self, message: msgs.Twist | msgs.TwistStamped) -> None:
         command = command_of(message)
         if command is None:
             self.once.not_finite()
@@ -167,7 +166,7 @@ class TrackedVehicle(ModelPlugin):
             self._target = command
             self._begin()
 
-    def _on_efficiency(self, message: Float64) -> None:
+    def _on_efficiency(self, message: msgs.Float64) -> None:
         efficiency = float(message.data)
         if math.isfinite(efficiency) and efficiency > 0.0:
             self._efficiency = efficiency

@@ -13,7 +13,6 @@ from simkit.pose import IDENTITY, Pose, Vector
 
 if TYPE_CHECKING:
     from simkit import msgs
-    from simkit.msgs import ColorRGBA, Entity, Point, Vector3
     from simkit.runtime import Simulation
 
 T = TypeVar("T")
@@ -124,7 +123,7 @@ def find_entity(sim: Simulation, name: str, kinds: Sequence[str], what: str = ""
     raise RequestRefused(f"there is no {what} {name!r}; {near or 'there is ' + (listed or 'none')}")
 
 
-def entity_of(sim: Simulation, message: Entity, kinds: Sequence[str]) -> tuple[str, str]:
+def entity_of(sim: Simulation, message: msgs.Entity, kinds: Sequence[str]) -> tuple[str, str]:
     """Kind and scoped name of what an `Entity` message means, by its name, or else by its id.
 
     Raises:
@@ -179,7 +178,7 @@ def require_finite(value: float, what: str, minimum: float | None = None) -> flo
     return number
 
 
-def vector_of(message: Vector3 | Point, what: str) -> tuple[float, float, float]:
+def vector_of(message: msgs.Vector3 | msgs.Point, what: str) -> tuple[float, float, float]:
     """The numbers of a Vector3 or a Point message; raises Refused."""
     x, y, z = (require_finite(getattr(message, axis), f"{what}.{axis}") for axis in "xyz")
     return x, y, z
@@ -212,7 +211,7 @@ def vector_fields(vector: Sequence[float] | Vector) -> dict[str, float]:
     return {"x": x, "y": y, "z": z}
 
 
-def colour_of(message: ColorRGBA, what: str) -> tuple[float, float, float, float] | None:
+def colour_of(message: msgs.ColorRGBA, what: str) -> tuple[float, float, float, float] | None:
     """A colour RGBA from 0 to 1; None where all four are zero, which says nothing. Raises Refused."""
     r, g, b, a = (require_finite(getattr(message, part), f"{what}.{part}", 0.0) for part in "rgba")
     return None if r == g == b == a == 0.0 else (r, g, b, a)

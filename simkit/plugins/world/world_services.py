@@ -35,24 +35,6 @@ from simkit.plugins.world.physics_settings import set_physics
 from simkit.pose import IDENTITY, Pose
 
 if TYPE_CHECKING:
-    from simkit.msgs import (
-        ControlWorld_Request,
-        Entity,
-        EntityFactory,
-        EntityRequest_Request,
-        Light,
-        MaterialColor,
-        SetEntityPose_Request,
-        SetEntityPoses_Request,
-        SetLight_Request,
-        SetMaterialColor_Request,
-        SetPhysicsProperties_Request,
-        SetSphericalCoordinates_Request,
-        SetWheelSlip_Request,
-        SpawnEntities_Request,
-        ros_gz_interfaces__srv__DeleteEntity_Request,
-        ros_gz_interfaces__srv__SpawnEntity_Request,
-    )
     from simkit.runtime import Simulation
     from simkit.scene import SceneJoint
 
@@ -113,7 +95,7 @@ class WorldServices(WorldPlugin):
 
     # ------------------------------------------------------------------ running
 
-    def _control(self, request: ControlWorld_Request) -> None:
+    def _control(self, request: msgs.ControlWorld_Request) -> None:
         asked, sim = request.world_control, self.sim
         pausing, reset, seed = sim.control.pausing, asked.reset, int(asked.seed)
         time_ns = msgs.stamp_ns(asked.run_to_sim_time)
@@ -135,17 +117,17 @@ class WorldServices(WorldPlugin):
             sim.paused = bool(asked.pause)
         pausing.catch_up()
 
-    def _set_physics(self, request: SetPhysicsProperties_Request) -> str:
+    def _set_physics(self, request: msgs.SetPhysicsProperties_Request) -> str:
         # gz's own message says nothing of gravity: none is no wish for weightlessness here
         gravity = request.gravity
         return set_physics(self.sim, request, keeps_gravity=not (gravity.x or gravity.y or gravity.z))
 
     # ------------------------------------------------------------------ entities
 
-    def _create(self, request: ros_gz_interfaces__srv__SpawnEntity_Request) -> None:
+    def _create(self, request: msgs.ros_gz_interfaces__srv__SpawnEntity_Request) -> None:
         self._spawn(request.entity_factory)
 
-    def _create_multiple(self, request: SpawnEntities_Request) -> None:
+    def _create_multiple(self, request: msgs.SpawnEntities_Request) -> None:
         with self.sim.contents.all_or_none():
             waiting: dict[str, tuple[str, Pose | None]] = {}
             for factory in request.entity_factories:
@@ -167,7 +149,7 @@ class WorldServices(WorldPlugin):
             )
             waiting.clear()
 
-    def _spawn(self, factory: EntityFactory) -> None:
+    def _spawn(self, factory: msgs.EntityFactory) -> None:
         if factory.clone_name:
             pose = self._asked_pose(factory)
             _, old = find_entity(self.sim, factory.clone_name, ("model",))
@@ -175,7 +157,7 @@ class WorldServices(WorldPlugin):
         else:
             spawn_entities(self.sim.spawn, *self._wanted(factory))
 
-    def _wanted(self, factory: EntityFactory, waiting: Container[str] = ()) -> tuple[str, str | None, Pose | None]:
+    def _wanted(self, factory: msgs.EntityFactory, waiting: Container[str] = ()) -> tuple[str, str | None, Pose | None]:
         """The source, name and pose of a model to be spawned, as `sim.spawn` takes them."""
         pose = self._asked_pose(factory)
         source, name = factory.sdf or factory.sdf_filename, factory.name or None
@@ -185,7 +167,7 @@ class WorldServices(WorldPlugin):
             self._free_name(name, False, waiting)
         return source, name, pose
 
-    def _asked_pose(self, factory: EntityFactory) -> Pose | None:
+    def _asked_pose(self, factory: msgs.EntityFactory) -> Pose | None:
         """Where a model is to be spawned; None for the file's own."""
         ways = {"sdf": factory.sdf, "sdf_filename": factory.sdf_filename, "clone_name": factory.clone_name}
         given = [way for way, value in ways.items() if value]
@@ -209,7 +191,7 @@ class WorldServices(WorldPlugin):
             name, number = f"{wanted}_{number}", number + 1
         return name
 
-    def _remove(self, request: ros_gz_interfaces__srv__DeleteEntity_Request) -> None:
+    def _remove(self, request: msgs.ros_gz_interfaces__srv__DeleteEntity_Request) -> None:
         kind, name = entity_of(self.sim, request.entity, ("model", "light"))
         if kind == "light":
             raise RequestRefused(f"the light {name!r} cannot be removed; light_config can darken it")
@@ -217,10 +199,10 @@ class WorldServices(WorldPlugin):
             raise RequestRefused(f"{name!r} is not a direct child of the world; remove {name.split('::')[0]!r}")
         self.sim.remove(name)
 
-    def _set_pose(self, request: SetEntityPose_Request) -> None:
+    def _set_pose(self, request: msgs.SetEntityPose_Request) -> None:
         self._place(request.entity, pose_of(request.pose))
 
-    def _set_pose_vector(self, request: SetEntityPoses_Request) -> None:
+    def _set_pose_vector(self, request: msgs.SetEntityPoses_Request) -> None:
         if len(request.entities) != len(request.poses):
             raise RequestRefused(
                 f"found {len(request.entities)} entities and {len(request.poses)} poses, allowed are as many"
@@ -231,16 +213,16 @@ class WorldServices(WorldPlugin):
         for entity, pose in zip(request.entities, poses, strict=True):
             self._place(entity, pose)
 
-    def _place(self, entity: Entity, pose: Pose) -> None:
+    def _place(self, entity: msgs.Entity, pose: Pose) -> None:
         handle_of(self.sim, *entity_of(self.sim, entity, ("model", "light"))).set_pose(pose)
 
-    def _enable_collision(self, request: EntityRequest_Request) -> None:
+    def _enable_collision(self, request: msgs.EntityRequest_Request) -> None:
         self._switch_collision(request.entity, True)
 
-    def _disable_collision(self, request: EntityRequest_Request) -> None:
+    def _disable_collision(self, request: msgs.EntityRequest_Request) -> None:
         self._switch_collision(request.entity, False)
 
-    def _switch_collision(self, entity: Entity, enabled: bool) -> None:
+    def _switch_collision(self, entity: msgs.Entity, enabled: bool) -> None:
         kind, name = entity_of(self.sim, entity, ("collision", "link", "model"))
         if kind == "model":
             self.sim.control.enable_collisions(
@@ -251,7 +233,7 @@ class WorldServices(WorldPlugin):
         else:
             self.sim.control.enable_collisions([name.rpartition("::")[0]], enabled, only=name)
 
-    def _wheel_slip(self, request: SetWheelSlip_Request) -> None:
+    def _wheel_slip(self, request: msgs.SetWheelSlip_Request) -> None:
         kind, name = entity_of(self.sim, request.entity, ("model", "link"))
         links = {link.scoped for link in self.sim.model(name).scene.all_links()} if kind == "model" else {name}
         values = float(request.slip_compliance_lateral), float(request.slip_compliance_longitudinal)
@@ -260,10 +242,10 @@ class WorldServices(WorldPlugin):
 
     # ------------------------------------------------------------------ looks
 
-    def _light_config(self, request: SetLight_Request) -> None:
+    def _light_config(self, request: msgs.SetLight_Request) -> None:
         self._configure_light(request.light)
 
-    def _configure_light(self, asked: Light) -> None:
+    def _configure_light(self, asked: msgs.Light) -> None:
         """What is zero in the message stays as it is: ROS cannot leave a field out."""
         sim = self.sim
         name = asked.name
@@ -298,10 +280,10 @@ class WorldServices(WorldPlugin):
         if pose != IDENTITY:
             light.set_pose(pose)
 
-    def _visual_config(self, request: SetMaterialColor_Request) -> str | None:
+    def _visual_config(self, request: msgs.SetMaterialColor_Request) -> str | None:
         return self._paint(request.material_color)
 
-    def _paint(self, asked: MaterialColor) -> str | None:
+    def _paint(self, asked: msgs.MaterialColor) -> str | None:
         sim, entity = self.sim, asked.entity
         kind, name = entity_of(sim, entity, ("visual", "link", "model"))
         diffuse = colour_of(asked.diffuse, "diffuse")
@@ -340,7 +322,7 @@ class WorldServices(WorldPlugin):
 
     # ------------------------------------------------------------------ the place on Earth
 
-    def _set_spherical_coordinates(self, request: SetSphericalCoordinates_Request) -> None:
+    def _set_spherical_coordinates(self, request: msgs.SetSphericalCoordinates_Request) -> None:
 
         entity = request.entity
         if entity.name or entity.id:

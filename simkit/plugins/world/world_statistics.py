@@ -17,7 +17,6 @@ from simkit.plugins.drives.odometry import TRANSFORMS
 from simkit.plugins.world.clock import TYPE as CLOCK
 
 if TYPE_CHECKING:
-    from simkit.msgs import TFMessage
     from simkit.runtime import Simulation
     from simkit.scene import SceneModel
 
@@ -118,13 +117,13 @@ class WorldStats(WorldPlugin):
     def _clock(self, _topic: str) -> Any:
         return msgs.type_of(CLOCK)(msgs.time(self.sim.time_ns))
 
-    def _all_poses(self, _topic: str) -> Callable[[], TFMessage]:
+    def _all_poses(self, _topic: str) -> Callable[[], msgs.TFMessage]:
         sim = self.sim
         lights = [light for light in sim.contents.lights.values() if not light.scene.link]
         placed = [(sim.world.name, light.scoped, pose_numbers(light.pose)) for light in lights]
         return partial(transforms_message, sim.time_ns, self._take("all poses", with_all=True), placed)
 
-    def _moving_poses(self, _topic: str) -> Callable[[], TFMessage]:
+    def _moving_poses(self, _topic: str) -> Callable[[], msgs.TFMessage]:
         return partial(transforms_message, self.sim.time_ns, self._take("moving poses", with_all=False))
 
     def _take(self, name: str, *, with_all: bool) -> PoseSample:
