@@ -133,4 +133,5 @@ def read_frame(sensor: Sensor, params: Params) -> str:
 
 def link_name(sensor: Sensor) -> str:
     """The plain name of a sensor's link."""
-    return sensor.scene.parent.rsplit("::", 1)[-1]
+    scoped: str = sensor.scene.parent
+    return scoped.rsplit("::", 1)[-1]

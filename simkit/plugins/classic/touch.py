@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, ClassVar
 from simkit.diagnostics import did_you_mean
 from simkit.params import Params
 from simkit.plugins.endpoints import listens, publishes
-from simkit.plugins.gz.touch import TouchTimer
-from simkit.plugins.options import Options, OptionsOf, boolean, number, text
+from simkit.plugins.gz.touch import TouchOptions, TouchTimer
+from simkit.plugins.options import OptionsOf, text
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -16,13 +16,9 @@ if TYPE_CHECKING:
     from simkit.scene import SceneModel
 
 
-class ClassicTouchPluginOptions(Options):
+class ClassicTouchPluginOptions(TouchOptions):
     """Options of `ClassicTouchPlugin`."""
 
-    target: str = text(required=True)
-    time: float = number(None, "s", minimum=0.0, maximum=1000000000.0, required=True)
-    namespace: str = text(required=True)
-    enabled: bool = boolean()
     sensor: str = text(required=True)
 
 

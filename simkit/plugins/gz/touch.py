@@ -25,9 +25,19 @@ BOOL: Final = "std_msgs/msg/Bool"
 SET_BOOL: Final = "std_srvs/srv/SetBool"
 
 
+class TouchOptions(Options):
+    """Options that touch detectors share."""
+
+    target: str = text(required=True)
+    time: float = number(None, "s", minimum=0.0, maximum=1e9, required=True)
+    namespace: str = text(required=True)
+    enabled: bool = boolean()
+
+
 class TouchTimer(ModelPlugin):
     """What gz's and Classic's share: how long a target has been touched without a break."""
 
+    options = OptionsOf(TouchOptions)
     reads_contacts: ClassVar[bool] = True
     message_type: ClassVar[str] = BOOL
     is_exclusive: ClassVar[bool] = False  # whether touching anything else is a break
@@ -40,13 +50,12 @@ class TouchTimer(ModelPlugin):
 
     def _read_common(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         self._target = read_required_name(params, "target")
-        duration = params.number("time", required=True, minimum=0.0, maximum=1e9)
-        self._duration = round(duration * 1e9)
-        self._topic = valid_topic(params.text("namespace", required=True))
+        self._duration = round(self.options.time * 1e9)
+        self._topic = valid_topic(self.options.namespace)
         if self._topic == "/" and params.has("namespace"):
             params.error("SK-PARAM-002", "found a <namespace> without a letter or digit, allowed is a topic's name")
         self._links = frozenset(link.scoped for link in scene.links)
-        self._is_enabled = params.boolean("enabled", False)
+        self._is_enabled = self.options.enabled
         self._world = builder.world.name
 
     def _watch(self, watched: Iterable[str], params: Params) -> None:
@@ -115,13 +124,9 @@ class TouchTimer(ModelPlugin):
         set_after_step_rate(self, None if self._is_enabled else NEVER)
 
 
-class TouchPluginOptions(Options):
+class TouchPluginOptions(TouchOptions):
     """Options of `TouchPlugin`."""
 
-    target: str = text(required=True)
-    time: float = number(None, "s", minimum=0.0, maximum=1000000000.0, required=True)
-    namespace: str = text(required=True)
-    enabled: bool = boolean()
     collision: tuple[str, ...] = texts()
     create_contact_sensor_for_collision: bool = boolean()
 
