@@ -8,11 +8,12 @@ from __future__ import annotations
 from measure import arguments, report
 
 from simkit.cli.bench_figures import compare_with_bare_mujoco
+from simkit.run_spec import RunSpec
 
 
 def main() -> None:
     args = arguments(__doc__, rounds=15)
-    report(f for f in compare_with_bare_mujoco(args.world, rounds=args.rounds, what="steps"))
+    report(f for f in compare_with_bare_mujoco(RunSpec(args.world), rounds=args.rounds, what="steps"))
 
 
 if __name__ == "__main__":

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
+from simkit.cli.run_options import load_options
 from simkit.cli.terminal.options import (
     Base,
     PackagePaths,
@@ -16,6 +17,7 @@ from simkit.cli.terminal.options import (
     source_arguments,
 )
 from simkit.cli.terminal.output import report_errors, stdout_console
+from simkit.run_spec import RunSpec
 
 _HOUR = 3600.0
 
@@ -39,11 +41,10 @@ def bench(
     from simkit.cli.bench_figures import compare_with_bare_mujoco, measure_import_time, measure_memory_growth
 
     stdout_console().print(f"{'':<52}{'simkit':>12}{'bare':>12}{'ratio':>8}{'aim':>8}")
-    how: dict[str, Any] = {
-        **source_arguments(resource_path, package_path, xacro_arg, base),
-        "plugin_paths": plugin_path,
-    }
-    for figure in compare_with_bare_mujoco(world, rounds=rounds, how=how):
+    spec = RunSpec(
+        world, options=load_options(source_arguments(resource_path, package_path, xacro_arg, base), plugin_path)
+    )
+    for figure in compare_with_bare_mujoco(spec, rounds=rounds):
         bare = "" if figure.bare is None else f"{figure.bare * 1e6:.1f} µs"
         ratio = "" if figure.ratio is None else f"{figure.ratio:.2f}"
         aim = f"{figure.most * 1e6:.0f} µs" if figure.most else "" if figure.aim is None else f"{figure.aim:.2f}"
@@ -51,7 +52,7 @@ def bench(
             f"{figure.name:<52}{figure.ours * 1e6:>9.1f} µs{bare:>12}{ratio:>8}{aim:>8}  a {figure.unit}"
         )
     stdout_console().print(f"{'import simkit':<52}{measure_import_time(rounds):>9.3f} s{'':>21}{'0.3 s':>8}")
-    with load(world, **how) as sim:
+    with load(spec.world, **spec.load_arguments()) as sim:
         growth = measure_memory_growth(sim, _HOUR if full else 60.0)
     stdout_console().print(f"{'memory':<52}{growth * _HOUR / 1e6:>9.2f} MB  a simulated hour")
     return 0

@@ -8,13 +8,14 @@ import statistics
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 from simkit import build
 from simkit.cli.bench_bare_mujoco import BareCamera, BareEngine, HandWrittenLoop, cast_bare_scan
 from simkit.plugins import WorldPlugin
+from simkit.run_spec import RunSpec
 from simkit.runtime.engine.scheduler import Phase
 from simkit.sensors.cameras.rendered_camera import RenderedCamera
 from simkit.sensors.rays.lidar import Lidar
@@ -81,23 +82,21 @@ def time_interleaved(
 
 
 def compare_with_bare_mujoco(
-    source: str,
+    spec: RunSpec,
     *,
     rounds: int = 9,
     what: str = "all",
-    how: Mapping[str, Any] | None = None,
 ) -> Iterator[Figure]:
-    """Each figure of a world as soon as it is known.
+    """Yield each figure of a world as soon as it is known.
 
     Args:
-        source: the world.
+        spec: the world and how it is loaded; the figures decide what is run.
         rounds: timings of each side.
         what: "steps", "sensors" or "all".
-        how: further arguments of `simkit.load`: resource_paths, package_paths, base, ...
     """
 
-    def load(*plugins: Any) -> Any:
-        return build.load(source, plugins=plugins, **(how or {}))
+    def load(*plugins: WorldPlugin) -> Simulation:
+        return build.load(spec.world, **replace(spec, plugins=plugins).load_arguments())
 
     if what != "sensors":
         yield from _step_figures(load, rounds)
@@ -109,7 +108,7 @@ def compare_with_bare_mujoco(
                     yield compare_sensor(sim, sensor, rounds)
 
 
-def _step_figures(load: Callable[..., Any], rounds: int) -> Iterator[Figure]:
+def _step_figures(load: Callable[..., Simulation], rounds: int) -> Iterator[Figure]:
     with load() as sim:
         yield compare_stepping(sim, rounds)
     plugin = EveryStepPlugin()

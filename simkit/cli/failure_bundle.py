@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from simkit.cli.terminal.output import print_status
 from simkit.errors import InputError, SimkitError
@@ -12,6 +12,7 @@ from simkit.run_spec import RunSpec
 
 if TYPE_CHECKING:
     from simkit.cli.run_verdict import RunVerdict
+    from simkit.runtime import Simulation
     from simkit.testing.bundles import BundleRecorder
     from simkit.testing.bundles.manifest import Failure
 
@@ -40,7 +41,7 @@ class FailureBundle:
 
             check_folder(folder)
 
-    def keep(self, sim: Any) -> None:
+    def keep(self, sim: Simulation) -> None:
         """Begins to keep what a bundle needs; to be called right after loading."""
         if self._folder is not None:
             from simkit.testing.bundles import BundleRecorder

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections import deque
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from simkit.cli.terminal.output import print_status
 
 if TYPE_CHECKING:
     from simkit.cli.terminal.teleop import Teleop
+    from simkit.runtime import Simulation
 
 HINT = "space goes on, n does one step, Ctrl-C ends"
 
@@ -32,7 +33,7 @@ class RunKeys:
         teleop: takes those that drive.
     """
 
-    def __init__(self, sim: Any, keyboard: KeySource, teleop: Teleop | None = None) -> None:
+    def __init__(self, sim: Simulation, keyboard: KeySource, teleop: Teleop | None = None) -> None:
         self._sim, self._keyboard, self._teleop = sim, keyboard, teleop
         self._was_told = self._was_hinted = False
         self._left: deque[str] = deque()

@@ -10,14 +10,16 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 from types import FrameType, TracebackType
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from simkit.cli.terminal.blocked_plugins import describe_blocking_plugin
 from simkit.cli.terminal.output import print_status
+from simkit.cli.wall_time_limit import SignalHandler
 
 if TYPE_CHECKING:
     from simkit.bridges.live.server import Server
     from simkit.recording.commands import Commands
+    from simkit.runtime import Simulation
 
 
 _LONG, _SHORT = 0.05, 0.02  # [s] of wall time that a slice may and should take
@@ -63,7 +65,7 @@ class RunLoop:
 
     def __init__(
         self,
-        sim: Any,
+        sim: Simulation,
         commands: Commands,
         interrupts: Interrupts,
         watchers: list[Callable[[], None]],
@@ -199,7 +201,7 @@ class Interrupts:
     def __init__(self, noted: Callable[[], None] | None = None) -> None:
         self.exit_code = 0
         self._noted = noted
-        self._before: dict[int, Any] = {}
+        self._before: dict[int, SignalHandler] = {}
 
     def __enter__(self) -> Interrupts:
         if threading.current_thread() is threading.main_thread():

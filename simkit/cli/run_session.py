@@ -7,7 +7,7 @@ from collections.abc import Callable
 from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simkit.cli.run_loop import Interrupts, RunLoop
 from simkit.cli.run_options import RunDisplay
@@ -24,11 +24,13 @@ if TYPE_CHECKING:
     from simkit.cli.terminal.teleop import Teleop
     from simkit.recording.bags.playback import Playback
     from simkit.recording.bags.recorder import Recorder
+    from simkit.recording.commands import Command
+    from simkit.recording.run_picture import DrivenPath
     from simkit.recording.topic_counts import TopicCounter
     from simkit.runtime import Simulation
 
 
-def print_summary(sim: Any, counter: TopicCounter, recording: Recorder | None, elapsed: float, *, quiet: bool) -> None:
+def print_summary(sim: Simulation, counter: TopicCounter, recording: Recorder | None, elapsed: float, *, quiet: bool) -> None:
     """Topics with their true rates, then one line, then the hash of the physics state.
 
     Args:
@@ -52,7 +54,7 @@ def print_summary(sim: Any, counter: TopicCounter, recording: Recorder | None, e
     stdout_console().print(f"state {state_hash(sim)}")
 
 
-def draw_picture(sim: Any, path: Path, driven: Any) -> None:
+def draw_picture(sim: Simulation, path: Path, driven: DrivenPath) -> None:
     """The scene at the end, with the path that was driven."""
     from simkit.build import render_view
     from simkit.recording.run_picture import save_picture
@@ -154,7 +156,7 @@ class Session:
             keyboard = self._keyboard()
             watch = Stopwatch()
             progress = stack.enter_context(self._progress(counter, duration))
-            watchers: list[Any] = [progress.update]
+            watchers: list[Callable[[], None]] = [progress.update]
             if recording is not None:
                 watchers.append(recording.check)
             if driven is not None:
@@ -192,7 +194,7 @@ class Session:
 
     # ------------------------------------------------------------------ who drives
 
-    def _commands(self) -> list[Any]:
+    def _commands(self) -> list[Command]:
         from simkit.recording.commands import read_script, steady_velocity
 
         topics = self.sim.topics()
@@ -262,7 +264,7 @@ class Session:
 
     # ------------------------------------------------------------------ who looks on
 
-    def _open_viewer(self, stack: ExitStack, loop: RunLoop, watchers: list[Any]) -> None:
+    def _open_viewer(self, stack: ExitStack, loop: RunLoop, watchers: list[Callable[[], None]]) -> None:
         from simkit.bridges.viewer import Viewer
 
         viewer = stack.enter_context(Viewer(self.sim))
@@ -282,7 +284,9 @@ class Session:
         else:
             stack.enter_context(loop.server)
 
-    def _watched(self, loop: RunLoop, interrupts: Interrupts, watchers: list[Any]) -> Callable[[float | None], Any]:
+    def _watched(
+        self, loop: RunLoop, interrupts: Interrupts, watchers: list[Callable[[], None]]
+    ) -> Callable[[float | None], object]:
         """The same loop, which reloads plugins that are edited."""
         from simkit.cli.plugin_watch import PluginWatch
 

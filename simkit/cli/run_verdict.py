@@ -6,7 +6,7 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from simkit.cli.terminal.output import print_status, stdout_console
 from simkit.cli.wall_time_limit import WallTimeExceeded, WallTimeLimit
@@ -14,6 +14,7 @@ from simkit.errors import RegressionError, SimkitError
 from simkit.run_spec import RunSpec
 
 if TYPE_CHECKING:
+    from simkit.runtime import Simulation
     from simkit.testing.conditions import CheckResult, Watch
     from simkit.testing.junit import JunitCase
 
@@ -68,7 +69,7 @@ class RunVerdict:
 
     # ------------------------------------------------------------------ the run
 
-    def watch(self, sim: Any, longest: float | None) -> Watch:
+    def watch(self, sim: Simulation, longest: float | None) -> Watch:
         """What looks at the conditions, to be entered around the run.
 
         Args:

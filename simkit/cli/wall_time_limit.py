@@ -9,7 +9,7 @@ import threading
 import time
 from collections.abc import Callable
 from types import FrameType, TracebackType
-from typing import Any, Final
+from typing import Final
 
 from simkit.cli.terminal.blocked_plugins import describe_blocking_plugin
 
@@ -17,6 +17,8 @@ GRACE_SECONDS: Final = 2.0
 """[s] after which what does not come to its end is interrupted."""
 ABORT_SECONDS: Final = 8.0
 """[s] after which a process that cannot be interrupted is ended."""
+SignalHandler = Callable[[int, FrameType | None], object] | int | None
+"""What `signal.signal` takes and returns."""
 _ALARM: Final = getattr(signal, "SIGALRM", None)  # Windows has none
 
 
@@ -42,7 +44,7 @@ class WallTimeLimit:
         self._say, self._give_up = say, give_up
         self._thread_id = threading.get_ident()
         self._ended = threading.Event()
-        self._before: Any = None
+        self._before: SignalHandler = None
         self._may_alarm = _ALARM is not None and threading.current_thread() is threading.main_thread()
 
     def __enter__(self) -> WallTimeLimit:
