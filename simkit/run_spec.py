@@ -16,6 +16,9 @@ from pathlib import Path
 from typing import Any, Final, Literal, Protocol, TypedDict, cast
 
 FilePath = str | os.PathLike[str]
+JsonObject = dict[str, Any]
+JsonMapping = Mapping[str, Any]
+"""What JSON and YAML give: texts, numbers, truth values, lists and further objects by name."""
 PluginErrorPolicy = Literal["stop", "disable"]
 """What becomes of a plugin that raises: the run ends, or it goes on without the plugin."""
 
@@ -149,7 +152,7 @@ class LoadArguments(LoadOptions, total=False):
     seed: int
     overrides: Sequence[str]
     spawn: Sequence[Any]
-    plugins: Sequence[Any]
+    plugins: Sequence[object]
     change_world: Callable[[Any], Any] | None
 
 
@@ -211,8 +214,8 @@ class RunSpec:
     name: str = ""
     overrides: tuple[str, ...] = ()
     spawn: tuple[str | SpawnRequest, ...] = ()
-    commands: tuple[Mapping[str, Any], ...] = ()
-    plugins: tuple[Any, ...] = ()
+    commands: tuple[JsonMapping, ...] = ()
+    plugins: tuple[object, ...] = ()
     topics: tuple[str, ...] = ()
     skip: tuple[str, ...] = ()
     tolerances: tuple[Tolerance, ...] = ()

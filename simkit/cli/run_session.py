@@ -30,7 +30,9 @@ if TYPE_CHECKING:
     from simkit.runtime import Simulation
 
 
-def print_summary(sim: Simulation, counter: TopicCounter, recording: Recorder | None, elapsed: float, *, quiet: bool) -> None:
+def print_summary(
+    sim: Simulation, counter: TopicCounter, recording: Recorder | None, elapsed: float, *, quiet: bool
+) -> None:
     """Topics with their true rates, then one line, then the hash of the physics state.
 
     Args:

@@ -43,6 +43,9 @@ __all__ = [
     "types_of",
 ]
 
+Message = Any
+"""An object of any message class; a checker knows its fields only where its class is named."""
+
 _NS = 1_000_000_000
 
 if not TYPE_CHECKING:  # to a type checker a class that does not exist is an error

@@ -25,7 +25,7 @@ class ServerConfig:
         self._source: str = _EMPTY
         self._seed = 0
 
-    def set_sdf_file(self, path: Any) -> bool:
+    def set_sdf_file(self, path: object) -> bool:
         self._source = str(path)
         return True
 
@@ -48,12 +48,12 @@ class _Callbacks:
         self.given: tuple[Any, ...] = ()
         self.steps = 0
 
-    def call(self, hook: str, *values: Any) -> None:
+    def call(self, hook: str, *values: object) -> None:
         if self.is_final:
             for callback in self.hooks.get(hook, ()):
                 callback(*values)
 
-    def configure(self, entity: int, sdf: Any, ecm: EntityComponentManager, events: EventManager) -> None:
+    def configure(self, entity: int, sdf: object, ecm: EntityComponentManager, events: EventManager) -> None:
         self.given = (entity, sdf, ecm, events)
 
     def pre_update(self, info: UpdateInfo, ecm: EntityComponentManager) -> None:
@@ -69,7 +69,7 @@ class _Callbacks:
     def reset(self, info: UpdateInfo, ecm: EntityComponentManager) -> None:
         self.call("reset", info, ecm)
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> _Callbacks:
+    def __deepcopy__(self, memo: dict[int, object]) -> _Callbacks:
         return self
 
 
@@ -190,7 +190,7 @@ class TestFixture:
 
     __test__: ClassVar[bool] = False  # pytest would take it for a test
 
-    def __init__(self, path_or_config: Any) -> None:
+    def __init__(self, path_or_config: object) -> None:
         self._callbacks = _Callbacks()
         config = path_or_config
         if not isinstance(config, ServerConfig):

@@ -15,9 +15,10 @@ import zipfile
 import zlib
 from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
-from typing import IO, Any, Final
+from typing import IO, Final
 
 from simkit.errors import InputError
+from simkit.run_spec import JsonObject
 from simkit.testing.bundles.manifest import BAG, BROKEN, COMMANDS, PAGE, Manifest, read_manifest
 
 MAX_FILES: Final = 20_000
@@ -102,7 +103,7 @@ class Bundle:
         self._compare(name, len(data), hashlib.sha256(data).hexdigest())
         return data
 
-    def commands(self) -> Iterator[dict[str, Any]]:
+    def commands(self) -> Iterator[JsonObject]:
         """The entries of its journal, in order.
 
         Raises:
@@ -212,7 +213,7 @@ class Bundle:
             raise self._too_large(f"has a {name} of more than {most >> 20} MiB")
         return data
 
-    def _entry(self, line: bytes) -> dict[str, Any]:
+    def _entry(self, line: bytes) -> JsonObject:
         try:
             entry = json.loads(line)
         except (ValueError, RecursionError) as error:
@@ -225,7 +226,7 @@ class Bundle:
             numbers = [0]
         if not isinstance(place, list) or len(place) != 2 or not all(type(n) is int for n in (*place, *numbers)):
             raise self._broken(f"{COMMANDS}: the numbers of {entry!r:.80} are none")
-        found: dict[str, Any] = entry
+        found: JsonObject = entry
         return found
 
     def _compare(self, name: str, size: int, digest: str) -> None:

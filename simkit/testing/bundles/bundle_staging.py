@@ -163,7 +163,7 @@ def _split_params_file(text: str) -> tuple[str, str]:
     return (model, file) if equals and "/" not in model and not Path(text).exists() else ("", text)
 
 
-def _source_text(source: Any) -> str:
+def _source_text(source: object) -> str:
     return "the text" if "<" in str(source) else str(source)
 
 
@@ -187,7 +187,7 @@ def copy_plugin_modules(world: StagedWorld, stage: Path, folders: Any) -> None:
             world.code.append(name)
 
 
-def _file_of(module: Any) -> Path | None:
+def _file_of(module: object) -> Path | None:
     said = getattr(module, "__file__", None)
     if not isinstance(said, str) or not said.endswith(".py"):
         return None

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from simkit.errors import InputError
-from simkit.run_spec import RunSpec
+from simkit.run_spec import JsonObject, RunSpec
 from simkit.testing.bundles.archive import MAX_BYTES, name_fault
 from simkit.testing.bundles.bundle_recorder import WINDOW_SECONDS, BundleRecorder, recorder_of
 from simkit.testing.bundles.bundle_staging import UNPACKED, WorldStager, copy_plugin_modules
@@ -199,7 +199,7 @@ def pack_load_failure(spec: RunSpec, folder: Path, failure: Failure) -> Path:
     return _write_under_own_name(folder, staged)
 
 
-def _manifest_options(spec: RunSpec) -> dict[str, Any]:
+def _manifest_options(spec: RunSpec) -> JsonObject:
     """Return the fields of a manifest that a run specification gives."""
     return {
         "base": spec.options.get("base", "auto"),
@@ -225,7 +225,7 @@ def _encodable_messages(messages: Iterator[Any], gaps: list[str]) -> Iterator[An
         gaps.append(f"not all of the last seconds' messages could be made: {error!r:.200}")
 
 
-def _file_table(stage: Path) -> dict[str, dict[str, Any]]:
+def _file_table(stage: Path) -> dict[str, JsonObject]:
     found = {}
     total = 0
     for path in sorted(stage.rglob("*")):

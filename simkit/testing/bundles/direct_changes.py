@@ -5,7 +5,7 @@ The state is compared with that after the last step. So it does not matter by wh
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import mujoco
 import numpy as np
@@ -14,6 +14,7 @@ import numpy.typing as npt
 from simkit.errors import MessageError
 from simkit.runtime.engine.physics import STALE
 from simkit.testing.bundles.journal_values import decode_array, encode_value
+from simkit.testing.run_record.record import Array
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
@@ -43,9 +44,9 @@ class DirectChanges:
 
     def __init__(self, sim: Simulation) -> None:
         self._sim = sim
-        self._model: Any = None
+        self._model: mujoco.MjModel | None = None
         self._state = np.empty(0)
-        self._fields: dict[str, Any] = {}
+        self._fields: dict[str, Array] = {}
         self._edition = -1
         self.see()
 
@@ -57,12 +58,12 @@ class DirectChanges:
             self._fields = _changeable_fields(sim)
             self._edition = sim.engine.physics.edition
 
-    def found(self) -> dict[str, Any] | None:
+    def found(self) -> dict[str, object] | None:
         """What is other than when it was last seen; None for nothing, or where the world has other parts since."""
         sim = self._sim
         if sim.mj_model is not self._model:
             return None
-        words: dict[str, Any] = {}
+        words: dict[str, object] = {}
         now = state_vector(sim)
         if now.tobytes() != self._state.tobytes():
             places = np.flatnonzero(now.view(np.int64) != self._state.view(np.int64))
@@ -84,7 +85,7 @@ def state_vector(sim: Simulation) -> Numbers:
     return values
 
 
-def apply_changes(sim: Simulation, words: dict[str, Any]) -> None:
+def apply_changes(sim: Simulation, words: dict[str, object]) -> None:
     """Changes the physics as it was changed by hand.
 
     Raises:
@@ -97,7 +98,7 @@ def apply_changes(sim: Simulation, words: dict[str, Any]) -> None:
     sim.engine.physics.one_shot = bool(words.get("one_shot"))
 
 
-def _apply_state(sim: Simulation, words: Any) -> None:
+def _apply_state(sim: Simulation, words: object) -> None:
     physics, values = sim.engine.physics, state_vector(sim)
     places, numbers = _indices_and_values(words, values.size)
     values[places] = numbers
@@ -117,20 +118,20 @@ def _apply_state(sim: Simulation, words: Any) -> None:
 _WIDTHS: Final = {int(mujoco.mjtJoint.mjJNT_FREE): 7, int(mujoco.mjtJoint.mjJNT_BALL): 4}
 
 
-def _differs(before: Numbers, now: Numbers, model: Any, joint: int, at: int) -> bool:
+def _differs(before: Numbers, now: Numbers, model: mujoco.MjModel, joint: int, at: int) -> bool:
     width = _WIDTHS.get(int(model.jnt_type[joint]), 1)
     return bool((before[at : at + width] != now[at : at + width]).any())
 
 
-def _changeable_fields(sim: Simulation) -> dict[str, Any]:
+def _changeable_fields(sim: Simulation) -> dict[str, Array]:
     """What of the model may have been changed."""
     found = {name: getattr(sim.mj_model, name).copy() for name in sim.engine.originals}
     found["gravity"] = sim.mj_model.opt.gravity.copy()
     return found
 
 
-def _changed_fields(before: dict[str, Any], now: dict[str, Any]) -> dict[str, Any]:
-    found = {}
+def _changed_fields(before: dict[str, Array], now: dict[str, Array]) -> dict[str, object]:
+    found: dict[str, object] = {}
     for name, values in now.items():
         old = before.get(name)
         flat = values.reshape(-1)
@@ -140,7 +141,7 @@ def _changed_fields(before: dict[str, Any], now: dict[str, Any]) -> dict[str, An
     return found
 
 
-def _apply_fields(sim: Simulation, words: Any) -> None:
+def _apply_fields(sim: Simulation, words: object) -> None:
     if not isinstance(words, dict):
         raise MessageError("found no fields of the model")
     for name, change in words.items():
@@ -158,7 +159,7 @@ def _apply_fields(sim: Simulation, words: Any) -> None:
         sim.engine.touch(name).reshape(-1)[places] = numbers
 
 
-def _indices_and_values(words: Any, size: int) -> tuple[Any, Any]:
+def _indices_and_values(words: object, size: int) -> tuple[npt.NDArray[np.int64], Numbers]:
     """Places in an array with their values."""
     if not isinstance(words, dict) or words.get("size") != size:
         raise MessageError(f"a state of {size} numbers was to be changed, this world's is another")

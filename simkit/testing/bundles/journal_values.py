@@ -11,6 +11,8 @@ import numpy as np
 
 from simkit import msgs
 from simkit.errors import MessageError
+from simkit.msgs import Message
+from simkit.run_spec import JsonObject
 
 _LISTED: Final = 64  # arrays up to this length are lists of numbers that a person can read
 _DTYPES: Final = frozenset(
@@ -22,7 +24,7 @@ class NotEncodable(Exception):
     """A value that JSON has no word for; says which."""
 
 
-def encode_message(message: Any) -> dict[str, Any]:
+def encode_message(message: Message) -> JsonObject:
     """A message with its type. CDR would round numbers that the message itself still has in full."""
     return {"type": msgs.type_name(message), "fields": encode_value(message)}
 

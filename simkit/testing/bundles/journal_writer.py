@@ -11,7 +11,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 from weakref import WeakKeyDictionary, finalize, ref
 
+from simkit.msgs import Message
 from simkit.pose import Pose
+from simkit.run_spec import JsonObject
 from simkit.scene import SceneModel
 from simkit.testing.bundles.direct_changes import DirectChanges
 from simkit.testing.bundles.journal_values import NotEncodable, encode_message, encode_value
@@ -48,17 +50,17 @@ class JournalWriter:
         self._heard: dict[int, list[int]] = {}
         self._numbers: WeakKeyDictionary[Any, int] = WeakKeyDictionary()
         self._called: WeakKeyDictionary[Any, int] = WeakKeyDictionary()
-        self._publishers: dict[int, tuple[Any, int]] = {}
-        self._snapshots: dict[int, tuple[ref[Any], int]] = {}
+        self._publishers: dict[int, tuple[object, int]] = {}
+        self._snapshots: dict[int, tuple[ref[object], int]] = {}
         self._snapshot_count = 0
         self._by_hand = DirectChanges(sim)
-        self._entries: dict[str, Callable[..., dict[str, Any] | None]] = {
+        self._entries: dict[str, Callable[..., JsonObject | None]] = {
             name.removeprefix("_of_"): getattr(self, name) for name in dir(self) if name.startswith("_of_")
         }
         self.count = 0
         self.gaps: list[str] = []
         self.sources: list[str] = []
-        self.keeper: Any = None
+        self.keeper: object = None
 
     def write_to(self, path: Path) -> None:
         """Copies what was written so far."""
@@ -76,7 +78,7 @@ class JournalWriter:
         return not self._inside and (self._place is not None or not self._sim.engine.is_stepping)
 
     @contextmanager
-    def passing(self, door: str, words: Mapping[str, Any]) -> Iterator[AnswerCallback | None]:
+    def passing(self, door: str, words: Mapping[str, object]) -> Iterator[AnswerCallback | None]:
         """Writes down what somebody outside does; what follows from it within is not written."""
         if not self._is_outside:
             yield None
@@ -91,7 +93,7 @@ class JournalWriter:
             self._by_hand.see()
 
     @contextmanager
-    def called_back(self, subscription: Any) -> Iterator[None]:
+    def called_back(self, subscription: object) -> Iterator[None]:
         """A callback that is no plugin's: it is outside, wherever it is called from."""
         number = self._numbers.get(subscription)
         if number is None:  # a plugin's
@@ -111,14 +113,14 @@ class JournalWriter:
             self._look()
             self._inside, self._place = before
 
-    def outside(self, callback: Callable[[Any], Any] | None) -> Callable[[Any], Any] | None:
+    def outside(self, callback: Callable[[object], object] | None) -> Callable[[object], object] | None:
         """A callback of somebody outside, whose calls are counted so that what it does has a place."""
         if callback is None or not self._is_outside:
             return callback
         count = self._new_place()
 
         @functools.wraps(callback)
-        def called(value: Any) -> Any:
+        def called(value: object) -> object:
             count[1] += 1
             with self._outside_at(count[0]):
                 return callback(value)
@@ -131,14 +133,14 @@ class JournalWriter:
         found = self._heard[number] = [number, 0]
         return found
 
-    def hears(self, topic: str, subscription: Any) -> None:
+    def hears(self, topic: str, subscription: object) -> None:
         """A tap before the new subscriber counts what both get, so that what it does has a place."""
         if not self._is_outside:
             return
         count = self._new_place()
         number = self._numbers[subscription] = count[0]
 
-        def heard(_: Any) -> None:
+        def heard(_: object) -> None:
             count[1] += 1
 
         self._write("hear", {"number": number, "topic": topic})
@@ -162,7 +164,7 @@ class JournalWriter:
 
     # ------------------------------------------------------------------ writing
 
-    def _told(self, door: str, words: Mapping[str, Any]) -> AnswerCallback | None:
+    def _told(self, door: str, words: Mapping[str, object]) -> AnswerCallback | None:
         """Writes an entry; what is to be told of the result comes back."""
         try:
             entry = self._entries[door](**words)
@@ -175,9 +177,9 @@ class JournalWriter:
         self._write(door, entry)
         return then
 
-    def _write(self, do: str, words: Mapping[str, Any]) -> None:
+    def _write(self, do: str, words: Mapping[str, object]) -> None:
         sim = self._sim
-        entry: dict[str, Any] = {"steps": sim.engine.steps, "tick": sim.tick, "do": do, **words}
+        entry: dict[str, object] = {"steps": sim.engine.steps, "tick": sim.tick, "do": do, **words}
         if self._place is not None:
             entry["in"] = list(self._place)
         if sim.control.pausing.is_served:
@@ -194,29 +196,29 @@ class JournalWriter:
 
     # ------------------------------------------------------------------ the doors, by name
 
-    def _of_publish(self, topic: str, message: Any) -> dict[str, Any]:
+    def _of_publish(self, topic: str, message: object) -> dict[str, object]:
         return {"topic": topic, "message": encode_message(message)}
 
-    def _of_advertise(self, publisher: Any) -> dict[str, Any]:
+    def _of_advertise(self, publisher: Any) -> dict[str, object]:
         number = len(self._publishers) + 1
         self._publishers[id(publisher)] = publisher, number
         words = {"topic": publisher.topic, "type": publisher.type_name, "latched": publisher.latched}
         return {"number": number, **words}
 
-    def _of_send(self, publisher: Any, message: Any) -> dict[str, Any]:
+    def _of_send(self, publisher: Any, message: Message) -> dict[str, object]:
         number = self._publishers.get(id(publisher), (None, 0))[1]
         return {"number": number, "topic": publisher.topic, "message": encode_message(message)}
 
-    def _of_close(self, publisher: Any) -> dict[str, Any] | None:
+    def _of_close(self, publisher: object) -> dict[str, object] | None:
         known = self._publishers.get(id(publisher))
         return None if known is None else {"number": known[1]}
 
-    def _of_call(self, service: Any, request: Any) -> dict[str, Any] | None:
+    def _of_call(self, service: Any, request: object) -> dict[str, object] | None:
         if service.owner is None and not service.yields:
             return None  # the caller's own: what it does is written down
         return {"service": service.name, "request": encode_message(request)}
 
-    def _of_send_goal(self, action: str, goal: Any, on_feedback: Any, on_done: Any) -> dict[str, Any]:
+    def _of_send_goal(self, action: str, goal: object, on_feedback: object, on_done: object) -> dict[str, object]:
         callbacks = {"on_feedback": on_feedback, "on_done": on_done}
         heard = {name: self._called.get(one) for name, one in callbacks.items() if one is not None}
         return {"action": action, "goal": encode_message(goal), **{k: v for k, v in heard.items() if v is not None}}
@@ -227,46 +229,46 @@ class JournalWriter:
     def _of_act(self, action: str) -> None:
         self.gaps.append(f"the action {action!r} was opened by the caller; who sent a goal would find none")
 
-    def _of_cancel(self, goal: int) -> dict[str, Any]:
+    def _of_cancel(self, goal: int) -> dict[str, object]:
         return {"goal": goal}
 
-    def _of_set(self, node: str, name: str, value: Any) -> dict[str, Any]:
+    def _of_set(self, node: str, name: str, value: object) -> dict[str, object]:
         return {"node": node, "name": name, "value": encode_value(value)}
 
-    def _of_spawned(self, wanted: Any) -> dict[str, Any]:
+    def _of_spawned(self, wanted: Any) -> dict[str, object]:
         return {"models": [_encode_model_source(*one) for one in wanted]}
 
-    def _of_remove(self, name: str) -> dict[str, Any]:
+    def _of_remove(self, name: str) -> dict[str, object]:
         return {"name": name}
 
-    def _of_clone(self, name: str, new_name: str, pose: Pose | None) -> dict[str, Any]:
+    def _of_clone(self, name: str, new_name: str, pose: Pose | None) -> dict[str, object]:
         return {"name": name, "new_name": new_name, "pose": _encode_pose(pose)}
 
-    def _of_add_sensor(self, name: str, sensor: Any) -> dict[str, Any]:
+    def _of_add_sensor(self, name: str, sensor: object) -> dict[str, object]:
         return {"name": name, "sensor": encode_value(sensor)}
 
-    def _of_make_movable(self, name: str) -> dict[str, Any]:
+    def _of_make_movable(self, name: str) -> dict[str, object]:
         return {"name": name}
 
-    def _of_add_weld(self, name: str, parent_link: str, child_link: str) -> dict[str, Any]:
+    def _of_add_weld(self, name: str, parent_link: str, child_link: str) -> dict[str, object]:
         return {"name": name, "parent_link": parent_link, "child_link": child_link}
 
-    def _of_set_weld(self, name: str, closed: bool) -> dict[str, Any]:
+    def _of_set_weld(self, name: str, closed: bool) -> dict[str, object]:
         return {"name": name, "closed": bool(closed)}
 
-    def _of_reset(self, seed: int | None) -> dict[str, Any]:
+    def _of_reset(self, seed: int | None) -> dict[str, object]:
         return {"seed": seed}
 
-    def _of_reseed(self, seed: int) -> dict[str, Any]:
+    def _of_reseed(self, seed: int) -> dict[str, object]:
         return {"seed": seed}
 
-    def _of_reset_models(self) -> dict[str, Any]:
+    def _of_reset_models(self) -> dict[str, object]:
         return {}
 
-    def _of_snapshot(self) -> dict[str, Any]:
+    def _of_snapshot(self) -> dict[str, object]:
         number = self._snapshot_count = self._snapshot_count + 1
 
-        def keep(snapshot: Any) -> None:
+        def keep(snapshot: object) -> None:
             key = id(snapshot)
 
             def gone(_: object) -> None:
@@ -276,7 +278,7 @@ class JournalWriter:
 
         return {"number": number, "then": keep}
 
-    def _of_restore(self, snapshot: Any) -> dict[str, Any] | None:
+    def _of_restore(self, snapshot: object) -> dict[str, object] | None:
         known = self._snapshots.get(id(snapshot))
         if known is None:
             self.gaps.append(f"a snapshot from before the bundle began was restored at t={self._sim.time:g} s")
@@ -288,7 +290,7 @@ def _encode_pose(pose: Pose | None) -> list[float] | None:
     return None if pose is None else [*map(float, pose.position), *map(float, pose.quaternion)]
 
 
-def _encode_model_source(source: Any, name: str | None, pose: Pose | None) -> dict[str, Any]:
+def _encode_model_source(source: object, name: str | None, pose: Pose | None) -> dict[str, object]:
     """A model to be spawned: a text of XML as it is, a file or name as it was said."""
     if isinstance(source, SceneModel):
         raise NotEncodable("model made in Python")

@@ -10,7 +10,7 @@ from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any, Final, cast
 
 from simkit.errors import InputError, SimkitError
-from simkit.run_spec import LoadOptions, PluginErrorPolicy, RunSpec
+from simkit.run_spec import JsonMapping, JsonObject, LoadOptions, PluginErrorPolicy, RunSpec
 
 if TYPE_CHECKING:
     from simkit.testing.conditions import CheckResult
@@ -129,10 +129,10 @@ class Manifest:
     topics: tuple[str, ...]
     first: int
     end: RunEnd
-    streams: Mapping[str, Mapping[str, Any]]
+    streams: Mapping[str, Mapping[str, object]]
     marks: tuple[tuple[int, str], ...]
     commands: int
-    files: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    files: Mapping[str, JsonMapping] = field(default_factory=dict)
 
     @property
     def run_spec(self) -> RunSpec:
@@ -177,7 +177,7 @@ class _InvalidValue(Exception):
 class _ManifestReader:
     """Takes values out of a mapping, each of the kind that it has to be."""
 
-    def __init__(self, words: Mapping[str, Any], at: str = "") -> None:
+    def __init__(self, words: Mapping[str, object], at: str = "") -> None:
         self._words, self._at = words, at
 
     def _value(self, name: str, kind: Any, allowed: str) -> Any:
@@ -208,11 +208,11 @@ class _ManifestReader:
             raise _InvalidValue(f"{self._at}{name}: found {found}, allowed is a number of seconds")
         return found
 
-    def either(self, name: str, take: Callable[[str], Any]) -> Any:
+    def either(self, name: str, take: Callable[[str], object]) -> Any:
         return None if self._words.get(name) is None else take(name)
 
     def listed(self, name: str) -> list[Any]:
-        found: list[Any] = self._value(name, list, "a list")
+        found: list[object] = self._value(name, list, "a list")
         return found
 
     def texts(self, name: str) -> tuple[str, ...]:
@@ -221,8 +221,8 @@ class _ManifestReader:
             raise _InvalidValue(f"{self._at}{name}: allowed is a list of texts")
         return tuple(found)
 
-    def mapping(self, name: str) -> dict[str, Any]:
-        found: dict[str, Any] = self._value(name, dict, "a mapping")
+    def mapping(self, name: str) -> JsonObject:
+        found: dict[str, object] = self._value(name, dict, "a mapping")
         return found
 
     def of_texts(self, name: str) -> dict[str, str]:
@@ -297,13 +297,13 @@ def _parse_spawned(said: _ManifestReader) -> PackedModel:
     )
 
 
-def _parse_pair(one: Any) -> tuple[str, str]:
+def _parse_pair(one: object) -> tuple[str, str]:
     if not isinstance(one, list) or len(one) != 2 or not all(isinstance(part, str) for part in one):
         raise _InvalidValue(f"params: found {one!r:.60}, allowed is a model's name and a file")
     return one[0], one[1]
 
 
-def _parse_state_mark(one: Any) -> tuple[int, str]:
+def _parse_state_mark(one: object) -> tuple[int, str]:
     if not isinstance(one, list) or len(one) != 2 or type(one[0]) is not int or not isinstance(one[1], str):
         raise _InvalidValue(f"marks: found {one!r:.60}, allowed are steps and a hash")
     return one[0], one[1]

@@ -11,10 +11,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from simkit import msgs
+from simkit.msgs import Message
 from simkit.recording.bags.recorder import matches_topic
 from simkit.recording.bags.writer import McapBag
 from simkit.recording.message_taps import TopicTaps
 from simkit.recording.topic_counts import RENDERED
+from simkit.run_spec import JsonObject
 from simkit.runtime.communication.topic_bus import NO_MESSAGE, LazyMessage
 from simkit.runtime.engine.snapshot import state_hash
 
@@ -88,14 +90,14 @@ class MessageWindow:
             packed = message if type(message) is tuple else (msgs.type_name(message), msgs.serialize(message))
             yield WindowMessage(clock.time_ns(tick), topic, *packed)
 
-    def _receiver_of(self, topic: str, type_name: str) -> Callable[[Any], None] | None:
+    def _receiver_of(self, topic: str, type_name: str) -> Callable[[Message], None] | None:
         if not self._is_kept(topic, type_name):
             return None
         sim, kept, length, most = self._sim, self._kept, self._length, self._most // _ASSUMED_MESSAGE_BYTES
-        last: Any = None
+        last: Message = None
         is_packed = False
 
-        def hear(message: Any) -> None:
+        def hear(message: object) -> None:
             nonlocal last, is_packed
             steps = sim.engine.steps
             if message is last:
@@ -144,7 +146,7 @@ class StateHashes:
         self._sim.communication.on_demand.look()
 
 
-def topic_digests(messages: Iterator[WindowMessage]) -> dict[str, dict[str, Any]]:
+def topic_digests(messages: Iterator[WindowMessage]) -> dict[str, JsonObject]:
     """Topic -> type, how many messages, and SHA-256 of their times and bytes."""
     found: dict[str, tuple[str, int, Any]] = {}
     for one in messages:

@@ -7,7 +7,7 @@ import os
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -17,6 +17,8 @@ from simkit.run_spec import LoadOptions, RunSpec
 from simkit.testing.bundles.manifest import PackedModel
 
 if TYPE_CHECKING:
+    import mujoco
+
     from simkit.runtime import Simulation
 
 
@@ -80,7 +82,7 @@ def _without_user_folders() -> Iterator[None]:
         os.environ.update(before)
 
 
-def model_hash(model: Any, originals: Mapping[str, Any]) -> str:
+def model_hash(model: mujoco.MjModel, originals: Mapping[str, object]) -> str:
     """SHA-256 of all arrays of an `MjModel` and of its options but gravity.
 
     Args:

@@ -7,8 +7,9 @@ import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
+from simkit.run_spec import JsonObject
 from simkit.testing.certify.code_hints import CodeHint
 from simkit.testing.certify.outcome import RunOutcome
 from simkit.testing.certify.variations import Variation
@@ -86,7 +87,7 @@ class Certificate:
         """Whether all runs gave the same bits."""
         return not self.differences
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> JsonObject:
         """For programs; holds nothing of the wall clock, so that two of one world are equal where it is."""
         first = self.rows[0].outcome
         topics = {
@@ -108,7 +109,7 @@ class Certificate:
         }
 
 
-def _certificate_row(row: Row) -> dict[str, Any]:
+def _certificate_row(row: Row) -> JsonObject:
     return {
         "name": row.variation.name,
         "other": row.variation.words,
@@ -119,7 +120,7 @@ def _certificate_row(row: Row) -> dict[str, Any]:
     }
 
 
-def _difference_dict(one: Difference) -> dict[str, Any]:
+def _difference_dict(one: Difference) -> JsonObject:
     return {
         "run": one.variation.name,
         "what": one.words,

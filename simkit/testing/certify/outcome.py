@@ -120,7 +120,7 @@ class RunOutcome:
     seconds: float = 0.0
 
 
-def write_pickle(path: Path, value: Any) -> None:
+def write_pickle(path: Path, value: object) -> None:
     """Hands something to the other process, as a whole; both are of the same user, and the folder is nobody else's."""
     beside = path.with_suffix(".part")
     beside.write_bytes(pickle.dumps(value))

@@ -9,6 +9,7 @@ from zlib import crc32
 
 import numpy as np
 
+from simkit.run_spec import JsonObject
 from simkit.runtime.engine import grouped_hooks
 from simkit.runtime.engine.held_state import applied_forces
 from simkit.runtime.engine.plugin_faults import PluginFaults
@@ -36,7 +37,7 @@ class PluginCallRecorder:
         self._known: dict[int, dict[str, int]] = {}
 
     def call(
-        self, engine: EngineState, plugin: Any, hook: str, method: Callable[..., Any], values: tuple[Any, ...]
+        self, engine: EngineState, plugin: object, hook: str, method: Callable[..., object], values: tuple[object, ...]
     ) -> Any:
         """Calls something of a plugin, and notes what it did."""
         if self.is_away or not hasattr(plugin, "has_hook"):
@@ -57,7 +58,7 @@ class PluginCallRecorder:
         self.events.clear()
         self._known.clear()
 
-    def _note(self, data: mujoco.MjData, plugin: Any, hook: str, tick: int, before: int) -> None:
+    def _note(self, data: mujoco.MjData, plugin: object, hook: str, tick: int, before: int) -> None:
         state = plugin_attributes(plugin)
         now = {name: value_hash(value) for name, value in state.items()}
         known = self._known.get(id(plugin), {})
@@ -94,7 +95,7 @@ def record_plugin_calls(witness: PluginCallRecorder) -> Iterator[None]:
         PluginFaults.task, PluginFaults.guard, grouped_hooks.MIN_GROUP_SIZE = task, guard, least  # type: ignore
 
 
-def plugin_attributes(plugin: Any) -> dict[str, Any]:
+def plugin_attributes(plugin: Any) -> JsonObject:
     """A plugin's attributes, as a snapshot keeps them."""
     try:
         state = plugin.get_state()

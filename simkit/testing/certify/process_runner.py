@@ -13,7 +13,7 @@ from typing import Any, Final, cast
 
 from simkit.child_process import ChildProcesses, ProcessResult
 from simkit.errors import InputError
-from simkit.run_spec import LoadOptions, RunSpec
+from simkit.run_spec import JsonObject, LoadOptions, RunSpec
 from simkit.testing.certify.child_run import ChildRequest
 from simkit.testing.certify.child_run import run_child as run_here
 from simkit.testing.certify.outcome import STACK_FILE, CodePosition, RunOutcome, read_pickle, write_pickle
@@ -128,7 +128,7 @@ def _with_absolute_paths(scenario: RunSpec) -> RunSpec:
     source = scenario.source
     if "<" not in source and Path(source).exists():
         source = str(Path(source).absolute())
-    options: dict[str, Any] = dict(scenario.options)
+    options: JsonObject = dict(scenario.options)
     if "<" in source:
         options["resource_paths"] = [*options.get("resource_paths", ()), Path.cwd()]
     for name in _FOLDERS:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from simkit import msgs
+from simkit.msgs import Message
 from simkit.recording.bags.recorder import matches_topic
 from simkit.recording.message_taps import TopicTaps
 from simkit.runtime.communication.topic_bus import NO_MESSAGE, LazyMessage
@@ -52,7 +53,7 @@ class TopicHashes:
         owners = _topic_publishers(self._sim)
         return {topic: stream.heard(owners.get(topic, "")) for topic, stream in sorted(self._streams.items())}
 
-    def _receiver_of(self, topic: str, type_name: str) -> Callable[[Any], None] | None:
+    def _receiver_of(self, topic: str, type_name: str) -> Callable[[Message], None] | None:
         if topic in self._streams or not self._is_wanted(topic):
             return None
         stream = self._streams[topic] = _TopicHash(self, self._sim, type_name)
@@ -80,12 +81,12 @@ class _TopicHash:
         self._kept: list[Any] = []
         self._all = hashlib.sha256()
 
-    def receive(self, message: Any) -> None:
+    def receive(self, message: object) -> None:
         """Called back with a message."""
         if not self._ears.is_deaf:
             self._count(message, self._sim.tick)
 
-    def keep(self, message: Any) -> None:
+    def keep(self, message: object) -> None:
         """Given a message, or what will be one."""
         if not self._ears.is_deaf:
             self._kept.append(message)
@@ -98,7 +99,7 @@ class _TopicHash:
             if made is not NO_MESSAGE:
                 self._count(made, UNKNOWN)
 
-    def _count(self, message: Any, tick: int) -> None:
+    def _count(self, message: object, tick: int) -> None:
         content = msgs.serialize(message)
         self._all.update(content)
         self._digests.append(short_hash(content))

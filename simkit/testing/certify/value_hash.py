@@ -20,17 +20,17 @@ def short_hash(content: bytes) -> int:
     return int.from_bytes(hashlib.blake2b(content, digest_size=8).digest(), "little")
 
 
-def value_hash(value: Any) -> int:
+def value_hash(value: object) -> int:
     """A hash of a value and of all that is in it; equal for equal values of two processes."""
     return _update_hash(value, {}, 0)
 
 
-def attribute_hashes(state: Mapping[str, Any]) -> dict[str, int]:
+def attribute_hashes(state: Mapping[str, object]) -> dict[str, int]:
     """The hash of each attribute."""
     return {str(name): value_hash(value) for name, value in state.items()}
 
 
-def short_value_text(value: Any) -> str:
+def short_value_text(value: object) -> str:
     """A value as a report says it, where it is short; else empty."""
     if isinstance(value, (bool, int, float, str, np.number)):
         text = repr(value.item() if isinstance(value, np.number) else value)
@@ -43,7 +43,7 @@ def short_value_text(value: Any) -> str:
     return ""
 
 
-def _update_hash(value: Any, seen: dict[int, tuple[int, Any]], depth: int) -> int:
+def _update_hash(value: Any, seen: dict[int, tuple[int, object]], depth: int) -> int:
     kind = type(value)
     if kind is float:
         return short_hash(b"f" + (b"nan" if math.isnan(value) else value.hex().encode()))
@@ -59,7 +59,7 @@ def _update_hash(value: Any, seen: dict[int, tuple[int, Any]], depth: int) -> in
     return _update_hash_of_items(value, seen, depth + 1)
 
 
-def _update_hash_of_items(value: Any, seen: dict[int, tuple[int, Any]], depth: int) -> int:
+def _update_hash_of_items(value: Any, seen: dict[int, tuple[int, object]], depth: int) -> int:
     name = type(value).__name__
     if isinstance(value, Mapping):
         pairs = sorted((_update_hash(key, {}, depth), _update_hash(item, seen, depth)) for key, item in value.items())
@@ -80,18 +80,18 @@ def _update_hash_of_items(value: Any, seen: dict[int, tuple[int, Any]], depth: i
     return short_hash(f"{name}{parts}".encode())
 
 
-def _is_row(value: Any) -> bool:
+def _is_row(value: object) -> bool:
 
     return isinstance(value, (list, tuple, deque))
 
 
-def _is_handle(value: Any) -> bool:
+def _is_handle(value: object) -> bool:
     """What stands for itself when a state is copied: links, publishers, plugins, the simulation."""
     copy = getattr(type(value), "__deepcopy__", None)
     return copy is not None and getattr(copy, "__module__", "").startswith("simkit.")
 
 
-def _attributes(value: Any) -> dict[str, Any] | None:
+def _attributes(value: object) -> dict[str, object] | None:
     """What an object has; None of functions, modules, classes and what is made in C."""
     if callable(value) and hasattr(value, "__qualname__"):
         return None

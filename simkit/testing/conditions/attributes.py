@@ -7,6 +7,7 @@ from operator import attrgetter
 from typing import Any
 
 from simkit.errors import InputError
+from simkit.msgs import Message
 from simkit.pose import rpy_from_quat
 from simkit.testing.conditions.bound_expression import BoundNode, as_pose
 from simkit.testing.conditions.syntax_tree import REMOVED_CODE, UndecidedValue
@@ -130,5 +131,5 @@ def _message_attribute(part: BoundNode, name: str) -> AttributeGetter | None:
     return None
 
 
-def _quaternion(message: Any) -> tuple[float, float, float, float]:
+def _quaternion(message: Message) -> tuple[float, float, float, float]:
     return message.w, message.x, message.y, message.z

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final, Protocol
 
 import numpy as np
 
+from simkit.msgs import Message
 from simkit.pose import Pose, Vector
 from simkit.testing.conditions.syntax_tree import (
     Arithmetic,
@@ -207,7 +208,7 @@ def as_vector(part: BoundNode) -> Callable[[], Any]:
     return lambda: np.asarray(get(), dtype=np.float64)
 
 
-def vector_from_message(message: Any) -> Vector:
+def vector_from_message(message: Message) -> Vector:
     """A vector or a point, shape (3,)."""
     return np.array((message.x, message.y, message.z), dtype=np.float64)
 

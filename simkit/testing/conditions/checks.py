@@ -6,7 +6,7 @@ import math
 import operator
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
@@ -20,6 +20,7 @@ from simkit.testing.conditions.value_types import TRUTH
 from simkit.testing.conditions.world_view import AbsentTopic
 
 if TYPE_CHECKING:
+    from simkit.run_spec import Check
     from simkit.runtime import Simulation
     from simkit.testing.conditions.world_view import WorldView
 
@@ -44,7 +45,7 @@ class CheckResult:
         time: when it was decided [s] of simulated time.
     """
 
-    check: Any
+    check: Check
     passed: bool
     message: str
     time: float
@@ -152,7 +153,7 @@ class RunningCheck(ABC):
         view: the world.
     """
 
-    def __init__(self, check: Any, view: WorldView) -> None:
+    def __init__(self, check: Check, view: WorldView) -> None:
         self.check, self._sim = check, view.sim
         self.is_decided = False
         self._result: CheckResult | None = None
@@ -179,7 +180,7 @@ class RunningCheck(ABC):
 class ReachedCheck(RunningCheck):
     """Must hold once."""
 
-    def __init__(self, check: Any, view: WorldView) -> None:
+    def __init__(self, check: Check, view: WorldView) -> None:
         super().__init__(check, view)
         self._condition = Condition(check.expression, view)
         self._nearest, self._nearest_text, self._nearest_time = math.inf, "", 0.0
@@ -220,7 +221,7 @@ class ReachedCheck(RunningCheck):
 class AlwaysCheck(RunningCheck):
     """Must hold at every step, as soon as its values are known."""
 
-    def __init__(self, check: Any, view: WorldView) -> None:
+    def __init__(self, check: Check, view: WorldView) -> None:
         super().__init__(check, view)
         self._condition = Condition(check.expression, view)
         self._since: float | None = None
@@ -257,7 +258,7 @@ class AlwaysCheck(RunningCheck):
 class FinalCheck(RunningCheck):
     """Must hold at the end."""
 
-    def __init__(self, check: Any, view: WorldView) -> None:
+    def __init__(self, check: Check, view: WorldView) -> None:
         super().__init__(check, view)
         self._condition = Condition(check.expression, view)
 
@@ -275,7 +276,7 @@ class FinalCheck(RunningCheck):
 class SeparationCheck(RunningCheck):
     """Models or links that must not touch."""
 
-    def __init__(self, check: Any, view: WorldView) -> None:
+    def __init__(self, check: Check, view: WorldView) -> None:
 
         super().__init__(check, view)
         names, source = check.models, " ".join(map(repr, check.models))
@@ -308,7 +309,7 @@ _MAX_LATENESS = 2.5  # periods without a message after which a topic has stopped
 
 def configured_rate(sim: Simulation, topic: str) -> float | None:
     """The rate that what publishes on a topic is set to [Hz], of several together; None where that is not known."""
-    owners: list[Any] = [sensor for sensor in sim.engine.structure.all_sensors() if topic in sensor._topics.values()]
+    owners: list[object] = [sensor for sensor in sim.engine.structure.all_sensors() if topic in sensor._topics.values()]
     if not owners:
         for _, end, _, what in sim.communication.bus.endpoints(topic):
             if what == "publishes" and end.active:
@@ -317,7 +318,7 @@ def configured_rate(sim: Simulation, topic: str) -> float | None:
     return sum(rate for rate in rates if rate is not None) if rates and None not in rates else None
 
 
-def _publisher_rate(owner: Any, timestep: float) -> float | None:
+def _publisher_rate(owner: object, timestep: float) -> float | None:
     """Of a sensor its update rate, where zero is every step; of a plugin that of its hook after steps."""
     rate = getattr(owner, "update_rate", None)
     if isinstance(rate, (int, float)) and hasattr(owner, "scoped") and hasattr(owner, "sample"):
@@ -329,7 +330,7 @@ def _publisher_rate(owner: Any, timestep: float) -> float | None:
 class TopicRateCheck(RunningCheck):
     """Messages per simulated second, from the first to the last; a topic that stops before the end has failed."""
 
-    def __init__(self, check: Any, view: WorldView) -> None:
+    def __init__(self, check: Check, view: WorldView) -> None:
         super().__init__(check, view)
         if not check.topic:
             raise InputError("SK-COND-009 a check of a rate names no topic", "SK-COND-009")

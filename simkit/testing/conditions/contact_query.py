@@ -11,6 +11,7 @@ import numpy as np
 from simkit.runtime.contact.collision_contacts import Bools, collision_table
 
 if TYPE_CHECKING:
+    from simkit.compiler import Compiled
     from simkit.runtime import Simulation
 
 _MAX_SLOPE: Final = math.cos(math.radians(45.0))
@@ -32,7 +33,7 @@ class ContactQuery:
 
     def __init__(self, sim: Simulation, first: str, second: str | None = None) -> None:
         self._sim, self._first, self._second = sim, first, second
-        self._compiled: Any = None
+        self._compiled: Compiled | None = None
         self._asleep_at = -1
         self._asleep: tuple[tuple[int, int, int], ...] = ()
 
@@ -138,7 +139,7 @@ class ContactQuery:
 
     # ------------------------------------------------------------------ what sleeps
 
-    def _sleepers(self, data: Any) -> list[int]:
+    def _sleepers(self, data: mujoco.MjData) -> list[int]:
         """What is meant here and sleeps: the engine lists no contacts of sleepers."""
         if not self._sim.engine.physics.sleep.counts:
             return []

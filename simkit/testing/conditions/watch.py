@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Final, Literal
+from typing import TYPE_CHECKING, Final, Literal
 
 from simkit.errors import InputError
 from simkit.run_spec import Check
@@ -53,7 +53,7 @@ class Watch:
     def __init__(
         self,
         sim: Simulation,
-        checks: Sequence[Any],
+        checks: Sequence[Check],
         *,
         until: str = "",
         timeout: float | None = None,

@@ -15,7 +15,7 @@ from simkit.testing.conditions.syntax_tree import REMOVED_CODE, Span, UndecidedV
 
 if TYPE_CHECKING:
     from simkit.pose import Pose, Vector
-    from simkit.runtime import Simulation
+    from simkit.runtime import Simulation, Subscription
 
 
 class LatestMessage:
@@ -29,7 +29,7 @@ class LatestMessage:
     def __init__(self, sim: Simulation, topic: str) -> None:
         self.topic = topic
         self._sim = sim
-        self._subscription: Any = None
+        self._subscription: Subscription | None = None
 
     def open(self) -> None:
         """Listens from now on."""
@@ -41,7 +41,7 @@ class LatestMessage:
         if self._subscription is not None:
             self._subscription.close()
 
-    def latest(self) -> Any:
+    def latest(self) -> object:
         """The newest message.
 
         Raises:
@@ -69,7 +69,7 @@ class MessageCounter:
         self.topic = topic
         self.count = self.first = self.last = 0
         self._sim = sim
-        self._tap: Any = None
+        self._tap: Subscription | None = None
 
     def open(self) -> None:
         """Counts from now on."""
@@ -87,7 +87,7 @@ class MessageCounter:
             return None
         return (self.count - 1) * 1e9 / (self.last - self.first)
 
-    def _take(self, _: Any) -> None:
+    def _take(self, _: object) -> None:
         now = self._sim.time_ns
         if now < self.last:  # the simulation was reset
             self.count = 0
@@ -207,7 +207,7 @@ class WorldView:
         for kind in kinds:
             if name in tables[kind]:
                 return tables[kind][name]
-        everything: dict[str, Any] = {k: v for kind in reversed(kinds) for k, v in tables[kind].items()}
+        everything: dict[str, object] = {k: v for kind in reversed(kinds) for k, v in tables[kind].items()}
         own = [key for key in everything if key.rpartition("::")[2] == name]
         if len(own) == 1:
             return everything[own[0]]

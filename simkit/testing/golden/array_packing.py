@@ -15,6 +15,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
+from simkit.run_spec import JsonObject
 from simkit.testing.run_record.record import Array
 
 _MAGIC: Final = b"SKGOLD\x01\n"
@@ -39,7 +40,7 @@ class Packer:
     """Gathers arrays, and gives the block with them."""
 
     def __init__(self) -> None:
-        self._entries: list[dict[str, Any]] = []
+        self._entries: list[dict[str, object]] = []
         self._parts: list[bytes] = []
 
     def add(self, values: Array, step: float = 0.0) -> int:
@@ -49,7 +50,7 @@ class Packer:
             values: whose first axis is time.
             step: what it is rounded to; 0 keeps it exactly.
         """
-        entry: dict[str, Any] = {"dtype": str(values.dtype), "shape": list(values.shape)}
+        entry: dict[str, object] = {"dtype": str(values.dtype), "shape": list(values.shape)}
         if entry["dtype"] not in _TYPES:
             raise TypeError(f"arrays of {values.dtype} are not kept")
         values = np.ascontiguousarray(values)
@@ -68,7 +69,7 @@ class Packer:
         self._parts.append(data)
         return len(self._entries) - 1
 
-    def block(self, about: Any) -> bytes:
+    def block(self, about: object) -> bytes:
         """The compressed block.
 
         Args:
@@ -82,7 +83,7 @@ class Packer:
         )  # of large worlds most is alike, and the best takes minutes
         return lzma.compress(whole, format=lzma.FORMAT_XZ, check=lzma.CHECK_CRC64, preset=preset)
 
-    def _whole_numbers(self, values: Array, step: float, entry: dict[str, Any]) -> Array | None:
+    def _whole_numbers(self, values: Array, step: float, entry: dict[str, object]) -> Array | None:
         """The values as whole numbers of steps; None where they are kept bit by bit."""
         if values.dtype.kind in "iub" and values.size:
             return values.astype(np.int64)
@@ -128,7 +129,7 @@ class Unpacker:
         if self._starts[-1] != len(whole):
             raise PackingError("it is cut off, or there is something behind it")
 
-    def array(self, number: Any) -> Array:
+    def array(self, number: object) -> Array:
         """The array that was taken under a number.
 
         Raises:
@@ -143,7 +144,7 @@ class Unpacker:
         except (ValueError, TypeError, KeyError, OverflowError) as error:
             raise PackingError(f"array {number} is damaged: {error}") from None
 
-    def _of(self, entry: dict[str, Any], data: bytes) -> Array:
+    def _of(self, entry: JsonObject, data: bytes) -> Array:
         shape = tuple(entry["shape"])
         stored = (1, *shape[1:]) if entry["constant"] else shape
         dtype = np.dtype(entry["dtype"])
@@ -158,7 +159,7 @@ class Unpacker:
                 values = self._with_kinds(values, entry)
         return np.broadcast_to(values, shape).copy() if entry["constant"] else values
 
-    def _with_kinds(self, values: Array, entry: dict[str, Any]) -> Array:
+    def _with_kinds(self, values: Array, entry: JsonObject) -> Array:
         inner = self._entries[entry["kinds"]] if 0 <= entry["kinds"] < len(self._entries) else None
         if inner is None or inner["kinds"] is not None:
             raise PackingError("an array without what is not finite in it")
@@ -179,7 +180,7 @@ def _decompress(data: bytes) -> bytes:
     return whole
 
 
-def _validate_entry(entry: Any) -> dict[str, Any]:
+def _validate_entry(entry: Any) -> dict[str, object]:
     """An entry of a block's table, of which nothing is believed."""
     shape, dtype, size = entry["shape"], entry["dtype"], entry["bytes"]
     if dtype not in _TYPES or type(shape) is not list or len(shape) > _MAX_DIMENSIONS:
@@ -198,7 +199,7 @@ def _validate_entry(entry: Any) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _size(entry: dict[str, Any]) -> int:
+def _size(entry: JsonObject) -> int:
     return int(math.prod(entry["shape"])) * 8
 
 

@@ -9,10 +9,10 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from simkit.errors import InputError, SimkitError
-from simkit.run_spec import RunSpec
+from simkit.run_spec import JsonMapping, RunSpec
 from simkit.testing.golden.cause import explain, world_changes
 from simkit.testing.golden.compare.difference import Verdict
 from simkit.testing.golden.compare.runs import compare
@@ -135,7 +135,7 @@ def _current_scenario(place: Path, golden: RunRecord, given: RunSpec | None) -> 
         )
     if stored.plugins:
         raise InputError(
-            f"SK-GOLDEN-006 {place} was recorded with plugins made in Python ({', '.join(stored.plugins)}), "
+            f"SK-GOLDEN-006 {place} was recorded with plugins made in Python ({', '.join(map(str, stored.plugins))}), "
             "which are not here\n    help: check it where they are made: the fixture sensor_regression, or "
             "simkit.testing.golden.check.check_golden(folder, scenario=...)",
             "SK-GOLDEN-006",
@@ -184,7 +184,7 @@ def make_golden(place: Path, verdict: Verdict, reason: str, *, other_renderer: b
     words = [one.words for one in verdict.comparison.differences]
     more = len(words) - _MAX_DIFFERENCES
     changed = [*words[:_MAX_DIFFERENCES], *([f"and {more} more"] if more > 0 else [])]
-    history: list[Mapping[str, Any]] = read_history(place)
+    history: list[JsonMapping] = read_history(place)
     write_golden(place, run, reason=reason, changed=changed, history=history)
 
 

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 import pytest
 
 from simkit.errors import InputError
-from simkit.run_spec import LoadOptions, RunSpec, Tolerance
+from simkit.run_spec import JsonMapping, JsonObject, LoadOptions, RunSpec, Tolerance
 from simkit.testing.golden.cause import explain
 from simkit.testing.golden.compare.difference import Explanation, Verdict
 from simkit.testing.golden.compare.runs import compare
@@ -93,9 +93,9 @@ class SensorRegression:
         duration: float | None = None,
         topics: str | Sequence[str] | None = None,
         skip: str | Sequence[str] | None = None,
-        tolerances: Mapping[str, Any] | Sequence[Tolerance] = (),
+        tolerances: Mapping[str, object] | Sequence[Tolerance] = (),
         seed: int | None = None,
-        **options: Any,
+        **options: object,
     ) -> Verdict:
         """Runs, and fails the test where what comes is not golden.
 
@@ -151,7 +151,7 @@ class SensorRegression:
         name: str | None = None,
         topics: str | Sequence[str] | None = None,
         skip: str | Sequence[str] | None = None,
-        tolerances: Mapping[str, Any] | Sequence[Tolerance] = (),
+        tolerances: Mapping[str, object] | Sequence[Tolerance] = (),
         duration: float = 10.0,
     ) -> Iterator[None]:
         """Listens while the test steps a simulation by itself, and judges at the end of the `with` block.
@@ -305,7 +305,7 @@ def _refuse_failed_checks(record: RunRecord, place: Path) -> None:
             )
 
 
-def _with_arguments(scenario: RunSpec, given: dict[str, Any], is_open: bool) -> RunSpec:
+def _with_arguments(scenario: RunSpec, given: JsonObject, is_open: bool) -> RunSpec:
     """A scenario with arguments over its own."""
     own = {key: given.pop(key) for key in ("duration", "seed", "topics", "skip", *_SCENARIO_ARGUMENTS) if key in given}
     if is_open and (given or {"seed", *_SCENARIO_ARGUMENTS} & own.keys()):
@@ -331,7 +331,7 @@ def _absolute_topic(pattern: str) -> str:
     return pattern if pattern.startswith(("/", "*")) else f"/{pattern}"
 
 
-def _with_tolerances(scenario: RunSpec, given: Mapping[str, Any] | Sequence[Tolerance]) -> RunSpec:
+def _with_tolerances(scenario: RunSpec, given: Mapping[str, object] | Sequence[Tolerance]) -> RunSpec:
     """A scenario with a test's tolerances before its own: who gives numbers means them on every machine."""
     own = _parse_tolerances(given)
     if any(getattr(t, name) is not None for t in own if not t.statistics for name in _NUMBERS):
@@ -339,13 +339,13 @@ def _with_tolerances(scenario: RunSpec, given: Mapping[str, Any] | Sequence[Tole
     return replace(scenario, tolerances=(*own, *scenario.tolerances))
 
 
-def _parse_tolerances(given: Mapping[str, Any] | Sequence[Tolerance]) -> tuple[Tolerance, ...]:
+def _parse_tolerances(given: JsonMapping | Sequence[Tolerance]) -> tuple[Tolerance, ...]:
     """Tolerances as a scenario's file says them, or made already."""
     if not isinstance(given, Mapping):
         return tuple(given)
     found = []
     for pattern, value in given.items():
-        said: Mapping[str, Any]
+        said: JsonMapping
         if isinstance(value, Tolerance):
             found.append(replace(value, pattern=_absolute_topic(pattern)))
             continue
@@ -361,14 +361,14 @@ def _parse_tolerances(given: Mapping[str, Any] | Sequence[Tolerance]) -> tuple[T
     return tuple(found)
 
 
-def _is_valid_tolerance(name: Any, value: Any) -> bool:
+def _is_valid_tolerance(name: object, value: object) -> bool:
     """Whether a field of a tolerance may have a value."""
     if name in _NUMBERS:
         return isinstance(value, (int, float)) and not isinstance(value, bool) and value >= 0
     return name in _WORDS and isinstance(value, bool)
 
 
-def _tolerance_error(pattern: str, value: Any) -> InputError:
+def _tolerance_error(pattern: str, value: object) -> InputError:
     names = ", ".join(name for name in Tolerance.__dataclass_fields__ if name not in ("pattern", "where"))
     return InputError(
         f"SK-GOLDEN-021 sensor_regression: tolerances[{pattern!r}]: found {value!r:.80}, allowed is a number of at "

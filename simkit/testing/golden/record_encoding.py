@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
-from simkit.run_spec import RunSpec
+from simkit.run_spec import JsonMapping, JsonObject, RunSpec
 from simkit.testing.golden.array_packing import Packer, PackingError, Unpacker
 from simkit.testing.golden.compare.tolerances import storage_step
 from simkit.testing.golden.scenario_encoding import is_long_text
@@ -22,10 +22,10 @@ _DEPTH_STEP: Final = 2.0**-10  # [m] that depths of small pictures are rounded t
 _STATISTICS: Final = ("mean", "deviation", "quantiles", "taus", "allan", "independent", "kurtosis")
 
 
-def encode_record(record: RunRecord) -> tuple[dict[str, Any], bytes]:
+def encode_record(record: RunRecord) -> tuple[JsonObject, bytes]:
     """What people read of a record, and the block of its data."""
     packer = Packer()
-    inner: dict[str, Any] = {
+    inner: JsonObject = {
         "streams": {topic: _pack_stream(packer, s, record.scenario) for topic, s in sorted(record.streams.items())},
         "states": _pack_states(packer, record.states),
         "leaves": dict(record.leaves),  # in the order of the file, for what is put back has its old place
@@ -49,7 +49,7 @@ def encode_record(record: RunRecord) -> tuple[dict[str, Any], bytes]:
     return about, packer.block(inner)
 
 
-def decode_record(said: Mapping[str, Any], data: bytes, scenario: RunSpec) -> RunRecord:
+def decode_record(said: JsonMapping, data: bytes, scenario: RunSpec) -> RunRecord:
     """The record that was written.
 
     Args:
@@ -82,7 +82,7 @@ def decode_record(said: Mapping[str, Any], data: bytes, scenario: RunSpec) -> Ru
 # ---------------------------------------------------------------------- streams
 
 
-def _pack_stream(packer: Packer, stream: Stream, scenario: RunSpec) -> dict[str, Any]:
+def _pack_stream(packer: Packer, stream: Stream, scenario: RunSpec) -> dict[str, object]:
 
     columns = {}
     for path, column in stream.columns.items():
@@ -91,7 +91,7 @@ def _pack_stream(packer: Packer, stream: Stream, scenario: RunSpec) -> dict[str,
         if column.lengths is not None:
             entry["lengths"] = packer.add(column.lengths)
         columns[path] = entry
-    found: dict[str, Any] = {
+    found: dict[str, object] = {
         "type": stream.type_name,
         "times": packer.add(stream.times_ns),
         "columns": columns,
@@ -113,7 +113,7 @@ def _pack_stream(packer: Packer, stream: Stream, scenario: RunSpec) -> dict[str,
     return found
 
 
-def _unpack_stream(unpacker: Unpacker, topic: str, said: Mapping[str, Any]) -> Stream:
+def _unpack_stream(unpacker: Unpacker, topic: str, said: JsonMapping) -> Stream:
     stream = Stream(topic, str(said["type"]), _times(unpacker.array(said["times"])))
     count = len(stream.times_ns)
     for path, one in said["columns"].items():
@@ -133,7 +133,7 @@ def _unpack_stream(unpacker: Unpacker, topic: str, said: Mapping[str, Any]) -> S
     return stream
 
 
-def _unpack_pictures(unpacker: Unpacker, said: Mapping[str, Any], count: int) -> Pictures:
+def _unpack_pictures(unpacker: Unpacker, said: JsonMapping, count: int) -> Pictures:
     small, tiles = unpacker.array(said["small"]), unpacker.array(said["tiles"])
     kept = None if said["kept"] is None else unpacker.array(said["kept"])
     hashes = None if said["hashes"] is None else unpacker.array(said["hashes"])
@@ -152,12 +152,12 @@ def _times(times: Array) -> Array:
     return times
 
 
-def _pack_words(packer: Packer, texts: list[str]) -> dict[str, Any]:
+def _pack_words(packer: Packer, texts: list[str]) -> dict[str, object]:
     known = {text: number for number, text in enumerate(dict.fromkeys(texts))}
     return {"texts": list(known), "which": packer.add(np.array([known[text] for text in texts], dtype=np.int64))}
 
 
-def _unpack_words(unpacker: Unpacker, said: Mapping[str, Any], count: int) -> list[str]:
+def _unpack_words(unpacker: Unpacker, said: JsonMapping, count: int) -> list[str]:
     texts = [str(text) for text in said["texts"]]
     which = unpacker.array(said["which"]).tolist()
     if len(which) != count or any(type(i) is not int or not 0 <= i < len(texts) for i in which):
@@ -165,26 +165,26 @@ def _unpack_words(unpacker: Unpacker, said: Mapping[str, Any], count: int) -> li
     return [texts[i] for i in which]
 
 
-def _pack_statistics(packer: Packer, statistics: NoiseStatistics) -> dict[str, Any]:
-    found: dict[str, Any] = {"count": int(statistics.count)}
+def _pack_statistics(packer: Packer, statistics: NoiseStatistics) -> dict[str, object]:
+    found: dict[str, object] = {"count": int(statistics.count)}
     return found | {name: packer.add(np.asarray(getattr(statistics, name), np.float64)) for name in _STATISTICS}
 
 
-def _unpack_statistics(unpacker: Unpacker, said: Mapping[str, Any]) -> NoiseStatistics:
+def _unpack_statistics(unpacker: Unpacker, said: JsonMapping) -> NoiseStatistics:
     return NoiseStatistics(int(said["count"]), *(unpacker.array(said[name]) for name in _STATISTICS))
 
 
 # ---------------------------------------------------------------------- states and model
 
 
-def _pack_states(packer: Packer, states: States) -> dict[str, Any]:
+def _pack_states(packer: Packer, states: States) -> dict[str, object]:
     arrays = ("marks", "inputs", "ticks", "values", "input_values")
-    found: dict[str, Any] = {name: packer.add(getattr(states, name)) for name in arrays}
+    found: dict[str, object] = {name: packer.add(getattr(states, name)) for name in arrays}
     texts = {"names": states.names, "input_names": states.input_names, "timestep": states.timestep}
     return found | texts | {"digest": states.digest, "named_digest": states.named_digest}
 
 
-def _unpack_states(unpacker: Unpacker, said: Mapping[str, Any]) -> States:
+def _unpack_states(unpacker: Unpacker, said: JsonMapping) -> States:
     marks, inputs, ticks = (unpacker.array(said[name]) for name in ("marks", "inputs", "ticks"))
     values, given = unpacker.array(said["values"]), unpacker.array(said["input_values"])
     names, given_names = [str(n) for n in said["names"]], [str(n) for n in said["input_names"]]
@@ -199,7 +199,7 @@ def _unpack_states(unpacker: Unpacker, said: Mapping[str, Any]) -> States:
     )  # fmt: skip
 
 
-def _pack_fields(packer: Packer, fields: Mapping[str, Array]) -> dict[str, Any]:
+def _pack_fields(packer: Packer, fields: Mapping[str, Array]) -> dict[str, object]:
     if not isinstance(fields, ModelFields):
         return {}
     if sum(array.size for _, table in fields.tables.values() for array in table.values()) > _MAX_FIELDS:
@@ -210,7 +210,7 @@ def _pack_fields(packer: Packer, fields: Mapping[str, Array]) -> dict[str, Any]:
     }
 
 
-def _unpack_fields(unpacker: Unpacker, said: Mapping[str, Any]) -> ModelFields:
+def _unpack_fields(unpacker: Unpacker, said: JsonMapping) -> ModelFields:
     tables: dict[str, tuple[list[str], dict[str, Array]]] = {}
     for kind, one in said.items():
         names = [str(name) for name in one["names"]]
@@ -221,10 +221,10 @@ def _unpack_fields(unpacker: Unpacker, said: Mapping[str, Any]) -> ModelFields:
     return ModelFields(tables)
 
 
-def _validate_values(leaves: Any) -> dict[str, Any]:
+def _validate_values(leaves: object) -> dict[str, object]:
     """Leaves as they may be: numbers, texts, and lists of them."""
 
-    def is_plain(value: Any) -> bool:
+    def is_plain(value: object) -> bool:
         return isinstance(value, (bool, int, float, str)) or (isinstance(value, list) and all(map(is_plain, value)))
 
     if not isinstance(leaves, dict) or not all(map(is_plain, leaves.values())):

@@ -9,7 +9,7 @@ from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any, Final, cast
 
-from simkit.run_spec import Check, LoadOptions, RunSpec, Tolerance
+from simkit.run_spec import Check, JsonMapping, JsonObject, LoadOptions, RunSpec, Tolerance
 
 _PATH_OPTIONS: Final = ("resource_paths", "plugin_paths", "params_files")
 _LONG_TEXT: Final = 2000
@@ -19,7 +19,7 @@ _PLAIN: Final = (
 )  # fmt: skip
 
 
-def encode_scenario(scenario: RunSpec, folder: Path) -> dict[str, Any]:
+def encode_scenario(scenario: RunSpec, folder: Path) -> dict[str, object]:
     """A scenario as JSON holds it.
 
     Args:
@@ -30,7 +30,7 @@ def encode_scenario(scenario: RunSpec, folder: Path) -> dict[str, Any]:
     def place(path: Any) -> str:
         return relative_path(Path(scenario.folder, path), folder)
 
-    found: dict[str, Any] = {"world": relative_world(scenario, folder)}
+    found: dict[str, object] = {"world": relative_world(scenario, folder)}
     if is_long_text(scenario.world):
         text = scenario.world.encode("utf-8", "surrogatepass")
         found["world"] = {"sha256": hashlib.sha256(text).hexdigest(), "bytes": len(text)}
@@ -60,7 +60,7 @@ def encode_scenario(scenario: RunSpec, folder: Path) -> dict[str, Any]:
     return found
 
 
-def decode_scenario(plain: Mapping[str, Any], folder: Path) -> RunSpec:
+def decode_scenario(plain: JsonMapping, folder: Path) -> RunSpec:
     """The scenario that plain data stands for; of plugins that were made in Python it has the names of their classes.
 
     Args:
@@ -71,10 +71,10 @@ def decode_scenario(plain: Mapping[str, Any], folder: Path) -> RunSpec:
         ValueError, TypeError, KeyError: it is none.
     """
 
-    def place(text: Any) -> str:
+    def place(text: object) -> str:
         return str(folder / str(text))
 
-    given: dict[str, Any] = {name: plain[name] for name in _PLAIN if name in plain}
+    given: JsonObject = {name: plain[name] for name in _PLAIN if name in plain}
     for name in ("overrides", "topics", "skip", "play_topics"):
         given[name] = tuple(map(str, given.get(name, ())))
     for name in ("duration", "seed", "picture"):
@@ -88,7 +88,7 @@ def decode_scenario(plain: Mapping[str, Any], folder: Path) -> RunSpec:
     given["tolerances"] = tuple(Tolerance(**_known_fields(one, Tolerance)) for one in plain.get("tolerances", ()))
     checks = (_known_fields(one, Check) for one in plain.get("checks", ()))
     given["checks"] = tuple(Check(**{**one, "models": tuple(one.get("models", ()))}) for one in checks)
-    options: dict[str, Any] = {}
+    options: dict[str, object] = {}
     for name, value in dict(plain.get("options", {})).items():
         if name in _PATH_OPTIONS:
             options[name] = tuple(_move_params_file(str(one), place) for one in value)
@@ -128,7 +128,7 @@ def _move_spawn(text: str, place: Callable[[str], str]) -> str:
     return place(model) + colon + rest
 
 
-def _encode_option(name: str, value: Any, place: Callable[[Any], str]) -> Any:
+def _encode_option(name: str, value: Any, place: Callable[[object], str]) -> object:
     if name in _PATH_OPTIONS:
         several = [value] if isinstance(value, (str, os.PathLike)) else list(value)
         return [_move_params_file(str(one), place) for one in several]
@@ -137,13 +137,13 @@ def _encode_option(name: str, value: Any, place: Callable[[Any], str]) -> Any:
     return _plain_value(value)
 
 
-def _move_params_file(text: str, place: Callable[[Any], str]) -> str:
+def _move_params_file(text: str, place: Callable[[object], str]) -> str:
     """`[MODEL=]FILE` with another place of the file."""
     model, equals, file = text.rpartition("=")
     return f"{model}{equals}{place(file)}"
 
 
-def _plain_value(value: Any) -> Any:
+def _plain_value(value: Any) -> object:
     if isinstance(value, Mapping):
         return {str(key): _plain_value(one) for key, one in value.items()}
     if isinstance(value, (list, tuple)) or hasattr(value, "tolist"):
@@ -151,18 +151,18 @@ def _plain_value(value: Any) -> Any:
     return value if isinstance(value, (bool, int, float, str)) or value is None else str(value)
 
 
-def _non_default_fields(value: Any, default: Any) -> dict[str, Any]:
+def _non_default_fields(value: Any, default: Any) -> dict[str, object]:
     """The fields that are other than the default's, without places."""
     usual = asdict(default)
     return {name: _plain_value(one) for name, one in asdict(value).items() if name != "where" and one != usual[name]}
 
 
-def _known_fields(plain: Mapping[str, Any], kind: type) -> dict[str, Any]:
+def _known_fields(plain: Mapping[str, object], kind: type) -> JsonObject:
     names = {field.name for field in fields(kind)}
     return {str(name): value for name, value in plain.items() if name in names}
 
 
-def _class_name(plugin: Any) -> str:
+def _class_name(plugin: object) -> str:
     one = plugin[1] if isinstance(plugin, tuple) and len(plugin) == 2 else plugin
     kind = one if isinstance(one, type) or hasattr(one, "__file__") else type(one)
     return str(getattr(kind, "__qualname__", getattr(kind, "__name__", kind)))

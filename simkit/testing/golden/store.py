@@ -10,12 +10,13 @@ import hashlib
 import json
 import os
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from simkit.errors import InputError
+from simkit.run_spec import JsonMapping, JsonObject
 from simkit.testing.golden.array_packing import PackingError
 from simkit.testing.golden.record_encoding import decode_record, encode_record
 from simkit.testing.golden.scenario_encoding import decode_scenario, encode_scenario
@@ -37,7 +38,7 @@ def write_golden(
     *,
     reason: str = "",
     changed: Sequence[str] = (),
-    history: Sequence[Mapping[str, Any]] = (),
+    history: Sequence[JsonMapping] = (),
 ) -> None:
     """Makes a record the golden one.
 
@@ -55,7 +56,7 @@ def write_golden(
     about, data = encode_record(record)
     digest = hashlib.sha256(data).hexdigest()
     name = f"data-{digest[:12]}.xz"
-    entry: dict[str, Any] = {"reason": reason or "recorded"}
+    entry: JsonObject = {"reason": reason or "recorded"}
     entry |= {key: record.fingerprint[key] for key in ("simkit", "mujoco", "numpy") if key in record.fingerprint}
     if changed:
         entry["changed"] = list(changed)
@@ -103,7 +104,7 @@ def read_golden(folder: str | os.PathLike[str]) -> RunRecord:
         raise _damaged_error(place, f"is damaged: {type(error).__name__}: {error}") from None
 
 
-def _read_main_and_data(place: Path) -> tuple[dict[str, Any], str, str, bytes]:
+def _read_main_and_data(place: Path) -> tuple[JsonObject, str, str, bytes]:
     """What `golden.json` says, the name and the hash of its data, and those."""
     for trial in range(_READ_ATTEMPTS):
         said = read_main(place)
@@ -119,7 +120,7 @@ def _read_main_and_data(place: Path) -> tuple[dict[str, Any], str, str, bytes]:
     raise AssertionError(place)
 
 
-def read_main(folder: Path) -> dict[str, Any]:
+def read_main(folder: Path) -> JsonObject:
     """What `golden.json` of a folder says.
 
     Raises:
@@ -158,7 +159,7 @@ def read_main(folder: Path) -> dict[str, Any]:
     return said
 
 
-def read_history(folder: str | os.PathLike[str]) -> list[Mapping[str, Any]]:
+def read_history(folder: str | os.PathLike[str]) -> list[JsonMapping]:
     """What was recorded and blessed in a folder, oldest first."""
     found = read_main(golden_folder(folder)).get("history", [])
     return [one for one in found if isinstance(one, dict)] if isinstance(found, list) else []
@@ -195,7 +196,7 @@ def find_goldens(path: str | os.PathLike[str]) -> list[Path]:
     return found
 
 
-def _read_data(place: Path, said: Mapping[str, Any]) -> tuple[str, str]:
+def _read_data(place: Path, said: JsonMapping) -> tuple[str, str]:
     data = said.get("data")
     name, digest = (data.get("file"), data.get("sha256")) if isinstance(data, dict) else (None, None)
     if not isinstance(name, str) or not _DATA.fullmatch(name) or not isinstance(digest, str):

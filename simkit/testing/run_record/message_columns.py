@@ -105,7 +105,7 @@ class MessageRows:
     def __len__(self) -> int:
         return len(self._rows)
 
-    def take(self, message: Any) -> None:
+    def take(self, message: object) -> None:
         """One message more; what it holds is copied."""
         self._rows.append(self._single(message))
         for path, get in self._arrays.items():

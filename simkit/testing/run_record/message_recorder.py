@@ -9,6 +9,7 @@ from zlib import crc32
 
 import numpy as np
 
+from simkit.msgs import Message
 from simkit.testing.run_record.message_columns import MessageRows, join_arrays, message_fields
 from simkit.testing.run_record.noise_statistics import noise_statistics
 from simkit.testing.run_record.pictures import shrink, tile_hashes
@@ -53,7 +54,7 @@ _CLOUD_TYPES: Final = {
 class MessageRecorder(Protocol):
     """Takes the messages of one topic, and says in the end what they were."""
 
-    def take(self, message: Any) -> None:
+    def take(self, message: object) -> None:
         """One message more; what is kept of it is copied."""
 
     def fill(self, stream: Stream) -> None:
@@ -78,7 +79,7 @@ class _FieldRecorder:
     def __init__(self, type_name: str) -> None:
         self._rows = MessageRows(type_name, _BINARY_FIELDS.get(type_name, frozenset()))
 
-    def take(self, message: Any) -> None:
+    def take(self, message: object) -> None:
         self._rows.take(message)
 
     def fill(self, stream: Stream) -> None:
@@ -91,7 +92,7 @@ class _NoisyFieldRecorder:
     def __init__(self, plain: _FieldRecorder, residuals: Any) -> None:
         self._plain, self._residuals = plain, residuals
 
-    def take(self, message: Any) -> None:
+    def take(self, message: object) -> None:
         self._plain.take(message)
         self._residuals.take(message)
 
@@ -112,7 +113,7 @@ class _ImageRecorder:
         self._shape: tuple[int, int] | None = None
         self._encoding, self._is_odd = "", False
 
-    def take(self, message: Any) -> None:
+    def take(self, message: Message) -> None:
 
         number = len(self._hashes)
         self._plain.take(message)
@@ -156,7 +157,7 @@ class _CloudRecorder:
         self._values: dict[str, list[Any]] = {}
         self._names: list[str] = []
 
-    def take(self, message: Any) -> None:
+    def take(self, message: Message) -> None:
         self._plain.take(message)
         points = points_of_cloud(message)
         self._names.append(", ".join(points.dtype.names or ()))
@@ -174,7 +175,7 @@ class _CloudRecorder:
                 stream.columns[f"points.{name}"] = join_arrays(arrays, str(arrays[0].dtype))
 
 
-def pixels_of_image(message: Any) -> Any:
+def pixels_of_image(message: Message) -> Any:
     """The pixels of an Image message, shape (height, width, channels); None for an encoding that is not known."""
     kind = _CHANNELS.get(str(message.encoding))
     if kind is None:
@@ -190,10 +191,10 @@ def pixels_of_image(message: Any) -> Any:
     return pixels.astype(dtype, copy=False)
 
 
-def points_of_cloud(message: Any) -> Any:
+def points_of_cloud(message: Message) -> Any:
     """The points of a PointCloud2 as a structured array."""
     order: Literal[">", "<"] = ">" if message.is_bigendian else "<"
-    kinds: list[Any] = []
+    kinds: list[object] = []
     names: list[str] = []
     offsets: list[int] = []
     for field in message.fields:
@@ -237,7 +238,7 @@ class NoiseRecorder:
         self._sensor, self._paths = sensor, paths
         self._read, self._true = MessageRows(type_name), MessageRows(type_name)
 
-    def take(self, message: Any) -> None:
+    def take(self, message: object) -> None:
         """A reading that is published now."""
         self._read.take(message)
         self._true.take(self._sensor.truth)

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from simkit.testing.run_record.record import Array
 
 if TYPE_CHECKING:
+    import mujoco
+
     from simkit.runtime import Simulation
 
 _KINDS: Final = {
@@ -87,7 +89,7 @@ def fields_of_model(sim: Simulation) -> ModelFields:
     return ModelFields(tables)
 
 
-def _options(options: Any) -> dict[str, Array]:
+def _options(options: object) -> dict[str, Array]:
     found = {}
     for name in dir(options):
         value = None if name.startswith("_") else getattr(options, name)
@@ -96,19 +98,19 @@ def _options(options: Any) -> dict[str, Array]:
     return found
 
 
-def _names(model: Any, kind: Any, size: int) -> list[str]:
+def _names(model: mujoco.MjModel, kind: mujoco.mjtObj, size: int) -> list[str]:
     import mujoco
 
     return [mujoco.mj_id2name(model, kind, i) or f"#{i}" for i in range(size)]
 
 
-def _dof_names(model: Any) -> list[str]:
+def _dof_names(model: mujoco.MjModel) -> list[str]:
     from simkit.testing.run_record.state_recorder import StateQuantities
 
     return StateQuantities(model).velocities
 
 
-def _add_meshes(model: Any, tables: dict[str, tuple[list[str], dict[str, Array]]]) -> None:
+def _add_meshes(model: mujoco.MjModel, tables: dict[str, tuple[list[str], dict[str, Array]]]) -> None:
     """Meshes by how many vertices and faces they have, and a hash of those."""
     import mujoco
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from simkit.run_spec import RunSpec
+from simkit.run_spec import JsonMapping, RunSpec
 from simkit.testing.run_record.noise_statistics import NoiseStatistics
 
 Array = npt.NDArray[Any]
@@ -161,7 +161,7 @@ class RunRecord:
     fingerprint: dict[str, str]
     streams: dict[str, Stream]
     states: States
-    leaves: Mapping[str, Any] = field(default_factory=dict)
+    leaves: JsonMapping = field(default_factory=dict)
     leaf_places: Mapping[str, str] = field(default_factory=dict)
     fields: Mapping[str, Array] = field(default_factory=dict)
     sources: Mapping[str, str] = field(default_factory=dict)

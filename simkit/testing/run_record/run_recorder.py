@@ -16,6 +16,7 @@ import numpy as np
 
 from simkit import msgs
 from simkit.errors import PluginError, SimulationDiverged, SubscriberError
+from simkit.msgs import Message
 from simkit.recording.bags.recorder import matches_topic
 from simkit.recording.message_taps import MessageQueue, TopicTaps
 from simkit.testing.run_record.fingerprint import fingerprint
@@ -54,7 +55,7 @@ _ROWS: Final[dict[str, tuple[str, ...]]] = {
 """Lists side by side, of all that a world holds; the first has the names."""
 
 
-def sort_message(message: Any, type_name: str) -> Any:
+def sort_message(message: Message, type_name: str) -> object:
     """A message with its parts by name; itself where they are, or where their order means something.
 
     Args:
@@ -82,7 +83,7 @@ def sort_message(message: Any, type_name: str) -> Any:
     return message
 
 
-def _sort_points(part: Any, fields: tuple[str, ...]) -> Any:
+def _sort_points(part: Any, fields: tuple[str, ...]) -> object:
     """A contact with its points in one order: the engine's depends on which of the two came first in the file."""
     columns = {field: getattr(part, field) for field in fields}
     places = columns[fields[0]]
@@ -94,11 +95,11 @@ def _sort_points(part: Any, fields: tuple[str, ...]) -> Any:
     return replace(part, **moved)
 
 
-def _reorder(column: Any, order: list[int]) -> Any:
+def _reorder(column: Any, order: list[int]) -> object:
     return column[order] if isinstance(column, np.ndarray) else [column[i] for i in order]
 
 
-def _without_entity_numbers(contact: Any) -> Any:
+def _without_entity_numbers(contact: Message) -> object:
     """A contact without the numbers of what touches: they count the parts of the file, and names stand beside them."""
     wrenches = [
         replace(w, body_1_id=replace(w.body_1_id, data=0), body_2_id=replace(w.body_2_id, data=0))
@@ -138,7 +139,7 @@ def run_record(scenario: RunSpec, *, sim: Simulation | None = None) -> RunRecord
 def _run_and_record(scenario: RunSpec, sim: Simulation | None) -> RunRecord:
 
     opened = open_scenario(scenario) if sim is None else sim
-    results: tuple[Any, ...] = ()
+    results: tuple[object, ...] = ()
     failed: Exception | None = None
     try:
         with RunRecorder(scenario, opened, scenario.longest) as capture:
@@ -219,7 +220,7 @@ class RunRecorder:
             environment=_environment(self._sim),
         )
 
-    def _receiver_of(self, topic: str, type_name: str) -> Callable[[Any], None] | None:
+    def _receiver_of(self, topic: str, type_name: str) -> Callable[[object], None] | None:
         if not self._is_asked_for(topic, type_name):
             return None
         sim = self._sim
@@ -266,7 +267,7 @@ class StreamRecorder:
             self._taker.fill(stream)
         return stream
 
-    def _keep(self, now: int, message: Any) -> None:
+    def _keep(self, now: int, message: object) -> None:
         type_name = msgs.type_name(message)
         if self._taker is None:
             self._type_name = type_name

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Iterator
 from dataclasses import fields, is_dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from simkit.params import Params
 from simkit.testing.run_record.world_values import file_hash, plugin_value_files, values_of_files
@@ -39,7 +39,7 @@ def source_hashes(sim: Simulation) -> dict[str, str]:
     return dict(sorted(found.items()))
 
 
-def _files_of_scene(value: Any) -> Iterator[Path]:
+def _files_of_scene(value: object) -> Iterator[Path]:
     """The files that a scene names."""
     if isinstance(value, Path):
         yield value

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, Final
 from zlib import crc32
 
@@ -14,7 +15,10 @@ from simkit.runtime.engine.snapshot import state_hash
 from simkit.testing.run_record.record import States
 
 if TYPE_CHECKING:
+    import mujoco
+
     from simkit.runtime import Simulation
+    from simkit.runtime.engine.physics import Physics
 
 _STATES_KEPT: Final = 64  # states of a run, where the world is small
 _MAX_VALUES: Final = 6000  # of all of them together
@@ -92,7 +96,7 @@ class StateRecorder:
         if len(self._marks) % self._every == 0:
             self._keep()
 
-    def _hash_inputs(self, physics: Any) -> int:
+    def _hash_inputs(self, physics: Physics) -> int:
         found = crc32(self._ctrl.take(self._controls).data)
         applied, pushed = self._applied, self._pushed
         if physics.shows_applied:  # forces of one step are gone by now, and remembered
@@ -140,7 +144,7 @@ class StateRecorder:
 class StateQuantities:
     """Names of what a compiled model's state is made of, in the order of the engine."""
 
-    def __init__(self, model: Any) -> None:
+    def __init__(self, model: mujoco.MjModel) -> None:
         import mujoco
 
         self.bodies = [_name(model, mujoco.mjtObj.mjOBJ_BODY, i) for i in range(model.nbody)]
@@ -171,7 +175,7 @@ class StateQuantities:
                 self.mocaps[number] = self.bodies[body]
         self.forces = [f"force on {name}" for name in self.velocities]
 
-    def values(self, physics: Any) -> tuple[dict[str, float], dict[str, float]]:
+    def values(self, physics: Physics) -> tuple[dict[str, float], dict[str, float]]:
         """The state by name, and what is put in; of forces those that are not zero."""
         data = physics.data
         state = dict(zip(self.positions, data.qpos.tolist(), strict=True))
@@ -193,7 +197,7 @@ _FREE_VELOCITY: Final = (*(f"velocity {part}" for part in "xyz"), *(f"angular ve
 _WRENCH: Final = (*(f"push {part}" for part in "xyz"), *(f"torque {part}" for part in "xyz"))
 
 
-def _name(model: Any, kind: Any, number: int) -> str:
+def _name(model: mujoco.MjModel, kind: mujoco.mjtObj, number: int) -> str:
     import mujoco
 
     return mujoco.mj_id2name(model, kind, number) or f"#{number}"
@@ -204,7 +208,7 @@ def _sort_by_name(names: list[str]) -> npt.NDArray[np.intp]:
     return np.array(sorted(range(len(names)), key=names.__getitem__), dtype=np.intp)
 
 
-def _union(states: Any) -> list[str]:
+def _union(states: Iterable[Iterable[str]]) -> list[str]:
     return sorted({name for state in states for name in state})
 
 

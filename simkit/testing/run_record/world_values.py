@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 from simkit.diagnostics import Where
 from simkit.params import Params
 from simkit.pose import Pose
+from simkit.run_spec import JsonObject
 from simkit.scene import SceneSensor, SceneWorld
 from simkit.yaml_reader import yaml_loader
 
@@ -24,7 +25,7 @@ _IGNORED_FIELDS: Final = frozenset(("where", "name", "scoped", "uri", "script", 
 """Fields that are places or names of files, or that are in the path already, or no plain values."""
 _SENSOR_FIELDS: Final = frozenset(("pose", "update_rate", "topic", "plugin"))
 """Elements of a sensor that are fields of it as well."""
-WorldValues = dict[str, Any]
+WorldValues = JsonObject
 
 
 def values_of_simulation(sim: Simulation) -> tuple[WorldValues, dict[str, str]]:
@@ -69,7 +70,7 @@ def split_path(path: str) -> list[tuple[str, str]]:
     return steps
 
 
-def item_keys(items: Iterable[Any]) -> list[str]:
+def item_keys(items: Iterable[object]) -> list[str]:
     """What the items of a list go by in paths: their name (of a second one `name#2`), else their number from 0."""
     seen: dict[str, int] = {}
     keys = []
@@ -109,16 +110,16 @@ class _WorldWalk:
         self.leaves: WorldValues = {}
         self.places: dict[str, str] = {}
 
-    def dataclass(self, value: Any, path: str, place: str) -> None:
+    def dataclass(self, value: object, path: str, place: str) -> None:
         where = getattr(value, "where", None)
         if isinstance(where, Where) and where.line:
             place = str(where)
-        kind: Any = type(value)
+        kind: object = type(value)
         for name in _field_names(kind):
             if name not in _IGNORED_FIELDS:
                 self.value(getattr(value, name), f"{path}.{name}" if path else name, place, value)
 
-    def value(self, value: Any, path: str, place: str, owner: Any = None) -> None:
+    def value(self, value: object, path: str, place: str, owner: object = None) -> None:
         if value is None or callable(value):
             return
         if isinstance(value, (bool, int, float, str)):
@@ -163,13 +164,13 @@ class _WorldWalk:
         for key, child in zip(element_keys(inner), inner, strict=True):
             self.element(child, f"{path}.{key}", place)
 
-    def _put(self, path: str, value: Any, place: str) -> None:
+    def _put(self, path: str, value: object, place: str) -> None:
         self.leaves[path] = value
         if place:
             self.places[path] = place
 
 
-def shape_class_name(value: Any) -> str:
+def shape_class_name(value: object) -> str:
     """The class of what may be of several: shapes."""
     kind = type(value)
     return kind.__name__ if kind.__module__ == "simkit.scene.geometry" else ""
@@ -180,13 +181,13 @@ def _field_names(kind: Any) -> tuple[str, ...]:
     return tuple(field.name for field in fields(kind))
 
 
-def _is_scalar(item: Any) -> bool:
+def _is_scalar(item: object) -> bool:
     return isinstance(item, (bool, int, float, str)) or (
         isinstance(item, (tuple, list)) and all(_is_scalar(one) for one in item)
     )
 
 
-def _scalar(item: Any) -> Any:
+def _scalar(item: object) -> object:
     return [_scalar(one) for one in item] if isinstance(item, (tuple, list)) else item
 
 
@@ -194,7 +195,7 @@ def _escaped(key: str) -> str:
     return key.replace("%", "%25").replace("]", "%5D")
 
 
-def _element_value(text: str) -> Any:
+def _element_value(text: str) -> object:
     """The text of an element: numbers where it is some, so that `0.10` is `0.1`; files by what is in them."""
     words = text.split()
     try:
@@ -243,7 +244,7 @@ def plugin_value_files(sim: Simulation) -> list[Path]:
     return list(dict.fromkeys(path.resolve() for path in sim.engine.structure.builder.files_read))
 
 
-def values_of_files(paths: Iterable[Path]) -> tuple[dict[str, Any], dict[str, str], set[Path]]:
+def values_of_files(paths: Iterable[Path]) -> tuple[dict[str, object], dict[str, str], set[Path]]:
     """What is in files of values.
 
     Args:
@@ -252,7 +253,7 @@ def values_of_files(paths: Iterable[Path]) -> tuple[dict[str, Any], dict[str, st
     Returns:
         Path of a leaf (`files[controllers.yaml].arm.gains.p`) -> value, `file:line`, and the files that were read.
     """
-    leaves: dict[str, Any] = {}
+    leaves: dict[str, object] = {}
     places: dict[str, str] = {}
     read = set()
     for path in sorted(set(paths)):
@@ -261,7 +262,7 @@ def values_of_files(paths: Iterable[Path]) -> tuple[dict[str, Any], dict[str, st
             continue
         taken = any(key.startswith(f"files[{path.name}]") for key in leaves)
         name = f"{path.parent.name}/{path.name}" if taken else path.name
-        found: dict[str, tuple[Any, int]] = {}
+        found: dict[str, tuple[object, int]] = {}
         if _flatten_document(root, f"files[{name.replace('%', '%25').replace(']', '%5D')}]", found, 0):
             leaves.update({key: value for key, (value, _) in found.items()})
             places.update({key: f"{path}:{line}" for key, (_, line) in found.items()})
@@ -269,7 +270,7 @@ def values_of_files(paths: Iterable[Path]) -> tuple[dict[str, Any], dict[str, st
     return leaves, places, read
 
 
-def _parse_document(path: Path) -> Any:
+def _parse_document(path: Path) -> object:
     """The document of a file; None where it is not one of values."""
     if path.suffix.lower() not in _SUFFIXES:
         return None
@@ -283,7 +284,7 @@ def _parse_document(path: Path) -> Any:
         return None
 
 
-def _flatten_document(node: Any, path: str, found: dict[str, tuple[Any, int]], depth: int) -> bool:
+def _flatten_document(node: Any, path: str, found: dict[str, tuple[object, int]], depth: int) -> bool:
     """Goes through a document; False where it is too large, or holds itself."""
     if depth > _MAX_YAML_DEPTH or len(found) > _MAX_FILE_VALUES:
         return False
@@ -308,7 +309,7 @@ def _flatten_document(node: Any, path: str, found: dict[str, tuple[Any, int]], d
     return True
 
 
-def _yaml_scalar(node: Any) -> Any:
+def _yaml_scalar(node: Any) -> object:
     """A scalar: the number that it is, or its text."""
     try:
         return float(node.value) if not node.style else node.value

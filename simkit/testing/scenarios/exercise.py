@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from simkit.diagnostics import Diagnostics
-from simkit.run_spec import RunSpec
+from simkit.run_spec import JsonMapping, RunSpec
 from simkit.testing.scenarios.scenario_file import is_scalar_text, parse_scenario, yaml_value_text
 from simkit.testing.scenarios.yaml_document import Document, resolve_spawn_file, short_repr
 from simkit.yaml_reader import finite_number
@@ -30,7 +30,7 @@ class ExerciseRun:
 
     name: str
     scenario: RunSpec
-    parameters: Mapping[str, Any] = field(default_factory=dict)
+    parameters: JsonMapping = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -95,14 +95,14 @@ class _ExerciseReader:
             title, self._text("text"), self._text("hand_in"), self._text("robot"), self._pass_mark(), runs, file
         )
 
-    def _runs(self, scenario: RunSpec, parameters: Mapping[str, Any]) -> tuple[ExerciseRun, ...]:
+    def _runs(self, scenario: RunSpec, parameters: Mapping[str, object]) -> tuple[ExerciseRun, ...]:
         listed = self._said.get("runs", [{}])
         if not isinstance(listed, list) or not listed:
             self._wrong(listed, "a list of runs", "exercise", "runs")
             return ()
         return tuple(self._run(one, number, scenario, parameters) for number, one in enumerate(listed))
 
-    def _run(self, value: Any, number: int, scenario: RunSpec, parameters: Mapping[str, Any]) -> ExerciseRun:
+    def _run(self, value: object, number: int, scenario: RunSpec, parameters: Mapping[str, object]) -> ExerciseRun:
         keys = ("exercise", "runs", number)
         said = self._document.only(value, _RUN_KEYS, "a run", *keys)
         seed = said.get("seed", scenario.seed)
@@ -131,7 +131,7 @@ class _ExerciseReader:
 
     # ------------------------------------------------------------------ plain values
 
-    def _wrong(self, value: Any, allowed: str, *keys: Any) -> None:
+    def _wrong(self, value: object, allowed: str, *keys: object) -> None:
         label = ".".join(map(str, keys))
         self._document.error("SK-SCEN-003", f"{label}: found {short_repr(value)}, allowed is {allowed}", *keys)
 
@@ -142,20 +142,20 @@ class _ExerciseReader:
         self._wrong(value, "a text", "exercise", key)
         return ""
 
-    def _texts(self, value: Any, *keys: Any) -> tuple[str, ...]:
+    def _texts(self, value: object, *keys: object) -> tuple[str, ...]:
         listed = [value] if isinstance(value, str) else value
         if isinstance(listed, list) and all(isinstance(one, str) for one in listed):
             return tuple(listed)
         self._wrong(value, "a text, or a list of them", *keys)
         return ()
 
-    def _mapping(self, value: Any, *keys: Any) -> Mapping[str, Any]:
+    def _mapping(self, value: object, *keys: object) -> JsonMapping:
         if isinstance(value, dict) and all(isinstance(one, str) for one in value):
             return value
         self._wrong(value, "a mapping", *keys)
         return {}
 
-    def _overrides(self, value: Any, *keys: Any) -> tuple[str, ...]:
+    def _overrides(self, value: object, *keys: object) -> tuple[str, ...]:
         if not isinstance(value, dict):
             return self._texts(value, *keys)
         for path, one in value.items():

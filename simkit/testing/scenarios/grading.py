@@ -10,10 +10,11 @@ from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from simkit.child_process import ChildProcesses
 from simkit.errors import InputError
+from simkit.run_spec import JsonObject
 from simkit.testing.scenarios.exercise import Exercise, ExerciseRun
 
 _SPARE_SECONDS: Final = 20.0  # [s] of wall time beside a run's own, for the start and the end of its process
@@ -184,7 +185,7 @@ def _required_checks(variation: ExerciseRun) -> list[tuple[str, float, str]]:
 
 def _run_in_process(
     processes: ChildProcesses, exercise: Exercise, number: int, hand_in: Path | None, picture: str
-) -> tuple[dict[str, Any], str]:
+) -> tuple[JsonObject, str]:
     """What a run gave, and what it printed."""
     variation = exercise.runs[number]
     limit = (variation.scenario.wall_timeout or 0.0) + _SPARE_SECONDS
@@ -218,7 +219,7 @@ def _run_in_process(
     return found, printed
 
 
-def _read_process_result(target: Path, token: str, count: int) -> dict[str, Any] | None:
+def _read_process_result(target: Path, token: str, count: int) -> JsonObject | None:
     """What a run left behind; None where that is not what simkit writes: what was handed in can write there too."""
     try:
         found = json.loads(target.read_text(encoding="utf-8")) if target.is_file() else None

@@ -11,6 +11,7 @@ from typing import Any
 from simkit.child_process import exit_immediately, exit_with_parent
 from simkit.diagnostics import Diagnostics, Where
 from simkit.errors import InputError, LoadError, PluginError, SimkitError
+from simkit.run_spec import JsonObject
 from simkit.testing.scenarios.exercise import Exercise, ExerciseRun, read_exercise
 from simkit.testing.scenarios.scenario_run import open_scenario, run_scenario
 
@@ -34,14 +35,14 @@ def main(job_file: str) -> None:
         sys.exit(f"the result cannot be written: {error.strerror}")
 
 
-def _run_exercise(asked: Exercise, variation: ExerciseRun, hand_in: Path | None, picture: str) -> dict[str, Any]:
+def _run_exercise(asked: Exercise, variation: ExerciseRun, hand_in: Path | None, picture: str) -> JsonObject:
     """What became of each check, or what went wrong."""
     from simkit.recording.run_picture import DrivenPath, save_picture
     from simkit.runtime.engine.snapshot import state_hash
 
     sim: Any = None
     try:
-        more: dict[str, Any] = {}
+        more: JsonObject = {}
         if hand_in is not None:
             paths = (hand_in.parent, *variation.scenario.options.get("plugin_paths", ()))
             more["plugin_paths"] = paths

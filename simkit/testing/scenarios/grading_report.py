@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from simkit.run_spec import JsonObject
 from simkit.testing.junit import JunitCase
 from simkit.testing.scenarios.grading import Grade, RunGrade
 
@@ -36,7 +37,7 @@ def _plural(text: str) -> Iterator[tuple[int, str]]:
     return iter(enumerate(text.splitlines()))
 
 
-def grade_json(graded: Grade) -> dict[str, Any]:
+def grade_json(graded: Grade) -> JsonObject:
     """The same as plain data."""
     return {
         "exercise": graded.exercise.title,
@@ -48,7 +49,7 @@ def grade_json(graded: Grade) -> dict[str, Any]:
     }
 
 
-def _run_json(outcome: RunGrade) -> dict[str, Any]:
+def _run_json(outcome: RunGrade) -> JsonObject:
     return {
         "name": outcome.name,
         "seed": outcome.seed,

@@ -59,7 +59,7 @@ def _validate_check(label: str, check: Check) -> Iterator[str]:
     yield from _validate_numbers(label, check, by=True, after=False, rate=True, tolerance=False, points=False)
 
 
-def _validate_numbers(label: str, of: Any, **may_be_none: bool) -> Iterator[str]:
+def _validate_numbers(label: str, of: object, **may_be_none: bool) -> Iterator[str]:
     for key, is_free in may_be_none.items():
         value = getattr(of, key)
         number = finite_number(value)
@@ -67,7 +67,7 @@ def _validate_numbers(label: str, of: Any, **may_be_none: bool) -> Iterator[str]
             yield _problem(f"{label}{key}", value, "a number of at least 0" + (", or None" if is_free else ""))
 
 
-def _validate_commands(commands: Any) -> Iterator[str]:
+def _validate_commands(commands: object) -> Iterator[str]:
 
     if not isinstance(commands, (tuple, list)) or not all(isinstance(one, Mapping) for one in commands):
         yield _problem("commands", commands, "a tuple of mappings with at, topic and message")
@@ -78,11 +78,11 @@ def _validate_commands(commands: Any) -> Iterator[str]:
         yield from (line.replace(f" {error.code}", "", 1) for line in str(error).splitlines())
 
 
-def _is_valid_text(of: Any, key: str) -> bool:
+def _is_valid_text(of: object, key: str) -> bool:
     return isinstance(getattr(of, key), str)
 
 
-def _problem(key: str, value: Any, allowed: str) -> str:
+def _problem(key: str, value: object, allowed: str) -> str:
     return f"{key}: found {value!r:.60}, allowed is {allowed}"
 
 

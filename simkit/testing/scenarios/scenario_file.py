@@ -14,7 +14,7 @@ from simkit.diagnostics import Diagnostics, Where
 from simkit.errors import InputError, LoadError
 from simkit.recording.bags.reader import open_bag_to_read
 from simkit.recording.commands import script_items, validate_items
-from simkit.run_spec import Check, CheckKind, LoadOptions, RunSpec, Tolerance
+from simkit.run_spec import Check, CheckKind, JsonObject, LoadOptions, RunSpec, Tolerance
 from simkit.testing.scenarios.python_file import load_python_scenario
 from simkit.testing.scenarios.yaml_document import Document, ValueReader, resolve_spawn_file
 
@@ -43,7 +43,7 @@ _CHECK_KEYS: Final[dict[CheckKind, tuple[str, ...]]] = {
     "rate": ("name", "topic", "rate", "tolerance", "points", "hint"),
 }
 _TOLERANCE_KEYS: Final = tuple(f.name for f in fields(Tolerance) if f.name not in ("pattern", "where"))
-_TOLERANCE_WORDS: Final[dict[str, dict[str, Any]]] = {
+_TOLERANCE_WORDS: Final[dict[str, JsonObject]] = {
     "exact": {"exact": True},
     "ignore": {"ignore": True},
     "statistics": {"statistics": True},
@@ -160,7 +160,7 @@ class ScenarioReader(ValueReader):
                 self._wrong(value, "a number, a text, true or false, or a list of them", key, name)
         return found
 
-    def _commands(self) -> tuple[Mapping[str, Any], ...]:
+    def _commands(self) -> tuple[Mapping[str, object], ...]:
 
         value = self._said.get("commands", ())
         try:
@@ -197,9 +197,9 @@ class ScenarioReader(ValueReader):
             self._document.error(error.code, f"play: {str(error).removeprefix(error.code).strip()}", "play")
             return 10.0
 
-    def _options(self) -> dict[str, Any]:
+    def _options(self) -> dict[str, object]:
         folder = self._document.path.parent
-        found: dict[str, Any] = {}
+        found: dict[str, object] = {}
         for key in ("resource_paths", "plugin_paths"):
             if key in self._said:
                 found[key] = tuple(folder / one for one in self._texts(key))
@@ -234,10 +234,10 @@ class ScenarioReader(ValueReader):
                 self._wrong(value, f"a number, one of {words}, or a mapping of {', '.join(_TOLERANCE_KEYS)}", *keys)
         return found
 
-    def _tolerance(self, pattern: str, value: Mapping[str, Any], where: str) -> Tolerance:
+    def _tolerance(self, pattern: str, value: Mapping[str, object], where: str) -> Tolerance:
         keys = ("tolerances", pattern)
         said = self._document.only(value, _TOLERANCE_KEYS, "a tolerance", *keys)
-        found: dict[str, Any] = {}
+        found: JsonObject = {}
         for key, one in said.items():
             if key in ("statistics", "ignore", "exact"):
                 if isinstance(one, bool):
@@ -271,7 +271,7 @@ class ScenarioReader(ValueReader):
         found = [self._check(one, kind, key, number) for number, one in enumerate(value)]
         return [check for check in found if check is not None]
 
-    def _check(self, value: Any, kind: CheckKind, key: str, number: int) -> Check | None:
+    def _check(self, value: object, kind: CheckKind, key: str, number: int) -> Check | None:
         keys = (key, number)
         main = "topic" if kind == "rate" else "models" if kind == "apart" else "that"
         if isinstance(value, (str, {"that": bool, "models": list}.get(main, str))):
@@ -298,7 +298,7 @@ class ScenarioReader(ValueReader):
             where=str(self._document.where(*keys)),
         )
 
-    def _expression(self, text: str, *keys: Any) -> str:
+    def _expression(self, text: str, *keys: object) -> str:
         """An expression that can be read; whether the world has what it names is seen when it is bound to one."""
         from simkit.testing.conditions import parse
 
@@ -310,7 +310,7 @@ class ScenarioReader(ValueReader):
                 self._document.error(error.code, message, *keys, hint=hint)
         return text
 
-    def _text_of(self, value: Any, keys: tuple[Any, ...]) -> str:
+    def _text_of(self, value: object, keys: tuple[object, ...]) -> str:
         if isinstance(value, str) and (value.strip() or keys[-1] not in ("that", "topic")):
             return value
         if isinstance(value, bool) and keys[-1] == "that":  # YAML reads a bare true or false as such
@@ -318,7 +318,7 @@ class ScenarioReader(ValueReader):
         self._wrong(value, "a text (in quotes where YAML takes it for something else)", *keys)
         return ""
 
-    def _models(self, value: Any, keys: tuple[Any, ...]) -> tuple[str, ...]:
+    def _models(self, value: Any, keys: tuple[object, ...]) -> tuple[str, ...]:
         listed = [value] if isinstance(value, str) else value
         are_names = isinstance(listed, list) and all(isinstance(one, str) and one.strip() for one in listed)
         if are_names and len(listed) == len(set(listed)) and len(listed) in (1, 2):
@@ -332,14 +332,14 @@ def _absolute_topic(topic: str) -> str:
     return topic if topic.startswith(("/", "*")) or not topic else "/" + topic
 
 
-def is_scalar_text(value: Any) -> bool:
+def is_scalar_text(value: object) -> bool:
     """Whether `yaml_value_text` has a text for a YAML value."""
     if isinstance(value, list):
         return all(is_scalar_text(one) and not isinstance(one, list) for one in value)
     return isinstance(value, (str, int, float))
 
 
-def yaml_value_text(value: Any) -> str:
+def yaml_value_text(value: object) -> str:
     """A YAML value as one would write it: `true` for a truth, numbers of a list with blanks between."""
     if isinstance(value, bool):
         return str(value).lower()

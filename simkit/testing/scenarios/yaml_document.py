@@ -28,23 +28,23 @@ class Document:
 
     def __init__(self, path: Path, diagnostics: Diagnostics) -> None:
         self.path, self.diagnostics = path, diagnostics
-        self.values: Any = None
-        self._lines: dict[tuple[Any, ...], int] = {}
+        self.values: object = None
+        self._lines: dict[tuple[object, ...], int] = {}
         text = self._text()
         if text is not None:
             self._read(text)
 
-    def where(self, *keys: Any) -> Where:
+    def where(self, *keys: object) -> Where:
         """The place of a value, or of the nearest one around it whose line is known."""
         while keys and keys not in self._lines:
             keys = keys[:-1]
         return Where(str(self.path), self._lines.get(keys, 1))
 
-    def error(self, code: str, message: str, *keys: Any, hint: str = "") -> None:
+    def error(self, code: str, message: str, *keys: object, hint: str = "") -> None:
         """Reports what is wrong with a value."""
         self.diagnostics.error(code, message, self.where(*keys), hint)
 
-    def only(self, value: Any, allowed: tuple[str, ...], what: str, *keys: Any) -> dict[str, Any]:
+    def only(self, value: object, allowed: tuple[str, ...], what: str, *keys: object) -> dict[str, object]:
         """A mapping with nothing but allowed keys; what else it has is reported, with the closest name."""
         if not isinstance(value, dict):
             self.error("SK-SCEN-003", f"{what}: found {short_repr(value)}, allowed is a mapping", *keys)
@@ -80,7 +80,7 @@ class Document:
             where = Where(str(self.path), error.line)
             self.diagnostics.error("SK-SCEN-001", f"is not YAML: {error!s:.200}", where)
 
-    def _note_lines(self, root: Any) -> None:
+    def _note_lines(self, root: object) -> None:
         for keys, line in _lines_by_path(root, ()):
             if keys in self._lines and keys and not isinstance(keys[-1], int):
                 message = f"{keys[-1]!r} is said twice, at line {self._lines[keys]} too"
@@ -88,7 +88,7 @@ class Document:
             self._lines[keys] = line
 
 
-def _lines_by_path(node: Any, keys: tuple[Any, ...]) -> Iterator[tuple[tuple[Any, ...], int]]:
+def _lines_by_path(node: Any, keys: tuple[object, ...]) -> Iterator[tuple[tuple[object, ...], int]]:
     """Of every value down to some depth, by its keys; that of a mapping's value is the line of its key."""
     import yaml
 
@@ -114,7 +114,7 @@ def resolve_spawn_file(folder: Path, spawn: str) -> str:
     return f"{folder / model}{colon}{rest}" if model and (folder / model).exists() else spawn
 
 
-def short_repr(value: Any) -> str:
+def short_repr(value: object) -> str:
     """A value for a message, short."""
     return shorten(repr(value), 60)
 
@@ -127,10 +127,10 @@ class ValueReader:
         said: its values at the top, by key.
     """
 
-    def __init__(self, document: Document, said: Mapping[str, Any]) -> None:
+    def __init__(self, document: Document, said: Mapping[str, object]) -> None:
         self._document, self._said = document, said
 
-    def _wrong(self, value: Any, allowed: str, *keys: Any) -> None:
+    def _wrong(self, value: object, allowed: str, *keys: object) -> None:
         label = ".".join(str(key) for key in keys)
         self._document.error("SK-SCEN-003", f"{label}: found {short_repr(value)}, allowed is {allowed}", *keys)
 
@@ -155,9 +155,9 @@ class ValueReader:
 
     def _number_of(
         self,
-        value: Any,
+        value: object,
         default: float | None,
-        keys: tuple[Any, ...],
+        keys: tuple[object, ...],
         *,
         least: float = -math.inf,
         above: float = -math.inf,
@@ -186,7 +186,7 @@ class ValueReader:
         self._wrong(value, "a text, or a list of them", key)
         return ()
 
-    def _mapping(self, key: str) -> dict[str, Any]:
+    def _mapping(self, key: str) -> dict[str, object]:
         value = self._said.get(key, {})
         if isinstance(value, dict) and all(isinstance(one, str) for one in value):
             return value

@@ -71,7 +71,7 @@ def list_names(names: Sequence[str], most: int = 4) -> str:
     return ", ".join(shown_) + (f" and {more} more" if more else "")
 
 
-def edit_text(edit: Edit, leaves: Mapping[str, Any]) -> str:
+def edit_text(edit: Edit, leaves: Mapping[str, object]) -> str:
     """A leaf's change in a sentence: `collision robot::wheel::tyre: radius 0.033 → 0.0333 m (+1 %)`.
 
     Args:
@@ -85,7 +85,7 @@ def edit_text(edit: Edit, leaves: Mapping[str, Any]) -> str:
     return f"{owner_title(edit)}: {name} {values_text(edit.golden, edit.run, last, unit)}"
 
 
-def world_unit(edit: Edit, last: str, leaves: Mapping[str, Any]) -> str:
+def world_unit(edit: Edit, last: str, leaves: Mapping[str, object]) -> str:
     """The unit of a number of a world's; "" where it has none, or it is not known."""
     attribute = split_entity_path(edit.path)[1]
     if last in ("lower", "upper", "spring_ref", "velocity") and attribute.startswith("axes["):
@@ -117,7 +117,7 @@ def values_text(golden: Any, run: Any, last: str = "", unit: str = "") -> str:
     return f"{single_value_text(golden)} → {single_value_text(run)}{behind}"
 
 
-def _components(golden: list[Any], run: list[Any], last: str, unit: str) -> str:
+def _components(golden: list[object], run: list[object], last: str, unit: str) -> str:
     names = _COMPONENTS.get(last) or ("xyz" if len(golden) == 3 else [f"[{i}]" for i in range(len(golden))])
     differing = [i for i, (a, b) in enumerate(zip(golden, run, strict=True)) if a != b]
     if len(differing) > 6:
@@ -144,15 +144,15 @@ def _percent_change(golden: float, run: float) -> str:
     return f" ({percent:+.3g} %)" if abs(percent) < 100 else ""
 
 
-def _flat(value: list[Any]) -> bool:
+def _flat(value: list[object]) -> bool:
     return not any(isinstance(v, list) for v in value)
 
 
-def _is_number(value: Any) -> bool:
+def _is_number(value: object) -> bool:
     return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
-def single_value_text(value: Any) -> str:
+def single_value_text(value: object) -> str:
     """One value; a long one is cut."""
     if isinstance(value, bool):
         return str(value).lower()

@@ -48,8 +48,8 @@ class Change:
     kind: CauseKind
     words: str
     path: str
-    golden: Any
-    run: Any
+    golden: object
+    run: object
     where: str
     edits: tuple[Edit, ...] = field(repr=False)
 
@@ -94,7 +94,7 @@ def _entity_chain(owner: str) -> Iterable[str]:
         owner = parent_path(owner)
 
 
-def _within(leaves: WorldValues, owner: str) -> dict[str, Any]:
+def _within(leaves: WorldValues, owner: str) -> dict[str, object]:
     return {path[len(owner) :]: value for path, value in leaves.items() if path.startswith((owner + ".", owner + "@"))}
 
 
@@ -114,13 +114,13 @@ def _find_renames(edits: list[Edit], golden: WorldValues, run: WorldValues) -> t
     return found, edits
 
 
-def _likeness(a: Mapping[str, Any], b: Mapping[str, Any], old: str, new: str) -> float:
+def _likeness(a: Mapping[str, object], b: Mapping[str, object], old: str, new: str) -> float:
     every = {*a, *b}
     alike = sum(1 for p in every if is_same_value(_rename_in_text(a.get(p, ABSENT), old, new), b.get(p, ABSENT)))
     return alike / max(1, len(every))
 
 
-def _rename_in_text(value: Any, old: str, new: str) -> Any:
+def _rename_in_text(value: object, old: str, new: str) -> object:
     """A text in which a part has its other name."""
     if isinstance(value, list):
         return [_rename_in_text(v, old, new) for v in value]
@@ -328,7 +328,7 @@ def _element_change_text(block: str, head: Edit | None, several: list[Edit], run
 
 def _group_by_element(edits: list[Edit]) -> list[list[Edit]]:
     """Edits that belong together: those of one element of one part (its inertial, its material, one noise)."""
-    groups: dict[Any, list[Edit]] = {}
+    groups: dict[object, list[Edit]] = {}
     for number, edit in enumerate(edits):
         owner, attribute = split_entity_path(edit.path)
         inner = _parent_element(attribute)
@@ -338,7 +338,7 @@ def _group_by_element(edits: list[Edit]) -> list[list[Edit]]:
 
 def _group_alike(units: list[list[Edit]]) -> list[list[list[Edit]]]:
     """Units in which the same became other in the same way."""
-    groups: dict[Any, list[list[Edit]]] = {}
+    groups: dict[object, list[list[Edit]]] = {}
     for unit in units:
         groups.setdefault(tuple((_last(e.path), repr(e.golden), repr(e.run)) for e in unit), []).append(unit)
     return list(groups.values())
@@ -348,7 +348,7 @@ def _last(path: str) -> str:
     return attribute_name(split_entity_path(path)[1]).rpartition(".")[2]
 
 
-def _factor(change: Change) -> Any:
+def _factor(change: Change) -> object:
     """What a change multiplies a number by, with the number's name."""
     a, b = change.golden, change.run
     if isinstance(a, (int, float)) and isinstance(b, (int, float)) and not isinstance(a, bool) and a and b:

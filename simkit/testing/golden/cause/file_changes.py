@@ -47,7 +47,7 @@ def changes_outside_world(
     return named, [_file_change(edit) for edit in rest]
 
 
-def _name(record: RunRecord, content: Any) -> str:
+def _name(record: RunRecord, content: object) -> str:
     """The file whose content a leaf is."""
     if not isinstance(content, str) or not content.endswith(" bytes)"):
         return ""
@@ -60,7 +60,7 @@ def _file_change(edit: Edit) -> Change:
     )
 
 
-def _short_value(value: Any) -> Any:
+def _short_value(value: object) -> Any:
     return None if value is ABSENT else value
 
 
@@ -83,7 +83,7 @@ def _scenario_change(edit: Edit) -> str:
     return f"{edit.path} {values_text(edit.golden, edit.run)}"
 
 
-def _lists(golden: list[Any], run: list[Any]) -> str:
+def _lists(golden: list[object], run: list[object]) -> str:
     """What two lists do not have in common."""
     a, b = [_text(v) for v in golden], [_text(v) for v in run]
     gone, new = [v for v in a if v not in b], [v for v in b if v not in a]

@@ -46,7 +46,7 @@ class Motion:
 
 
 def find_motions(
-    edits: list[Edit], golden: Mapping[str, Any], run: Mapping[str, Any]
+    edits: list[Edit], golden: Mapping[str, object], run: Mapping[str, object]
 ) -> tuple[list[Motion], list[Edit]]:
     """What moved, and the edits that say something else.
 
@@ -95,7 +95,7 @@ def _both(edit: Edit) -> bool:
     return _is_pose(edit.golden) and _is_pose(edit.run)
 
 
-def _is_pose(value: Any) -> bool:
+def _is_pose(value: object) -> bool:
     """Whether it is a position and a quaternion; a golden run may come from anybody."""
     if not isinstance(value, list) or len(value) != 7:
         return False
@@ -114,7 +114,7 @@ def local_path(path: str) -> str:
     return f"{beginning}{dot}{_LOCAL_FIELDS[last]}" if last in _LOCAL_FIELDS else ""
 
 
-def _is_derived(edit: Edit, run: Mapping[str, Any]) -> bool:
+def _is_derived(edit: Edit, run: Mapping[str, object]) -> bool:
     """Whether a leaf follows from another of its part and from where the part's owner is."""
     return local_path(edit.path) in run
 
@@ -140,7 +140,7 @@ def _world_motion(edit: Edit) -> Pose:
     return _pose(edit.run) @ _pose(edit.golden).inverse()
 
 
-def _carrying_entities(run: Mapping[str, Any], moved: set[str]) -> dict[str, list[str]]:
+def _carrying_entities(run: Mapping[str, object], moved: set[str]) -> dict[str, list[str]]:
     """What a part goes along with, the nearest last: its model, the link that its joint hangs it on, a joint's link."""
     links = {
         scoped_name(split_entity_path(p)[0]): split_entity_path(p)[0]
@@ -184,7 +184,7 @@ def _is_same_motion(a: Pose, b: Pose) -> bool:
 
 
 def _simplest_motion(
-    edit: Edit, owner: str, golden: Mapping[str, Any], run: Mapping[str, Any], carriers: Mapping[str, list[str]]
+    edit: Edit, owner: str, golden: Mapping[str, object], run: Mapping[str, object], carriers: Mapping[str, list[str]]
 ) -> tuple[str, str]:
     """A motion in the frame in which it is simplest: the owner's, that of the link that carries it, or the world's."""
     frames = [parent_path(owner), *reversed(carriers.get(owner, [])), ""]

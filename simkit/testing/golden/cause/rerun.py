@@ -8,7 +8,6 @@ import math
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -219,5 +218,5 @@ def can_be_put_back(change: Change, run: RunRecord) -> bool:
     return all(_is_single_value(e.golden) and not e.path.startswith(("files[", *kept)) for e in change.edits)
 
 
-def _is_single_value(value: Any) -> bool:
+def _is_single_value(value: object) -> bool:
     return value is ABSENT or isinstance(value, (bool, int, float, str, list))

@@ -36,7 +36,7 @@ class _PatchNode:
     __slots__ = ("below", "is_touched", "value")
 
     def __init__(self) -> None:
-        self.value: Any = ABSENT
+        self.value: object = ABSENT
         self.below: dict[str, _PatchNode] = {}
         self.is_touched = False
 
@@ -59,8 +59,8 @@ class _PatchNode:
 
 def patch_world(
     world: SceneWorld,
-    now: Mapping[str, Any],
-    values: Mapping[str, Any],
+    now: Mapping[str, object],
+    values: Mapping[str, object],
     files: Iterable[Path] | None = None,
     order: Iterable[str] = (),
 ) -> SceneWorld:
@@ -113,7 +113,7 @@ class _PatchedBuilder:
     def __init__(self, files: Mapping[str, Path]) -> None:
         self._files = files
 
-    def changed(self, node: Any, wanted: _PatchNode, owner: str) -> Any:
+    def changed(self, node: Any, wanted: _PatchNode, owner: str) -> object:
         """A dataclass with other values of some fields.
 
         Args:
@@ -129,11 +129,11 @@ class _PatchedBuilder:
                 others[one.name] = self._field(type(node), one, getattr(node, one.name), inner, owner)
         return replace(node, **others) if others else node
 
-    def made(self, kind: type, wanted: _PatchNode, owner: str, key: str) -> Any:
+    def made(self, kind: type, wanted: _PatchNode, owner: str, key: str) -> object:
         """A node that is not there now, of its leaves."""
         name = re.sub(r"#\d+$", "", key)
         whole = owner if kind.__name__ == "ScenePlugin" else (f"{owner}::{name}" if owner and name else name or owner)
-        given: dict[str, Any] = {}
+        given: dict[str, object] = {}
         hints = _hints(kind)
         words = {"name": name, "scoped": whole, "parent": owner, "uri": ""}
         for one in fields(kind):
@@ -153,7 +153,7 @@ class _PatchedBuilder:
                 raise CannotPatch(f"{kind.__name__}.{one.name}")
         return kind(**given)
 
-    def _field(self, kind: type, one: Field[Any], now: Any, wanted: _PatchNode, owner: str) -> Any:
+    def _field(self, kind: type, one: Field[Any], now: Any, wanted: _PatchNode, owner: str) -> object:
         hint = _hints(kind)[one.name]
         if one.name in _KEPT_FIELDS:
             raise CannotPatch(one.name)
@@ -170,7 +170,7 @@ class _PatchedBuilder:
             return self._node(kinds, now, wanted, owner)
         return self._value(wanted.value, hint)
 
-    def _node(self, kinds: Mapping[str, type], now: Any, wanted: _PatchNode, owner: str) -> Any:
+    def _node(self, kinds: Mapping[str, type], now: object, wanted: _PatchNode, owner: str) -> object:
         """A node of one of several kinds: the one that there is, where it is of the right one."""
         if isinstance(wanted.value, str):
             kind = kinds.get(wanted.value)
@@ -182,7 +182,7 @@ class _PatchedBuilder:
             return self.changed(now, wanted, owner)
         return self.made(kind, wanted, owner, "")
 
-    def _nothing(self, one: Field[Any], hint: Any) -> Any:
+    def _nothing(self, one: Field[Any], hint: object) -> object:
         if _may_be_none(hint):
             return None
         if typing.get_origin(hint) is tuple:
@@ -194,10 +194,10 @@ class _PatchedBuilder:
 
     def _elements(
         self, now: Sequence[Any], kinds: Mapping[str, type], wanted: _PatchNode, owner: str
-    ) -> tuple[Any, ...]:
+    ) -> tuple[object, ...]:
         """The items of a list, without those that are gone; new ones come behind those that they stood behind."""
         there = dict(zip(item_keys(now), now, strict=True))
-        found: dict[str, Any] = {}
+        found: dict[str, object] = {}
         for key, item in there.items():
             inner = wanted.below.get(f"[{key}]")
             if inner is None or not inner.is_touched:
@@ -218,7 +218,7 @@ class _PatchedBuilder:
                 before = key
         return tuple(found[key] for key in places)
 
-    def _mapping(self, now: Mapping[str, Any], wanted: _PatchNode) -> dict[str, Any]:
+    def _mapping(self, now: Mapping[str, object], wanted: _PatchNode) -> dict[str, object]:
         found = dict(now)
         for step, inner in wanted.below.items():
             if inner.is_touched:
@@ -272,14 +272,14 @@ class _PatchedBuilder:
                 elements[step] = inner
         return elements, given
 
-    def _text_of(self, value: Any) -> str:
+    def _text_of(self, value: object) -> str:
         if isinstance(value, str) and re.fullmatch(r"[0-9a-f]{16} \(\d+ bytes\)", value):
             if value not in self._files:
                 raise CannotPatch("the content of a file")
             return str(self._files[value])
         return _element_text(value)
 
-    def _value(self, value: Any, hint: Any) -> Any:
+    def _value(self, value: Any, hint: object) -> object:
         if hint is Pose:
             return Pose(value[:3], value[3:])
         if hint is Path or Path in typing.get_args(hint):
@@ -290,12 +290,12 @@ class _PatchedBuilder:
         return _as_scene_value(value, hint)
 
 
-def default_of(one: Field[Any]) -> Any:
+def default_of(one: Field[Any]) -> object:
     """A field's default; MISSING where it has none."""
     return one.default_factory() if one.default_factory is not MISSING else one.default
 
 
-def _text_value(text: str) -> Any:
+def _text_value(text: str) -> object:
     words = text.split()
     try:
         numbers = [float(word) for word in words]
@@ -304,7 +304,7 @@ def _text_value(text: str) -> Any:
     return (numbers[0] if len(numbers) == 1 else numbers) if numbers else ""
 
 
-def _as_scene_value(value: Any, hint: Any) -> Any:
+def _as_scene_value(value: object, hint: object) -> object:
     """Lists as the scene has them, and whole numbers as it has them."""
     if isinstance(value, list):
         inner = [a for a in typing.get_args(hint) if a is not Ellipsis]
@@ -313,7 +313,7 @@ def _as_scene_value(value: Any, hint: Any) -> Any:
     return float(value) if is_float and isinstance(value, int) and not isinstance(value, bool) else value
 
 
-def _element_text(value: Any) -> str:
+def _element_text(value: object) -> str:
     if isinstance(value, list):
         return " ".join(_element_text(v) for v in value)
     if isinstance(value, bool):
@@ -323,7 +323,7 @@ def _element_text(value: Any) -> str:
     return str(value)
 
 
-def _may_be_none(hint: Any) -> bool:
+def _may_be_none(hint: object) -> bool:
     return type(None) in typing.get_args(hint)
 
 
@@ -338,11 +338,11 @@ def _node_kinds(hint: Any) -> Mapping[str, type]:
 
 
 @lru_cache(maxsize=256)
-def _hints(kind: type) -> dict[str, Any]:
+def _hints(kind: type) -> dict[str, object]:
     return typing.get_type_hints(kind)
 
 
-def files_named_by(value: Any) -> list[Path]:
+def files_named_by(value: object) -> list[Path]:
     """The files that a world, or a part of one, names."""
     if isinstance(value, Path):
         return [value]

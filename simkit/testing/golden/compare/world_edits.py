@@ -98,7 +98,7 @@ class Edit:
     kind: CauseKind
     path: str
     golden: Any
-    run: Any
+    run: object
     where: str = ""
 
     @property
@@ -117,7 +117,7 @@ class Edit:
         return split_entity_path(self.path)[1]
 
 
-def model_edits(golden: Mapping[str, Any], run: Mapping[str, Any], places: Mapping[str, str]) -> list[Edit]:
+def model_edits(golden: Mapping[str, object], run: Mapping[str, object], places: Mapping[str, str]) -> list[Edit]:
     """The leaves of the world that are other, in the run's order."""
     order = {path: n for n, path in enumerate([*run, *(p for p in golden if p not in run)])}
     found = []
@@ -150,7 +150,7 @@ def field_edits(golden: RunRecord, run: RunRecord) -> list[Edit]:
     return found
 
 
-def is_same_value(a: Any, b: Any) -> bool:
+def is_same_value(a: object, b: object) -> bool:
     """Whether two leaves are equal; not a number is equal to itself."""
     if a is b:
         return True
@@ -163,15 +163,15 @@ def is_same_value(a: Any, b: Any) -> bool:
     return bool(a == b) or (a != a and b != b)
 
 
-def _is_equal(a: Any, b: Any) -> bool:
+def _is_equal(a: object, b: object) -> bool:
     x, y = np.asarray(a), np.asarray(b)
     if x.dtype.kind in "fc" and y.dtype.kind in "fc":
         return bool(np.array_equal(x, y, equal_nan=True))
     return bool(np.array_equal(x, y))
 
 
-def _scenario(golden: RunSpec, run: RunSpec) -> dict[str, tuple[Any, Any]]:
-    found: dict[str, tuple[Any, Any]] = {}
+def _scenario(golden: RunSpec, run: RunSpec) -> dict[str, tuple[object, object]]:
+    found: dict[str, tuple[object, object]] = {}
     for one in fields(RunSpec):
         if one.name in _REPORT_FIELDS:
             continue
@@ -185,7 +185,7 @@ def _scenario(golden: RunSpec, run: RunSpec) -> dict[str, tuple[Any, Any]]:
     return found
 
 
-def _class_of(plugin: Any) -> str:
+def _class_of(plugin: object) -> str:
     one = plugin[-1] if isinstance(plugin, tuple) else plugin
     return one if isinstance(one, str) else getattr(one, "__name__", type(one).__name__)
 
@@ -195,7 +195,7 @@ def _world_name(world: str) -> str:
     return world if "<" in world else world.replace("\\", "/").rstrip("/").rpartition("/")[2]
 
 
-def _plain(value: Any) -> Any:
+def _plain(value: Any) -> object:
     """Of the same form, whether it came from a file or not."""
     if isinstance(value, Mapping):
         return {str(k): _plain(v) for k, v in value.items() if k != "where"}
@@ -206,7 +206,7 @@ def _plain(value: Any) -> Any:
     return value if isinstance(value, (int, float, str, bool, type(None))) else str(value)
 
 
-def _mapping(a: Mapping[str, Any], b: Mapping[str, Any]) -> dict[str, tuple[Any, Any]]:
+def _mapping(a: Mapping[str, object], b: Mapping[str, object]) -> dict[str, tuple[object, object]]:
     return {
         name: (a.get(name, ABSENT), b.get(name, ABSENT))
         for name in [*b, *(n for n in a if n not in b)]

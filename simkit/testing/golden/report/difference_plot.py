@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from simkit.recording.charts.page_chart import PageChart
 from simkit.recording.charts.series import Series
+from simkit.run_spec import JsonObject
 from simkit.testing.golden.compare.difference import Difference, Verdict
 from simkit.testing.run_record.noise_statistics import NoiseStatistics
 from simkit.testing.run_record.record import Column, States, Stream
@@ -222,7 +223,7 @@ def _line(x: Array, y: Array) -> Series:
     return Series("", times=np.asarray(x, np.float64), values=np.asarray(y, np.float64))
 
 
-def _common_field(golden: dict[str, Any], run: dict[str, Any], field: str) -> tuple[Any, Any] | None:
+def _common_field(golden: JsonObject, run: JsonObject, field: str) -> tuple[Any, Any] | None:
     """Return what both have of a field, of a part of it, or of the field around it."""
     both = sorted(golden.keys() & run.keys())
     near = [name for name in both if name == field]
