@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from simkit.errors import InputError
 from simkit.run_spec import JsonObject, RunSpec
@@ -29,7 +29,7 @@ from simkit.testing.bundles.manifest import (
     failure_from_error,
     strip_folders,
 )
-from simkit.testing.bundles.message_window import topic_digests, write_bag
+from simkit.testing.bundles.message_window import WindowMessage, topic_digests, write_bag
 from simkit.testing.run_record.fingerprint import fingerprint
 from simkit.writers.atomic_output import check_file, remove_abandoned, unfinished_folder
 
@@ -217,7 +217,7 @@ def _write_error(stage: Path, failure: Failure) -> None:
     (stage / "error.txt").write_text(strip_folders(told), encoding="utf-8", errors="replace")
 
 
-def _encodable_messages(messages: Iterator[Any], gaps: list[str]) -> Iterator[Any]:
+def _encodable_messages(messages: Iterator[WindowMessage], gaps: list[str]) -> Iterator[WindowMessage]:
     """Messages as long as they can be made: what is wrong with the last ones is no reason to have no bundle."""
     try:
         yield from messages

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from collections import defaultdict, deque
-from collections.abc import Callable, Iterable, Mapping
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING
 
 from simkit.errors import InputError, MessageError, SimkitError
 from simkit.pose import Pose
+from simkit.run_spec import JsonMapping
 from simkit.testing.bundles.direct_changes import apply_changes
 from simkit.testing.bundles.journal_values import decode_message, decode_value
 
 if TYPE_CHECKING:
-    from simkit.runtime import Simulation
+    from simkit.runtime import Publisher, Simulation, Snapshot
+    from simkit.runtime.communication.action_server import GoalHandle
 
-Entry = Mapping[str, Any]
+Entry = JsonMapping
 
 
 class JournalPlayer:
@@ -45,9 +47,9 @@ class JournalPlayer:
             if entry["do"] == "cancel":
                 cancelled.add(entry.get("goal"))
         self._restored, self._cancelled = restored, cancelled
-        self._snapshots: dict[Any, Any] = {}
-        self._goals: dict[Any, Any] = {}
-        self._publishers: dict[Any, Any] = {}
+        self._snapshots: dict[object, Snapshot] = {}
+        self._goals: dict[object, GoalHandle] = {}
+        self._publishers: dict[object, Publisher] = {}
         self.count = 0
         self.refused: list[str] = []
 
@@ -108,14 +110,14 @@ class JournalPlayer:
         if heard is not None:
             self._sim.communication.bus.tap(_text_field(entry, "topic"), heard)
 
-    def _counting(self, number: Any) -> Callable[[Any], None] | None:
+    def _counting(self, number: object) -> Callable[[object], None] | None:
         """A callback that does, the n-th time it is called, what the run's did then; None where that did nothing."""
         deeds = self._within.get(_integer_field(number)) if number is not None else None
         if not deeds:
             return None
         count = 0
 
-        def heard(_: Any) -> None:
+        def heard(_: object) -> None:
             nonlocal count
             count += 1
             while deeds and _integer_field(deeds[0]["in"][1]) <= count:
@@ -204,13 +206,13 @@ def _text_field(entry: Entry, name: str) -> str:
     return found
 
 
-def _integer_field(value: Any) -> int:
+def _integer_field(value: object) -> int:
     if type(value) is not int or not 0 <= value < 1 << 62:
         raise MessageError(f"found {value!r:.60}, allowed is a whole number from 0 on")
     return value
 
 
-def _decode_pose(values: Any) -> Pose | None:
+def _decode_pose(values: object) -> Pose | None:
     if values is None:
         return None
     if not isinstance(values, list) or len(values) != 7:

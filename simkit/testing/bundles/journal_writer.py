@@ -19,13 +19,14 @@ from simkit.testing.bundles.direct_changes import DirectChanges
 from simkit.testing.bundles.journal_values import NotEncodable, encode_message, encode_value
 
 if TYPE_CHECKING:
-    from simkit.runtime import Simulation
+    from simkit.runtime import Publisher, Simulation
+    from simkit.runtime.communication.service_server import Service
 
 _MAX_BYTES_IN_MEMORY: Final = 16 << 20  # bytes; what is more goes to a temporary file
 MAX_JOURNAL_BYTES: Final = 1 << 30
 """A journal has no more bytes than these."""
 
-AnswerCallback = Callable[[Any], None]
+AnswerCallback = Callable[[object], None]
 
 
 class JournalWriter:
@@ -48,8 +49,8 @@ class JournalWriter:
         self._inside = 0
         self._place: list[int] | None = None
         self._heard: dict[int, list[int]] = {}
-        self._numbers: WeakKeyDictionary[Any, int] = WeakKeyDictionary()
-        self._called: WeakKeyDictionary[Any, int] = WeakKeyDictionary()
+        self._numbers: WeakKeyDictionary[object, int] = WeakKeyDictionary()
+        self._called: WeakKeyDictionary[object, int] = WeakKeyDictionary()
         self._publishers: dict[int, tuple[object, int]] = {}
         self._snapshots: dict[int, tuple[ref[object], int]] = {}
         self._snapshot_count = 0
@@ -199,13 +200,13 @@ class JournalWriter:
     def _of_publish(self, topic: str, message: object) -> dict[str, object]:
         return {"topic": topic, "message": encode_message(message)}
 
-    def _of_advertise(self, publisher: Any) -> dict[str, object]:
+    def _of_advertise(self, publisher: Publisher) -> dict[str, object]:
         number = len(self._publishers) + 1
         self._publishers[id(publisher)] = publisher, number
         words = {"topic": publisher.topic, "type": publisher.type_name, "latched": publisher.latched}
         return {"number": number, **words}
 
-    def _of_send(self, publisher: Any, message: Message) -> dict[str, object]:
+    def _of_send(self, publisher: Publisher, message: Message) -> dict[str, object]:
         number = self._publishers.get(id(publisher), (None, 0))[1]
         return {"number": number, "topic": publisher.topic, "message": encode_message(message)}
 
@@ -213,7 +214,7 @@ class JournalWriter:
         known = self._publishers.get(id(publisher))
         return None if known is None else {"number": known[1]}
 
-    def _of_call(self, service: Any, request: object) -> dict[str, object] | None:
+    def _of_call(self, service: Service, request: object) -> dict[str, object] | None:
         if service.owner is None and not service.yields:
             return None  # the caller's own: what it does is written down
         return {"service": service.name, "request": encode_message(request)}

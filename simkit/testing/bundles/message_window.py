@@ -148,7 +148,7 @@ class StateHashes:
 
 def topic_digests(messages: Iterator[WindowMessage]) -> dict[str, JsonObject]:
     """Topic -> type, how many messages, and SHA-256 of their times and bytes."""
-    found: dict[str, tuple[str, int, Any]] = {}
+    found: dict[str, tuple[str, int, hashlib._Hash]] = {}
     for one in messages:
         type_name, count, digest = found.get(one.topic) or (one.type_name, 0, hashlib.sha256())
         digest.update(_TIME.pack(one.time_ns))

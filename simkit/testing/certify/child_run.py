@@ -152,7 +152,7 @@ class _ChildRun:
                 sim.step(min(stops) - sim.tick)
                 self._take()
 
-    def _sender(self) -> Any:
+    def _sender(self) -> ScenarioCommands:
 
         return ScenarioCommands(self._scenario, self._sim)
 
@@ -180,7 +180,7 @@ class _ChildRun:
         self._take()
         self._look_away(False)
 
-    def _some_life(self, commands: Any) -> None:
+    def _some_life(self, commands: ScenarioCommands | None) -> None:
         sim = self._sim
         left = max(self._end, 2 * self._half) - sim.tick  # beyond its end the scenario promises nothing
         for part in range(2):

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from zlib import crc32
 
 import numpy as np
+import numpy.typing as npt
 
 from simkit.run_spec import JsonObject
 from simkit.runtime.engine import grouped_hooks
@@ -129,7 +130,7 @@ class TickHashes:
         self._told = object()
         sim.communication.on_demand.add(lambda: True, None, self._mark, "after")
 
-    def rows(self, ticks: int) -> tuple[Any, Any]:
+    def rows(self, ticks: int) -> tuple[npt.NDArray[np.uint64], npt.NDArray[np.uint64]]:
         """Both as arrays of so many ticks."""
         wanted = range(1, ticks + 1)
         state, inputs = ([of.get(tick, 0) for tick in wanted] for of in (self.state, self.inputs))
@@ -145,7 +146,7 @@ class TickHashes:
         self.inputs[tick] = _two_hashes(data.ctrl, applied, pushed, data.mocap_pos)
 
 
-def _two_hashes(*fields: Any) -> int:
+def _two_hashes(*fields: npt.NDArray[np.float64]) -> int:
     first = second = 0
     for field in fields:
         content = field.tobytes()

@@ -78,7 +78,7 @@ class _TopicHash:
         self._ears, self._sim, self._type_name = ears, sim, type_name
         self._digests: list[int] = []
         self._ticks: list[int] = []
-        self._kept: list[Any] = []
+        self._kept: list[Message] = []
         self._all = hashlib.sha256()
 
     def receive(self, message: object) -> None:

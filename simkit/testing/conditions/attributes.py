@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from operator import attrgetter
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from simkit.errors import InputError
 from simkit.msgs import Message
 from simkit.pose import rpy_from_quat
-from simkit.testing.conditions.bound_expression import BoundNode, as_pose
+from simkit.testing.conditions.bound_expression import BoundNode, ValueGetter, as_pose
 from simkit.testing.conditions.syntax_tree import REMOVED_CODE, UndecidedValue
 from simkit.testing.conditions.value_types import (
     JOINT,
@@ -26,7 +25,10 @@ from simkit.testing.conditions.value_types import (
     is_pose_like,
 )
 
-AttributeGetter = tuple[ValueType, Callable[[], Any]]
+if TYPE_CHECKING:
+    from simkit.runtime import Joint
+
+AttributeGetter = tuple[ValueType, ValueGetter]
 
 _AXES = {"x": 0, "y": 1, "z": 2}
 _ANGLES = {"roll": 0, "pitch": 1, "yaw": 2}
@@ -70,7 +72,7 @@ def attribute_of(part: BoundNode, name: str) -> AttributeGetter | None:
     return None
 
 
-def _pose_attribute(get: Callable[[], Any], name: str) -> AttributeGetter | None:
+def _pose_attribute(get: ValueGetter, name: str) -> AttributeGetter | None:
     if name in _AXES:
         at = _AXES[name]
         return NUMBER, lambda: float(get().position[at])
@@ -84,7 +86,7 @@ def _pose_attribute(get: Callable[[], Any], name: str) -> AttributeGetter | None
     return None
 
 
-def _orientation_attribute(get: Callable[[], Any], name: str) -> AttributeGetter | None:
+def _orientation_attribute(get: ValueGetter, name: str) -> AttributeGetter | None:
     """Of a quaternion w, x, y, z."""
     if name in _QUATERNION:
         at = _QUATERNION[name]
@@ -95,7 +97,7 @@ def _orientation_attribute(get: Callable[[], Any], name: str) -> AttributeGetter
     return None
 
 
-def _joint_attribute(joint: Any, name: str) -> AttributeGetter | None:
+def _joint_attribute(joint: Joint, name: str) -> AttributeGetter | None:
     """Of the handle of a joint: a number for each degree of freedom, which is one number for most."""
     if name not in _JOINT_ATTRIBUTES:
         return None

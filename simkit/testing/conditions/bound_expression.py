@@ -33,6 +33,10 @@ if TYPE_CHECKING:
 _MAX_SHOWN = 6  # items of a list
 
 
+ValueGetter = Callable[[], Any]
+"""Returns the value of a part of an expression at this tick: a number, a text, a vector, a pose or a message."""
+
+
 @dataclass(frozen=True, slots=True)
 class BoundNode:
     """A part of an expression.
@@ -48,7 +52,7 @@ class BoundNode:
 
     node: Node
     kind: ValueType
-    get: Callable[[], Any]
+    get: ValueGetter
     below: tuple[BoundNode, ...] = ()
     feed: LatestMessage | None = None
     tell: Callable[[], str] | None = None
@@ -198,7 +202,7 @@ def quoted_argument(binder: ExpressionBinder, call: Call, place: int, what: str)
     raise binder.fault("SK-COND-004", message, node.span, hint)
 
 
-def as_vector(part: BoundNode) -> Callable[[], Any]:
+def as_vector(part: BoundNode) -> ValueGetter:
     """What gives a part as an array of 64 bit numbers, shape (n,); a number as it is."""
     get = part.get
     if part.kind is NUMBER:
@@ -228,7 +232,7 @@ def as_pose(part: BoundNode) -> Callable[[], Pose]:
     return value
 
 
-def as_numbers(part: BoundNode) -> Callable[[], Any] | None:
+def as_numbers(part: BoundNode) -> ValueGetter | None:
     """What gives the numbers of a list, a vector, or a scan; of a scan those of the rays that met something.
 
     Rays that met nothing (+inf, nan) are left out; -inf, too near to be measured, is not. None where it has no numbers.

@@ -13,6 +13,7 @@ from simkit.testing.conditions.bound_expression import (
     BoundNode,
     ExpressionBinder,
     Function,
+    ValueGetter,
     as_numbers,
     as_vector,
 )
@@ -22,7 +23,7 @@ from simkit.testing.conditions.value_types import NUMBER, TRUTH, is_vector_like
 Reduction = Callable[[Any], float]
 
 
-def cached_by_message(part: BoundNode, get: Callable[[], Any]) -> Callable[[], Any]:
+def cached_by_message(part: BoundNode, get: ValueGetter) -> ValueGetter:
     """What gives a value that comes from one topic's newest message, worked out once a message."""
     feed = part.feed
     if feed is None:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from simkit.pose import quat_conjugate, quat_rotate
 from simkit.testing.conditions.bound_expression import (
     BoundNode,
     ExpressionBinder,
     Function,
+    ValueGetter,
     as_pose,
     as_vector,
     quoted_argument,
@@ -115,7 +115,7 @@ def _distance(binder: ExpressionBinder, call: Call) -> BoundNode:
     return BoundNode(call, NUMBER, value, tuple(parts))
 
 
-def _point_argument(binder: ExpressionBinder, node: Node, part: BoundNode) -> Callable[[], Any]:
+def _point_argument(binder: ExpressionBinder, node: Node, part: BoundNode) -> ValueGetter:
     """What gives the point that an argument means."""
     if part.kind is TEXT and isinstance(node, Text):
         named = binder.view.thing(node.value, binder.source, node.span)

@@ -15,7 +15,7 @@ from simkit.testing.conditions.syntax_tree import REMOVED_CODE, Span, UndecidedV
 
 if TYPE_CHECKING:
     from simkit.pose import Pose, Vector
-    from simkit.runtime import Simulation, Subscription
+    from simkit.runtime import Joint, Simulation, Subscription
 
 
 class LatestMessage:
@@ -190,9 +190,10 @@ class WorldView:
         """
         return Entity(self.sim, self._find(("model", "link"), name, source, span))
 
-    def joint(self, name: str, source: str, span: Span) -> Any:
+    def joint(self, name: str, source: str, span: Span) -> Joint:
         """A joint, likewise."""
-        return self._find(("joint",), name, source, span)
+        found: Joint = self._find(("joint",), name, source, span)
+        return found
 
     def scoped(self, name: str, source: str, span: Span) -> str:
         """The scoped name of a model, a link, or a collision."""

@@ -89,7 +89,7 @@ class _FieldRecorder:
 class _NoisyFieldRecorder:
     """All fields but those of which the statistics are kept."""
 
-    def __init__(self, plain: _FieldRecorder, residuals: Any) -> None:
+    def __init__(self, plain: _FieldRecorder, residuals: NoiseRecorder) -> None:
         self._plain, self._residuals = plain, residuals
 
     def take(self, message: object) -> None:
@@ -106,8 +106,8 @@ class _ImageRecorder:
 
     def __init__(self, longest: int) -> None:
         self._plain, self._longest = _FieldRecorder(_IMAGE), longest
-        self._small: list[Any] = []
-        self._tiles: list[Any] = []
+        self._small: list[Array] = []
+        self._tiles: list[Array] = []
         self._hashes: list[int] = []
         self._every = 1
         self._shape: tuple[int, int] | None = None
@@ -154,7 +154,7 @@ class _CloudRecorder:
 
     def __init__(self) -> None:
         self._plain = _FieldRecorder(_CLOUD)
-        self._values: dict[str, list[Any]] = {}
+        self._values: dict[str, list[Array]] = {}
         self._names: list[str] = []
 
     def take(self, message: Message) -> None:

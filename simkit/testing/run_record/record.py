@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from simkit.run_spec import JsonMapping, RunSpec
 from simkit.testing.run_record.noise_statistics import NoiseStatistics
+
+if TYPE_CHECKING:
+    from simkit.testing.conditions.checks import CheckResult
 
 Array = npt.NDArray[Any]
 
@@ -168,6 +171,6 @@ class RunRecord:
     diagnostics: Mapping[str, int] = field(default_factory=dict)
     end: str = "duration"
     simulation: Any = None
-    checks: tuple[Any, ...] = ()
+    checks: tuple[CheckResult, ...] = ()
     error: Exception | None = None
     environment: Mapping[str, str] = field(default_factory=dict)

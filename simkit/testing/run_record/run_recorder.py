@@ -31,6 +31,7 @@ from simkit.testing.scenarios.scenario_run import open_scenario, run_scenario
 if TYPE_CHECKING:
     from simkit.run_spec import RunSpec
     from simkit.runtime import Simulation
+    from simkit.testing.conditions.checks import CheckResult
     from simkit.testing.run_record.message_recorder import MessageRecorder
 
 
@@ -139,7 +140,7 @@ def run_record(scenario: RunSpec, *, sim: Simulation | None = None) -> RunRecord
 def _run_and_record(scenario: RunSpec, sim: Simulation | None) -> RunRecord:
 
     opened = open_scenario(scenario) if sim is None else sim
-    results: tuple[object, ...] = ()
+    results: tuple[CheckResult, ...] = ()
     failed: Exception | None = None
     try:
         with RunRecorder(scenario, opened, scenario.longest) as capture:

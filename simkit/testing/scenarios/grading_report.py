@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 from simkit.run_spec import JsonObject
 from simkit.testing.junit import JunitCase
@@ -60,7 +59,7 @@ def _run_json(outcome: RunGrade) -> JsonObject:
     }
 
 
-def junit_cases(graded: Grade) -> list[Any]:
+def junit_cases(graded: Grade) -> list[JunitCase]:
     """One case of JUnit for each check of each run."""
 
     suite = graded.label or Path(graded.hand_in).stem or graded.exercise.file.stem

@@ -195,7 +195,7 @@ def _names_one(edit: Edit, names: list[str]) -> bool:
 
 def _motions(edits: list[Edit], golden: WorldValues, run: WorldValues) -> tuple[list[Change], list[Edit]]:
     found, rest = find_motions(edits, golden, run)
-    groups: dict[Any, list[Motion]] = {}
+    groups: dict[tuple[str, str], list[Motion]] = {}
     for motion in found:
         groups.setdefault((entity_kind(motion.owner), motion.words), []).append(motion)
     changes = []
@@ -227,7 +227,7 @@ def _group_equal_changes(edits: list[Edit], golden: WorldValues, run: WorldValue
         change = _change(units, run)
         follow = tuple(f for e in change.edits for f in followers.get(e.path, ()))
         changes.append(replace(change, edits=(*change.edits, *follow)))
-    by_factor: dict[Any, list[Change]] = {}
+    by_factor: dict[tuple[str, float] | None, list[Change]] = {}
     for change in changes:
         by_factor.setdefault(_factor(change), []).append(change)
     found = []
@@ -348,7 +348,7 @@ def _last(path: str) -> str:
     return attribute_name(split_entity_path(path)[1]).rpartition(".")[2]
 
 
-def _factor(change: Change) -> object:
+def _factor(change: Change) -> tuple[str, float] | None:
     """What a change multiplies a number by, with the number's name."""
     a, b = change.golden, change.run
     if isinstance(a, (int, float)) and isinstance(b, (int, float)) and not isinstance(a, bool) and a and b:

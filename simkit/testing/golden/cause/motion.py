@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from simkit.pose import Pose
+from simkit.pose import Pose, Vector
 from simkit.testing.golden.cause.first_tick import distinct_digits
 from simkit.testing.golden.compare.world_edits import Edit, entity_kind, parent_path, scoped_name, split_entity_path
 
@@ -232,20 +232,20 @@ def _length(metres: float) -> str:
     return f"{metres * 1e3:.4g} mm" if metres >= 1e-6 else f"{metres:.2g} m"
 
 
-def _axis(direction: Any) -> str:
+def _axis(direction: Vector) -> str:
     """An axis by its letter, where it is one."""
     letter = _letter(direction)
     return letter or "(" + ", ".join(f"{v:.3g}" if abs(v) > _STRAIGHT else "0" for v in direction) + ")"
 
 
-def _letter(direction: Any) -> str:
+def _letter(direction: Vector) -> str:
     largest = int(np.argmax(np.abs(direction)))
     if abs(abs(direction[largest]) - 1.0) < _STRAIGHT:
         return ("-" if direction[largest] < 0 else "") + "xyz"[largest]
     return ""
 
 
-def _rotation_axis(axis: Any, golden: Pose) -> str:
+def _rotation_axis(axis: Vector, golden: Pose) -> str:
     """About what it turned: an axis of its frame, or of its own, where it is one of them."""
     own = golden.inverse().rotate(axis)
     return f"its own {_letter(own)}" if not _letter(axis) and _letter(own) else _axis(axis)

@@ -98,7 +98,7 @@ class Edit:
     kind: CauseKind
     path: str
     golden: Any
-    run: object
+    run: Any
     where: str = ""
 
     @property

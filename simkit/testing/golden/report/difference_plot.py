@@ -7,16 +7,14 @@ from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import numpy as np
-import numpy.typing as npt
 
 from simkit.recording.charts.page_chart import PageChart
 from simkit.recording.charts.series import Series
 from simkit.run_spec import JsonObject
 from simkit.testing.golden.compare.difference import Difference, Verdict
 from simkit.testing.run_record.noise_statistics import NoiseStatistics
-from simkit.testing.run_record.record import Column, States, Stream
+from simkit.testing.run_record.record import Array, Column, States, Stream
 
-Array = npt.NDArray[Any]
 _DIFFERENCE_HEIGHT: Final = 110  # [px]: height of a chart of differences
 _QUANTITIES: Final = 3  # of the state that are drawn
 

@@ -5,15 +5,13 @@ from __future__ import annotations
 import base64
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 
 from simkit.testing.golden.compare.difference import Difference, Verdict
-from simkit.testing.run_record.record import Pictures
+from simkit.testing.run_record.record import Array, Pictures
 
-Array = npt.NDArray[Any]
 _LARGEST: Final = 256  # [px]: a kept picture that is larger is shown smaller
 _BLUE_FIRST: Final = ("bgr", "8UC3")
 
