@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from simkit.runtime.communication.service_server import Service
 
 _MAX_BYTES_IN_MEMORY: Final = 16 << 20  # bytes; what is more goes to a temporary file
+_WRITTEN_AS_GIVEN: Final = ("add_weld", "cancel", "make_movable", "remove", "reseed", "reset", "reset_models")
+"""Calls whose arguments an entry holds as they are."""
 MAX_JOURNAL_BYTES: Final = 1 << 30
 """A journal has no more bytes than these."""
 
@@ -168,7 +170,7 @@ class JournalWriter:
     def _told(self, door: str, words: Mapping[str, object]) -> AnswerCallback | None:
         """Writes an entry; what is to be told of the result comes back."""
         try:
-            entry = self._entries[door](**words)
+            entry: JsonObject | None = dict(words) if door in _WRITTEN_AS_GIVEN else self._entries[door](**words)
         except NotEncodable as error:
             self.gaps.append(f"{door} at t={self._sim.time:g} s was given a {error}, which a bundle cannot hold")
             return None
@@ -230,17 +232,11 @@ class JournalWriter:
     def _of_act(self, action: str) -> None:
         self.gaps.append(f"the action {action!r} was opened by the caller; who sent a goal would find none")
 
-    def _of_cancel(self, goal: int) -> dict[str, object]:
-        return {"goal": goal}
-
     def _of_set(self, node: str, name: str, value: object) -> dict[str, object]:
         return {"node": node, "name": name, "value": encode_value(value)}
 
     def _of_spawned(self, wanted: Any) -> dict[str, object]:
         return {"models": [_encode_model_source(*one) for one in wanted]}
-
-    def _of_remove(self, name: str) -> dict[str, object]:
-        return {"name": name}
 
     def _of_clone(self, name: str, new_name: str, pose: Pose | None) -> dict[str, object]:
         return {"name": name, "new_name": new_name, "pose": _encode_pose(pose)}
@@ -248,23 +244,8 @@ class JournalWriter:
     def _of_add_sensor(self, name: str, sensor: object) -> dict[str, object]:
         return {"name": name, "sensor": encode_value(sensor)}
 
-    def _of_make_movable(self, name: str) -> dict[str, object]:
-        return {"name": name}
-
-    def _of_add_weld(self, name: str, parent_link: str, child_link: str) -> dict[str, object]:
-        return {"name": name, "parent_link": parent_link, "child_link": child_link}
-
     def _of_set_weld(self, name: str, closed: bool) -> dict[str, object]:
         return {"name": name, "closed": bool(closed)}
-
-    def _of_reset(self, seed: int | None) -> dict[str, object]:
-        return {"seed": seed}
-
-    def _of_reseed(self, seed: int) -> dict[str, object]:
-        return {"seed": seed}
-
-    def _of_reset_models(self) -> dict[str, object]:
-        return {}
 
     def _of_snapshot(self) -> dict[str, object]:
         number = self._snapshot_count = self._snapshot_count + 1

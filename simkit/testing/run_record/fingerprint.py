@@ -35,16 +35,6 @@ def fingerprint(*, pictures: bool = False) -> dict[str, str]:
     return found
 
 
-def same_machine(a: Mapping[str, str], b: Mapping[str, str], pictures: bool = False) -> bool:
-    """Whether two runs can be expected to give the same bits.
-
-    Args:
-        a, b: fingerprints.
-        pictures: whether there are pictures, so that the renderer counts.
-    """
-    return not fingerprint_differences(a, b, pictures)
-
-
 def fingerprint_differences(
     a: Mapping[str, str], b: Mapping[str, str], pictures: bool = False
 ) -> dict[str, tuple[str, str]]:
