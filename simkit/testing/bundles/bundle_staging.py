@@ -6,6 +6,7 @@ import os
 import shutil
 import sys
 import tempfile
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -15,7 +16,7 @@ from simkit.diagnostics import Diagnostics
 from simkit.errors import InputError, SimkitError
 from simkit.loaders import Resolver
 from simkit.loaders.spawn_option import parse_spawn
-from simkit.run_spec import RunSpec, SourceOptions
+from simkit.run_spec import FilePath, RunSpec, SourceOptions
 from simkit.testing.bundles.manifest import PackedModel
 from simkit.testing.bundles.packed_world import load_packed_world, model_hash, packed_run_spec
 from simkit.writers.vendor import vendor
@@ -170,7 +171,7 @@ def _source_text(source: object) -> str:
 # ---------------------------------------------------------------------- code
 
 
-def copy_plugin_modules(world: StagedWorld, stage: Path, folders: Any) -> None:
+def copy_plugin_modules(world: StagedWorld, stage: Path, folders: Iterable[FilePath]) -> None:
     """The modules that were imported from the user's plugin folders; they are copied, not run."""
     roots = [Path(folder).resolve() for folder in folders]
     for number, root in enumerate(roots):

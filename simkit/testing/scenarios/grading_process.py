@@ -11,7 +11,7 @@ from typing import Any
 from simkit.child_process import exit_immediately, exit_with_parent
 from simkit.diagnostics import Diagnostics, Where
 from simkit.errors import InputError, LoadError, PluginError, SimkitError
-from simkit.run_spec import JsonObject
+from simkit.run_spec import JsonMapping, JsonObject
 from simkit.testing.scenarios.exercise import Exercise, ExerciseRun, read_exercise
 from simkit.testing.scenarios.scenario_run import open_scenario, run_scenario
 
@@ -88,7 +88,7 @@ def _is_sound_without_plugin(variation: ExerciseRun) -> bool:
     return True
 
 
-def _make_plugin(file: Path, parameters: Any) -> Any:
+def _make_plugin(file: Path, parameters: JsonMapping) -> object:
     """The plugin of a file.
 
     Raises:

@@ -53,7 +53,7 @@ def _validate_check(label: str, check: Check) -> Iterator[str]:
         for key in ("name", "expression", "topic", "hint")
         if not _is_valid_text(check, key)
     )
-    models: Any = check.models
+    models: object = check.models
     if not isinstance(models, (tuple, list)) or not all(isinstance(one, str) for one in models):
         yield _problem(f"{label}models", models, "a tuple of texts")
     yield from _validate_numbers(label, check, by=True, after=False, rate=True, tolerance=False, points=False)

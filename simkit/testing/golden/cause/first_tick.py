@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from simkit.testing.run_record.record import States
+
+Numbers = npt.NDArray[np.float64]
 
 _ROUNDING = 1e-9
 """Of a quantity whose own size says nothing: differences below this are shown as tiny, and come last."""
@@ -117,7 +118,7 @@ def largest_final_difference(golden: States, run: States, *, by_input: bool) -> 
     return largest_difference_text(names, mine[-1], other[-1], np.abs(np.nan_to_num(mine)).max(axis=0, initial=0.0))
 
 
-def _common_quantities(golden: States, run: States, by_input: bool) -> tuple[list[str], Any, Any]:
+def _common_quantities(golden: States, run: States, by_input: bool) -> tuple[list[str], Numbers, Numbers]:
     """The quantities that both have, and their values in both; what is put in is nothing where it has no entry."""
     if by_input:
         names = sorted({*golden.input_names, *run.input_names})
@@ -134,7 +135,7 @@ def _common_quantities(golden: States, run: States, by_input: bool) -> tuple[lis
     )
 
 
-def _columns(names: list[str], have: list[str], values: npt.NDArray[np.float64], absent: float) -> Any:
+def _columns(names: list[str], have: list[str], values: Numbers, absent: float) -> Numbers:
     found = np.full((len(values), len(names)), absent)
     places = {name: i for i, name in enumerate(have)}
     for at, name in enumerate(names):
@@ -143,7 +144,9 @@ def _columns(names: list[str], have: list[str], values: npt.NDArray[np.float64],
     return np.nan_to_num(found, nan=0.0) if absent == 0.0 else found
 
 
-def largest_difference_text(names: list[str], golden: Any, run: Any, sizes: Any = None) -> str:
+def largest_difference_text(
+    names: list[str], golden: npt.ArrayLike, run: npt.ArrayLike, sizes: Numbers | None = None
+) -> str:
     """The quantity that differs most for its size, in words: `robot::wheel velocity 1 → 1.01`.
 
     Args:

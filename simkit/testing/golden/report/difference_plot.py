@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Final
+from typing import Final, TypeVar
 
 import numpy as np
+import numpy.typing as npt
 
 from simkit.recording.charts.page_chart import PageChart
 from simkit.recording.charts.series import Series
-from simkit.run_spec import JsonObject
 from simkit.testing.golden.compare.difference import Difference, Verdict
 from simkit.testing.run_record.noise_statistics import NoiseStatistics
 from simkit.testing.run_record.record import Array, Column, States, Stream
 
+_Value = TypeVar("_Value")
 _DIFFERENCE_HEIGHT: Final = 110  # [px]: height of a chart of differences
 _QUANTITIES: Final = 3  # of the state that are drawn
 
@@ -221,7 +222,7 @@ def _line(x: Array, y: Array) -> Series:
     return Series("", times=np.asarray(x, np.float64), values=np.asarray(y, np.float64))
 
 
-def _common_field(golden: JsonObject, run: JsonObject, field: str) -> tuple[Any, Any] | None:
+def _common_field(golden: Mapping[str, _Value], run: Mapping[str, _Value], field: str) -> tuple[_Value, _Value] | None:
     """Return what both have of a field, of a part of it, or of the field around it."""
     both = sorted(golden.keys() & run.keys())
     near = [name for name in both if name == field]
@@ -234,7 +235,7 @@ def _message_count(column: Column, stream: Stream) -> int:
     return min(len(column.values) if column.lengths is None else len(column.lengths), len(stream.times_ns))
 
 
-def _as_vector(values: Any) -> Array:
+def _as_vector(values: npt.ArrayLike) -> Array:
     return np.asarray(values, np.float64).reshape(-1)
 
 
