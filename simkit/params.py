@@ -85,7 +85,7 @@ class Params:
         fill(root, values)
         return root
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> Params:
+    def __deepcopy__(self, memo: dict[int, object]) -> Params:
         return self
 
     # ------------------------------------------------------------------ structure

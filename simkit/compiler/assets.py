@@ -5,11 +5,11 @@ from __future__ import annotations
 import hashlib
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
 from weakref import WeakKeyDictionary
 
 import mujoco
 import numpy as np
+import numpy.typing as npt
 
 from simkit.compiler.meshes.companion_files import Pixels, read_pixels
 from simkit.compiler.meshes.mesh_part import Floats, Ints, MeshPart
@@ -112,7 +112,7 @@ class Assets:
         """Whether a material, by its name, wears an image."""
         return material.endswith("#textured")
 
-    def heights(self, rows: Any, size: tuple[float, float, float]) -> str:
+    def heights(self, rows: npt.NDArray[np.float64], size: tuple[float, float, float]) -> str:
         """A height field over `size` (x, y, highest); rows from -y to +y, values from 0 to 1."""
         name = "heights#" + _digest(rows, size)
         if self._is_new("hfield", name):
@@ -150,7 +150,7 @@ def mesh_bytes(vertices: Floats, faces: Ints, uv: Floats | None = None) -> bytes
 
 
 @lru_cache(maxsize=1024)
-def _material_name(*values: Any) -> str:
+def _material_name(*values: object) -> str:
     texture = values[3]
     return "material#" + _digest(*values) + ("#textured" if texture else "")
 
@@ -158,7 +158,7 @@ def _material_name(*values: Any) -> str:
 _written = lru_cache(maxsize=64)(str)  # NumPy takes ten times as long to write a type as to hash it
 
 
-def _digest(*values: Any) -> str:
+def _digest(*values: object) -> str:
     digest = hashlib.sha1(usedforsecurity=False)
     for value in values:
         if isinstance(value, np.ndarray):

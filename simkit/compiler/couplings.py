@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any, Final
+from typing import Final
 
 import mujoco
 import numpy as np
 
 from simkit.compiler.name_map import Follower, JointBinding, ModelRecord
 from simkit.diagnostics import Diagnostics, did_you_mean
+from simkit.pose import Vector
 from simkit.scene import Mimic, SceneJoint
 
 STIFF_SOLIMP: Final = (0.9999, 0.9999, 0.001, 0.5, 2.0)
@@ -40,7 +41,13 @@ class Couplings:
         equality.data = data
 
     def weld(
-        self, name: str, body: str, other: str, anchor_in_other: Any, active: bool = True, damping: float = 1.0
+        self,
+        name: str,
+        body: str,
+        other: str,
+        anchor_in_other: Vector,
+        active: bool = True,
+        damping: float = 1.0,
     ) -> None:
         """Holds two MuJoCo bodies as they stand in the specification, with a damping ratio."""
         equality = self._equality(name, mujoco.mjtEq.mjEQ_WELD, mujoco.mjtObj.mjOBJ_BODY, body, other)
@@ -52,7 +59,9 @@ class Couplings:
         equality.solref = (equality.solref[0], damping)
         equality.active = active
 
-    def _equality(self, name: str, kind: Any, of: Any, first: str, second: str) -> Any:
+    def _equality(
+        self, name: str, kind: mujoco.mjtEq, of: mujoco.mjtObj, first: str, second: str
+    ) -> mujoco.MjsEquality:
         equality = self.spec.add_equality(name=name)
         equality.type, equality.objtype = kind, of
         equality.name1, equality.name2 = first, second

@@ -15,6 +15,7 @@ from simkit.compiler.contact_friction import ContactProperties, contact_properti
 from simkit.compiler.geom_groups import COLLISION, COLLISION_CONTACT, COLLISION_RAY, DRAWN_COLLISION, VISUAL
 from simkit.compiler.material_colours import geom_colours
 from simkit.compiler.meshes.collision_bodies import convex_bodies, convex_hull
+from simkit.compiler.meshes.companion_files import Pixels
 from simkit.compiler.meshes.mesh_part import Colour, Floats, Ints, MeshFileError, MeshPart, has_area, join_parts
 from simkit.compiler.meshes.mesh_reader import load_mesh, report_once
 from simkit.compiler.name_map import GeomOwner, ModelRecord
@@ -57,6 +58,10 @@ class GeomParent:
     mass: float
     link: str
     axis: TurningAxis | None = None
+
+
+GeomSettings = dict[str, Any]
+"""Keyword arguments of `add_geom`."""
 
 
 class GeomWriter:
@@ -209,7 +214,7 @@ class GeomWriter:
                 self._add(place, owner, pose @ primitive.pose @ _OVER, type=kind, size=size, **drawn)
 
     def _add_visual_part(
-        self, place: GeomParent, owner: GeomOwner, visual: SceneVisual, part: MeshPart, pixels: Any
+        self, place: GeomParent, owner: GeomOwner, visual: SceneVisual, part: MeshPart, pixels: Pixels | None
     ) -> None:
         """Triangles of one material: the file's material wins over the mesh's own."""
         if not has_area(part, LEAST_AREA):
@@ -233,7 +238,7 @@ class GeomWriter:
             vertices, uv = np.vstack([vertices, vertices]), None if uv is None else np.vstack([uv, uv])
         return self.assets.surface(vertices, faces, uv)
 
-    def _visual_settings(self, visual: SceneVisual, part: MeshPart | None, pixels: Any) -> dict[str, Any]:
+    def _visual_settings(self, visual: SceneVisual, part: MeshPart | None, pixels: Pixels | None) -> GeomSettings:
         """Settings of a drawn geom; `pixels` is the file's texture where it can be worn."""
         look = geom_colours(visual, part)
         if visual.material is None and part is not None:
@@ -252,7 +257,7 @@ class GeomWriter:
             "castshadow": visual.cast_shadows,
         }
 
-    def _pixels(self, material: Material | None, where: Where) -> Any:
+    def _pixels(self, material: Material | None, where: Where) -> Pixels | None:
         """The texture that the file names for a visual; None where it names none or it cannot be read."""
         if material is None or material.texture is None:
             return None
@@ -285,7 +290,7 @@ class GeomWriter:
         return []
 
     def _heightmap(
-        self, place: GeomParent, owner: GeomOwner, pose: Pose, shape: Heightmap, where: Where, settings: dict[str, Any]
+        self, place: GeomParent, owner: GeomOwner, pose: Pose, shape: Heightmap, where: Where, settings: GeomSettings
     ) -> None:
         if not place.fixed:
             self.diagnostics.error("SK-MESH-010", "a heightmap can only belong to a static model", where)
@@ -305,7 +310,7 @@ class GeomWriter:
         self._add(place, owner, at, type=mujoco.mjtGeom.mjGEOM_HFIELD, hfieldname=name, **settings)
 
 
-def _colliding(contact: ContactProperties, group: int) -> dict[str, Any]:
+def _colliding(contact: ContactProperties, group: int) -> GeomSettings:
     return {
         "group": group,
         "contype": contact.contype,

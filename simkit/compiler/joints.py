@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any, Final
+from typing import Final
 
 import mujoco
 import numpy as np
@@ -168,7 +168,7 @@ class JointWriter:
 
     def _add_motions(
         self, body: mujoco.MjsBody, joint: SceneJoint, at: Pose, is_reversed: bool
-    ) -> tuple[Any, tuple[Follower, ...]]:
+    ) -> tuple[tuple[str, ...], tuple[Follower, ...]]:
         """Adds the motions of a joint to a body that stands `at` a pose in the world.
 
         Turned round, the body is the file's parent: the same motions in the other order and direction.

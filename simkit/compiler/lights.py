@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Final
+from typing import Final
 
 import mujoco
 import numpy as np
@@ -30,7 +30,7 @@ _DRAWN_FIELDS: Final = ("diffuse", "specular", "attenuation", "range", "cutoff",
 _SPOT: Final = (math.radians(30.0), math.radians(40.0))  # the renderers' own cone where a file gives none
 
 
-def drawn_position(light: SceneLight, position: Any) -> npt.NDArray[np.float64]:
+def drawn_position(light: SceneLight, position: npt.ArrayLike) -> npt.NDArray[np.float64]:
     """Where MuJoCo draws a light from: its position, pulled in along the line to the origin when it is far away.
 
     Suns at 256e9 m, which worlds have, overflow the renderer's matrices.
@@ -65,7 +65,7 @@ def add_light(body: mujoco.MjsBody, light: SceneLight, pose: Pose, shadows: bool
         made.cutoff, made.exponent = spot_parameters(light)
 
 
-def drawn_fields(light: SceneLight, shadows: bool) -> dict[str, Any]:
+def drawn_fields(light: SceneLight, shadows: bool) -> dict[str, npt.NDArray[np.float64]]:
     """Return the fields of MuJoCo's light that a description decides, without its place, direction and state."""
     spec = mujoco.MjSpec()
     add_light(spec.worldbody, light, IDENTITY, shadows)

@@ -104,7 +104,7 @@ def _flag(name: str) -> int:
     return 0 if bit is None or name == "autoreset" else int(bit)
 
 
-def _is_same_value(a: Any, b: Any) -> bool:
+def _is_same_value(a: object, b: object) -> bool:
     return bool(np.array_equal(np.asarray(a), np.asarray(b)))
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
-from typing import Any, Final
+from typing import Final
 
 import mujoco
 
@@ -151,7 +151,7 @@ def _holding_joint(
 
 def _attachment_frame(
     spec: mujoco.MjSpec, record: ModelRecord, source: MjcfSource, prefix: str, wrapper: str, holder: SceneJoint | None
-) -> Any:
+) -> mujoco.MjsFrame:
     """The frame that stands for the file's world: in the world, in a body that can be moved, or in a link's body."""
     pose, body = source.place, spec.worldbody
     if wrapper:

@@ -235,11 +235,12 @@ class NameMap:
         self._model: mujoco.MjModel | None = None
         self._shared: dict[str, Any] = {}
 
-    def shared(self, what: str, make: Callable[[], Any]) -> Any:
+    def shared(self, what: str, make: Callable[[], T]) -> T:
         """What many sensors find out of the compiled model in the same way, made once for all of them."""
         if what not in self._shared:
             self._shared[what] = make()
-        return self._shared[what]
+        found: T = self._shared[what]
+        return found
 
     def link(self, scoped: str) -> LinkBinding:
         """Raises KeyError, which names the closest."""

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Final
 
 import mujoco
 import numpy as np
+import numpy.typing as npt
 
 from simkit.compiler.name_map import ActuatorRef
 from simkit.diagnostics import Diagnostics, Where
@@ -61,7 +62,7 @@ def add_drive_armature(
 
 
 def drive_gains(
-    max_effort: Vector, is_slide: Any, least: Vector, most: Vector, timestep: float
+    max_effort: Vector, is_slide: npt.NDArray[np.bool_], least: Vector, most: Vector, timestep: float
 ) -> tuple[Vector, Vector]:
     """(kp, kv) of position drives on joints that feel inertias from `least` to `most` [kg·m² or kg], armature included.
 
@@ -77,7 +78,7 @@ def drive_gains(
     return kp, np.minimum(2.0 * np.sqrt(kp * most), stable_kv)
 
 
-def felt_inertias(model: mujoco.MjModel, joints: Any) -> tuple[Vector, Vector]:
+def felt_inertias(model: mujoco.MjModel, joints: npt.ArrayLike) -> tuple[Vector, Vector]:
     """Smallest and largest inertia at each of some one-axis joints, over poses spread through the joints' ranges.
 
     The smallest is felt with all else free to move, 1 / (M⁻¹)_jj, the largest with all else held, M_jj.
@@ -198,7 +199,7 @@ def servo_gains(ref: ActuatorRef, inertia: float, timestep: float) -> tuple[floa
 
 
 def servo_traits(
-    model: mujoco.MjModel, refs: Sequence[ActuatorRef], compiled: Mapping[str, Any] | None = None
+    model: mujoco.MjModel, refs: Sequence[ActuatorRef], compiled: Mapping[str, npt.NDArray[np.float64]] | None = None
 ) -> list[ServoTraits]:
     """Return the traits of the velocity servos of a model, in its first pose.
 

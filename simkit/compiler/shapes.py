@@ -7,7 +7,7 @@ from __future__ import annotations
 import math
 import warnings
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import TYPE_CHECKING, Final
 
 import mujoco
 import numpy as np
@@ -15,6 +15,9 @@ import numpy as np
 from simkit.compiler.meshes.mesh_part import Floats, Ints, MeshFileError, MeshPart
 from simkit.pose import IDENTITY, Pose
 from simkit.scene import Box, Capsule, Cone, Cylinder, Ellipsoid, Geometry, Heightmap, Plane, Polyline, Sphere
+
+if TYPE_CHECKING:
+    from PIL.Image import Image as PilImage
 
 _SIDES = 48
 
@@ -241,7 +244,7 @@ def _unit_circle() -> tuple[Floats, Floats]:
     return turn, points
 
 
-def _grid_triangles(rows: Any, columns: int) -> Ints:
+def _grid_triangles(rows: int, columns: int) -> Ints:
     """Triangles between rows of `columns` + 1 points, each row above the one before, counter-clockwise outside."""
     i, j = np.meshgrid(np.arange(rows - 1), np.arange(columns), indexing="ij")
     a = (i * (columns + 1) + j).reshape(-1)
@@ -327,7 +330,7 @@ def heightmap_rows(shape: Heightmap) -> Floats:
     return np.ascontiguousarray(grey[::-1]) / (most if most > 0.0 else 1.0)
 
 
-def _grey_values(image: Any) -> Floats:
+def _grey_values(image: PilImage) -> Floats:
     if image.mode in ("L", "F") or image.mode.startswith("I"):
         return np.asarray(image, float)
     return np.asarray(image.convert("L"), float)

@@ -142,7 +142,7 @@ class Battery(ModelPlugin):
         return sum(consumer.power for consumer in self._consumers())
 
     def _consumers(self) -> list[BatteryConsumer]:
-        return self.sim.engine.names.shared(f"consumers {id(self)}", self._find_consumers)  # type: ignore[no-any-return]
+        return self.sim.engine.names.shared(f"consumers {id(self)}", self._find_consumers)
 
     def _find_consumers(self) -> list[BatteryConsumer]:
         consumers = [p for p in self.sim.engine.structure.all_plugins() if isinstance(p, BatteryConsumer)]

@@ -9,14 +9,24 @@ from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import replace
 from typing import Any
 
-from simkit.diagnostics import Diagnostics, Where, did_you_mean
+from simkit.diagnostics import Diagnostic, Where, did_you_mean
 from simkit.errors import InputError
 from simkit.params import Params
-from simkit.scene import Scene, SceneJoint, SceneLight, SceneLink, SceneModel, ScenePlugin, SceneSensor, SceneWorld
+from simkit.scene import (
+    Scene,
+    SceneCollision,
+    SceneJoint,
+    SceneLight,
+    SceneLink,
+    SceneModel,
+    ScenePlugin,
+    SceneSensor,
+    SceneWorld,
+)
 from simkit.scene.world import CONTACT_LAWS, QUALITIES
 
 _CODE = "SK-CLI-014"
@@ -61,7 +71,7 @@ def apply_overrides(scene: Scene, overrides: Sequence[str]) -> Scene:
     return scene
 
 
-def check_used(diagnostics: Sequence[Any] | Diagnostics) -> None:
+def check_used(diagnostics: Iterable[Diagnostic]) -> None:
     """Raises for an override that nothing read: its element's name is unknown to the sensor or plugin.
 
     Raises:
@@ -234,7 +244,7 @@ class _Override:
             return replace(light, direction=unit, direction_world=(float(world[0]), float(world[1]), float(world[2])))
         return replace(light, **_change_value(element, self._boolean()))
 
-    def _collision(self, collision: Any, element: str) -> Any:
+    def _collision(self, collision: SceneCollision, element: str) -> SceneCollision:
         self._known(element, list(_SURFACE))
         value = self._number(lambda v: math.isfinite(v) and v >= 0, "a number of at least 0")
         return replace(collision, surface=replace(collision.surface, **_change_value(_SURFACE[element], value)))
@@ -273,7 +283,7 @@ class _Override:
 
     # ------------------------------------------------------------------ values
 
-    def _known(self, element: str, allowed: Any) -> None:
+    def _known(self, element: str, allowed: Collection[str]) -> None:
         if element not in allowed:
             hint = did_you_mean(element, allowed) or "allowed are " + ", ".join(allowed)
             raise _override_error(self.text, f"no element {element!r} to set here; {hint}")
@@ -308,7 +318,7 @@ class _Override:
         return values
 
 
-def _change_value(name: str, value: Any) -> dict[str, Any]:
+def _change_value(name: str, value: object) -> dict[str, Any]:
     return {name: value}
 
 

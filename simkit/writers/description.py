@@ -150,7 +150,7 @@ def _geometry(geometry: Geometry) -> Block:
     return {"type": type(geometry).__name__.lower(), **sizes}
 
 
-def _plain(value: Any) -> Any:
+def _plain(value: object) -> object:
     if isinstance(value, tuple):
         return [_plain(v) for v in value]
     if isinstance(value, float):

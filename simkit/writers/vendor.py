@@ -9,7 +9,6 @@ import tempfile
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from html import escape
 from pathlib import Path, PurePosixPath
-from typing import Any
 from urllib.parse import unquote
 
 from simkit.diagnostics import Diagnostics
@@ -231,7 +230,7 @@ class WorldCollector:
 def vendor(
     source: str,
     target: Path,
-    describe: Callable[..., dict[str, Any]],
+    describe: Callable[..., dict[str, object]],
     *,
     resource_paths: Sequence[str | os.PathLike[str]] = (),
     package_paths: Mapping[str, str | os.PathLike[str]] | None = None,
@@ -357,7 +356,7 @@ def _absolute(path: Path) -> Path:
     return Path(os.path.abspath(path))  # noqa: PTH100 - resolve() would follow links
 
 
-def _file_outside(described: Any, folder: Path) -> str:
+def _file_outside(described: object, folder: Path) -> str:
     """A mesh or picture that is read from outside of a folder; empty where there is none."""
     stack = [described]
     while stack:
@@ -376,10 +375,10 @@ def _file_outside(described: Any, folder: Path) -> str:
 _PATH_KEYS: frozenset[str] = frozenset(("file", "uri", "diagnostics"))
 
 
-def _difference(a: Any, b: Any, path: str = "") -> str:
+def _difference(a: object, b: object, path: str = "") -> str:
     """The first place where two descriptions differ, the paths of files aside; empty where there is none."""
     if isinstance(a, dict) and isinstance(b, dict):
-        parts: Iterable[tuple[str, Any, Any]] = (
+        parts: Iterable[tuple[str, object, object]] = (
             (f"{path}.{k}", a.get(k), b.get(k)) for k in sorted(a.keys() | b.keys()) if k not in _PATH_KEYS
         )
     elif isinstance(a, list) and isinstance(b, list) and len(a) == len(b):

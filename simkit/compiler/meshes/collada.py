@@ -7,14 +7,16 @@ from functools import partial
 from typing import Any, Final
 
 import numpy as np
+import numpy.typing as npt
 
-from simkit.compiler.meshes.collada_materials import ColladaMaterials
+from simkit.compiler.meshes.collada_materials import ColladaMaterials, XmlElement
 from simkit.compiler.meshes.companion_files import Companions
 from simkit.compiler.meshes.mesh_part import (
     DEEPEST_NODE,
     LARGEST_FACES,
     MOST_NODES,
     Floats,
+    Indices,
     MeshFileError,
     MeshPart,
     fan_triangles,
@@ -32,7 +34,7 @@ def read_collada(content: bytes, companions: Companions) -> list[MeshPart]:
     return ColladaFile(read_root(content), companions).parts()
 
 
-def read_root(content: bytes) -> Any:
+def read_root(content: bytes) -> XmlElement:
     """The document without entities: nothing outside of the file is read and nothing in it multiplies."""
     from lxml import etree
 
@@ -71,7 +73,7 @@ class _BoundedTreeBuilder:
     def doctype(self, name: str, public: str | None, system: str | None) -> None:
         raise MeshFileError("has a document type definition, which is refused")
 
-    def start(self, tag: str | bytes, attrib: Any) -> None:
+    def start(self, tag: str | bytes, attrib: object) -> None:
         self._level += 1
         if self._level > _DEEPEST:
             raise MeshFileError(f"has elements that are nested more than {_DEEPEST} deep")
@@ -86,15 +88,15 @@ class _BoundedTreeBuilder:
 class ColladaFile:
     """One document; elements by id, and what has been read of them."""
 
-    def __init__(self, root: Any, companions: Companions) -> None:
+    def __init__(self, root: XmlElement, companions: Companions) -> None:
         self.root, self.companions = root, companions
-        self.by_id: dict[str, Any] = {}
+        self.by_id: dict[str, XmlElement] = {}
         for element in root.iter("{*}*"):
             name = element.get("id")
             if name:
                 self.by_id.setdefault(name, element)
         self.looks = ColladaMaterials(self.by_id, companions)
-        self.arrays: dict[Any, Floats] = {}
+        self.arrays: dict[XmlElement, Floats] = {}
         self.geometries: dict[str, list[tuple[MeshPart, str]]] = {}
         self.out: list[MeshPart] = []
         self.faces = self.nodes = 0
@@ -119,12 +121,12 @@ class ColladaFile:
             break
         return 1.0
 
-    def _target(self, element: Any, attribute: str = "url") -> Any:
+    def _target(self, element: XmlElement, attribute: str = "url") -> XmlElement:
         return self.by_id.get(element.get(attribute, "").lstrip("#"))
 
     # ------------------------------------------------------------------ nodes
 
-    def _node(self, node: Any, above: Floats, named: str, depth: int) -> None:
+    def _node(self, node: XmlElement, above: Floats, named: str, depth: int) -> None:
         self.nodes += 1
         if depth > DEEPEST_NODE or self.nodes > MOST_NODES:
             raise MeshFileError(f"has nodes nested deeper than {DEEPEST_NODE} or more than {MOST_NODES} of them")
@@ -141,7 +143,7 @@ class ColladaFile:
         for instance in node.iterfind("{*}instance_controller"):
             self._place(self._skinned(self._target(instance)), instance, node, name, matrix)
 
-    def _skinned(self, controller: Any) -> Any:
+    def _skinned(self, controller: XmlElement | None) -> XmlElement:
         """The geometry under skins and morphs, in its bind pose."""
         for _ in range(8):
             if controller is None or not controller.tag.endswith("controller"):
@@ -151,7 +153,7 @@ class ColladaFile:
             controller = None if source is None else self._target(source, "source")
         return None
 
-    def _place(self, geometry: Any, instance: Any, node: Any, name: str, matrix: Floats) -> None:
+    def _place(self, geometry: XmlElement, instance: XmlElement, node: XmlElement, name: str, matrix: Floats) -> None:
         if geometry is None:
             self.companions.note(f"places {instance.get('url', '')[:80]!r}, which it does not have")
             return
@@ -185,7 +187,7 @@ class ColladaFile:
 
     # ------------------------------------------------------------------ geometry
 
-    def _geometry(self, geometry: Any) -> list[tuple[MeshPart, str]]:
+    def _geometry(self, geometry: XmlElement) -> list[tuple[MeshPart, str]]:
         """The parts of a `<geometry>` in its own frame, each with its material's symbol."""
         key = geometry.get("id", "") or str(id(geometry))
         if key not in self.geometries:
@@ -195,7 +197,7 @@ class ColladaFile:
             self.geometries[key] = [(MeshPart(name, *mesh_arrays), s) for mesh_arrays, s in filter(None, found)]
         return self.geometries[key]
 
-    def _primitives(self, element: Any) -> Any:
+    def _primitives(self, element: XmlElement) -> Any:
         """Vertices, faces and texture coordinates of one list of primitives, and its material's symbol."""
         inputs = [
             (e.get("semantic"), e, _whole(e, "offset", 0), _whole(e, "set", 0)) for e in element.iterfind("{*}input")
@@ -226,7 +228,7 @@ class ColladaFile:
         faces = inverse[triangles].astype(np.int32)
         return (points[pairs[:, 0]], faces, uv), element.get("material", "")
 
-    def _positions(self, vertices: Any) -> Floats:
+    def _positions(self, vertices: XmlElement) -> Floats:
         if vertices is not None:
             for entry in vertices.iterfind("{*}input"):
                 if entry.get("semantic") == "POSITION":
@@ -235,7 +237,7 @@ class ColladaFile:
                         return found[:, :3]
         raise MeshFileError("has faces without vertex positions")
 
-    def _source(self, source: Any) -> Floats:
+    def _source(self, source: XmlElement) -> Floats:
         """Rows of a `<source>`, as its accessor cuts them."""
         if source is None:
             raise MeshFileError("names a source that it does not have")
@@ -254,7 +256,7 @@ class ColladaFile:
         return self.arrays[source]
 
 
-def _corners(element: Any, width: int) -> tuple[Any, Any]:
+def _corners(element: XmlElement, width: int) -> tuple[Indices, Indices]:
     """Indices of all corners, shape (c, width), and triangles as positions in that list."""
     kind = _local(element)
     lists = [integers_of(p.text or "", "faces") for p in element.iterfind("{*}p")]
@@ -278,7 +280,7 @@ def _corners(element: Any, width: int) -> tuple[Any, Any]:
     return corners, np.arange(3 * whole).reshape(-1, 3)
 
 
-def strip_triangles(counts: Any) -> Any:
+def strip_triangles(counts: npt.ArrayLike) -> Indices:
     """Triangles of strips that lie one behind the other: every second one turned round."""
     out, start = [], 0
     for count in np.asarray(counts).tolist():
@@ -289,7 +291,7 @@ def strip_triangles(counts: Any) -> Any:
     return np.concatenate(out) if out else np.zeros((0, 3), np.int64)
 
 
-def node_transform(node: Any) -> Floats:
+def node_transform(node: XmlElement) -> Floats:
     """A node's transform as Gazebo takes it: its matrix alone, else move, then turn, then stretch."""
     found = node.find("{*}matrix")
     if found is not None:
@@ -318,14 +320,14 @@ def _rotation(axis: tuple[float, float, float], angle: float) -> Floats:
     return matrix
 
 
-def _exact_count(element: Any, count: int) -> Floats:
+def _exact_count(element: XmlElement, count: int) -> Floats:
     numbers = numbers_of(element.text or "", f"<{_local(element)}>")
     if len(numbers) != count or not np.isfinite(numbers).all():
         raise MeshFileError(f"has <{_local(element)}> with {len(numbers)} numbers, it needs {count}")
     return numbers
 
 
-def _whole(element: Any, name: str, default: int) -> int:
+def _whole(element: XmlElement, name: str, default: int) -> int:
     try:
         value = int(element.get(name, default))
     except ValueError:
@@ -335,5 +337,5 @@ def _whole(element: Any, name: str, default: int) -> int:
     return value
 
 
-def _local(element: Any) -> str:
+def _local(element: XmlElement) -> str:
     return str(element.tag).rpartition("}")[2]

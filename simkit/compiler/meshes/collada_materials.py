@@ -8,6 +8,9 @@ from typing import Any, Final
 from simkit.compiler.meshes.companion_files import Companions, Pixels
 from simkit.compiler.meshes.mesh_part import Colour
 
+XmlElement = Any
+"""An element of lxml."""
+
 _SHADERS: Final = ("phong", "lambert", "blinn", "constant")
 
 
@@ -24,7 +27,7 @@ class MaterialLook:
 class ColladaMaterials:
     """The materials of one document, read when they are first asked for."""
 
-    def __init__(self, by_id: dict[str, Any], companions: Companions) -> None:
+    def __init__(self, by_id: dict[str, XmlElement], companions: Companions) -> None:
         self.by_id, self.companions = by_id, companions
         self._read: dict[str, MaterialLook] = {}
 
@@ -34,7 +37,7 @@ class ColladaMaterials:
             self._read[material] = self._look(self.by_id.get(material))
         return self._read[material]
 
-    def _look(self, material: Any) -> MaterialLook:
+    def _look(self, material: XmlElement) -> MaterialLook:
         if material is None:
             return MaterialLook()
         instance = material.find("{*}instance_effect")
@@ -47,7 +50,7 @@ class ColladaMaterials:
                 return self._shaded(shader, effect, kind)
         return MaterialLook()
 
-    def _shaded(self, shader: Any, effect: Any, kind: str) -> MaterialLook:
+    def _shaded(self, shader: XmlElement, effect: XmlElement, kind: str) -> MaterialLook:
         colour = self._colour(shader, "emission" if kind == "constant" else "diffuse")
         texture = self._texture(shader.find("{*}diffuse"), effect)
         emission, specular = self._colour(shader, "emission"), self._colour(shader, "specular")
@@ -60,7 +63,7 @@ class ColladaMaterials:
             bright = 0.2126 * emission[0] + 0.7152 * emission[1] + 0.0722 * emission[2]
         return MaterialLook(colour, texture, max(specular[:3]) if specular else 0.0, bright)
 
-    def _colour(self, shader: Any, name: str) -> Colour | None:
+    def _colour(self, shader: XmlElement, name: str) -> Colour | None:
         found = shader.find(f"{{*}}{name}/{{*}}color")
         if found is None:
             return None
@@ -74,7 +77,7 @@ class ColladaMaterials:
         r, g, b = numbers[:3]
         return r, g, b, numbers[3] if len(numbers) > 3 else 1.0
 
-    def _opacity(self, shader: Any, alpha: float) -> float:
+    def _opacity(self, shader: XmlElement, alpha: float) -> float:
         """Opacity of the effect: A_ONE (the default) takes `transparent`'s alpha, RGB_ZERO its brightness turned round.
 
         Exporters differ in which way round they write it. What comes out as (nearly) invisible is drawn opaque.
@@ -96,7 +99,7 @@ class ColladaMaterials:
             opacity = colour[3] * share
         return opacity if 0.01 < opacity <= 1.0 else 1.0
 
-    def _texture(self, diffuse: Any, effect: Any) -> Pixels | None:
+    def _texture(self, diffuse: XmlElement, effect: XmlElement) -> Pixels | None:
         """The picture behind `<texture>`: by way of its sampler and surface, or straight by the image's id."""
         used = None if diffuse is None else diffuse.find("{*}texture")
         if used is None:

@@ -9,17 +9,19 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
 from simkit.compiler.meshes.collada import ColladaFile, node_transform, read_root
+from simkit.compiler.meshes.collada_materials import XmlElement
 from simkit.compiler.meshes.companion_files import Companions
 from simkit.compiler.meshes.mesh_part import (
     DEEPEST_NODE,
     LARGEST_FILE,
     MOST_NODES,
     Floats,
+    Indices,
     MeshFileError,
     MeshPart,
     integers_of,
@@ -105,7 +107,7 @@ def _read(file: Path, _version: tuple[int, int]) -> Skin:
 class _SkinFile(ColladaFile):
     def skin(self) -> Skin:
         self.bones: list[Bone] = []
-        self.of_node: dict[Any, int] = {}
+        self.of_node: dict[XmlElement, int] = {}
         scenes = [self._target(e) for e in self.root.iterfind("{*}scene/{*}instance_visual_scene")]
         scenes = [s for s in scenes if s is not None] or list(self.root.iterfind(".//{*}visual_scene"))[:1]
         for scene in scenes:
@@ -116,7 +118,7 @@ class _SkinFile(ColladaFile):
         times, frames = self._animation()
         return Skin(tuple(self.bones), self._pieces(), times, frames, self._unit(), tuple(self.companions.notes))
 
-    def _skeleton(self, node: Any, above: Floats, parent: int, depth: int) -> None:
+    def _skeleton(self, node: XmlElement, above: Floats, parent: int, depth: int) -> None:
         self.nodes += 1
         if depth > DEEPEST_NODE or self.nodes > MOST_NODES:
             raise MeshFileError("has too many nodes, or nested too deep")
@@ -143,7 +145,9 @@ class _SkinFile(ColladaFile):
                 self._bind_geometry(skin, geometry, instance, found)
         return {place: tuple(parts) for place, parts in found.items()}
 
-    def _bind_geometry(self, skin: Any, geometry: Any, instance: Any, found: dict[int, list[MeshPart]]) -> None:
+    def _bind_geometry(
+        self, skin: XmlElement, geometry: XmlElement, instance: XmlElement, found: dict[int, list[MeshPart]]
+    ) -> None:
         places, inverses, held = self._vertex_bones(skin)
         shape = skin.find("{*}bind_shape_matrix")
         bind = np.eye(4) if shape is None else np.array([float(v) for v in shape.text.split()]).reshape(4, 4)
@@ -170,7 +174,7 @@ class _SkinFile(ColladaFile):
                 )  # fmt: skip
                 found.setdefault(places[local], []).append(piece)
 
-    def _vertex_bones(self, skin: Any) -> tuple[list[int], Floats, Any]:
+    def _vertex_bones(self, skin: XmlElement) -> tuple[list[int], Floats, Indices]:
         """Places of the skin's joints among the bones, their inverse bind matrices, and who holds each vertex."""
         inputs = {e.get("semantic"): self._target(e, "source") for e in skin.iterfind("{*}joints/{*}input")}
         names = next(iter(inputs["JOINT"].iterfind("{*}Name_array")), None)
@@ -195,7 +199,7 @@ class _SkinFile(ColladaFile):
             start += count
         return places, inverses, self._merge_light_bones(places, held)
 
-    def _merge_light_bones(self, places: list[int], held: Any) -> Any:
+    def _merge_light_bones(self, places: list[int], held: Indices) -> Indices:
         """Bones that hold hardly anything give it to the nearest bone above them that the skin knows."""
         share = np.bincount(held, minlength=len(places)) / max(1, len(held))
         local = {place: i for i, place in enumerate(places)}

@@ -9,7 +9,7 @@ from __future__ import annotations
 import hashlib
 from collections import OrderedDict
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
@@ -193,7 +193,7 @@ def _is_stout_prism(points: Floats) -> bool:
 # ---------------------------------------------------------------------- cache
 
 
-def _key(vertices: Floats, faces: Ints, settings: Any) -> str:
+def _key(vertices: Floats, faces: Ints, settings: object) -> str:
     digest = hashlib.sha256(repr(settings).encode())
     digest.update(np.ascontiguousarray(vertices).data)
     digest.update(np.ascontiguousarray(faces).data)

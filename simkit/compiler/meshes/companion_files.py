@@ -7,13 +7,16 @@ import os
 import warnings
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Final
 from urllib.parse import unquote
 
 import numpy as np
 import numpy.typing as npt
 
 from simkit.compiler.meshes.mesh_part import MeshFileError
+
+if TYPE_CHECKING:
+    from PIL.Image import Image as PilImage
 
 LARGEST_COMPANION: Final = 256 << 20
 LARGEST_PIXELS: Final = 1 << 26
@@ -158,7 +161,7 @@ def read_pixels(source: bytes | Path) -> Pixels:
         raise MeshFileError(f"is not a readable picture ({_short(str(problem) or type(problem).__name__)})") from None
 
 
-def _rgb(image: Any) -> Pixels:
+def _rgb(image: PilImage) -> Pixels:
     if image.mode.startswith("I") or image.mode == "F":
         grey = np.asarray(image, float)
         most = 65535.0 if image.mode.startswith("I") else max(1e-12, float(np.nanmax(grey)))

@@ -128,9 +128,14 @@ def surface_prisms(vertices: Floats, faces: Ints) -> list[Floats]:
     return out
 
 
-def _patches(mesh: Any) -> list[Any]:
+Trimesh = Any
+"""A mesh of trimesh, whose own types are not complete."""
+Patch = Ints | npt.NDArray[np.int64]
+
+
+def _patches(mesh: Trimesh) -> list[Patch]:
     """Groups of face indices that lie in one plane and have a convex outline; other faces stand alone."""
-    patches: list[Any] = []
+    patches: list[Patch] = []
     grouped = np.zeros(len(mesh.faces), bool)
     for facet, boundary in zip(mesh.facets, mesh.facets_boundary, strict=True):
         if _fills_its_hull(mesh, facet, boundary):
@@ -140,7 +145,7 @@ def _patches(mesh: Any) -> list[Any]:
     return patches
 
 
-def _fills_its_hull(mesh: Any, facet: Any, boundary: Any) -> bool:
+def _fills_its_hull(mesh: Trimesh, facet: Patch, boundary: Patch) -> bool:
     from scipy.spatial import ConvexHull, QhullError
 
     points = mesh.vertices[np.unique(boundary)]
@@ -156,20 +161,20 @@ def _fills_its_hull(mesh: Any, facet: Any, boundary: Any) -> bool:
     return bool(mesh.area_faces[facet].sum() > (1.0 - 1e-6) * area)
 
 
-def _patch_outline(mesh: Any, patch: Any) -> tuple[Floats, Floats]:
+def _patch_outline(mesh: Trimesh, patch: Patch) -> tuple[Floats, Floats]:
     """Corner points and outward normal of a patch."""
     points = mesh.vertices[np.unique(mesh.faces[patch])]
     return np.asarray(points, float), np.asarray(mesh.face_normals[patch[0]], float)
 
 
-def _patch_axes(normal: Any) -> tuple[Floats, Floats, Floats]:
+def _patch_axes(normal: Floats) -> tuple[Floats, Floats, Floats]:
     helper = np.eye(3)[int(np.argmin(np.abs(normal)))]
     u = np.cross(normal, helper)
     u /= np.linalg.norm(u)
     return u, np.cross(normal, u), np.asarray(normal, float)
 
 
-def _room_inwards(mesh: Any, probes: list[Floats], normals: Floats) -> Floats:
+def _room_inwards(mesh: Trimesh, probes: list[Floats], normals: Floats) -> Floats:
     """Distance [m] from each patch, along its inward normal, to the next surface; inf where there is none."""
     counts = [len(p) for p in probes]
     inward = -np.repeat(normals, counts, axis=0)

@@ -12,6 +12,7 @@ import json
 from typing import Any, Final
 
 import numpy as np
+import numpy.typing as npt
 
 from simkit.compiler.meshes.collada import strip_triangles
 from simkit.compiler.meshes.companion_files import LARGEST_COMPANION, Companions, Pixels
@@ -69,10 +70,13 @@ def _chunks(content: bytes) -> tuple[bytes, bytes | None]:
     return document, binary
 
 
+JsonObject = dict[str, Any]
+
+
 class _Gltf:
     """One document with its buffers."""
 
-    def __init__(self, tree: dict[str, Any], binary: bytes | None, companions: Companions) -> None:
+    def __init__(self, tree: JsonObject, binary: bytes | None, companions: Companions) -> None:
         self.tree, self.binary, self.companions = tree, binary, companions
         self.buffers: dict[int, bytes] = {}
         self.meshes: dict[int, list[tuple[MeshPart, Any]]] = {}
@@ -132,7 +136,7 @@ class _Gltf:
 
     # ------------------------------------------------------------------ numbers
 
-    def _primitive(self, primitive: dict[str, Any]) -> Any:
+    def _primitive(self, primitive: JsonObject) -> Any:
         mode = primitive.get("mode", 4)
         attributes = primitive["attributes"]
         if mode not in (4, 5, 6) or "POSITION" not in attributes:
@@ -224,14 +228,14 @@ class _Gltf:
 
     # ------------------------------------------------------------------ looks
 
-    def _material(self, index: Any) -> dict[str, Any]:
+    def _material(self, index: object) -> JsonObject:
         return {} if index is None else _entry(self.tree.get("materials") or [], index)
 
-    def _base_texture(self, index: Any) -> dict[str, Any]:
+    def _base_texture(self, index: object) -> JsonObject:
         found = (self._material(index).get("pbrMetallicRoughness") or {}).get("baseColorTexture") or {}
         return found if isinstance(found, dict) else {}
 
-    def _look(self, index: Any) -> tuple[Colour | None, Pixels | None, float, float]:
+    def _look(self, index: object) -> tuple[Colour | None, Pixels | None, float, float]:
         if index is None:
             return None, None, 0.0, 0.0
         if index not in self.looks:
@@ -269,7 +273,7 @@ class _Gltf:
             return None if content is None else self.companions.picture_in(content, name)
         return self.companions.picture(uri)
 
-    def _turned_uv(self, uv: Floats | None, material: Any) -> Floats | None:
+    def _turned_uv(self, uv: Floats | None, material: object) -> Floats | None:
         """With v upwards (glTF counts it from the top), and KHR_texture_transform's offset, turn and scale applied."""
         if uv is None:
             return None
@@ -282,7 +286,7 @@ class _Gltf:
         return np.column_stack([uv[:, 0], 1.0 - uv[:, 1]])
 
 
-def _entry(items: Any, index: Any) -> dict[str, Any]:
+def _entry(items: object, index: object) -> JsonObject:
     if (
         not isinstance(items, list)
         or isinstance(index, bool)
@@ -296,7 +300,7 @@ def _entry(items: Any, index: Any) -> dict[str, Any]:
     return entry
 
 
-def _transform(node: dict[str, Any]) -> Floats:
+def _transform(node: JsonObject) -> Floats:
     if node.get("matrix") is not None:
         return _finite(node["matrix"], 16).reshape(4, 4).T
     matrix = np.eye(4)
@@ -314,7 +318,7 @@ def _transform(node: dict[str, Any]) -> Floats:
     return matrix
 
 
-def _finite(values: Any, count: int) -> Floats:
+def _finite(values: npt.ArrayLike, count: int) -> Floats:
     numbers = np.asarray(values, float).reshape(-1)
     if len(numbers) != count or not np.isfinite(numbers).all():
         raise MeshFileError(f"has a node whose transform is not {count} numbers")

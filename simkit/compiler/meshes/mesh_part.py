@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
+Indices = npt.NDArray[np.int64]
 Colour = tuple[float, float, float, float]
 
 
@@ -76,7 +77,7 @@ def _compute_joined(parts: list[MeshPart]) -> tuple[Floats, Ints]:
     vertices = np.concatenate([p.vertices for p in parts])
     faces = np.concatenate([p.faces + o for p, o in zip(parts, offsets, strict=True)])
     size = float(np.ptp(vertices, axis=0).max()) if len(vertices) else 0.0
-    grid: Any = np.round(vertices / max(size * 1e-7, 1e-300)).astype(np.int64)
+    grid: Indices = np.round(vertices / max(size * 1e-7, 1e-300)).astype(np.int64)
     first, inverse = _unique_rows(grid)
     vertices, faces = vertices[first], inverse[faces]
     a, b, c = (vertices[faces[:, i]] for i in range(3))
@@ -84,7 +85,7 @@ def _compute_joined(parts: list[MeshPart]) -> tuple[Floats, Ints]:
     return vertices, faces[area > (size * 1e-7) ** 2].astype(np.int32)
 
 
-def _unique_rows(rows: Any) -> tuple[Any, Any]:
+def _unique_rows(rows: Indices) -> tuple[Indices, Indices]:
     """Where each different row stands first, in the order of the rows, and for every row which one it is.
 
     What `np.unique(axis=0)` gives, in a third of its time.
@@ -130,9 +131,10 @@ def numbers_of(text: bytes | str, what: str) -> Floats:
     return np.asarray(_parse_numbers(text, float, what), float)
 
 
-def integers_of(text: bytes | str, what: str) -> Any:
+def integers_of(text: bytes | str, what: str) -> Indices:
     """Whole numbers separated by white space, int64. Raises MeshFileError."""
-    return _parse_numbers(text, np.int64, what)
+    numbers: Indices = _parse_numbers(text, np.int64, what)
+    return numbers
 
 
 def _parse_numbers(text: bytes | str, kind: Any, what: str) -> Any:
@@ -150,7 +152,7 @@ def _parse_numbers(text: bytes | str, kind: Any, what: str) -> Any:
         raise MeshFileError(f"has something in its {what} that is not a number") from None
 
 
-def fan_triangles(counts: Any) -> Any:
+def fan_triangles(counts: npt.ArrayLike) -> Indices:
     """Triangles of polygons that lie one behind the other: rows of positions, polygon by polygon.
 
     Args:
@@ -167,7 +169,7 @@ def fan_triangles(counts: Any) -> Any:
     return np.column_stack([start[of], start[of] + k + 1, start[of] + k + 2])
 
 
-def unique_rows(rows: Any) -> tuple[Any, Ints]:
+def unique_rows(rows: Indices) -> tuple[Indices, Ints]:
     """The different rows of an integer array, in order of appearance, and for each row which one it is."""
     _, first, inverse = np.unique(rows, axis=0, return_index=True, return_inverse=True)
     order = np.argsort(first, kind="stable")

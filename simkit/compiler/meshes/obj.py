@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from simkit.compiler.meshes.companion_files import Companions, Pixels
 from simkit.compiler.meshes.mesh_part import (
@@ -152,7 +153,7 @@ def _part(
     )
 
 
-def _indices(block: _FaceGroup, counts: Any) -> tuple[Any, Any]:
+def _indices(block: _FaceGroup, counts: npt.NDArray[np.int64]) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
     """Zero-based vertex and texture indices of each corner; the latter empty unless each corner has one."""
     plain = b" ".join(block.corners)
     slashes = block.corners[0].count(b"/") if block.corners else 0

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any, Final
+from typing import TYPE_CHECKING, Final
 
 from simkit.diagnostics import Where
 from simkit.loaders.mjcf.gathered_file import GatheredFile
@@ -13,6 +13,10 @@ from simkit.loaders.resources.loader import CompiledMjcf
 from simkit.pose import IDENTITY, Pose
 from simkit.scene import ScenePlugin
 from simkit.scene.mjcf_source import Mass, MjcfGeom
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
 
 WORLD_LINK: Final = "worldbody"
 """Name of the link that holds what a file puts into its world body."""
@@ -114,7 +118,7 @@ class CompiledFile:
         return f"{placed.scoped}::{self.link_name(body, placed)}"
 
 
-def _ids_by_owner(owners: Any) -> dict[int, list[int]]:
+def _ids_by_owner(owners: npt.NDArray[np.int32]) -> dict[int, list[int]]:
     """Numbers of elements by the number of what they belong to."""
     found: dict[int, list[int]] = {}
     for number, owner in enumerate(owners.tolist()):

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Final
+from collections.abc import Iterable
+from typing import Final
 
 from simkit.loaders.mjcf.compiled_file import CompiledFile, ElementIds
 from simkit.pose import Pose
@@ -48,6 +49,6 @@ def _light(file: CompiledFile, i: int, link: str, body: Pose, found: ElementIds)
     )
 
 
-def _colour(rgb: Any) -> tuple[float, float, float, float]:
+def _colour(rgb: Iterable[float]) -> tuple[float, float, float, float]:
     r, g, b = (float(c) for c in rgb)
     return r, g, b, 1.0

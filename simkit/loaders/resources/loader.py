@@ -5,7 +5,7 @@ from __future__ import annotations
 import abc
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, Protocol
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 from simkit.diagnostics import Diagnostics, Where
 from simkit.loaders.resources.resolver import Resolver
@@ -14,15 +14,22 @@ from simkit.params import Params
 from simkit.pose import Pose
 from simkit.scene import Mesh, Scene
 
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
+MujocoObject = Any
+"""A specification, model or data of MuJoCo, which loaders do not import."""
+
 
 class Triangles(Protocol):
     """A part of a mesh in metres: vertices of shape (n, 3) and the three vertex indices of each face."""
 
     @property
-    def vertices(self) -> Any: ...
+    def vertices(self) -> npt.NDArray[np.float64]: ...
 
     @property
-    def faces(self) -> Any: ...
+    def faces(self) -> npt.NDArray[np.int32]: ...
 
 
 MeshReader = Callable[[Mesh, Diagnostics, Where], Sequence[Triangles]]
@@ -59,16 +66,16 @@ class CompiledMjcf(Protocol):
     """
 
     @property
-    def spec(self) -> Any: ...
+    def spec(self) -> MujocoObject: ...
 
     @property
-    def model(self) -> Any: ...
+    def model(self) -> MujocoObject: ...
 
     @property
-    def data(self) -> Any: ...
+    def data(self) -> MujocoObject: ...
 
     @property
-    def document(self) -> Callable[[], Any]: ...
+    def document(self) -> Callable[[], MujocoObject]: ...
 
     @property
     def is_aligned(self) -> bool:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TypeVar
+
+Value = TypeVar("Value")
 
 MAX_STEPS = 1_000_000
 MAX_ITEMS = 10_000
@@ -31,7 +33,7 @@ class Budget:
         if self.left < 0:
             raise BoundError(f"it needs more than {MAX_STEPS} steps")
 
-    def value(self, value: Any) -> Any:
+    def value(self, value: Value) -> Value:
         """The same value, if its size is within bounds."""
         if isinstance(value, str):
             if len(value) > MAX_TEXT:
@@ -43,7 +45,7 @@ class Budget:
             raise BoundError("a number is too large")
         return value
 
-    def weigh(self, *values: Any) -> int:
+    def weigh(self, *values: object) -> int:
         """Everything inside nested lists and texts, counted as often as it stands there; spends as many steps."""
         weight, stack = 0, list(values)
         while stack:

@@ -14,7 +14,7 @@ _KEY = "where"
 class _PlaceKeeper:
     """Hands an element's place on to its copies."""
 
-    def handle(self, _operation: int, key: str, data: Any, _source: Any, copy: Any) -> None:
+    def handle(self, _operation: int, key: str, data: object, _source: object, copy: Any) -> None:
         if copy is not None:
             copy.setUserData(key, data, self)
 
@@ -47,7 +47,7 @@ def _element(document: minidom.Document, params: Params) -> minidom.Element:
     return node
 
 
-def place_of(node: Any) -> Where:
+def place_of(node: minidom.Element | None) -> Where:
     """Where an element stands in its file."""
     found = node.getUserData(_KEY) if node is not None else None
     return found if isinstance(found, Where) else NOWHERE
@@ -56,7 +56,7 @@ def place_of(node: Any) -> Where:
 def to_params(top: Any, diagnostics: Diagnostics) -> Params:
     """The tree as `Params`; an element without a place of its own has that of its parent."""
     root = _params(top, place_of(top), diagnostics)
-    stack: list[tuple[Any, Params]] = [(top, root)]
+    stack: list[tuple[minidom.Element, Params]] = [(top, root)]
     while stack:
         node, params = stack.pop()
         for child in node.childNodes:
@@ -68,7 +68,7 @@ def to_params(top: Any, diagnostics: Diagnostics) -> Params:
     return root
 
 
-def _params(node: Any, where: Where, diagnostics: Diagnostics) -> Params:
+def _params(node: minidom.Element, where: Where, diagnostics: Diagnostics) -> Params:
     text = "".join(c.data for c in node.childNodes if c.nodeType in (c.TEXT_NODE, c.CDATA_SECTION_NODE)).strip()
     attributes = {name: str(value) for name, value in node.attributes.items() if not name.startswith("xmlns:xacro")}
     return Params(node.tagName, text, attributes, (), where, diagnostics)

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
+from xml.dom import minidom
 
 from simkit.diagnostics import NOWHERE, Diagnostics, Where, did_you_mean
 from simkit.loaders.resources.resolver import Resolver
 from simkit.loaders.resources.xml_reader import Document
 from simkit.loaders.xacro.budget import MAX_FILES_DEEP, BoundError, Budget, ExpansionError
 from simkit.loaders.xacro.dom import place_of, to_document, to_params
-from simkit.loaders.xacro.expression import Evaluator, Function
+from simkit.loaders.xacro.expression import Evaluator, Function, Names, Value
 from simkit.loaders.xacro.expression_functions import direct_names, math_functions, python_functions, tokenize
 from simkit.loaders.xacro.file_access import FileAccess, MissingError
-from simkit.loaders.xacro.private_package import MACRO_ARGUMENT, import_private_xacro
+from simkit.loaders.xacro.private_package import MACRO_ARGUMENT, XacroModule, import_private_xacro
 
 MAX_EXPANDED = 50_000
 MAX_COPIED = 300_000
@@ -58,7 +58,7 @@ class _Expansion:
 
     def __init__(
         self,
-        engine: Any,
+        engine: XacroModule,
         document: Document,
         resolver: Resolver,
         arguments: Mapping[str, str],
@@ -148,8 +148,8 @@ class _Expansion:
             setattr(engine, name, self._with_place(getattr(engine, name)))
         self._count_work(engine.eval_all, engine.handle_macro_call)
 
-    def _with_place(self, original: Any) -> Any:
-        def call(tag: Any, *args: Any) -> Any:
+    def _with_place(self, original: Callable[..., list[object]]) -> Callable[..., list[object]]:
+        def call(tag: minidom.Element, *args: object) -> list[object]:
             self.where = place_of(tag) if place_of(tag) is not NOWHERE else self.where
             found = original(tag, *args)
             if tag.tagName == "xacro:arg":
@@ -160,14 +160,14 @@ class _Expansion:
 
         return call
 
-    def _count_work(self, eval_all: Any, handle_macro_call: Any) -> None:
+    def _count_work(self, eval_all: Callable[..., None], handle_macro_call: Callable[..., bool]) -> None:
         """Bounds on elements, and the place of each one that is being expanded."""
 
-        def visit(node: Any, macros: Any, symbols: Any) -> None:
+        def visit(node: minidom.Element, macros: Names, symbols: Names) -> None:
             self._enter_element(node, 1)
             eval_all(node, macros, symbols)
 
-        def call(node: Any, macros: Any, symbols: Any) -> bool:
+        def call(node: minidom.Element, macros: Names, symbols: Names) -> bool:
             if not node.tagName.startswith("xacro:"):
                 return False
             self._enter_element(node, _CALL)
@@ -181,14 +181,14 @@ class _Expansion:
         self.engine.eval_all = visit
         self.engine.handle_macro_call = call
 
-    def _enter_element(self, node: Any, elements: int) -> None:
+    def _enter_element(self, node: minidom.Element, elements: int) -> None:
         where = place_of(node)
         self.where = self.where if where is NOWHERE else where
         self.expanded += elements
         if self.expanded > MAX_EXPANDED:
             raise BoundError(f"it makes more than {MAX_EXPANDED} elements")
 
-    def _count_body(self, name: str, macros: Any, symbols: Any) -> None:
+    def _count_body(self, name: str, macros: Names, symbols: Names) -> None:
         """A macro's body is copied whole at every call, whatever of it is kept."""
         try:
             _, _, macro = self.engine.resolve_macro(name, macros, symbols)
@@ -200,7 +200,7 @@ class _Expansion:
         if self.copied > MAX_COPIED:
             raise BoundError(f"macros bring more than {MAX_COPIED} elements")
 
-    def _report_message(self, args: tuple[Any, ...]) -> None:
+    def _report_message(self, args: tuple[object, ...]) -> None:
         """What the file, or xacro about the file, wants to tell."""
         self.diagnostics.warning("SK-XACRO-005", "xacro: " + " ".join(map(str, args)), self.where)
 
@@ -210,13 +210,13 @@ class _Expansion:
         """The folder of the file that is being expanded."""
         return Path(self.engine.filestack[-1]).parent
 
-    def _include_files(self, spec: str, symbols: Any) -> list[str]:
+    def _include_files(self, spec: str, symbols: Names) -> list[str]:
         text = str(self._text(spec, symbols))
         if re.search(r"[*?\[]", text):
             return self.files.find_pattern(text, self._current_folder())
         return [text]
 
-    def _parse(self, _text: Any, filename: str) -> Any:
+    def _parse(self, _text: object, filename: str) -> minidom.Document:
         if len(self.engine.filestack) > MAX_FILES_DEEP:
             raise BoundError(f"files include one another more than {MAX_FILES_DEEP} deep: {filename}")
         self.engine.filestack.pop()
@@ -230,7 +230,7 @@ class _Expansion:
             raise ExpansionError(f"{path} is empty")
         return to_document(root)
 
-    def _yaml(self, filename: str) -> Any:
+    def _yaml(self, filename: str) -> Value:
         path = self.files.find_file(str(filename), self._current_folder())
         evaluator = Evaluator({}, self.budget)
         content = self.files.read_yaml(path, evaluator.run, self.budget)
@@ -238,11 +238,11 @@ class _Expansion:
 
     # ------------------------------------------------------------------ texts
 
-    def _text(self, text: str, symbols: Any) -> Any:
+    def _text(self, text: str, symbols: Names) -> Value:
         """A text with its `${...}` and `$(...)` replaced; the typed value where it is nothing else."""
         if "$" not in text:
             return text
-        results: list[Any] = []
+        results: list[Value] = []
         position = 0
         while position < len(text):
             found = _TOKEN.match(text, position)
@@ -263,7 +263,7 @@ class _Expansion:
         joined = "".join(map(str, results)).replace("file://package://", "package://")
         return self.budget.value(joined)
 
-    def _expression(self, text: str, symbols: Any) -> Any:
+    def _expression(self, text: str, symbols: Names) -> Value:
         inner = str(self._text(text, symbols))
         try:
             return Evaluator(symbols, self.budget).run(inner)
@@ -274,7 +274,7 @@ class _Expansion:
             where = "" if "when evaluating" in str(error) else f", when evaluating ${{{inner}}}"
             raise ExpansionError(f"{error}{where}") from None
 
-    def _command(self, text: str, symbols: Any) -> Any:
+    def _command(self, text: str, symbols: Names | None) -> Value:
         words = text.split()
         name, rest = (words[0], words[1:]) if words else ("", [])
         if name == "find" and len(rest) == 1:
@@ -301,7 +301,7 @@ class _Expansion:
             raise ExpansionError(f"the argument {name!r} has no value (there are: {known}); {given}")
         return self.arguments[name]
 
-    def _global_names(self) -> dict[str, Any]:
+    def _global_names(self) -> dict[str, Value]:
         """What every expression can use: xacro's own names."""
         evaluator = Evaluator({}, self.budget)
         space = self.engine.NameSpace
@@ -329,11 +329,11 @@ class _Expansion:
         shared = {name: own[name] for name in ("load_yaml", "abs_filename", "dotify", "arg")}
         return {**mathematics, **direct, **shared, **commands, **spaces, "true": True, "false": False}
 
-    def _print_message(self, *args: Any, **_: Any) -> str:
+    def _print_message(self, *args: object, **_: object) -> str:
         self._report_message(args)
         return ""
 
-    def _fatal(self, *args: Any) -> None:
+    def _fatal(self, *args: object) -> None:
         raise ExpansionError(" ".join(map(str, args)))
 
 
@@ -347,13 +347,13 @@ class _MissingFile(OSError):
 
 def _inner_error(error: BaseException) -> BaseException:
     """The expansion's own error inside xacro's."""
-    inner: Any = getattr(error, "exc", None)
+    inner: object = getattr(error, "exc", None)
     if isinstance(inner, _MissingFile):
         return inner.error
     return inner if isinstance(inner, BaseException) else error
 
 
-def _table_names(symbols: Any) -> set[str]:
+def _table_names(symbols: object) -> set[str]:
     """Names in a table of xacro and those around it."""
     found: set[str] = set()
     while isinstance(symbols, dict):
@@ -362,11 +362,11 @@ def _table_names(symbols: Any) -> set[str]:
     return found
 
 
-def _literals(arguments: Mapping[str, str]) -> dict[str, Any]:
+def _literals(arguments: Mapping[str, str]) -> dict[str, Value]:
     """Arguments as numbers and booleans where they are such, for `$(eval ...)`."""
-    found: dict[str, Any] = {}
+    found: dict[str, Value] = {}
     for name, text in arguments.items():
-        value: Any = text
+        value: Value = text
         for read in (int, float):
             try:
                 value = read(text)

@@ -16,7 +16,10 @@ from simkit.loaders.xacro.budget import MAX_BITS, MAX_ITEMS, MAX_TEXT, BoundErro
 
 MAX_EXPRESSION = 20_000
 
-_BINARY: dict[type[ast.operator], Callable[[Any, Any], Any]] = {
+Value = Any  # a value of an expression has any type that Python has
+Names = Mapping[str, Value]
+
+_BINARY: dict[type[ast.operator], Callable[[Value, Value], Value]] = {
     ast.Add: operator.add,
     ast.Sub: operator.sub,
     ast.Mult: operator.mul,
@@ -30,13 +33,13 @@ _BINARY: dict[type[ast.operator], Callable[[Any, Any], Any]] = {
     ast.LShift: operator.lshift,
     ast.RShift: operator.rshift,
 }
-_UNARY: dict[type[ast.unaryop], Callable[[Any], Any]] = {
+_UNARY: dict[type[ast.unaryop], Callable[[Value], Value]] = {
     ast.UAdd: operator.pos,
     ast.USub: operator.neg,
     ast.Not: operator.not_,
     ast.Invert: operator.invert,
 }
-_COMPARE: dict[type[ast.cmpop], Callable[[Any, Any], Any]] = {
+_COMPARE: dict[type[ast.cmpop], Callable[[Value, Value], Value]] = {
     ast.Eq: operator.eq,
     ast.NotEq: operator.ne,
     ast.Lt: operator.lt,
@@ -67,7 +70,7 @@ _FIELD = re.compile(r"\{([^{}]*)\}")
 class Function:
     """A function that expressions may call."""
 
-    def __init__(self, call: Callable[..., Any], kind: type | None = None) -> None:
+    def __init__(self, call: Callable[..., Value], kind: type | None = None) -> None:
         self.call, self.kind = call, kind
 
 
@@ -79,10 +82,10 @@ class Evaluator:
         budget: of the whole expansion.
     """
 
-    def __init__(self, names: Mapping[str, Any], budget: Budget) -> None:
+    def __init__(self, names: Names, budget: Budget) -> None:
         self.names, self.budget = names, budget
 
-    def run(self, text: str) -> Any:
+    def run(self, text: str) -> Value:
         """The value of an expression; raises ExpansionError with a text for the user."""
         if len(text) > MAX_EXPRESSION:
             raise BoundError(f"an expression has more than {MAX_EXPRESSION} characters")
@@ -102,7 +105,7 @@ class Evaluator:
         except Exception as error:  # noqa: BLE001 - whatever Python says of the file's own arithmetic
             raise ExpansionError(f"{type(error).__name__}: {error}") from None
 
-    def call(self, function: Any, *args: Any, **options: Any) -> Any:
+    def call(self, function: Value, *args: Value, **options: Value) -> Value:
         """Calls a function of the table (or a lambda of the file) within bounds."""
         if not isinstance(function, Function):
             raise ExpansionError("only functions can be called")
@@ -110,22 +113,22 @@ class Evaluator:
         options = {k: self._callable(v) if isinstance(v, Function) else v for k, v in options.items()}
         return self.budget.value(function.call(*args, **options))
 
-    def _callable(self, function: Function) -> Callable[..., Any]:
+    def _callable(self, function: Function) -> Callable[..., Value]:
         return lambda *args: self.call(function, *args)
 
     # ------------------------------------------------------------------ the tree
 
-    def _visit(self, node: ast.AST, local: Mapping[str, Any]) -> Any:
+    def _visit(self, node: ast.AST, local: Names) -> Value:
         self.budget.spend()
         visit = _VISITORS.get(type(node))
         if visit is None:
             raise ExpansionError(f"{type(node).__name__} has no place in an expression")
         return self.budget.value(visit(self, node, local))
 
-    def _constant(self, node: ast.Constant, local: Mapping[str, Any]) -> Any:
+    def _constant(self, node: ast.Constant, local: Names) -> Value:
         return node.value
 
-    def _name(self, node: ast.Name, local: Mapping[str, Any]) -> Any:
+    def _name(self, node: ast.Name, local: Names) -> Value:
         if node.id in local:
             return local[node.id]
         if node.id.startswith("__"):
@@ -135,7 +138,7 @@ class Evaluator:
         except KeyError:
             raise ExpansionError(f"name {node.id!r} is not defined") from None
 
-    def _binary(self, node: ast.BinOp, local: Mapping[str, Any]) -> Any:
+    def _binary(self, node: ast.BinOp, local: Names) -> Value:
         a, b = self._visit(node.left, local), self._visit(node.right, local)
         apply = _BINARY.get(type(node.op))
         if apply is None:
@@ -157,18 +160,18 @@ class Evaluator:
             self.budget.weigh(b)
         return apply(a, b)
 
-    def _unary(self, node: ast.UnaryOp, local: Mapping[str, Any]) -> Any:
+    def _unary(self, node: ast.UnaryOp, local: Names) -> Value:
         return _UNARY[type(node.op)](self._visit(node.operand, local))
 
-    def _logic(self, node: ast.BoolOp, local: Mapping[str, Any]) -> Any:
-        value: Any = None
+    def _logic(self, node: ast.BoolOp, local: Names) -> Value:
+        value: Value = None
         for one in node.values:
             value = self._visit(one, local)
             if bool(value) is isinstance(node.op, ast.Or):
                 return value
         return value
 
-    def _comparison(self, node: ast.Compare, local: Mapping[str, Any]) -> Any:
+    def _comparison(self, node: ast.Compare, local: Names) -> Value:
         left = self._visit(node.left, local)
         for operation, right_node in zip(node.ops, node.comparators, strict=True):
             right = self._visit(right_node, local)
@@ -179,11 +182,11 @@ class Evaluator:
             left = right
         return True
 
-    def _choice(self, node: ast.IfExp, local: Mapping[str, Any]) -> Any:
+    def _choice(self, node: ast.IfExp, local: Names) -> Value:
         return self._visit(node.body if self._visit(node.test, local) else node.orelse, local)
 
-    def _sequence(self, node: ast.List | ast.Tuple | ast.Set, local: Mapping[str, Any]) -> Any:
-        values: list[Any] = []
+    def _sequence(self, node: ast.List | ast.Tuple | ast.Set, local: Names) -> Value:
+        values: list[Value] = []
         for one in node.elts:
             if isinstance(one, ast.Starred):
                 values += list(self._visit(one.value, local))
@@ -191,8 +194,8 @@ class Evaluator:
                 values.append(self._visit(one, local))
         return {ast.List: list, ast.Tuple: tuple, ast.Set: set}[type(node)](values)
 
-    def _dict(self, node: ast.Dict, local: Mapping[str, Any]) -> Any:
-        found: dict[Any, Any] = {}
+    def _dict(self, node: ast.Dict, local: Names) -> Value:
+        found: dict[Value, Value] = {}
         for key, value in zip(node.keys, node.values, strict=True):
             if key is None:
                 found.update(self._visit(value, local))
@@ -200,14 +203,14 @@ class Evaluator:
                 found[self._visit(key, local)] = self._visit(value, local)
         return found
 
-    def _subscript(self, node: ast.Subscript, local: Mapping[str, Any]) -> Any:
+    def _subscript(self, node: ast.Subscript, local: Names) -> Value:
         return self._visit(node.value, local)[self._visit(node.slice, local)]
 
-    def _slice(self, node: ast.Slice, local: Mapping[str, Any]) -> Any:
+    def _slice(self, node: ast.Slice, local: Names) -> Value:
         ends = (node.lower, node.upper, node.step)
         return slice(*(None if end is None else self._visit(end, local) for end in ends))
 
-    def _attribute(self, node: ast.Attribute, local: Mapping[str, Any]) -> Any:
+    def _attribute(self, node: ast.Attribute, local: Names) -> Value:
         """A name in a name space, or a key of a dictionary from a YAML file; never an attribute of a Python object."""
         owner = self._visit(node.value, local)
         if isinstance(owner, dict):
@@ -217,8 +220,8 @@ class Evaluator:
                 raise ExpansionError(f"there is no {node.attr!r} in it") from None
         raise ExpansionError(f"a {type(owner).__name__} has no {node.attr!r} that could be used here")
 
-    def _call(self, node: ast.Call, local: Mapping[str, Any]) -> Any:
-        args: list[Any] = []
+    def _call(self, node: ast.Call, local: Names) -> Value:
+        args: list[Value] = []
         for one in node.args:
             if isinstance(one, ast.Starred):
                 args += list(self._visit(one.value, local))
@@ -233,7 +236,7 @@ class Evaluator:
             return self.call(self._attribute(node.func, local), *args, **options)
         return self.call(self._visit(node.func, local), *args, **options)
 
-    def _method(self, owner: Any, name: str, args: list[Any], options: dict[str, Any]) -> Any:
+    def _method(self, owner: Value, name: str, args: list[Value], options: dict[str, Value]) -> Value:
         self.budget.weigh(owner, args, options)
         if isinstance(owner, str):
             if name == "join":
@@ -254,20 +257,20 @@ class Evaluator:
         self.budget.value(owner)
         return result
 
-    def _lambda(self, node: ast.Lambda, local: Mapping[str, Any]) -> Any:
+    def _lambda(self, node: ast.Lambda, local: Names) -> Value:
         names = [a.arg for a in node.args.args]
 
-        def call(*args: Any) -> Any:
+        def call(*args: Value) -> Value:
             if len(args) != len(names):
                 raise ExpansionError(f"the lambda takes {len(names)} values, it was given {len(args)}")
             return self._visit(node.body, {**local, **dict(zip(names, args, strict=True))})
 
         return Function(call)
 
-    def _comprehension(self, node: Any, local: Mapping[str, Any]) -> Any:
-        rows: list[Any] = []
+    def _comprehension(self, node: Value, local: Names) -> Value:
+        rows: list[Value] = []
 
-        def go(index: int, scope: dict[str, Any]) -> None:
+        def go(index: int, scope: dict[str, Value]) -> None:
             if index == len(node.generators):
                 self.budget.spend()
                 if isinstance(node, ast.DictComp):
@@ -285,10 +288,10 @@ class Evaluator:
         go(0, dict(local))
         return {ast.DictComp: dict, ast.SetComp: set}.get(type(node), list)(rows)
 
-    def _text(self, node: ast.JoinedStr, local: Mapping[str, Any]) -> Any:
+    def _text(self, node: ast.JoinedStr, local: Names) -> Value:
         return "".join(str(self._visit(one, local)) for one in node.values)
 
-    def _formatted(self, node: ast.FormattedValue, local: Mapping[str, Any]) -> Any:
+    def _formatted(self, node: ast.FormattedValue, local: Names) -> Value:
         value = self._visit(node.value, local)
         width = "" if node.format_spec is None else self._visit(node.format_spec, local)
         if _WIDE.search(width):
@@ -297,7 +300,7 @@ class Evaluator:
         return format(repr(value) if node.conversion == ord("r") else value, width)
 
 
-def _loop_variables(target: ast.expr, item: Any) -> dict[str, Any]:
+def _loop_variables(target: ast.expr, item: Value) -> dict[str, Value]:
     """The names that a `for` of a comprehension binds."""
     if isinstance(target, ast.Name):
         return {target.id: item}
@@ -305,7 +308,7 @@ def _loop_variables(target: ast.expr, item: Any) -> dict[str, Any]:
         items = list(item)
         if len(items) != len(target.elts):
             raise ExpansionError(f"{len(target.elts)} names cannot hold {len(items)} values")
-        bound: dict[str, Any] = {}
+        bound: dict[str, Value] = {}
         for one, value in zip(target.elts, items, strict=True):
             bound.update(_loop_variables(one, value))
         return bound
@@ -322,7 +325,7 @@ def _check_format(template: str) -> None:
         raise ExpansionError("a format within a format is not allowed")
 
 
-_VISITORS: dict[type[ast.AST], Callable[[Evaluator, Any, Mapping[str, Any]], Any]] = {
+_VISITORS: dict[type[ast.AST], Callable[[Evaluator, Value, Names], Value]] = {
     ast.Constant: Evaluator._constant,
     ast.Name: Evaluator._name,
     ast.BinOp: Evaluator._binary,

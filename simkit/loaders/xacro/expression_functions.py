@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable
-from typing import Any
 
 from simkit.loaders.xacro.budget import MAX_ITEMS, BoundError, ExpansionError
-from simkit.loaders.xacro.expression import Evaluator, Function
+from simkit.loaders.xacro.expression import Evaluator, Function, Value
 
 _DIRECT = ("list", "dict", "map", "len", "str", "float", "int", "bool", "min", "max", "round", "sorted", "range")
 _LARGEST_FACTORIAL = 1000
@@ -17,19 +16,19 @@ _LARGEST_FACTORIAL = 1000
 def python_functions(evaluator: Evaluator) -> dict[str, Function]:
     """Python's own functions by name: those of xacro's name space `python`."""
 
-    def plain(function: Any) -> Any:
+    def plain(function: Value) -> Value:
         return evaluator._callable(function) if isinstance(function, Function) else function
 
-    def over(function: Any) -> Callable[..., Any]:
+    def over(function: Value) -> Callable[..., Value]:
         return lambda *args: function(*(plain(a) for a in args))
 
-    def mapped(function: Any, *lists: Any) -> list[Any]:
+    def mapped(function: Value, *lists: Value) -> list[Value]:
         return [evaluator.call(function, *items) for items in zip(*lists, strict=False)]
 
-    def filtered(function: Any, items: Any) -> list[Any]:
+    def filtered(function: Value, items: Value) -> list[Value]:
         return [i for i in items if (i if function is None else evaluator.call(function, i))]
 
-    def is_instance(value: Any, kinds: Any) -> bool:
+    def is_instance(value: Value, kinds: Value) -> bool:
         wanted = kinds if isinstance(kinds, (tuple, list)) else (kinds,)
         return isinstance(value, tuple(k.kind for k in wanted if isinstance(k, Function) and k.kind))
 
@@ -55,9 +54,9 @@ def python_functions(evaluator: Evaluator) -> dict[str, Function]:
     return table
 
 
-def math_functions() -> dict[str, Any]:
+def math_functions() -> dict[str, Value]:
     """Everything in the module `math`."""
-    table: dict[str, Any] = {}
+    table: dict[str, Value] = {}
     for name, value in vars(math).items():
         if name.startswith("_"):
             continue
@@ -85,7 +84,7 @@ def _range(*args: int) -> list[int]:
     return list(wanted)
 
 
-def _round(value: Any, digits: int | None = None) -> Any:
+def _round(value: Value, digits: int | None = None) -> Value:
     if digits is not None and abs(digits) > 300:
         raise ExpansionError("round to at most 300 digits")
     return round(value) if digits is None else round(value, digits)

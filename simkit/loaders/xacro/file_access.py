@@ -12,6 +12,7 @@ from simkit.loaders.resources.bounded_file import read_bounded
 from simkit.loaders.resources.resolver import Resolver
 from simkit.loaders.resources.xml_reader import parse_file
 from simkit.loaders.xacro.budget import MAX_ITEMS, Budget, ExpansionError
+from simkit.loaders.xacro.expression import Value
 from simkit.params import Params
 
 MAX_YAML_BYTES = 1_000_000
@@ -97,7 +98,7 @@ class FileAccess:
                 )
         return self._packages[name]
 
-    def read_yaml(self, path: Path, evaluate: Callable[[str], Any], budget: Budget) -> Any:
+    def read_yaml(self, path: Path, evaluate: Callable[[str], Value], budget: Budget) -> Value:
         """The content of a YAML file; `!degrees` and the like are understood, aliases are bounded."""
         import yaml
 

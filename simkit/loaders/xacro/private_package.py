@@ -13,6 +13,9 @@ import threading
 from typing import Any
 from xml.dom import minidom
 
+XacroModule = Any
+"""The module `xacro` with what this package replaces in it."""
+
 _LOCK = threading.Lock()
 _COUNT = itertools.count()
 _DEFAULT = r"\$\{.*?\}|\$\(.*?\)|(?:'[^']*'|\"[^\"]*\"|[^\s'\"])+|"
@@ -20,7 +23,7 @@ MACRO_ARGUMENT = re.compile(r"^\s*([^\s:=]+?)\s*:?=\s*(\^\|?)?(" + _DEFAULT + r"
 """A macro's parameter with its default: xacro's own pattern, which takes exponential time on some texts, mended."""
 
 
-def import_private_xacro() -> Any:
+def import_private_xacro() -> XacroModule:
     """A fresh copy of xacro that nobody else sees.
 
     Raises:

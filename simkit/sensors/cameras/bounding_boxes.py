@@ -93,7 +93,7 @@ class LabelledShapes:
         self.items = items
         self._geoms = [g for item in items.items for visual in item.visuals for g in visual.geoms]
         self._place = {geom: i for i, geom in enumerate(self._geoms)}
-        cache = names.shared("corners of drawn shapes", dict)
+        cache: dict[int, Corners] = names.shared("corners of drawn shapes", dict)
         self._corners: list[Corners] = [_cached(cache, model, g) for g in self._geoms]
         frames = (names.model_frame(structure.models[item.model]) for item in items.items)
         self._frames = [(body, frame.matrix) for body, frame in frames]
