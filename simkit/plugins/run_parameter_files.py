@@ -12,7 +12,7 @@ from simkit.diagnostics import Diagnostics, Where, did_you_mean
 from simkit.plugins.ros_parameter_files import ParameterFile, read_parameter_file
 
 if TYPE_CHECKING:
-    from simkit.plugins.base import Plugin
+    from simkit.runtime.engine.world_structure import AttachedPlugin
     from simkit.scene import SceneModel, SceneWorld
 
 ParameterFileArgument = str | os.PathLike[str] | tuple[str, str | os.PathLike[str]]
@@ -108,7 +108,7 @@ def _closest_file_name(text: str) -> str:
 
 
 def report_unused_parameter_files(
-    given: Iterable[RunParameterFile], plugins: Iterable[Plugin], world: SceneWorld, diagnostics: Diagnostics
+    given: Iterable[RunParameterFile], plugins: Iterable[AttachedPlugin], world: SceneWorld, diagnostics: Diagnostics
 ) -> None:
     """Warn about parameter files of a run that no plugin reads.
 

@@ -29,7 +29,7 @@ _NAME_FIELDS: Final = frozenset(
 _DIRECTION_FIELDS: Final = frozenset(("direction_world", "xyz_world"))
 
 
-def check_model_name(name: Any) -> None:
+def check_model_name(name: object) -> None:
     """Raises InputError where no model in a file could have this name."""
     if not isinstance(name, str) or not name.strip():
         raise InputError(f"found the name {name!r} for a model, allowed is a text that is not empty", "SK-NAME-005")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
@@ -12,10 +12,15 @@ import numpy as np
 
 from simkit.errors import InputError, SimkitError
 from simkit.runtime.engine.snapshot import Snapshot
-from simkit.runtime.engine.world_structure import SensorsAndPlugins, WorldStructure
+from simkit.runtime.engine.world_structure import AttachedPlugin, SensorsAndPlugins, WorldStructure
 
 if TYPE_CHECKING:
+    from simkit.compiler import ActuatorRef, SpecBuilder
+    from simkit.runtime.communication.parameter_server import ParameterState
     from simkit.runtime.simulation import Simulation
+
+PluginState = dict[str, Any]
+"""Attributes of a plugin, as `get_state` gives them."""
 
 _CODE = "SK-PLUGIN-075"
 
@@ -27,7 +32,7 @@ class IncompatiblePlugin(InputError):
         super().__init__(f"{_CODE} {what}; the run has to begin anew for that", _CODE)
 
 
-def replace_plugin(sim: Simulation, old: Any, new: Any, scene: Any) -> None:
+def replace_plugin(sim: Simulation, old: AttachedPlugin, new: AttachedPlugin, scene: object) -> None:
     """Puts a plugin in the place of one that is at work. Time, physics and everything else stay as they are.
 
     `prepare` and `load` of the new one are called. Then its attributes are what its `load` made of them, but for those
@@ -75,7 +80,7 @@ def replace_plugin(sim: Simulation, old: Any, new: Any, scene: Any) -> None:
     sim.engine.faults.task(old, "close")(0)
 
 
-def _prepare(sim: Simulation, old: Any, new: Any, scene: Any) -> None:
+def _prepare(sim: Simulation, old: AttachedPlugin, new: AttachedPlugin, scene: object) -> None:
     if not new.has_hook("prepare"):
         if old._actuators:
             raise IncompatiblePlugin(f"{new.name!r} does not drive {_list_actuators(old._actuators)} any more")
@@ -88,39 +93,39 @@ def _prepare(sim: Simulation, old: Any, new: Any, scene: Any) -> None:
     new._actuators = old._actuators
 
 
-def _load(sim: Simulation, new: Any) -> None:
+def _load(sim: Simulation, new: AttachedPlugin) -> None:
     parents = {id(plugin): parent for part in sim.engine.structure.parts.values() for plugin, parent in part.plugins}
     with sim.communication.bus.owned_by(new):
         sim.contents.spawner.load_plugin(new, parents[id(new)](sim))
     new.params.diagnostics.raise_if_errors()
 
 
-def _list_actuators(actuators: Any) -> str:
+def _list_actuators(actuators: Iterable[ActuatorRef]) -> str:
     return ", ".join(f"{ref.joint!r} by {ref.kind}" for ref in actuators)
 
 
 class _CompiledBuilder:
     """A builder of a model that is compiled already: what is asked for has to be there."""
 
-    def __init__(self, builder: Any, old: Any) -> None:
+    def __init__(self, builder: SpecBuilder, old: AttachedPlugin) -> None:
         self._builder, self._old = builder, old
         self.left = list(old._actuators)
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._builder, name)
 
-    def add_velocity_servo(self, joint_scoped: str, **options: Any) -> Any:
+    def add_velocity_servo(self, joint_scoped: str, **options: Any) -> ActuatorRef:
         return self._found("velocity", joint_scoped, **options)
 
-    def add_position_servo(self, joint_scoped: str, **options: Any) -> Any:
+    def add_position_servo(self, joint_scoped: str, **options: Any) -> ActuatorRef:
         return self._found("position", joint_scoped, **options)
 
     def add_motor(
         self, joint_scoped: str, axis: int = 0, max_effort: float = math.inf, owner: str = "motor", **options: Any
-    ) -> Any:
+    ) -> ActuatorRef:
         return self._found("motor", joint_scoped, axis=axis, max_effort=max_effort, owner=owner, **options)
 
-    def add_site(self, link_scoped: str, pose_link: Any, name: str) -> str:
+    def add_site(self, link_scoped: str, pose_link: object, name: str) -> str:
         if not any(name in record.sites for record in self._builder.records.values()):
             raise IncompatiblePlugin(f"{self._old.name!r} adds a site {name!r} to {link_scoped!r}")
         return name
@@ -130,7 +135,7 @@ class _CompiledBuilder:
             raise IncompatiblePlugin(f"{self._old.name!r} welds {child_link!r} to {parent_link!r}")
         return name
 
-    def _found(self, kind: str, joint: str, *, axis: int = 0, max_effort: float, **options: Any) -> Any:
+    def _found(self, kind: str, joint: str, *, axis: int = 0, max_effort: float, **options: Any) -> ActuatorRef:
         axes = self._builder.names.joint(joint).scene.axes
         effort = min(max_effort, axes[axis].effort) if axis < len(axes) else max_effort
         gains = (options.get("kp"), options.get("kv"))
@@ -144,13 +149,13 @@ class _CompiledBuilder:
 # ---------------------------------------------------------------------- state
 
 
-def _swap_in_snapshot(snapshot: Snapshot, old: Any, new: Any, state: Mapping[str, Any]) -> Snapshot:
+def _swap_in_snapshot(snapshot: Snapshot, old: AttachedPlugin, new: AttachedPlugin, state: PluginState) -> Snapshot:
     """A snapshot with the new plugin in the place of the old one."""
     plugins = [(new, state) if plugin is old else (plugin, had) for plugin, had in snapshot.plugins]
     return replace(snapshot, structure=_swap_in_structure(snapshot.structure, old, new), plugins=plugins)
 
 
-def _swap_in_structure(structure: WorldStructure, old: Any, new: Any) -> WorldStructure:
+def _swap_in_structure(structure: WorldStructure, old: AttachedPlugin, new: AttachedPlugin) -> WorldStructure:
     def swapped(part: SensorsAndPlugins) -> SensorsAndPlugins:
         if all(plugin is not old for plugin, _ in part.plugins):
             return part
@@ -159,15 +164,13 @@ def _swap_in_structure(structure: WorldStructure, old: Any, new: Any) -> WorldSt
     return replace(structure, parts={name: swapped(part) for name, part in structure.parts.items()})
 
 
-def _loaded_state(sim: Simulation, plugin: Any) -> Mapping[str, Any]:
+def _loaded_state(sim: Simulation, plugin: AttachedPlugin) -> PluginState:
     """A plugin's state after its `load`; of one that was spawned later nothing is known."""
-    found: Mapping[str, Any] = next((state for p, state in sim._loaded.plugins if p is plugin), {})
+    found: PluginState = next((state for p, state in sim._loaded.plugins if p is plugin), {})
     return found
 
 
-def _carried_state(
-    new: Any, loaded: Mapping[str, Any], had: Mapping[str, Any], first: Mapping[str, Any]
-) -> dict[str, Any]:
+def _carried_state(new: Any, loaded: PluginState, had: PluginState, first: PluginState) -> PluginState:
     """The state that the new plugin goes on with; of a system of gz it is the system's variables that count."""
     if "variables" not in loaded or not getattr(new, "is_gz_system", False):
         return _merge_attributes(loaded, had, first, type(new).__module__)
@@ -176,9 +179,7 @@ def _carried_state(
     return {**loaded, "entities": had.get("entities"), "variables": variables}
 
 
-def _merge_attributes(
-    loaded: Mapping[str, Any], had: Mapping[str, Any], first: Mapping[str, Any], module: str
-) -> dict[str, Any]:
+def _merge_attributes(loaded: PluginState, had: PluginState, first: PluginState, module: str) -> PluginState:
     """The new one's attributes, with what the old one had changed since it was loaded."""
     state = dict(loaded)
     for name, value in had.items():
@@ -194,7 +195,7 @@ def _merge_attributes(
     return state
 
 
-def _is_compatible(value: Any, like: Any) -> bool:
+def _is_compatible(value: object, like: object) -> bool:
     """Whether a value may stand where the new plugin has one of its own; None stands for anything."""
     number = (int, float, np.number)
     if value is None or like is None or (isinstance(value, number) and isinstance(like, number)):
@@ -225,7 +226,7 @@ def _is_equal(one: Any, other: Any) -> bool:
 # ---------------------------------------------------------------------- what is open to others
 
 
-def close_endpoints(sim: Simulation, owner: Any) -> None:
+def close_endpoints(sim: Simulation, owner: object) -> None:
     """Takes every topic, service, action, parameter and subscription of a plugin away for good."""
     sim.communication.forget([owner])
     for reader in sim.communication.bus.subscriptions():
@@ -233,7 +234,7 @@ def close_endpoints(sim: Simulation, owner: Any) -> None:
             reader.close()
 
 
-def _is_callback_of(callback: Any, owner: Any) -> bool:
+def _is_callback_of(callback: object, owner: object) -> bool:
     """Whether a callback is a method of a plugin, or guards one."""
     if getattr(callback, "__self__", None) is owner:
         return True
@@ -244,7 +245,7 @@ def _is_callback_of(callback: Any, owner: Any) -> bool:
     return False
 
 
-def _take_over_parameters(sim: Simulation, old: Any, new: Any) -> None:
+def _take_over_parameters(sim: Simulation, old: AttachedPlugin, new: AttachedPlugin) -> None:
     """Live parameters that were set while the old plugin was at work keep their values, where the new one takes them.
 
     The old one's may be hidden behind new ones of the same name; the first snapshot has them.
@@ -260,19 +261,19 @@ def _take_over_parameters(sim: Simulation, old: Any, new: Any) -> None:
                 sim.engine.log.warning("%s is not taken over: %s", parameter.name, error)
 
 
-def _parameter_values(sim: Simulation, plugin: Any) -> tuple[tuple[Any, Any], ...]:
+def _parameter_values(sim: Simulation, plugin: AttachedPlugin) -> ParameterState:
     """A plugin's live parameters with their values."""
     return tuple((p, value) for p, value in sim.communication.live_parameters.get_state() if p.owner is plugin)
 
 
-def _add_parameter_values(sim: Simulation, snapshot: Snapshot, values: tuple[tuple[Any, Any], ...]) -> Snapshot:
+def _add_parameter_values(sim: Simulation, snapshot: Snapshot, values: ParameterState) -> Snapshot:
     """A snapshot that has these parameters as well."""
     table = sim.communication.live_parameters
     handles = [(h, (*state, *values)) if h is table else (h, state) for h, state in snapshot.handles]
     return replace(snapshot, handles=handles)
 
 
-def _hand_over_goals(sim: Simulation, old: Any, new: Any) -> None:
+def _hand_over_goals(sim: Simulation, old: AttachedPlugin, new: AttachedPlugin) -> None:
     """Goals that are being worked on go on with the new plugin's action of the same name, or are aborted."""
     actions = {a.name: a for opened in sim.communication.actions._actions.values() for a in opened if a.owner is new}
     for goal in [g for g in sim.communication.actions._goals if g._action.owner is old and not g.is_done]:
@@ -282,7 +283,7 @@ def _hand_over_goals(sim: Simulation, old: Any, new: Any) -> None:
             goal.abort(reason=f"plugin {new.name!r} was reloaded without this action")
 
 
-def _restore_servo_gains(sim: Simulation, plugin: Any) -> None:
+def _restore_servo_gains(sim: Simulation, plugin: AttachedPlugin) -> None:
     """Gives the servos of a plugin that was left out their strength back."""
     if plugin._actuators:
         indices = [sim.engine.names.actuator(ref) for ref in plugin._actuators]

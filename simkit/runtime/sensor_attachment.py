@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simkit.errors import InputError
 from simkit.runtime.handles.handle import look_up
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 _XML_ATTRIBUTES = frozenset(("name", "type"))
 
 
-def sensor_xml(sensor: str | Mapping[str, Any]) -> str:
+def sensor_xml(sensor: str | Mapping[str, object]) -> str:
     """The `<sensor>` element that is meant, as XML.
 
     Args:
@@ -33,7 +33,7 @@ def sensor_xml(sensor: str | Mapping[str, Any]) -> str:
     return f"<sensor{attributes}>{''.join(_xml_elements(inside))}</sensor>"
 
 
-def _xml_elements(values: Mapping[str, Any]) -> Iterator[str]:
+def _xml_elements(values: Mapping[str, object]) -> Iterator[str]:
     for key, value in values.items():
         for one in value if isinstance(value, list) else [value]:
             if isinstance(one, Mapping):
@@ -45,7 +45,7 @@ def _xml_elements(values: Mapping[str, Any]) -> Iterator[str]:
                 yield f"<{key}>{_xml_text(one)}</{key}>"
 
 
-def _xml_text(value: Any) -> str:
+def _xml_text(value: object) -> str:
     """A value as the text of an element or an attribute."""
     if isinstance(value, bool):
         return str(value).lower()

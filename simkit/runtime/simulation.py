@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 
     from simkit.diagnostics import Diagnostic, Diagnostics
     from simkit.runtime.communication.journal import Journal
+    from simkit.runtime.communication.subscription import Callback, Message
     from simkit.runtime.engine.scheduler import Scheduler
     from simkit.runtime.engine.world_structure import WorldStructure
     from simkit.scene import SceneWorld
@@ -232,7 +233,7 @@ class Simulation:
         """A visual by scoped name; KeyError names the closest."""
         return self.contents.handles.find_visual(name)
 
-    def spawn(self, source: Any, name: str | None = None, pose: Pose | None = None) -> Model:
+    def spawn(self, source: object, name: str | None = None, pose: Pose | None = None) -> Model:
         """Adds a model while time goes on; everything else keeps its state and its handles.
 
         Args:
@@ -273,7 +274,7 @@ class Simulation:
     def paused(self, paused: bool) -> None:
         self.control.paused = paused
 
-    def publish(self, topic: str, message: Any) -> None:
+    def publish(self, topic: str, message: Message) -> None:
         """Sends a message object, or a dict of its fields; inputs get it before the next step.
 
         Raises:
@@ -302,7 +303,7 @@ class Simulation:
         """Topic -> ROS type name."""
         return self.communication.bus.topics()
 
-    def call(self, service: str, request: Any = None) -> Any:
+    def call(self, service: str, request: Message = None) -> Message:
         """The response of a service to a message, a dict of its fields, or None for all zero.
 
         Raises:
@@ -330,8 +331,8 @@ class Simulation:
     def send_goal(
         self,
         action: str,
-        goal: Any = None,
-        on_feedback: Callable[[Any], None] | None = None,
+        goal: Message = None,
+        on_feedback: Callback | None = None,
         on_done: Callable[[GoalHandle], None] | None = None,
     ) -> GoalHandle:
         """Sends a goal; the plugin has it before the next step.
@@ -348,7 +349,7 @@ class Simulation:
         self.engine.check_open()
         return self.communication.actions.send(action, goal, on_feedback, on_done)
 
-    def set_parameter(self, node: str, name: str, value: Any) -> None:
+    def set_parameter(self, node: str, name: str, value: object) -> None:
         """Changes a live parameter; raises ParameterError where none has that name or takes the value."""
         self.communication.set_parameter(node, name, value)
 
@@ -394,5 +395,5 @@ class Simulation:
     def __exit__(self, *_: object) -> None:
         self.close()
 
-    def __deepcopy__(self, memo: Mapping[int, Any]) -> Simulation:
+    def __deepcopy__(self, memo: Mapping[int, object]) -> Simulation:
         return self

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import weakref
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simkit.diagnostics import Diagnostics
 from simkit.errors import InputError, LoadError, SimkitError
@@ -17,6 +17,8 @@ from simkit.runtime.engine.plugin_faults import call_plugin
 from simkit.runtime.engine.snapshot import Snapshot, Snapshots, Stateful
 from simkit.runtime.engine.world_structure import (
     FROM_SPAWN,
+    AttachedPlugin,
+    AttachedSensor,
     SensorsAndPlugins,
     WorldStructure,
     bodies_kept_awake,
@@ -25,13 +27,14 @@ from simkit.runtime.engine.world_structure import (
 from simkit.scene import SceneJoint, SceneModel
 
 if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
     from simkit.runtime.communication.communication import Communication
     from simkit.runtime.engine.engine import Engine
     from simkit.runtime.handles.entity_handles import EntityHandles
 
 ModelLoader = Callable[..., SceneModel]
 SensorsAndPluginsMaker = Callable[..., SensorsAndPlugins]
-SpawnRequest = tuple[Any, str | None, Pose | None]
+SpawnRequest = tuple[object, str | None, Pose | None]
 """What a model is read from (or a model), and the name and the pose that it gets instead of its own."""
 
 
@@ -64,10 +67,10 @@ class Spawner:
         self._sim, self._engine, self._communication, self._handles = sim, engine, communication, handles
         self.load_model, self._make_parts = load_model, make_parts
         self.snapshots = Snapshots(sim, engine, stateful, communication.bus.inbox, self.adopt)
-        self._attached: set[Any] = set()
+        self._attached: set[AttachedSensor] = set()
         self._spawned = 0
         self._structures: list[weakref.ref[WorldStructure]] = []
-        self.loaded_plugins: list[Any] = []
+        self.loaded_plugins: list[AttachedPlugin] = []
 
     def spawn(self, wanted: Sequence[SpawnRequest]) -> list[str]:
         """Adds models, compiled once for all of them; returns their names. Where one fails, all is as before."""
@@ -75,8 +78,9 @@ class Spawner:
         before, builder, found = self.snapshots.take(), old.builder.copy(), Diagnostics()
         models, parts, names = dict(old.models), dict(old.parts), []
         for source, name, pose in wanted:
-            scene = source  # a copy of what is there
-            if not isinstance(source, SceneModel):
+            if isinstance(source, SceneModel):
+                scene = source  # a copy of what is there
+            else:
                 scene = self.load_model(source, found, name=name, pose=pose, taken=models)
             builder.add_model(scene)
             models[scene.name], parts[scene.name] = scene, self._make(scene, builder, found)
@@ -86,11 +90,11 @@ class Spawner:
         self._start_or_restore([parts[name] for name in names], found, before)
         return names
 
-    def read(self, source: Any) -> SceneModel:
+    def read(self, source: object) -> SceneModel:
         """A model as its own file has it, without spawning it. Raises LoadError."""
         return self.load_model(source, Diagnostics())
 
-    def add_sensor(self, name: str, sensor: str | Mapping[str, Any]) -> str:
+    def add_sensor(self, name: str, sensor: str | Mapping[str, object]) -> str:
         """Fits a sensor to a link or a joint; returns its scoped name. Where it fails, all is as before."""
         engine, old = self._engine, self._engine.structure
         _, owner = sensor_attachment.find_owner(old, name)
@@ -110,7 +114,7 @@ class Spawner:
         self._start_or_restore([parts], found, before)
         return scoped
 
-    def _make(self, scene: SceneModel, builder: Any, found: Diagnostics) -> SensorsAndPlugins:
+    def _make(self, scene: SceneModel, builder: SpecBuilder, found: Diagnostics) -> SensorsAndPlugins:
         """The parts of what comes while it runs; they are called after all that is there already."""
         parts = self._make_parts(scene, builder, found)
         self._spawned += 1
@@ -266,7 +270,7 @@ class Spawner:
         bus.refuses_clashes = True
         diagnostics.raise_if_errors()
 
-    def load_plugin(self, plugin: Any, parent: Any) -> None:
+    def load_plugin(self, plugin: AttachedPlugin, parent: object) -> None:
         """Calls a plugin's `load`, and remembers what it made."""
         faults = self._engine.faults
         self.loaded_plugins.append(plugin)
@@ -292,7 +296,7 @@ class Spawner:
         self.loaded_plugins.clear()
         return first
 
-    def _close(self, plugins: Iterable[Any]) -> SimkitError | None:
+    def _close(self, plugins: Iterable[AttachedPlugin]) -> SimkitError | None:
         first = None
         for plugin in plugins:
             try:
@@ -302,7 +306,7 @@ class Spawner:
         return first
 
 
-def _check_hook_rates(plugin: Any) -> None:
+def _check_hook_rates(plugin: AttachedPlugin) -> None:
     """Reports a hook's rate that is none."""
     for name in ("before_step_rate", "after_step_rate"):
         rate = getattr(plugin, name)

@@ -15,7 +15,7 @@ from simkit.runtime.handles.light import Light
 from simkit.runtime.handles.model import Model
 from simkit.runtime.handles.visual_properties import Labels, Temperatures
 from simkit.runtime.model_copy import check_model_name, copy_model
-from simkit.runtime.spawner import ModelLoader, SensorsAndPluginsMaker, Spawner
+from simkit.runtime.spawner import ModelLoader, SensorsAndPluginsMaker, Spawner, SpawnRequest
 from simkit.scene import SceneLink
 
 if TYPE_CHECKING:
@@ -102,7 +102,7 @@ class WorldContents:
 
     # ------------------------------------------------------------------ spawn and remove
 
-    def spawn_all(self, models: Iterable[tuple[Any, str | None, Pose | None]]) -> list[Model]:
+    def spawn_all(self, models: Iterable[SpawnRequest]) -> list[Model]:
         """Adds several models at once, which takes little longer than one; all of them or none.
 
         Args:
@@ -115,7 +115,7 @@ class WorldContents:
         return self._spawned(list(models))
 
     @journaled
-    def _spawned(self, wanted: list[tuple[Any, str | None, Pose | None]]) -> list[Model]:
+    def _spawned(self, wanted: list[SpawnRequest]) -> list[Model]:
         self._engine.check_open()
         for _, name, _ in wanted:
             if name is not None:
@@ -162,7 +162,7 @@ class WorldContents:
             raise
 
     @journaled
-    def add_sensor(self, name: str, sensor: str | Mapping[str, Any]) -> Any:
+    def add_sensor(self, name: str, sensor: str | Mapping[str, object]) -> Any:
         """Fits a sensor to a link or a joint while time goes on; nobody else's bits change.
 
         Snapshots, resets and removals cover it: it goes with its model, and a reset or a restore to an earlier time
@@ -201,11 +201,11 @@ class WorldContents:
     def models_reader(self, reader: ModelLoader) -> None:
         self.spawner.load_model = reader
 
-    def name_in_file(self, source: Any) -> str:
+    def name_in_file(self, source: object) -> str:
         """The name that a model to be spawned has in its own file. Raises LoadError."""
         return self.spawner.read(source).name
 
-    def pose_in_file(self, source: Any) -> Pose:
+    def pose_in_file(self, source: object) -> Pose:
         """The pose in the world that a model to be spawned has in its own file. Raises LoadError."""
         return self.spawner.read(source).pose_world
 

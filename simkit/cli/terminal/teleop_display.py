@@ -75,7 +75,7 @@ class DriverLine:
         """The nearest of what the robot's lidars see, and in which direction from the robot; empty without a lidar."""
         found = [
             near
-            for sensor in self._sim.engine.structure.all_sensors()
+            for sensor in self._sim.contents.sensors.values()
             if sensor.scoped.startswith(f"{model.scoped}::") and (near := nearest_reading(sensor)) is not None
         ]
         if not found:

@@ -11,13 +11,13 @@ from __future__ import annotations
 
 import enum
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simkit import msgs
 from simkit.diagnostics import did_you_mean
 from simkit.errors import ActionError, InputError, MessageError, PluginError, SimkitError, SubscriberError
 from simkit.msgs.message_types import definition_files
-from simkit.runtime.communication.subscription import callback_name
+from simkit.runtime.communication.subscription import Callback, Message, callback_name
 from simkit.runtime.communication.topic_bus import absolute_name
 
 if TYPE_CHECKING:
@@ -57,13 +57,13 @@ class GoalHandle:
         sent_ns: simulated time at which it was sent [ns].
     """
 
-    def __init__(self, action: Action, number: int, request: Any, sent_ns: int) -> None:
+    def __init__(self, action: Action, number: int, request: Message, sent_ns: int) -> None:
         self._action, self.id, self.request, self.sent_ns = action, number, request, sent_ns
         self.status = GoalStatus.UNKNOWN
-        self.result: Any = None
-        self.feedback: Any = None
+        self.result: Message = None
+        self.feedback: Message = None
         self.reason = ""
-        self._on_feedback: Callable[[Any], None] | None = None
+        self._on_feedback: Callback | None = None
         self._on_done: Callable[[GoalHandle], None] | None = None
 
     # ------------------------------------------------------------------ for the one who sent it
@@ -95,33 +95,33 @@ class GoalHandle:
             raise ActionError(f"goal {self.id} of {self._action.name!r} was taken already; abort it")
         self._end(GoalStatus.REJECTED, None, reason)
 
-    def publish_feedback(self, feedback: Any) -> None:
+    def publish_feedback(self, feedback: Message) -> None:
         """Tells how far it is, by a message or a dict of its fields; nobody, once it has ended."""
         if self.is_done:
             return
         self.feedback = self._as_message(feedback, "Feedback")
         self._notify(self._on_feedback, self.feedback, "feedback")
 
-    def succeed(self, result: Any = None, reason: str = "") -> None:
+    def succeed(self, result: Message = None, reason: str = "") -> None:
         """Ends it well."""
         self._end(GoalStatus.SUCCEEDED, result, reason)
 
-    def abort(self, result: Any = None, reason: str = "") -> None:
+    def abort(self, result: Message = None, reason: str = "") -> None:
         """Ends it short of its aim."""
         self._end(GoalStatus.ABORTED, result, reason)
 
-    def canceled(self, result: Any = None, reason: str = "") -> None:
+    def canceled(self, result: Message = None, reason: str = "") -> None:
         """Ends it because that was asked for."""
         self._end(GoalStatus.CANCELED, result, reason)
 
-    def _end(self, status: GoalStatus, result: Any, reason: str) -> None:
+    def _end(self, status: GoalStatus, result: Message, reason: str) -> None:
         if self.is_done:
             raise ActionError(f"goal {self.id} of {self._action.name!r} has ended already ({self.status.name})")
         self.result = None if status is GoalStatus.REJECTED else self._as_message(result, "Result")
         self.status, self.reason = status, reason
         self._notify(self._on_done, self, "get_result")
 
-    def _notify(self, callback: Callable[[Any], None] | None, what: Any, part: str) -> None:
+    def _notify(self, callback: Callback | None, what: Message, part: str) -> None:
         """Calls the one who sent it back; what they raise is not the plugin's fault."""
         if callback is None:
             return
@@ -133,7 +133,7 @@ class GoalHandle:
             topic, now = f"{self._action.name}/_action/{part}", self._action.engine.time
             raise SubscriberError(topic, callback_name(callback), now, repr(error)) from error
 
-    def _as_message(self, value: Any, part: str) -> Any:
+    def _as_message(self, value: Message, part: str) -> Message:
         wanted = f"{self._action.type_name}_{part}"
         if value is None or isinstance(value, Mapping):
             return msgs.make(wanted, **(value or {}))
@@ -141,7 +141,7 @@ class GoalHandle:
             raise MessageError(f"{self._action.name!r} gives {wanted}, got {msgs.type_name(value)}")
         return value
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> GoalHandle:
+    def __deepcopy__(self, memo: dict[int, object]) -> GoalHandle:
         return self
 
 
@@ -187,7 +187,7 @@ class Action:
         if self._guarded(self._on_cancel, goal) is False and goal.status is GoalStatus.CANCELING:
             goal.status = before
 
-    def _guarded(self, call: Callable[[GoalHandle], Any], goal: GoalHandle) -> Any:
+    def _guarded(self, call: Callable[[GoalHandle], bool | None], goal: GoalHandle) -> bool | None:
         owner, hook = self.owner, f"action {self.name}"
         if hasattr(owner, "on_error"):
             return self.engine.faults.guard(owner, hook, call)(goal)
@@ -199,8 +199,12 @@ class Action:
             name, where = getattr(owner, "name", "") or self.name, str(getattr(owner, "where", ""))
             raise PluginError(name, hook, self.engine.time, where, repr(error)) from error
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> Action:
+    def __deepcopy__(self, memo: dict[int, object]) -> Action:
         return self
+
+
+GoalStates = tuple[int, tuple[tuple[GoalHandle, tuple[GoalStatus, Message, Message, str]], ...]]
+"""How many goals were sent, and status, result, feedback and reason of each."""
 
 
 class ActionTable:
@@ -250,8 +254,8 @@ class ActionTable:
     def send(
         self,
         name: str,
-        goal: Any = None,
-        on_feedback: Callable[[Any], None] | None = None,
+        goal: Message = None,
+        on_feedback: Callback | None = None,
         on_done: Callable[[GoalHandle], None] | None = None,
     ) -> GoalHandle:
         """Sends a goal; the plugin has it before the next step.
@@ -287,8 +291,8 @@ class ActionTable:
     def _send(
         self,
         action: Action,
-        request: Any,
-        on_feedback: Callable[[Any], None] | None,
+        request: Message,
+        on_feedback: Callback | None,
         on_done: Callable[[GoalHandle], None] | None,
     ) -> GoalHandle:
         self._sent += 1
@@ -320,12 +324,12 @@ class ActionTable:
         for goal in [g for g in self._goals if not g._action.active and g.is_active]:
             goal.abort(reason="the action is gone")
 
-    def get_state(self) -> tuple[int, tuple[tuple[GoalHandle, tuple[Any, ...]], ...]]:
+    def get_state(self) -> GoalStates:
         """How far each goal is."""
         goals = [(g, (g.status, g.result, g.feedback, g.reason)) for g in self._goals]
         return self._sent, tuple(goals)
 
-    def set_state(self, state: tuple[int, tuple[tuple[GoalHandle, tuple[Any, ...]], ...]]) -> None:
+    def set_state(self, state: GoalStates) -> None:
         """Back to a state from `get_state`; goals sent since are unknown again."""
         for goal in self._goals:
             goal.status, goal.result, goal.feedback, goal.reason = GoalStatus.UNKNOWN, None, None, ""

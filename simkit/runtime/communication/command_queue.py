@@ -9,7 +9,10 @@ from typing import Any, Final
 QUEUE_DEPTH: Final = 1000
 """So many messages of a topic wait for one step at most; of more, the newest do, as with ROS's `KEEP_LAST`."""
 
-QueuedCommand = tuple[str, Any]
+QueuedContent = Any
+"""A message, or a call where there is no topic."""
+
+QueuedCommand = tuple[str, QueuedContent]
 
 
 class CommandQueue(dict[int, QueuedCommand]):
@@ -36,7 +39,7 @@ class CommandQueue(dict[int, QueuedCommand]):
         self.depths: dict[str, int] = {}
         self.generation = 0
 
-    def put(self, topic: str, content: Any) -> None:
+    def put(self, topic: str, content: QueuedContent) -> None:
         """Lets a message, or a call where `topic` is empty, wait for the next step."""
         key = self._next
         self._next = key + 1

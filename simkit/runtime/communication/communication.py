@@ -51,7 +51,7 @@ class Communication:
         """Ends every goal of a plugin that is left out."""
         self.actions.abandon(owner, reason)
 
-    def set_parameter(self, node: str, name: str, value: Any) -> None:
+    def set_parameter(self, node: str, name: str, value: object) -> None:
         """Changes a live parameter: at once, or from within a hook or a callback before the next step.
 
         Raises:

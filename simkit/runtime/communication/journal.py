@@ -14,25 +14,26 @@ from typing import Any, Concatenate, ParamSpec, Protocol, TypeVar
 
 P = ParamSpec("P")
 R = TypeVar("R")
+OutsideCallback = Callable[[Any], Any] | None
 S = TypeVar("S", bound="Journaled")
 
 
 class Journal(Protocol):
     """Hears of all that comes in; it is `TopicBus.journal` while it does."""
 
-    def passing(self, door: str, words: Mapping[str, Any]) -> AbstractContextManager[Any]:
+    def passing(self, door: str, words: Mapping[str, object]) -> AbstractContextManager[Any]:
         """A context manager around what is done by somebody who may be outside; `words` are the arguments."""
         ...
 
-    def called_back(self, subscription: Any) -> AbstractContextManager[None]:
+    def called_back(self, subscription: object) -> AbstractContextManager[None]:
         """A context manager around a callback that is no plugin's."""
         ...
 
-    def hears(self, topic: str, subscription: Any) -> None:
+    def hears(self, topic: str, subscription: object) -> None:
         """Told before somebody subscribes with a callback that is no plugin's."""
         ...
 
-    def outside(self, callback: Callable[[Any], Any] | None) -> Callable[[Any], Any] | None:
+    def outside(self, callback: OutsideCallback) -> OutsideCallback:
         """A callback that somebody hands over who may be outside, to be called instead of it."""
         ...
 

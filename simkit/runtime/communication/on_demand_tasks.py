@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from simkit.runtime.communication.publisher import Publisher
+    from simkit.runtime.communication.subscription import Message
     from simkit.runtime.communication.topic_bus import TopicBus
     from simkit.runtime.engine.scheduler import Phase, Scheduler, Task
 
@@ -43,7 +44,7 @@ class OnDemandTasks:
         self,
         topics: Mapping[str, str],
         rate: float,
-        make: Callable[[str], Any],
+        make: Callable[[str], Message],
         *,
         is_aside: bool = True,
         is_listed: bool = False,

@@ -21,7 +21,8 @@ from simkit.runtime.communication.journal import journaled
 
 if TYPE_CHECKING:
     from simkit.runtime.communication.journal import Journal
-    from simkit.runtime.communication.service_server import ServiceTable
+    from simkit.runtime.communication.service_server import ServiceHandler, ServiceTable
+    from simkit.runtime.communication.subscription import Message
     from simkit.runtime.communication.topic_bus import TopicBus
     from simkit.runtime.engine.engine import Engine
 
@@ -80,7 +81,7 @@ class Parameter(Generic[T]):
             return f"{words} of at least {self.minimum:g}"
         return f"{words} of at most {self.maximum:g}" if self.maximum is not None else words
 
-    def checked(self, value: Any) -> T:
+    def checked(self, value: object) -> T:
         """The value as it would be stored.
 
         Raises:
@@ -97,7 +98,7 @@ class Parameter(Generic[T]):
         if self._on_change is not None:
             self._on_change(value)
 
-    def is_within(self, value: Any) -> bool:
+    def is_within(self, value: object) -> bool:
         """Whether a value of the right type is allowed."""
         if self.choices and value not in self.choices:
             return False
@@ -107,8 +108,13 @@ class Parameter(Generic[T]):
         high = math.inf if self.maximum is None else self.maximum
         return all(math.isfinite(v) and low <= v <= high for v in (value if isinstance(value, tuple) else (value,)))
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> Parameter[T]:
+    def __deepcopy__(self, memo: dict[int, object]) -> Parameter[T]:
         return self
+
+
+AnyParameter = Parameter[Any]
+ParameterState = tuple[tuple[AnyParameter, Any], ...]
+"""Parameters with their values."""
 
 
 class ParameterTable:
@@ -122,14 +128,14 @@ class ParameterTable:
     def __init__(self, bus: TopicBus, engine: Engine) -> None:
         self._bus, self._engine = bus, engine
         # a model that comes under the name of one that is gone, and may come back, has the same node
-        self._parameters: dict[str, dict[tuple[int, str], Parameter[Any]]] = {}
+        self._parameters: dict[str, dict[tuple[int, str], AnyParameter]] = {}
 
     @property
     def _journal(self) -> Journal | None:
         """Hears of what comes in from outside; None where nobody does."""
         return self._bus.journal
 
-    def add(self, parameter: Parameter[Any]) -> None:
+    def add(self, parameter: AnyParameter) -> None:
         """Adds a parameter to its node."""
         self._parameters.setdefault(parameter.node, {})[id(parameter.owner), parameter.name] = parameter
 
@@ -141,12 +147,12 @@ class ParameterTable:
     def _is_free(self, node: str, owner: object) -> bool:
         return all(p.owner is owner or not p.active for p in self._parameters.get(node, {}).values())
 
-    def nodes(self) -> dict[str, dict[str, Parameter[Any]]]:
+    def nodes(self) -> dict[str, dict[str, AnyParameter]]:
         """Node -> name -> parameter, sorted by node."""
         active = ((n, [p for p in self._parameters[n].values() if p.active]) for n in sorted(self._parameters))
         return {node: {p.name: p for p in found} for node, found in active if found}
 
-    def find(self, node: str, name: str) -> Parameter[Any]:
+    def find(self, node: str, name: str) -> AnyParameter:
         """A parameter.
 
         Raises:
@@ -162,7 +168,7 @@ class ParameterTable:
         return nodes[node][name]
 
     @journaled
-    def set(self, node: str, name: str, value: Any) -> None:
+    def set(self, node: str, name: str, value: object) -> None:
         """Changes a parameter before the next step; at once where no step is under way.
 
         Raises:
@@ -191,17 +197,17 @@ class ParameterTable:
             else:
                 del self._parameters[node]
 
-    def get_state(self) -> tuple[tuple[Parameter[Any], Any], ...]:
+    def get_state(self) -> ParameterState:
         """Every parameter with its value."""
         return tuple((p, p.value) for found in self._parameters.values() for p in found.values())
 
-    def set_state(self, state: tuple[tuple[Parameter[Any], Any], ...]) -> None:
+    def set_state(self, state: ParameterState) -> None:
         """Back to values from `get_state`; the plugins are not told, their own state goes back as well."""
         for parameter, value in state:
             parameter.value = value
 
 
-def _convert(value: Any, like: Any) -> Any:
+def _convert(value: Any, like: object) -> Any:
     """A value as the type of `like`; None where it is of another."""
     if isinstance(value, (np.generic, np.ndarray)):
         value = value.tolist()
@@ -239,7 +245,7 @@ _VALUE_FIELDS = {
 
 def offer_parameter_services(services: ServiceTable, parameters: ParameterTable, node: str) -> None:
     """Opens the six parameter services of a node."""
-    handlers: dict[str, Callable[[Any], Any]] = {
+    handlers: dict[str, ServiceHandler] = {
         "GetParameters": lambda request: {
             "values": [_value_message(_find_or_none(parameters, node, n)) for n in request.names]
         },
@@ -260,7 +266,7 @@ def offer_parameter_services(services: ServiceTable, parameters: ParameterTable,
         services.offer(f"{node}/{snake}", f"rcl_interfaces/srv/{name}", handler)
 
 
-def _find_or_none(parameters: ParameterTable, node: str, name: str) -> Parameter[Any] | None:
+def _find_or_none(parameters: ParameterTable, node: str, name: str) -> AnyParameter | None:
     return parameters.nodes().get(node, {}).get(name)
 
 
@@ -269,7 +275,7 @@ def _list_names(parameters: ParameterTable, node: str, prefixes: list[str]) -> l
     return [n for n in names if not prefixes or any(n == p or n.startswith(f"{p}.") for p in prefixes)]
 
 
-def _value_message(parameter: Parameter[Any] | None) -> dict[str, Any]:
+def _value_message(parameter: AnyParameter | None) -> dict[str, object]:
     """A `ParameterValue`; type 0 where there is no such parameter."""
     if parameter is None:
         return {"type": 0}
@@ -278,7 +284,7 @@ def _value_message(parameter: Parameter[Any] | None) -> dict[str, Any]:
     return {"type": kind, _VALUE_FIELDS[kind]: list(value) if isinstance(value, tuple) else value}
 
 
-def _set_parameters(parameters: ParameterTable, node: str, wanted: list[Any]) -> dict[str, Any]:
+def _set_parameters(parameters: ParameterTable, node: str, wanted: list[Message]) -> dict[str, object]:
     """Changes all of them or none."""
     try:
         checked = []
@@ -293,10 +299,10 @@ def _set_parameters(parameters: ParameterTable, node: str, wanted: list[Any]) ->
     return {"successful": True}
 
 
-def _descriptor(parameter: Parameter[Any] | None) -> dict[str, Any]:
+def _descriptor(parameter: AnyParameter | None) -> dict[str, object]:
     if parameter is None:
         return {}
-    found: dict[str, Any] = {
+    found: dict[str, object] = {
         "name": parameter.name,
         "type": _ROS_TYPES[type(parameter.value)],
         "description": parameter.description,

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from simkit import msgs
-from simkit.runtime.communication.subscription import Callback, LazyMessage
+from simkit.runtime.communication.subscription import Callback, LazyMessage, Message, PendingWork
 
 if TYPE_CHECKING:
     from simkit.runtime.communication.command_queue import CommandQueue
@@ -54,7 +54,7 @@ class Publisher:
     ) -> None:
         self._bus, self.topic, self.type_name, self.latched, self.owner = bus, topic, type_name, latched, owner
         self._readers, self._publishers = sides
-        self.last: Any = None
+        self.last: Message = None
         self.active = True
         self.pending: Callable[[], None] | None = None
 
@@ -80,7 +80,7 @@ class Publisher:
             return 0
         return readers.keeps
 
-    def publish(self, message: Any) -> None:
+    def publish(self, message: Message) -> None:
         """Hands a message to every subscriber, now, and to command inputs before the next step.
 
         Args:
@@ -99,7 +99,7 @@ class Publisher:
         if readers.feeds:
             self._bus.inbox.put(self.topic, message)
 
-    def publish_later(self, make: Callable[[], Any], work: Any = None) -> LazyMessage | None:
+    def publish_later(self, make: Callable[[], Message], work: PendingWork | None = None) -> LazyMessage | None:
         """Publishes what `make()` gives, made at once only where somebody is called back with it.
 
         On a latched topic that nobody reads it is made for the first one who does.
@@ -122,7 +122,7 @@ class Publisher:
             receive(later)
         return later
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> Publisher:
+    def __deepcopy__(self, memo: dict[int, object]) -> Publisher:
         return self
 
 
@@ -131,7 +131,7 @@ class ExternalPublisher(Publisher):
 
     __slots__ = ()
 
-    def publish(self, message: Any) -> None:
+    def publish(self, message: Message) -> None:
         """As every publisher does; a journal hears of it."""
         journal = self._bus.journal
         if journal is None:
@@ -142,7 +142,7 @@ class ExternalPublisher(Publisher):
         with journal.passing("send", {"publisher": self, "message": message}):
             super().publish(message)
 
-    def publish_later(self, make: Callable[[], Any], work: Any = None) -> LazyMessage | None:
+    def publish_later(self, make: Callable[[], Message], work: PendingWork | None = None) -> LazyMessage | None:
         """Publishes what `make()` gives; a journal has to have it now."""
         if self._bus.journal is None:
             return super().publish_later(make, work)
@@ -159,5 +159,5 @@ class Listener:
         self.topic, self.types, self.callback, self.owner = topic, tuple(types), callback, owner
         self.active = True
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> Listener:
+    def __deepcopy__(self, memo: dict[int, object]) -> Listener:
         return self

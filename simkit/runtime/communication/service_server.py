@@ -9,12 +9,13 @@ A bridge has only to carry them.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simkit import msgs
 from simkit.diagnostics import did_you_mean
 from simkit.errors import MessageError, PluginError, ServiceError, SimkitError
 from simkit.msgs.message_types import definition_files
+from simkit.runtime.communication.subscription import Message
 from simkit.runtime.communication.topic_bus import absolute_name
 from simkit.runtime.engine.plugin_faults import call_plugin
 
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from simkit.runtime.communication.topic_bus import TopicBus
     from simkit.runtime.engine.engine import Engine
 
-ServiceHandler = Callable[[Any], Any]
+ServiceHandler = Callable[[Message], Message]
 
 
 class Service:
@@ -43,7 +44,7 @@ class Service:
         self.name, self.type_name, self.handler, self.owner = name, type_name, handler, owner
         self.active, self.yields = True, False
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> Service:
+    def __deepcopy__(self, memo: dict[int, object]) -> Service:
         return self
 
 
@@ -97,7 +98,7 @@ class ServiceTable:
         found = ((name, self._find(name)) for name in sorted(self._services))
         return {name: service.type_name for name, service in found if service is not None}
 
-    def call(self, name: str, request: Any = None) -> Any:
+    def call(self, name: str, request: Message = None) -> Message:
         """The response of a service, which is at work when this returns.
 
         Args:
@@ -138,7 +139,7 @@ class ServiceTable:
         for service in [s for offered in self._services.values() for s in offered if id(s.owner) in gone]:
             self.close(service)
 
-    def _answer(self, service: Service, request: Any) -> Any:
+    def _answer(self, service: Service, request: Message) -> Message:
         owner, hook = service.owner, f"service {service.name}"
         try:
             found = call_plugin(owner, hook, service.handler, request)
@@ -158,7 +159,7 @@ class ServiceTable:
         return next((s for s in self._services.get(name, ()) if s.active), None)
 
 
-def _is_dict_or_none(value: Any) -> bool:
+def _is_dict_or_none(value: object) -> bool:
     return value is None or isinstance(value, Mapping)
 
 

@@ -10,7 +10,10 @@ from typing import TYPE_CHECKING, Any, Final, Literal, Protocol
 if TYPE_CHECKING:
     from simkit.runtime.communication.journal import Journal
 
-Callback = Callable[[Any], None]
+Message = Any
+"""A message: an instance of a class of `simkit.msgs`, which are made as definitions are read."""
+
+Callback = Callable[[Message], None]
 CallbackErrorPolicy = Literal["stop", "drop"]
 
 MAX_KEPT_MESSAGES: Final = 1_000_000
@@ -18,6 +21,14 @@ MAX_KEPT_MESSAGES: Final = 1_000_000
 
 NO_MESSAGE = object()
 """What is given instead of a message that cannot be made."""
+
+
+class PendingWork(Protocol):
+    """Work of another thread."""
+
+    @property
+    def is_done(self) -> bool:
+        """Whether its result is there."""
 
 
 class LazyMessage:
@@ -30,17 +41,17 @@ class LazyMessage:
 
     __slots__ = ("_make", "_message", "is_awaited", "work")
 
-    def __init__(self, make: Callable[[], Any], is_awaited: bool = False, work: Any = None) -> None:
+    def __init__(self, make: Callable[[], Message], is_awaited: bool = False, work: PendingWork | None = None) -> None:
         self.is_awaited, self.work = is_awaited, work
-        self._make: Callable[[], Any] | None = make
-        self._message: Any = None
+        self._make: Callable[[], Message] | None = make
+        self._message: Message = None
 
     @property
     def is_ready(self) -> bool:
         """Whether `get` gives the message without waiting for another thread."""
         return self.work is None or self.work.is_done
 
-    def get(self) -> Any:
+    def get(self) -> Message:
         """The message; NOTHING where it turned out that there is none."""
         make = self._make
         if make is not None:
@@ -129,12 +140,12 @@ class Subscription:
         on_error: CallbackErrorPolicy = "stop",
     ) -> None:
         self._bus, self.topic, self.callback, self.on_error = bus, topic, callback, on_error
-        self._messages: deque[Any] = deque(maxlen=MAX_KEPT_MESSAGES if keep is None else keep)
+        self._messages: deque[Message] = deque(maxlen=MAX_KEPT_MESSAGES if keep is None else keep)
         self.is_called, self.keeps = callback is not None, math.inf if keep is None else keep
         self.receive: Callback = self._messages.append if callback is None else self._keep_and_call
 
     @property
-    def messages(self) -> list[Any]:
+    def messages(self) -> list[Message]:
         self._bus.gather(self.topic)
         if len(self._messages) == MAX_KEPT_MESSAGES and self.keeps == math.inf:
             self._bus.failures.report_full(self.topic)
@@ -142,7 +153,7 @@ class Subscription:
         return [m for m in found if m is not NO_MESSAGE]
 
     @property
-    def latest(self) -> Any:
+    def latest(self) -> Message:
         """The newest message, or None before the first."""
         self._bus.gather(self.topic)
         if not self._messages:
@@ -165,7 +176,7 @@ class Subscription:
         """Stops receiving; what was received stays."""
         self._bus.unsubscribe(self)
 
-    def _keep_and_call(self, message: Any) -> None:
+    def _keep_and_call(self, message: Message) -> None:
         self._messages.append(message)
         journal = self._bus.journal
         try:
@@ -177,7 +188,7 @@ class Subscription:
         except Exception as error:  # noqa: BLE001 - what a user wrote may raise anything
             self._bus.failures.subscriber_failed(self, error)
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> Subscription:
+    def __deepcopy__(self, memo: dict[int, object]) -> Subscription:
         return self
 
 

@@ -17,6 +17,7 @@ from simkit.runtime.communication.subscription import (
     Callback,
     CallbackErrorPolicy,
     LazyMessage,
+    Message,
     StreamSubscription,
     Subscription,
     TopicReaders,
@@ -41,6 +42,10 @@ __all__ = [
 def absolute_name(topic: str) -> str:
     """The topic with its leading slash."""
     return topic if topic.startswith("/") else "/" + topic
+
+
+Endpoints = list[Any]
+"""Publishers of a topic, or its listeners."""
 
 
 class TopicBus:
@@ -172,7 +177,7 @@ class TopicBus:
             with self.journal.passing("close", {"publisher": end}):
                 pass
         self.revision += 1
-        table: Mapping[str, list[Any]] = self._publishers if isinstance(end, Publisher) else self._listeners
+        table: Mapping[str, Endpoints] = self._publishers if isinstance(end, Publisher) else self._listeners
         if end in table.get(end.topic, []):
             table[end.topic].remove(end)
         self._readers_of(end.topic).feeds = bool(self._listeners.get(end.topic))
@@ -182,7 +187,7 @@ class TopicBus:
     def set_active(self, owners: Sequence[object]) -> None:
         """Leaves only the ends of these owners (and those without one) in use."""
         living = {id(o) for o in owners}
-        tables: tuple[Mapping[str, list[Any]], ...] = (self._publishers, self._listeners)
+        tables: tuple[Mapping[str, Endpoints], ...] = (self._publishers, self._listeners)
         for ends in (ends for table in tables for ends in table.values()):
             for end in ends:
                 end.active = end.owner is None or id(end.owner) in living
@@ -190,7 +195,7 @@ class TopicBus:
     def forget(self, owners: Sequence[object]) -> None:
         """Takes every end of these owners away for good."""
         gone = {id(owner) for owner in owners}
-        tables: tuple[Mapping[str, list[Any]], ...] = (self._publishers, self._listeners)
+        tables: tuple[Mapping[str, Endpoints], ...] = (self._publishers, self._listeners)
         for end in [end for table in tables for ends in table.values() for end in ends if id(end.owner) in gone]:
             self.close(end)
 
@@ -277,7 +282,7 @@ class TopicBus:
             if publisher.pending is not None:
                 publisher.pending()
 
-    def publish(self, topic: str, message: Any) -> None:
+    def publish(self, topic: str, message: Message) -> None:
         """A message from outside the loop: subscribers see it now, command inputs before the next step.
 
         Raises:
@@ -324,7 +329,7 @@ class TopicBus:
                 inbox.put_back(entries[done:])
             raise
 
-    def _deliver_input(self, topic: str, message: Any) -> None:
+    def _deliver_input(self, topic: str, message: Message) -> None:
         for listener in tuple(self._listeners.get(topic, ())):
             if listener.active and msgs.type_name(message) in listener.types:
                 try:
@@ -342,7 +347,7 @@ class TopicBus:
     def _listed(self) -> str:
         return "there is " + (", ".join(self.topics()) or "none")
 
-    def _deliver(self, topic: str, message: Any) -> None:
+    def _deliver(self, topic: str, message: Message) -> None:
         self.gather(topic)
         readers = self._readers_of(topic)
         for receive in readers.receivers:

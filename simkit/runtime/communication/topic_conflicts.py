@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from simkit.diagnostics import NOWHERE, Diagnostics, Where
+from simkit.runtime.communication.publisher import Listener, Publisher
 
-Side = tuple[str, Any, tuple[str, ...], str]
+Side = tuple[str, Publisher | Listener, tuple[str, ...], str]
 """Topic, publisher or listener, its types and what it does ("publishes" or "takes")."""
 
 
@@ -30,7 +30,7 @@ class TopicEndpoint:
     does: str
     types: tuple[str, ...]
     is_plugin: bool
-    owner: Any
+    owner: object
 
 
 def report_topic_conflicts(
@@ -51,7 +51,7 @@ def report_topic_conflicts(
             _report_conflicts(topic, ends, diagnostics, new)
 
 
-def find_conflict(sides: Iterable[Side], topic: str, end: Any) -> str:
+def find_conflict(sides: Iterable[Side], topic: str, end: Publisher | Listener) -> str:
     """What is wrong with one more end of a topic; empty where nothing is."""
     new = _endpoint(end, (end.type_name,) if hasattr(end, "type_name") else end.types, "")
     for _, other, types, does in sides:
@@ -102,7 +102,7 @@ def _endpoints_by_topic(sides: Iterable[Side]) -> dict[str, list[TopicEndpoint]]
     return found
 
 
-def _endpoint(end: Any, types: tuple[str, ...], does: str) -> TopicEndpoint:
+def _endpoint(end: Publisher | Listener, types: tuple[str, ...], does: str) -> TopicEndpoint:
     owner = end.owner
     scene = getattr(owner, "scene", None)  # a sensor's
     name = getattr(owner, "scoped", "") if scene is not None else getattr(owner, "name", "")

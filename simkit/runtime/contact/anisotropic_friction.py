@@ -14,7 +14,7 @@ from __future__ import annotations
 import weakref
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import mujoco
 import numpy as np
@@ -88,9 +88,9 @@ class AnisotropicFriction:
         self._compiled: Compiled
         self._plugins: frozenset[int] = frozenset()
         self._is_reported = False
-        self._wheels: weakref.WeakKeyDictionary[Any, tuple[tuple[SlippingWheel, ...], WheelSlips]]
+        self._wheels: weakref.WeakKeyDictionary[object, tuple[tuple[SlippingWheel, ...], WheelSlips]]
         self._wheels = weakref.WeakKeyDictionary()
-        self._belts: weakref.WeakKeyDictionary[Any, Callable[[], Sequence[Belt]]] = weakref.WeakKeyDictionary()
+        self._belts: weakref.WeakKeyDictionary[object, Callable[[], Sequence[Belt]]] = weakref.WeakKeyDictionary()
 
     def bind(self, compiled: Compiled, plugins: Iterable[object]) -> None:
         """Binds to another compiled model; only wheels and belts of these plugins count from now on."""
@@ -104,7 +104,7 @@ class AnisotropicFriction:
                 table.add_belts(owner, belts())
         self._install(table)
 
-    def add_belts(self, owner: Any, belts: Callable[[], Sequence[Belt]]) -> None:
+    def add_belts(self, owner: object, belts: Callable[[], Sequence[Belt]]) -> None:
         """Has surfaces run from now on, for as long as their plugin is there.
 
         Args:
@@ -117,7 +117,7 @@ class AnisotropicFriction:
         self._install(table)
         self._physics.changed_contacts()
 
-    def add_wheels(self, owner: Any, wheels: Sequence[SlippingWheel], slips: WheelSlips) -> None:
+    def add_wheels(self, owner: object, wheels: Sequence[SlippingWheel], slips: WheelSlips) -> None:
         """Has the contacts of wheels slip from now on, for as long as their plugin is there.
 
         Args:
@@ -143,7 +143,7 @@ class AnisotropicFriction:
             )
             self._reports.warning("SK-PHYS-030", message, table.where(), 'integrator="implicitfast" in <option>')
 
-    def owners(self) -> list[Any]:
+    def owners(self) -> list[object]:
         """The plugins whose wheels slip, of those that are there."""
         return [owner for owner in self._wheels if id(owner) in self._plugins]
 
@@ -184,7 +184,7 @@ class _ModelFriction:
         """Whether there is anything that may have to be done."""
         return bool(self._rows) or self.surfaces.run
 
-    def add_belts(self, owner: Any, belts: Sequence[Belt]) -> None:
+    def add_belts(self, owner: object, belts: Sequence[Belt]) -> None:
         """Surfaces that run; a second time nothing more."""
         if id(owner) not in self._belts:
             self._belts.add(id(owner))
@@ -217,7 +217,7 @@ class _ModelFriction:
     def _geoms(self, link: LinkBinding, collision: SceneCollision) -> list[int]:
         return [geom for geom in link.geoms if self._names.geom_owner(geom)[1] == collision.scoped]
 
-    def add_wheels(self, owner: Any, wheels: Sequence[SlippingWheel], slips: WheelSlips) -> None:
+    def add_wheels(self, owner: object, wheels: Sequence[SlippingWheel], slips: WheelSlips) -> None:
         """Lets them slip; a second time nothing more."""
         if id(owner) in self._sources:
             return
@@ -259,7 +259,7 @@ class _ModelFriction:
         """Return what plugins ask for now."""
         return ContactRequest(self.surfaces.runs(), [slips() for _, slips in self._sources.values()])
 
-    def shape(self, data: mujoco.MjData, request: Any = None) -> None:
+    def shape(self, data: mujoco.MjData, request: ContactRequest | None = None) -> None:
         """Gives the contacts of such collisions their tangents, coefficients and softness."""
         model, surfaces = self.model, self.surfaces
         runs, wheels = self.request() if request is None else request

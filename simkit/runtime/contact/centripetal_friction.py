@@ -12,10 +12,11 @@ bodies that turn together are corrected, and along the tangents only.
 
 from __future__ import annotations
 
-from typing import Any, Final
+from typing import Final
 
 import mujoco
 import numpy as np
+import numpy.typing as npt
 
 from simkit.runtime.contact.contact_conditions import ARRAY_THRESHOLD
 
@@ -112,7 +113,7 @@ class CentripetalFriction:
                 aref[place] = old - share * along
         return before
 
-    def _bias(self, data: mujoco.MjData, point: Any, body: int) -> Any:
+    def _bias(self, data: mujoco.MjData, point: npt.NDArray[np.float64], body: int) -> npt.NDArray[np.float64]:
         """Return the acceleration of a point of a body [m/s²] that follows from velocities alone, world frame."""
         mujoco.mj_jacDot(self._model, data, self._jacobian, None, point, body)
         return self._jacobian @ data.qvel

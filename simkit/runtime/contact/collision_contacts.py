@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import mujoco
 import numpy as np
 import numpy.typing as npt
+
+if TYPE_CHECKING:
+    from simkit.compiler import Compiled
+    from simkit.compiler.name_map import NameMap
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.integer[Any]]
@@ -35,14 +39,13 @@ class CollisionTable:
         return np.isin(self.of_geom, numbers)
 
 
-def collision_table(compiled: Any) -> CollisionTable:
+def collision_table(compiled: Compiled) -> CollisionTable:
     """The collisions of a compiled model; found once for all who ask."""
     names = compiled.names
-    found: CollisionTable = names.shared("collisions", lambda: _build_collision_table(names, compiled.model))
-    return found
+    return names.shared("collisions", lambda: _build_collision_table(names, compiled.model))
 
 
-def _build_collision_table(names: Any, model: mujoco.MjModel) -> CollisionTable:
+def _build_collision_table(names: NameMap, model: mujoco.MjModel) -> CollisionTable:
     number: dict[str, int] = {}
     of_geom = np.full(model.ngeom + 1, -1, dtype=np.intp)
     for geom in range(model.ngeom):

@@ -133,7 +133,7 @@ def find_array_correction(
     numbers = (contact.efc_address >= 0).nonzero()[0]
     if not numbers.size:
         return None
-    which: Any = slice(None) if numbers.size == data.ncon else numbers
+    which: slice | Ints = slice(None) if numbers.size == data.ncon else numbers
     rows, dims = contact.efc_address[which], contact.dim[which]
     most = int(dims.max()) - 1
     there = np.arange(most) < (dims - 1)[:, None]

@@ -57,7 +57,7 @@ def find_friction_contacts(
         rubs = (contact.efc_address >= 0) & (contact.dim > 1) & (one_side | other_side)
         many: Ints = rubs.nonzero()[0]
         if many.size > ARRAY_THRESHOLD:
-            which: Any = slice(None) if many.size == data.ncon else many  # a slice is quicker
+            which: slice | Ints = slice(None) if many.size == data.ncon else many  # a slice is quicker
             return FrictionContactArrays(many, contact.geom[which], contact.frame[which].copy())
         numbers = many.tolist()
         return FrictionContacts(numbers, contact.geom[rubs].tolist(), contact.frame[rubs].tolist()) if numbers else None

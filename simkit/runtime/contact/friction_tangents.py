@@ -160,7 +160,7 @@ class FrictionTangents:
         """The same on arrays, with the same bits."""
         contact, least = data.contact, mujoco.mjMINMU
         places, rows, others = asked.T
-        which: Any = slice(None) if len(places) == data.ncon else found.numbers[places]
+        which: slice | Ints = slice(None) if len(places) == data.ncon else found.numbers[places]
         frames = found.frames[places]
         axes = _rotate_vectors(data.xmat[self._bodies], self._axes)[rows]
         if flow is not None:

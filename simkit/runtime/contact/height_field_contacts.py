@@ -7,10 +7,11 @@ prisms, with a normal along the ground: a box that slides down an even ramp is t
 from __future__ import annotations
 
 import math
-from typing import Any, Final
+from typing import Final
 
 import mujoco
 import numpy as np
+import numpy.typing as npt
 
 _STEEPEST: Final = 0.866
 """Cosine of 30°: by more than that a normal has to differ from all of the ground around to be one of an inner wall."""
@@ -52,7 +53,7 @@ class HeightFieldContacts:
                     found.append(number)
         return frozenset(found)
 
-    def _is_inner(self, field: int, point: Any, normal: Any) -> bool:
+    def _is_inner(self, field: int, point: npt.NDArray[np.float64], normal: npt.NDArray[np.float64]) -> bool:
         """Check whether a normal is far from those of the ground around, which is nearly even.
 
         Args:

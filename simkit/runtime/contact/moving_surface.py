@@ -181,7 +181,7 @@ class MovingSurfaces:
             return
         surface = data.contact.surfacevel
         if isinstance(flow, BeltContactArrays):
-            those: Any = slice(None) if len(flow.places) == len(surface) else flow.numbers
+            those: slice | Ints = slice(None) if len(flow.places) == len(surface) else flow.numbers
             surface[those, :2] = along_tangents(np.asarray(frames)[flow.places], flow.velocities)
             return
         for number, place, (x, y, z) in zip(flow.numbers, flow.places, flow.velocities, strict=True):

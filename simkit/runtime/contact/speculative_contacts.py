@@ -22,6 +22,7 @@ from simkit.diagnostics import NOWHERE
 from simkit.runtime.contact.contact_law import window_length
 from simkit.runtime.contact.travel_bounds import (
     Floats,
+    Ints,
     allowed_travel,
     can_collide,
     can_touch,
@@ -110,7 +111,7 @@ class FastBodyDetector:
         self._spin_radius = np.where(self._is_ball, 0.0, model.geom_rbound)[self._moving]
         self._turns_freely = is_round[self._moving, None].astype(float)
         self._scratch: Any = None
-        self._data: Any = None
+        self._data: mujoco.MjData | None = None
         self._velocities_now = np.zeros(0)
         self._weigh()
 
@@ -186,9 +187,10 @@ class FastBodyDetector:
             self._find_helpless(scratch, one[keep], other[keep], both[keep], all_linear)
         return True
 
-    def _positions(self, data: mujoco.MjData) -> Any:
+    def _positions(self, data: mujoco.MjData) -> mujoco.MjData:
         """Compute positions and velocities of bodies aside: those in `data` are as old as its last forward pass."""
-        model, scratch = self.model, self._scratch
+        model = self.model
+        scratch: mujoco.MjData | None = self._scratch
         if scratch is None:
             scratch = self._scratch = mujoco.MjData(model)
         scratch.qpos[:], scratch.qvel[:] = data.qpos, data.qvel
@@ -205,7 +207,7 @@ class FastBodyDetector:
             options.enableflags = flags
         return scratch
 
-    def _velocities(self, scratch: Any) -> tuple[Floats, Floats]:
+    def _velocities(self, scratch: mujoco.MjData) -> tuple[Floats, Floats]:
         """Return velocities of the moving geoms' centres, and speeds of their farthest points around them [m/s]."""
         motion = scratch.cvel.take(self._bodies, 0)
         spin, arm = motion[:, :3], scratch.geom_xpos.take(self._moving, 0) - scratch.subtree_com.take(self._roots, 0)
@@ -217,7 +219,7 @@ class FastBodyDetector:
         turning: Floats = np.sqrt(np.einsum("ij,ij->i", spin, spin)) * self._spin_radius
         return linear, turning
 
-    def _near(self, places: Floats, fast: Any, speeds: Floats) -> tuple[Any, Any]:
+    def _near(self, places: Floats, fast: Ints, speeds: Floats) -> tuple[Ints, Ints]:
         """Find pairs of a fast geom and one that it may reach within a window, whatever it bounces off on the way."""
         model, others = self.model, self._others
         radius = model.geom_rbound
@@ -234,7 +236,7 @@ class FastBodyDetector:
         keep = (gap <= reach[rows, columns]) & (one != other)
         return one[keep], other[keep]
 
-    def _inside(self, points: Floats, geoms: Any) -> Floats:
+    def _inside(self, points: Floats, geoms: Ints) -> Floats:
         """Transform points of the world into the frames of the boxes around geoms."""
         scratch = self._scratch
         turned = scratch.geom_xmat[geoms].reshape(-1, 3, 3)
@@ -244,7 +246,7 @@ class FastBodyDetector:
 
     # ------------------------------------------------------------------ what cannot be helped
 
-    def _find_helpless(self, scratch: Any, one: Any, other: Any, both: Floats, linear: Floats) -> None:
+    def _find_helpless(self, scratch: mujoco.MjData, one: Ints, other: Ints, both: Floats, linear: Floats) -> None:
         """Report pairs on a course through each other that speculative contacts do not stop for sure."""
         model, step, half = self.model, float(self.model.opt.timestep), self._half
         together = half[one] + half[other]
@@ -261,7 +263,7 @@ class FastBodyDetector:
         if found and self.on_approach is not None:
             self.on_approach(found)
 
-    def _is_on_course(self, scratch: Any, one: Any, other: Any, linear: Floats) -> npt.NDArray[np.bool_]:
+    def _is_on_course(self, scratch: mujoco.MjData, one: Ints, other: Ints, linear: Floats) -> npt.NDArray[np.bool_]:
         """Check whether straight on, within a window, the sphere around the one meets the box around the other."""
         model = self.model
         start = self._inside(scratch.geom_xpos[one], other)

@@ -6,7 +6,7 @@ All are computed once from the compiled model. Indices of geoms and degrees of f
 from __future__ import annotations
 
 from collections import defaultdict
-from typing import Any, Final
+from typing import Final
 
 import mujoco
 import numpy as np
@@ -51,10 +51,11 @@ def can_collide(model: mujoco.MjModel) -> npt.NDArray[np.bool_]:
     return found
 
 
-def can_touch(model: mujoco.MjModel, one: Any, other: Any) -> Any:
+def can_touch(model: mujoco.MjModel, one: Ints, other: Ints) -> npt.NDArray[np.bool_]:
     """Return whether geoms may touch by their masks alone; the arguments are indices that broadcast."""
     types, affinities = model.geom_contype, model.geom_conaffinity
-    return ((types[one] & affinities[other]) | (types[other] & affinities[one])) != 0
+    found: npt.NDArray[np.bool_] = ((types[one] & affinities[other]) | (types[other] & affinities[one])) != 0
+    return found
 
 
 def allowed_travel(model: mujoco.MjModel, half: Floats, geoms: Ints) -> Floats:
@@ -173,6 +174,6 @@ def velocity_levers(model: mujoco.MjModel, geoms: Ints) -> tuple[Ints, Ints, Flo
     return np.concatenate(rows).astype(np.intp), np.concatenate(dofs).astype(np.intp), np.concatenate(found)
 
 
-def _z_axis(q: Any) -> tuple[float, float, float]:
+def _z_axis(q: Floats) -> tuple[float, float, float]:
     w, x, y, z = (float(v) for v in q)
     return 2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import logging
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simkit.errors import InputError
 from simkit.runtime.engine.physics import Physics
 
 if TYPE_CHECKING:
     import mujoco
+    import numpy as np
+    import numpy.typing as npt
 
     from simkit.compiler import Compiled
     from simkit.compiler.name_map import NameMap
@@ -44,7 +46,7 @@ class EngineState:
         self.log = logging.getLogger("simkit")
         compiled = structure.compiled
         self.physics = Physics(compiled.model, compiled.data, clock, world.physics.sleep)
-        self.originals: dict[str, Any] = {}
+        self.originals: dict[str, npt.NDArray[np.float64]] = {}
         self.is_closed = False
 
     def check_open(self) -> None:
@@ -84,20 +86,18 @@ class EngineState:
     @property
     def compiled(self) -> Compiled:
         """The compiled model of the present structure."""
-        compiled: Compiled = self.structure.compiled
-        return compiled
+        return self.structure.compiled
 
     @property
     def names(self) -> NameMap:
         """The compiler's name map of the present model."""
-        names: NameMap = self.structure.compiled.names
-        return names
+        return self.structure.compiled.names
 
     # ------------------------------------------------------------------ changes of the model
 
-    def touch(self, field: str) -> Any:
+    def touch(self, field: str) -> npt.NDArray[np.float64]:
         """Returns a model field to be written to; snapshots and restores cover it from now on."""
-        values = getattr(self.physics.model, field)
+        values: npt.NDArray[np.float64] = getattr(self.physics.model, field)
         if not field.startswith("light_"):
             for sensor in self.structure.all_sensors():
                 sensor.take_held()
@@ -106,6 +106,6 @@ class EngineState:
             self.originals[field] = values.copy()
         return values
 
-    def original(self, field: str) -> Any:
+    def original(self, field: str) -> npt.NDArray[np.float64]:
         """Returns a touched field's values as compiled."""
         return self.originals[field]

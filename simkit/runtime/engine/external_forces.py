@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
+import numpy.typing as npt
 
 from simkit.scene import SceneWorld
 
@@ -24,9 +25,9 @@ class PersistentWrenches:
 
     def __init__(self, engine: EngineState, faults: PluginFaults) -> None:
         self._engine, self._faults = engine, faults
-        self._by_owner: dict[int, tuple[Any, dict[str, Any]]] = {}
+        self._by_owner: dict[int, tuple[object, dict[str, npt.ArrayLike]]] = {}
 
-    def set(self, owner: object, wrenches: Mapping[str, Any], *, are_applied: bool = False) -> None:
+    def set(self, owner: object, wrenches: Mapping[str, npt.ArrayLike], *, are_applied: bool = False) -> None:
         """Sets all wrenches of a plugin; what other plugins set holds too, and nothing of a plugin that is gone.
 
         Args:
@@ -46,7 +47,7 @@ class PersistentWrenches:
         living = set(map(id, self._faults.living(self._engine.structure)))
         self._by_owner = {key: found for key, found in self._by_owner.items() if key in living}
         links = self._engine.names.links
-        total: dict[int, Any] = {}
+        total: dict[int, npt.NDArray[np.float64]] = {}
         for _, wrenches in self._by_owner.values():
             for name, wrench in wrenches.items():
                 if name in links and links[name].body > 0:
@@ -73,5 +74,5 @@ class Wind:
         """Velocity of the air [m/s], world frame, in the step that follows a tick."""
         return self._steady if self.source is None else self.source(tick)
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> Wind:
+    def __deepcopy__(self, memo: dict[int, object]) -> Wind:
         return self

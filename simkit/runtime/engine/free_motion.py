@@ -9,7 +9,7 @@ joint, on a second `MjData`. Trees without constraint forces do not depend on ea
 from __future__ import annotations
 
 import math
-from typing import Any, Final
+from typing import Final
 
 import mujoco
 import numpy as np
@@ -114,7 +114,7 @@ class FreeMotionIntegrator:
             data.qpos[at] = own.qpos[at]
 
 
-def _index_range(starts: Any, counts: Any, index: int) -> slice:
+def _index_range(starts: npt.NDArray[np.int32], counts: npt.NDArray[np.int32], index: int) -> slice:
     return slice(int(starts[index]), int(starts[index]) + int(counts[index]))
 
 

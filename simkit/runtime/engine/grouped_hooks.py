@@ -16,12 +16,13 @@ Only plugins that follow on each other are taken together, so that hooks keep th
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simkit.runtime.engine.scheduler import Task
 
 if TYPE_CHECKING:
     from simkit.runtime.engine.plugin_faults import PluginFaults
+    from simkit.runtime.engine.world_structure import AttachedPlugin
 
 MIN_GROUP_SIZE = 4
 """So few are as soon called one by one."""
@@ -35,16 +36,23 @@ class PluginGroup:
         turn: whose turn it is.
     """
 
-    def __init__(self, plugins: Sequence[Any]) -> None:
+    def __init__(self, plugins: Sequence[AttachedPlugin]) -> None:
         self.plugins, self.turn = list(plugins), plugins[0]
 
-    def __iter__(self) -> Iterator[Any]:
+    def __iter__(self) -> Iterator[AttachedPlugin]:
         for plugin in self.plugins:
             self.turn = plugin
             yield plugin
 
 
-def hook_tasks(faults: PluginFaults, plugins: Iterable[Any], hook: str) -> Iterator[tuple[float | None, Task]]:
+GroupHook = Callable[[Sequence["AttachedPlugin"]], Callable[[PluginGroup], None]]
+"""Makes of plugins what calls a hook of all of them."""
+
+HookTasks = Iterator[tuple[float | None, Task]]
+"""Rates [Hz] and tasks."""
+
+
+def hook_tasks(faults: PluginFaults, plugins: Iterable[AttachedPlugin], hook: str) -> HookTasks:
     """The hooks of these plugins with their rates [Hz], in the order of the document.
 
     Args:
@@ -52,7 +60,7 @@ def hook_tasks(faults: PluginFaults, plugins: Iterable[Any], hook: str) -> Itera
         plugins: those that are at work.
         hook: `before_step` or `after_step`.
     """
-    run: list[Any] = []
+    run: list[AttachedPlugin] = []
     for plugin in plugins:
         if not plugin.has_hook(hook):
             continue
@@ -63,16 +71,16 @@ def hook_tasks(faults: PluginFaults, plugins: Iterable[Any], hook: str) -> Itera
     yield from _group_tasks(faults, run, hook)
 
 
-def _can_group(one: Any, other: Any, hook: str) -> bool:
+def _can_group(one: AttachedPlugin, other: AttachedPlugin, hook: str) -> bool:
     return type(one) is type(other) and _hook_rate(one, hook) == _hook_rate(other, hook)
 
 
-def _hook_rate(plugin: Any, hook: str) -> float | None:
+def _hook_rate(plugin: AttachedPlugin, hook: str) -> float | None:
     rate: float | None = getattr(plugin, f"{hook}_rate")
     return rate
 
 
-def _group_tasks(faults: PluginFaults, run: list[Any], hook: str) -> Iterator[tuple[float | None, Task]]:
+def _group_tasks(faults: PluginFaults, run: list[AttachedPlugin], hook: str) -> HookTasks:
     together = _group_hook(type(run[0]), hook) if len(run) >= MIN_GROUP_SIZE else None
     # who may be left out when it raises is called by itself
     if together is None or any(faults.policy(plugin) != "stop" for plugin in run):
@@ -82,11 +90,11 @@ def _group_tasks(faults: PluginFaults, run: list[Any], hook: str) -> Iterator[tu
         yield _hook_rate(run[0], hook), _guard_group(faults, PluginGroup(run), hook, together(run))
 
 
-def _group_hook(kind: type, hook: str) -> Callable[[Sequence[Any]], Callable[[PluginGroup], None]] | None:
+def _group_hook(kind: type, hook: str) -> GroupHook | None:
     """What a class gives for many of its plugins; None where a class below it has another hook than that is for."""
     for cls in kind.__mro__:
         if f"{hook}_together" in vars(cls):
-            found: Callable[[Sequence[Any]], Callable[[PluginGroup], None]] = getattr(kind, f"{hook}_together")
+            found: GroupHook = getattr(kind, f"{hook}_together")
             return found
         if hook in vars(cls):
             return None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -31,7 +31,7 @@ class HeldState:
         tick: int,
         model: mujoco.MjModel,
         values: npt.NDArray[np.float64],
-        request: Any,
+        request: object,
         uses_law: bool | None,
         is_fast: bool | None,
         probes: bool,
@@ -39,11 +39,26 @@ class HeldState:
         self.tick, self.model, self.values, self.request = tick, model, values, request
         self.uses_law, self.is_fast, self.probes = uses_law, is_fast, probes
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> HeldState:
+    def __deepcopy__(self, memo: dict[int, object]) -> HeldState:
         return self
 
 
-def applied_forces(physics: Any) -> tuple[Any, Any]:
+class ForcedPhysics(Protocol):
+    """Physics with the forces of its last step.
+
+    Attributes:
+        data: the engine's.
+        shows_applied: whether what held for one step is gone from `data`.
+        last_applied, last_pushed: forces of the last step that are gone from `data`.
+    """
+
+    data: mujoco.MjData
+    shows_applied: bool
+    last_applied: npt.NDArray[np.float64]
+    last_pushed: npt.NDArray[np.float64]
+
+
+def applied_forces(physics: ForcedPhysics) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
     """Forces on joints, shape (nv,), and on bodies, shape (nbody, 6), of the last step [N, N m].
 
     Those that hold for one step are gone from the state by then, and remembered.

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Iterable, Mapping
 
 import mujoco
+import numpy as np
+import numpy.typing as npt
 
 _OBJECT_BY_PREFIX = {
     "geom": mujoco.mjtObj.mjOBJ_GEOM,
@@ -18,7 +19,7 @@ _OBJECT_BY_PREFIX = {
 _DOFS = {int(mujoco.mjtJoint.mjJNT_FREE): 6, int(mujoco.mjtJoint.mjJNT_BALL): 3}
 
 
-def copy_fields_by_name(old: mujoco.MjModel, new: mujoco.MjModel, fields: Mapping[str, Any]) -> None:
+def copy_fields_by_name(old: mujoco.MjModel, new: mujoco.MjModel, fields: Iterable[str]) -> None:
     """Copies changed model fields to a recompiled model, element by element by name."""
     for field in fields:
         source, target = getattr(old, field), getattr(new, field)
@@ -29,7 +30,7 @@ def copy_fields_by_name(old: mujoco.MjModel, new: mujoco.MjModel, fields: Mappin
             target[j] = source[i]
 
 
-def restore_compiled_fields(model: mujoco.MjModel, originals: Mapping[str, Any]) -> None:
+def restore_compiled_fields(model: mujoco.MjModel, originals: Mapping[str, npt.NDArray[np.float64]]) -> None:
     """Writes the compiled values back to a model that is left: who returns to it brings the changes of then."""
     for field, original in originals.items():
         getattr(model, field)[:] = original
@@ -46,7 +47,9 @@ def pair_by_name(kind: mujoco.mjtObj, count: int, old: mujoco.MjModel, new: mujo
     return found
 
 
-def _copy_dof_field(old: mujoco.MjModel, new: mujoco.MjModel, source: Any, target: Any) -> None:
+def _copy_dof_field(
+    old: mujoco.MjModel, new: mujoco.MjModel, source: npt.NDArray[np.float64], target: npt.NDArray[np.float64]
+) -> None:
     """Copies a field by degrees of freedom, which have the names of their joints."""
     for i, j in pair_by_name(mujoco.mjtObj.mjOBJ_JOINT, old.njnt, old, new):
         width = _DOFS.get(int(old.jnt_type[i]), 1)

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import mujoco
+import numpy as np
+import numpy.typing as npt
 
 from simkit.runtime.engine.model_fields import pair_by_name
 from simkit.runtime.engine.physics_state import STALE
@@ -16,6 +18,8 @@ if TYPE_CHECKING:
 
 _JOINT_WIDTHS: Final = {int(mujoco.mjtJoint.mjJNT_FREE): (7, 6), int(mujoco.mjtJoint.mjJNT_BALL): (4, 3)}
 _PLACE_FIELDS: Final = ("body_pos", "body_quat")  # of what is fixed or hinged to the world and was moved
+
+Values = npt.NDArray[np.float64] | npt.NDArray[np.bool_]
 
 
 def reset_models(engine: Engine, models: Collection[Stateful], loaded: Snapshot) -> None:
@@ -76,7 +80,9 @@ def _copy_joints(old: mujoco.MjModel, old_data: mujoco.MjData, new: mujoco.MjMod
         data.qvel[b : b + free] = old_data.qvel[a : a + free]
 
 
-def _copy_rows(kind: Any, old: Any, old_values: Any, new: Any, values: Any) -> None:
+def _copy_rows(
+    kind: mujoco.mjtObj, old: mujoco.MjModel, old_values: Values, new: mujoco.MjModel, values: Values
+) -> None:
     for i, j in pair_by_name(kind, len(old_values), old, new):
         values[j] = old_values[i]
 

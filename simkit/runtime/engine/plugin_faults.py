@@ -12,15 +12,16 @@ import traceback
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from types import CodeType, FrameType, TracebackType
-from typing import TYPE_CHECKING, Any, Final, Protocol
+from typing import TYPE_CHECKING, Any, Final, Protocol, TypeVar
 
 from simkit.errors import InputError, PluginError, SimkitError, SimulationDiverged
 from simkit.run_spec import PluginErrorPolicy
 
 if TYPE_CHECKING:
     from simkit.runtime.engine.engine_state import EngineState
-    from simkit.runtime.engine.world_structure import WorldStructure
+    from simkit.runtime.engine.world_structure import AttachedPlugin, AttachedSensor, AttachedState, WorldStructure
 
+R = TypeVar("R")
 
 PLUGIN_ERROR_POLICIES: Final[tuple[PluginErrorPolicy, ...]] = ("stop", "disable")
 
@@ -36,7 +37,7 @@ class PluginCall:
         line: file:line where it is now, and the function.
     """
 
-    plugin: Any
+    plugin: AttachedPlugin
     hook: str
     frame: FrameType
     line: str
@@ -70,44 +71,44 @@ class PluginFaults:
         self, engine: EngineState, reschedule: Callable[[], None], on_error: PluginErrorPolicy | None = None
     ) -> None:
         self._engine, self._reschedule, self.on_error = engine, reschedule, on_error
-        self._disabled: dict[int, Any] = {}
+        self._disabled: dict[int, AttachedPlugin] = {}
 
     # ------------------------------------------------------------------ who is at work
 
-    def is_disabled(self, plugin: Any) -> bool:
+    def is_disabled(self, plugin: AttachedPlugin) -> bool:
         """Whether a plugin raised and is left out."""
         return id(plugin) in self._disabled
 
-    def living(self, structure: WorldStructure) -> list[Any]:
+    def living(self, structure: WorldStructure) -> list[AttachedSensor | AttachedPlugin]:
         """The sensors and plugins of a structure, without the plugins that are left out."""
         plugins = structure.all_plugins()
         return [*structure.all_sensors(), *(p for p in plugins if id(p) not in self._disabled)]
 
-    def policy(self, plugin: Any) -> PluginErrorPolicy:
+    def policy(self, plugin: AttachedPlugin) -> PluginErrorPolicy:
         """What becomes of this plugin when it raises: what the user asked for, else the file, else the class."""
-        found: PluginErrorPolicy | None = self.on_error or plugin.on_error
-        return found or "stop"
+        return self.on_error or plugin.on_error or "stop"
 
     # ------------------------------------------------------------------ calling
 
-    def guard(self, plugin: Any, hook: str, method: Callable[..., Any]) -> Callable[..., Any]:
+    def guard(self, plugin: object, hook: str, method: Callable[..., R]) -> Callable[..., R | None]:
         """A hook or callback as something to call: what it raises stops the run, or takes the plugin out of it.
 
         Of a plugin that is left out it does nothing and gives None.
         """
         disabled, key = self._disabled, id(plugin)
 
-        def call(*values: Any) -> Any:
+        def call(*values: object) -> R | None:
             if key in disabled:
                 return None
             try:
                 return method(*values)
             except Exception as error:  # noqa: BLE001 - a plugin may raise anything
                 self.meet(plugin, hook, error)
+                return None
 
         return call
 
-    def task(self, plugin: Any, hook: str) -> Callable[[int], None]:
+    def task(self, plugin: object, hook: str) -> Callable[[int], None]:
         """A hook without arguments as a task of the scheduler."""
         disabled, key, method = self._disabled, id(plugin), getattr(plugin, hook)
 
@@ -140,7 +141,7 @@ class PluginFaults:
             raise error  # there is no room left to do anything in; the outermost call of it meets it again
         self.disable(plugin, hook, error)
 
-    def state_of(self, plugin: Any) -> Any:
+    def state_of(self, plugin: AttachedPlugin) -> AttachedState:
         """What a snapshot keeps of a plugin; None of one that raised over it and is left out."""
         try:
             return call_plugin(plugin, "get_state", plugin.get_state)
@@ -149,7 +150,7 @@ class PluginFaults:
                 self.meet(plugin, "get_state", error)
         return None
 
-    def take_back(self, plugin: Any, state: Any) -> None:
+    def take_back(self, plugin: AttachedPlugin, state: AttachedState) -> None:
         """Brings a plugin back to what `state_of` gave."""
         if state is None:
             return
@@ -161,7 +162,7 @@ class PluginFaults:
 
     # ------------------------------------------------------------------ leaving out
 
-    def disable(self, plugin: Any, hook: str, error: BaseException) -> None:
+    def disable(self, plugin: AttachedPlugin, hook: str, error: BaseException) -> None:
         """Leaves a plugin out from now on: no hook of it runs, nothing it opened is there, its servos let go."""
         engine = self._engine
         if id(plugin) in self._disabled:
@@ -184,11 +185,11 @@ class PluginFaults:
 
     # ------------------------------------------------------------------ state
 
-    def get_state(self) -> tuple[Any, ...]:
+    def get_state(self) -> tuple[AttachedPlugin, ...]:
         """Who is left out."""
         return tuple(self._disabled.values())
 
-    def set_state(self, state: Iterable[Any]) -> None:
+    def set_state(self, state: Iterable[AttachedPlugin]) -> None:
         """Back to a state from `get_state`: a plugin that raised since is at work again."""
         before = set(self._disabled)
         self._disabled.clear()
@@ -197,7 +198,7 @@ class PluginFaults:
             self._apply()
 
 
-def release_servos(engine: EngineState, plugin: Any) -> None:
+def release_servos(engine: EngineState, plugin: AttachedPlugin) -> None:
     """Lets go of the joints that a plugin's servos and motors hold; snapshots and reset bring them back."""
     there = {
         name for record in engine.structure.builder.records.values() for name in (r.name for r in record.actuators)
@@ -228,7 +229,7 @@ def is_guarded(callback: object) -> bool:
     return getattr(callback, "__code__", None) in _guard_codes()
 
 
-def call_plugin(plugin: Any, hook: str, method: Callable[..., Any], *values: Any) -> Any:  # noqa: ARG001 - `active_plugin_calls` reads
+def call_plugin(plugin: object, hook: str, method: Callable[..., R], *values: object) -> R:  # noqa: ARG001 - `active_plugin_calls` reads
     """Calls something of a plugin that is not guarded (`prepare`, `load`), so that `active_plugin_calls` finds it."""
     return method(*values)
 

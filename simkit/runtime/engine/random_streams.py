@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import weakref
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -65,7 +64,7 @@ class RandomStream:
         values: Values = self._uniforms[row]
         return values
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> RandomStream:
+    def __deepcopy__(self, memo: dict[int, object]) -> RandomStream:
         return self
 
 

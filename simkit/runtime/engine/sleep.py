@@ -22,6 +22,9 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+RestState = tuple[Any, ...]
+"""What `SleepingTrees` remembers of its looks."""
+
 RATE: Final = 10.0
 """[Hz] at which trees are looked at."""
 
@@ -217,7 +220,7 @@ class Sleep:
 
     # ------------------------------------------------------------------ snapshots
 
-    def get_state(self) -> tuple[Any, ...]:
+    def get_state(self) -> RestState:
         """What a restored run needs besides the engine's data."""
         if not self.watches:
             return (self.wants_all_awake,)
@@ -234,7 +237,7 @@ class Sleep:
             self._calm.copy(),
         )
 
-    def set_state(self, state: tuple[Any, ...]) -> None:
+    def set_state(self, state: RestState) -> None:
         """Back to `get_state`; the engine's data are those of then already."""
         self.rests = self.is_drowsy = False
         self.wants_all_awake = state[0]

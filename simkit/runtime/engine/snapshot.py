@@ -6,16 +6,19 @@ import copy
 import hashlib
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, NoReturn, Protocol
 
 import mujoco
+import numpy as np
+import numpy.typing as npt
 
 from simkit.runtime.engine.model_fields import restore_compiled_fields
 from simkit.runtime.engine.physics_state import STALE, StepWindow
 
 if TYPE_CHECKING:
     from simkit.runtime.engine.engine import Engine
-    from simkit.runtime.engine.world_structure import WorldStructure
+    from simkit.runtime.engine.sleep import RestState
+    from simkit.runtime.engine.world_structure import AttachedPlugin, AttachedSensor, AttachedState, WorldStructure
 
 
 @dataclass(frozen=True)
@@ -34,16 +37,16 @@ class Snapshot:
     tick: int
     structure: WorldStructure
     data: mujoco.MjData
-    fields: dict[str, Any]
-    sensors: list[tuple[Any, Any]]
-    plugins: list[tuple[Any, Any]]
-    handles: list[tuple[Stateful, Any]]
-    inbox: tuple[tuple[str, Any], ...]
+    fields: dict[str, npt.NDArray[np.float64]]
+    sensors: list[tuple[AttachedSensor, AttachedState]]
+    plugins: list[tuple[AttachedPlugin, AttachedState]]
+    handles: list[tuple[Stateful, AttachedState]]
+    inbox: tuple[tuple[str, object], ...]
     one_shot: bool
-    last_applied: Any
+    last_applied: npt.NDArray[np.float64]
+    last_pushed: npt.NDArray[np.float64]
     window: StepWindow
-    sleep: tuple[Any, ...] = (False,)
-    last_pushed: Any = None
+    sleep: RestState = (False,)
     seed: int = 0
     owner: object = None
 
@@ -52,30 +55,30 @@ class Snapshot:
         """Whether it can be restored: the step that it was asked for in has ended."""
         return "data" in vars(self)
 
-    def __getattr__(self, name: str) -> Any:
+    def __getattr__(self, name: str) -> NoReturn:
         raise AttributeError(f"a snapshot has no {name!r} before the step in which it was asked for has ended")
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> Snapshot:
+    def __deepcopy__(self, memo: dict[int, object]) -> Snapshot:
         return self
 
 
 class Stateful(Protocol):
     """Part of a simulation with a state of its own."""
 
-    def get_state(self) -> Any:
+    def get_state(self) -> AttachedState:
         """Returns the state that a snapshot keeps."""
 
-    def set_state(self, state: Any) -> None:
+    def set_state(self, state: AttachedState) -> None:
         """Goes back to a state from `get_state`."""
 
 
 class WaitingCommands(Protocol):
     """Commands that wait for the next step."""
 
-    def values(self) -> Iterable[tuple[str, Any]]:
+    def values(self) -> Iterable[tuple[str, object]]:
         """Returns them in the order of arrival."""
 
-    def refill(self, entries: Iterable[tuple[str, Any]]) -> None:
+    def refill(self, entries: Iterable[tuple[str, object]]) -> None:
         """Replaces them all."""
 
 

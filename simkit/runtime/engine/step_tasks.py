@@ -12,6 +12,7 @@ from simkit.runtime.engine.scheduler import Scheduler, Task
 
 if TYPE_CHECKING:
     from simkit.runtime.engine.engine import Engine
+    from simkit.runtime.engine.world_structure import AttachedSensor
 
 _LIMIT_SHARE = 0.999  # of the sum of squares of velocities over their limits
 _NO_LIMIT = 1e6  # [rad/s or m/s] from which on a limit of the file is none
@@ -117,7 +118,7 @@ def _velocity_limiter(engine: Engine, joints: Sequence[LimitedJoint]) -> Task:
 
 def _group_sensors(engine: Engine) -> None:
     """Has sensors of one kind work together."""
-    kinds: dict[type, list[Any]] = {}
+    kinds: dict[type, list[AttachedSensor]] = {}
     for sensor in engine.structure.all_sensors():
         kinds.setdefault(type(sensor), []).append(sensor)
     for kind, sensors in kinds.items():
@@ -143,7 +144,7 @@ def _report_shared_topics(engine: Engine) -> None:
             told.add(other)
 
 
-def _report_shared_topic(engine: Engine, sensor: Any, topic: str, other: str, kinds: set[str]) -> None:
+def _report_shared_topic(engine: Engine, sensor: AttachedSensor, topic: str, other: str, kinds: set[str]) -> None:
     """Tells that a sensor and another, perhaps itself, publish messages of these types on one topic."""
     where = sensor.scene.where
     if other == sensor.scoped:

@@ -24,7 +24,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -33,6 +33,8 @@ from simkit.compiler.servos import ServoTraits, servo_traits
 from simkit.runtime.engine.physics import CONTROL
 
 if TYPE_CHECKING:
+    import mujoco
+
     from simkit.compiler import ActuatorRef
     from simkit.runtime.engine.engine_state import EngineState
 
@@ -110,7 +112,7 @@ class VelocityServos:
         self._period = max(1.0 / RATE, engine.clock.timestep)
         # in ticks; after more it begins anew
         self._longest = math.ceil(min(1.5 * self._period / max(engine.clock.timestep, SHORTEST_STEP), 1e15))
-        self._model: Any = None
+        self._model: mujoco.MjModel | None = None
         self._rows: list[_BoundServo] = []
         self._dofs = self._places = np.zeros(0, np.intp)
 

@@ -4,9 +4,132 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from simkit.scene import SceneModel
+
+if TYPE_CHECKING:
+    from simkit.compiler import ActuatorRef, Compiled, SpecBuilder
+    from simkit.diagnostics import Where
+    from simkit.params import Params
+    from simkit.run_spec import PluginErrorPolicy
+    from simkit.runtime.engine.scheduler import Timetable
+    from simkit.scene import ScenePlugin, SceneSensor
+
+AttachedState = Any
+"""State of a sensor or a plugin, which only itself understands."""
+
+
+class PublishedProduct(Protocol):
+    """Message that a sensor can publish."""
+
+    @property
+    def type_name(self) -> str:
+        """Its ROS type."""
+        ...
+
+
+class AttachedSensor(Protocol):
+    """What the runtime asks of a sensor."""
+
+    scene: SceneSensor
+    scoped: str
+    reads_contacts: bool
+    _topics: dict[str, str]
+
+    @property
+    def _products(self) -> Mapping[str, PublishedProduct]: ...
+
+    @property
+    def topic(self) -> str:
+        """Topic of its first message."""
+        ...
+
+    def build(self, builder: SpecBuilder) -> None:
+        """Adds what it needs to the specification."""
+
+    def attach(self, sim: Any) -> None:
+        """Opens its topics and random streams."""
+
+    def bind(self, compiled: Compiled) -> None:
+        """Finds itself in a compiled model."""
+
+    def timetable(self) -> Timetable | None:
+        """Returns the ticks at which it is sampled; None for every one."""
+
+    def sample(self, tick: int) -> None:
+        """Takes a sample."""
+
+    def take_held(self) -> None:
+        """Takes what still has to be read of the present model."""
+
+    def finish_samples(self) -> None:
+        """Makes the messages of samples that wait to be looked at."""
+
+    def reset(self) -> None:
+        """Goes back to its beginning."""
+
+    def close(self) -> None:
+        """Releases what it holds."""
+
+    def leave(self) -> None:
+        """Is no longer in the world."""
+
+    def get_state(self) -> AttachedState:
+        """Returns what a snapshot keeps."""
+
+    def set_state(self, state: AttachedState) -> None:
+        """Goes back to a state from `get_state`."""
+
+
+class AttachedPlugin(Protocol):
+    """What the runtime asks of a plugin."""
+
+    name: str
+    scoped: str
+    where: Where
+    params: Params
+    sim: Any
+    before_step_rate: float | None
+    after_step_rate: float | None
+    on_error: PluginErrorPolicy | None
+    source: ScenePlugin | None
+    _order: tuple[Any, ...]
+    _actuators: tuple[ActuatorRef, ...]
+    _failed: tuple[str, Exception] | None
+
+    @property
+    def reads_parameter_files(self) -> bool:
+        """Whether it reads those that the run was given."""
+        ...
+
+    @classmethod
+    def has_hook(cls, hook: Any) -> bool:
+        """Checks whether its class has a hook."""
+        ...
+
+    def prepare(self, scene: Any, params: Params, builder: Any) -> None:
+        """Adds what it needs to the specification."""
+
+    def load(self, parent: Any, params: Params) -> None:
+        """Begins its work."""
+
+    def get_state(self) -> AttachedState:
+        """Returns what a snapshot keeps."""
+
+    def set_state(self, state: AttachedState) -> None:
+        """Goes back to a state from `get_state`."""
+
+    def report_unread(self) -> None:
+        """Reports parameters that nobody read."""
+
+    def _setup(self, sim: Any, source: ScenePlugin | None = None) -> None: ...
+
+    def _remember_loaded(self) -> None: ...
+
+
+ParentFinder = Callable[[Any], Any]
+"""Gives a plugin's parent (a simulation, a handle, a sensor) once the handles of a simulation exist."""
 
 
 @dataclass
@@ -17,8 +140,8 @@ class SensorsAndPlugins:
         plugins: each with a function that gives its parent once the handles exist.
     """
 
-    sensors: list[Any] = field(default_factory=list)
-    plugins: list[tuple[Any, Callable[[Any], Any]]] = field(default_factory=list)
+    sensors: list[AttachedSensor] = field(default_factory=list)
+    plugins: list[tuple[AttachedPlugin, ParentFinder]] = field(default_factory=list)
 
 
 @dataclass(frozen=True)
@@ -33,16 +156,16 @@ class WorldStructure:
         parts: sensors and plugins by the name of their top-level model; the world's under the empty name.
     """
 
-    builder: Any
-    compiled: Any
+    builder: SpecBuilder
+    compiled: Compiled
     models: Mapping[str, SceneModel]
     movable: frozenset[str]
     parts: Mapping[str, SensorsAndPlugins]
 
-    def all_sensors(self) -> list[Any]:
+    def all_sensors(self) -> list[AttachedSensor]:
         return [s for p in self.parts.values() for s in p.sensors]
 
-    def all_plugins(self) -> list[Any]:
+    def all_plugins(self) -> list[AttachedPlugin]:
         """Every plugin, in the order in which they are loaded and called."""
         return [plugin for plugin, _ in plugins_in_order(self.parts.values())]
 
@@ -51,7 +174,7 @@ FROM_FILE, FROM_PYTHON, FROM_SPAWN = range(3)
 """Plugins of the file come first, in document order; then those made in Python; then those of spawned models."""
 
 
-def plugins_in_order(parts: Iterable[SensorsAndPlugins]) -> list[tuple[Any, Callable[[Any], Any]]]:
+def plugins_in_order(parts: Iterable[SensorsAndPlugins]) -> list[tuple[AttachedPlugin, ParentFinder]]:
     """Plugins, each with what gives its parent, in the order in which they are loaded and called."""
     return sorted((pair for part in parts for pair in part.plugins), key=lambda pair: pair[0]._order)
 

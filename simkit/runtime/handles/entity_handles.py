@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     from simkit.runtime.engine.snapshot import Stateful
     from simkit.runtime.engine.world_structure import WorldStructure
 
+HandleTables = dict[str, dict[str, Any]]
+"""Handles and sensors by scoped name, by kind."""
+
 
 class EntityHandles:
     """Handles made once per entity of the file and bound anew to each structure.
@@ -42,11 +45,11 @@ class EntityHandles:
         self.labels, self.temperatures = Labels(self), Temperatures(self)
         self.exact_limits: list[Joint] = []
         engine.velocity_limit = self._velocity_limit
-        self._by_scene: dict[int, tuple[Any, Model, dict[str, Light]]] = {}
+        self._by_scene: dict[int, tuple[SceneModel, Model, dict[str, Light]]] = {}
         self._world_lights: dict[str, Light] | None = None
         self._world_joints: dict[str, Joint] | None = None
         self.models: dict[str, Model] = {}
-        self.tables: dict[str, dict[str, Any]] = {}
+        self.tables: HandleTables = {}
 
     def bind(self, structure: WorldStructure) -> None:
         """Binds every handle of what is there now; the others say that they were removed."""
@@ -56,7 +59,7 @@ class EntityHandles:
             for handle in (*model.everything(), *lights.values()):
                 handle._is_present = False
         self.models = {name: self._model_handles(scene)[0] for name, scene in structure.models.items()}
-        tables: dict[str, dict[str, Any]] = {k: {} for k in ("model", "link", "joint", "light", "sensor")}
+        tables: HandleTables = {k: {} for k in ("model", "link", "joint", "light", "sensor")}
         names = structure.compiled.names
         for model in self.models.values():
             for handle in model.everything():

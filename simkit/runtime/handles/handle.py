@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Self, TypeVar
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
 
 if TYPE_CHECKING:
     from simkit.runtime.handles.entity_handles import EntityHandles
+
+T = TypeVar("T")
 
 
 class Handle:
@@ -24,7 +26,7 @@ class Handle:
         self.name, self.scoped = name, scoped
         self._is_present = True
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> Any:
+    def __deepcopy__(self, memo: dict[int, object]) -> Self:
         return self
 
     def __repr__(self) -> str:
@@ -42,7 +44,7 @@ class UnknownName(KeyError):
         return str(self.args[0])
 
 
-def look_up(table: dict[str, Any], name: str, what: str) -> Any:
+def look_up(table: dict[str, T], name: str, what: str) -> T:
     """The entry, or a KeyError that names the closest one."""
     try:
         return table[name]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
@@ -26,6 +26,7 @@ from simkit.runtime.handles.joint_mechanics import (
 )
 
 if TYPE_CHECKING:
+    from simkit.compiler.name_map import NameMap
     from simkit.runtime.handles.entity_handles import EntityHandles
     from simkit.scene import SceneJoint
 
@@ -46,7 +47,7 @@ class Joint(Handle):
         self._effort_limit = np.array([a.effort for a in axes] or [math.inf])
         self._velocity_limit = np.array([a.velocity for a in axes] or [math.inf])
 
-    def _bind(self, names: Any) -> None:
+    def _bind(self, names: NameMap) -> None:
         binding = names.joint(self.scoped)
         self._binding = binding
         self._ids = [int(j) for j in binding.joint_ids]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import mujoco
 import numpy as np
@@ -179,7 +179,7 @@ def update_loop_joints(engine: EngineState) -> None:
         engine.physics.changed_body(STALE, binding.moved_body)
 
 
-def _loop_jacobian(engine: EngineState, binding: JointBinding) -> tuple[list[int], Any, Any]:
+def _loop_jacobian(engine: EngineState, binding: JointBinding) -> tuple[list[int], Vector, Vector]:
     """Degrees of freedom of a twin, its Jacobian (6, k) in the joint's free coordinates, and how those spread."""
     model, data, body = engine.mj_model, engine.mj_data, binding.moved_body
     hidden = [f for f in binding.followers if model.dof_bodyid[f.dof] == body]

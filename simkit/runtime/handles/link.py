@@ -16,6 +16,7 @@ from simkit.runtime.handles.joint_mechanics import update_loop_joints
 from simkit.runtime.handles.visual import Visual
 
 if TYPE_CHECKING:
+    from simkit.compiler.name_map import NameMap
     from simkit.runtime.handles.entity_handles import EntityHandles
     from simkit.scene import SceneLink
 
@@ -30,7 +31,7 @@ class Link(Handle):
         self.scene = scene
         self._visuals: dict[str, Visual] | None = None
 
-    def _bind(self, names: Any) -> None:
+    def _bind(self, names: NameMap) -> None:
         binding = names.link(self.scoped)
         self._binding, self._body = binding, int(binding.body)
         self._offset: Pose | None = None if binding.offset == IDENTITY else binding.offset

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -56,8 +56,8 @@ class Model(Handle):
         found: Model = look_up(self._below("models"), name, "model")
         return found
 
-    def _below(self, what: str) -> dict[str, Handle]:
-        table: dict[str, Handle] = dict(getattr(self, what))
+    def _below(self, what: str) -> dict[str, Any]:
+        table: dict[str, Any] = dict(getattr(self, what))
         for name, nested in self.models.items():
             table.update({f"{name}::{key}": value for key, value in nested._below(what).items()})
         return table

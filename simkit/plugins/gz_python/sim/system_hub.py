@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from simkit.plugins.gz_python.sim.entity_component_manager import manager_of
 from simkit.plugins.gz_python.sim.update_info import UpdateInfo
@@ -22,7 +22,7 @@ class SystemPlugin(Protocol):
 
 def systems_of(sim: Simulation) -> list[SystemPlugin]:
     """The plugins that stand for systems of gz, in order, without those that raised and are left out."""
-    plugins = sim.engine.structure.all_plugins()
+    plugins: list[Any] = sim.engine.structure.all_plugins()
     return [p for p in plugins if getattr(p, "is_gz_system", False) and not sim.engine.faults.is_disabled(p)]
 
 
