@@ -52,6 +52,14 @@ def _message_sources() -> dict[str, tuple[str, int]]:
     }
 
 
+Message = Any
+"""A message of any type: an object of a dataclass that rosbags makes while a program runs."""
+FieldValue = Any
+"""Value of a message's field: a number, a text, an array, a message or a list of such."""
+FieldNode = tuple[int, Any]
+"""Type of a field in the type store: its kind (`BASE`, `NAME`, `ARRAY`, `SEQUENCE`) and what the kind says of it."""
+
+
 class _ReadOnDemand(dict[str, Any]):
     """Table of the type store that contains our types as well; one is registered when it is first looked up."""
 

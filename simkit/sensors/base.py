@@ -6,13 +6,15 @@ import abc
 import math
 from collections.abc import Mapping, Sequence
 from itertools import chain
-from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+from typing import TYPE_CHECKING, ClassVar, TypeVar
 
+from simkit import msgs
 from simkit.diagnostics import Diagnostics, Where
+from simkit.msgs.message_types import Message
 from simkit.msgs.topics import valid_topic
 from simkit.pose import Pose, Vector
 from simkit.sensors.noise import NO_NOISE, Noise, NoiseModel, UniformNoise
-from simkit.sensors.sample import NoiseProcess, Product, Sample
+from simkit.sensors.sample import NoiseProcess, Product, Reading, Sample
 from simkit.sensors.sampler import Sampler
 from simkit.sensors.timing import DelayedReadings, SampleTimes, read_timing
 from simkit.sensors.topics_and_frames import check_topic, entity_topic, read_frame_id
@@ -61,7 +63,7 @@ class Sensor(Sampler):
     belongs_to: ClassVar[tuple[str, ...]] = ("link",)
     has_dynamic_bias: ClassVar[bool] = False
 
-    options: Any = None
+    options: object = None
     noise: Noise | UniformNoise | None = None
 
     def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
@@ -109,14 +111,14 @@ class Sensor(Sampler):
         return next(iter(self._topics.values()), "")
 
     @property
-    def latest(self) -> Any:
+    def latest(self) -> Message:
         """The newest message that has arrived, or None before the first."""
         if self._sample is None:
             return None
         return self._message(self._sample, next(iter(self._topics)))
 
     @property
-    def truth(self) -> Any:
+    def truth(self) -> Message:
         """The newest message as it would be without noise, or None before the first."""
         sample = self._sample
         if sample is None:
@@ -126,7 +128,7 @@ class Sensor(Sampler):
             sample.truth_message = self._make_message(sample, next(iter(self._topics)), sample.truth)
         return sample.truth_message
 
-    def _true_reading(self) -> Any | None:
+    def _true_reading(self) -> Reading | None:
         """The newest reading, without noise, or None before the first."""
         sample = self._sample
         if sample is None:
@@ -242,7 +244,12 @@ class Sensor(Sampler):
     def _make_noise(self, models: Sequence[NoiseModel], group: str) -> Noise:
         """Make the noise of a few channels, one model each; for `self.noise`."""
         return self._register_noise(
-            Noise([self._effective_noise(m) for m in models], *self._noise_stream_names(group), **self._noise_terms())
+            Noise(
+                [self._effective_noise(m) for m in models],
+                *self._noise_stream_names(group),
+                interval=self._noise_interval(),
+                random_sign=self.sim.world.gazebo_quirks,
+            )
         )
 
     def _make_uniform_noise(self, model: NoiseModel, width: int, group: str) -> UniformNoise:
@@ -251,14 +258,17 @@ class Sensor(Sampler):
         model = (
             NO_NOISE if quirks and model.is_quantized else self._effective_noise(model)
         )  # Gazebo has none of it on rays
-        return self._register_noise(UniformNoise(model, width, *self._noise_stream_names(group), **self._noise_terms()))
+        return self._register_noise(
+            UniformNoise(
+                model, width, *self._noise_stream_names(group), interval=self._noise_interval(), random_sign=quirks
+            )
+        )
 
     def _noise_stream_names(self, group: str) -> tuple[RandomStreams, str, str]:
         return self.sim.engine.streams, self.scoped, group
 
-    def _noise_terms(self) -> dict[str, Any]:
-        interval = self._times.nominal_interval(self.update_rate)
-        return {"interval": interval, "random_sign": self.sim.world.gazebo_quirks}
+    def _noise_interval(self) -> float:
+        return self._times.nominal_interval(self.update_rate)
 
     def _effective_noise(self, model: NoiseModel) -> NoiseModel:
         return model.as_gazebo(self.has_dynamic_bias) if self.sim.world.gazebo_quirks else model
@@ -272,7 +282,7 @@ class Sensor(Sampler):
         self.is_deferred = True
         return noise
 
-    def _on_rate(self, message: Any) -> None:
+    def _on_rate(self, message: msgs.Float64) -> None:
         """Take a rate from a topic; with Gazebo's quirks it is at most the file's."""
         rate, most = float(message.data), self.scene.rate
         refused = ""
@@ -283,8 +293,8 @@ class Sensor(Sampler):
         if not refused:
             self.set_rate(rate)
             return
-        message = f"sensor {self.scoped!r}: a rate of {rate:g} Hz came in on {self.timing.set_rate_topic!r}: {refused}"
-        self.sim.engine.reports.warning("SK-SENSOR-026", message, self.scene.where)
+        problem = f"sensor {self.scoped!r}: a rate of {rate:g} Hz came in on {self.timing.set_rate_topic!r}: {refused}"
+        self.sim.engine.reports.warning("SK-SENSOR-026", problem, self.scene.where)
 
     def _default_topic(self, suffix: str) -> str:
         """Return `<topic>` where the file gives it, else Gazebo's default."""

@@ -11,7 +11,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from operator import add, mul
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -24,6 +24,7 @@ from simkit.sensors.bias_drift import (
     gauss_markov_drift,
     instability_drift,
 )
+from simkit.sensors.sample import Memory
 
 if TYPE_CHECKING:
     from simkit.runtime.engine.random_streams import RandomStream, RandomStreams
@@ -309,7 +310,7 @@ class Noise:
     def memory(self) -> object:
         return self.state
 
-    def remember(self, memory: Any) -> None:
+    def remember(self, memory: Memory) -> None:
         self.state = memory
 
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import functools
-from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from simkit import msgs
 from simkit.pose import Vector
@@ -15,7 +15,7 @@ DATATYPES = {"u1": 2, "i2": 3, "u2": 4, "i4": 5, "u4": 6, "f4": 7, "f8": 8}
 
 
 @functools.lru_cache(maxsize=32)
-def _fields(dtype: np.dtype[Any]) -> tuple[Any, ...]:
+def _fields(dtype: np.dtype[np.void]) -> tuple[msgs.PointField, ...]:
     field = msgs.type_of("sensor_msgs/msg/PointField")
     assert dtype.fields is not None
     assert dtype.names is not None
@@ -24,7 +24,9 @@ def _fields(dtype: np.dtype[Any]) -> tuple[Any, ...]:
     )
 
 
-def point_cloud(header: msgs.Header, points: Any, height: int, width: int, is_dense: bool) -> msgs.PointCloud2:
+def point_cloud(
+    header: msgs.Header, points: npt.NDArray[np.void], height: int, width: int, is_dense: bool
+) -> msgs.PointCloud2:
     """A cloud of `height` rows of `width` points.
 
     Args:

@@ -10,6 +10,12 @@ if TYPE_CHECKING:
     from simkit.runtime.engine.held_state import HeldState
 
 
+Reading = Any
+"""What a sensor of some kind measures: the kind's own dataclass, or an array."""
+Memory = Any
+"""State of some noise or sensor that continues from sample to sample: values of its own types, never written to."""
+
+
 @dataclass(frozen=True, slots=True)
 class Product:
     """One kind of message that a sensor can give.
@@ -21,7 +27,7 @@ class Product:
     """
 
     type_name: str
-    make: Callable[[Any, int], object]
+    make: Callable[[Reading, int], object]
     needs_reading: bool = True
 
 
@@ -42,13 +48,13 @@ class Sample:
 
     # in the class, so that the many samples that nobody looks at are soon made
     held: HeldState | None = None
-    raw: Any = None
-    truth: Any = None
-    noisy: Any = None
+    raw: Reading = None
+    truth: Reading = None
+    noisy: Reading = None
     truth_message: object = None
     drifts: tuple[object, ...] = ()
     unpublished: tuple[str, ...] = ()
-    surroundings: Any = None
+    surroundings: Memory = None
     work: Any = None
 
     def __init__(self, index: int, time_ns: int) -> None:
@@ -63,7 +69,7 @@ class NoiseProcess(Protocol):
         state: what of it depends on the sample; never written to, only replaced, for samples that wait keep theirs.
     """
 
-    state: Any
+    state: Memory
 
     @property
     def wanders(self) -> bool:
@@ -81,18 +87,5 @@ class NoiseProcess(Protocol):
     def memory(self) -> object:
         """Return the state, for `remember`."""
 
-    def remember(self, memory: Any) -> None:
+    def remember(self, memory: Memory) -> None:
         """Restore the state that `memory` returned."""
-
-
-class Batch(Protocol):
-    """What a sampler needs of the batch that it is a member of; see `simkit.sensors.batch`."""
-
-    def is_ready(self, member: Any, tick: int) -> bool:
-        """Capture all members for a tick, once; False where the member has to do it by itself."""
-
-    def captured(self, place: int) -> object:
-        """Return what `capture` would give of a member."""
-
-    def publish_sample(self, member: Any, tick: int) -> bool:
-        """Make and publish a sample; False where the member has to do it."""

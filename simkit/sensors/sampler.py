@@ -5,9 +5,10 @@ from __future__ import annotations
 import abc
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar, Protocol, Self
 
-from simkit.sensors.sample import Batch, NoiseProcess, Product, Sample
+from simkit.msgs.message_types import Message
+from simkit.sensors.sample import Memory, NoiseProcess, Product, Reading, Sample
 from simkit.sensors.timing import DelayedReadings, LatencyTimetable, SampleTimes, TimingOptions
 
 if TYPE_CHECKING:
@@ -24,6 +25,19 @@ _MAX_GATHERED = 64  # gathered before samples are made of them
 
 def _is_always_on() -> bool:
     return True
+
+
+class Batch(Protocol):
+    """What a sampler needs of the batch that it is a member of; see `simkit.sensors.batch`."""
+
+    def is_ready(self, member: Sampler, tick: int) -> bool:
+        """Capture all members for a tick, once; False where the member has to do it by itself."""
+
+    def captured(self, place: int) -> object:
+        """Return what `capture` would give of a member."""
+
+    def publish_sample(self, member: Sampler, tick: int) -> bool:
+        """Make and publish a sample; False where the member has to do it."""
 
 
 class Sampler(abc.ABC):
@@ -48,7 +62,7 @@ class Sampler(abc.ABC):
         self._has_plugin_topics = False
         self._publishers: list[tuple[str, Publisher, bool]] = []
         self._newest: Sample | None = None
-        self._gathered: list[tuple[int, Any]] = []
+        self._gathered: list[tuple[int, Reading]] = []
         self._revision, self._patience = -1, 0.0
         self._wanted: list[tuple[str, Publisher, bool]] = []
         self._is_read = self._gathers = self._is_served = self._is_unread = False
@@ -83,11 +97,11 @@ class Sampler(abc.ABC):
         """Capture the physics that was held for a sample; for kinds that read more than the physics."""
         return self.capture(model, data)
 
-    def finish(self, raw: Any) -> object:
+    def finish(self, raw: Reading) -> object:
         """Return the reading without noise, made from what was captured."""
         return raw
 
-    def perturb(self, reading: Any, index: int) -> object:
+    def perturb(self, reading: Reading, index: int) -> object:
         """Return the reading with the noise of a sample; the same object where there is no noise."""
         return reading
 
@@ -106,7 +120,7 @@ class Sampler(abc.ABC):
         """Return the state that continues from sample to sample, as values that nobody writes to."""
         return tuple(noise.memory() for noise in self._noises)
 
-    def remember(self, memory: Any) -> None:
+    def remember(self, memory: Memory) -> None:
         """Restore the state that `memory` returned."""
         for noise, state in zip(self._noises, memory, strict=True):
             noise.remember(state)
@@ -115,12 +129,12 @@ class Sampler(abc.ABC):
         """Check whether there is a sample at a due tick."""
         return True
 
-    def publishes(self, product: str, raw: Any) -> bool:
+    def publishes(self, product: str, raw: Reading) -> bool:
         """Check whether a capture is published as `product`; `latest` and `truth` show it either way."""
         return True
 
     @classmethod
-    def make_batches(cls, sensors: Sequence[Sampler]) -> None:
+    def make_batches(cls, sensors: Sequence[Self]) -> None:
         """Make batches of the sensors of this kind that can sample together; see `simkit.sensors.batch`."""
 
     # ------------------------------------------------------------------ what the simulation calls
@@ -212,7 +226,7 @@ class Sampler(abc.ABC):
         flight = tuple(self._delayed.samples) if self._delayed is not None else ()
         return self._index, self._time_ns, self._sample, flight, self.update_rate, self.memory()
 
-    def set_state(self, state: Any) -> None:
+    def set_state(self, state: Memory) -> None:
         self._process_pending()
         self._index, self._time_ns, self._sample, flight, rate, memory = state
         if self._delayed is not None:
@@ -255,7 +269,7 @@ class Sampler(abc.ABC):
             self.batch = None  # until the next schedule
         return self.capture(self.sim.mj_model, self._computed_data())
 
-    def _computed_data(self) -> Any:
+    def _computed_data(self) -> mujoco.MjData:
         """Return MuJoCo's data with what `measure` reads computed."""
         if self.needs_acceleration or self.reads_contacts:
             return self.sim.engine.physics.fresh_accelerations()
@@ -340,7 +354,7 @@ class Sampler(abc.ABC):
                 publisher.publish(self._message(sample, product))
         return put_off
 
-    def _pending_job(self, sample: Sample) -> Any:
+    def _pending_job(self, sample: Sample) -> object:
         """Return the job of another thread that a sample waits for; None by default."""
         return None
 
@@ -372,7 +386,7 @@ class Sampler(abc.ABC):
                 sample.noisy = self.perturb(truth, sample.index)
             sample.raw = sample.surroundings = None
 
-    def _message(self, sample: Sample, product: str) -> Any:
+    def _message(self, sample: Sample, product: str) -> Message:
         message = sample.messages.get(product)
         if message is None:
             if self._products[product].needs_reading:
@@ -380,7 +394,7 @@ class Sampler(abc.ABC):
             message = sample.messages[product] = self._make_message(sample, product, sample.noisy)
         return message
 
-    def _make_message(self, sample: Sample, product: str, reading: Any) -> object:
+    def _make_message(self, sample: Sample, product: str, reading: Reading) -> object:
         make = self._products[product].make
         return (
             self._with_noise_of(sample, make, reading, sample.time_ns)
@@ -388,13 +402,15 @@ class Sampler(abc.ABC):
             else make(reading, sample.time_ns)
         )
 
-    def _with_noise_of(self, sample: Sample, make: Callable[[Any, int], object], *what: Any) -> Any:
-        """Call `make(*what)` with the noise as it was at a sample."""
+    def _with_noise_of(
+        self, sample: Sample, make: Callable[[Reading, int], object], reading: Reading, number: int
+    ) -> object:
+        """Call `make(reading, number)` with the noise as it was at a sample."""
         now = [noise.state for noise in self._wandering]
         for noise, state in zip(self._wandering, sample.drifts, strict=True):
             noise.state = state
         try:
-            return make(*what)
+            return make(reading, number)
         finally:
             for noise, state in zip(self._wandering, now, strict=True):
                 noise.state = state

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Final
+from typing import Final
 
 import mujoco
 import numpy as np
 import numpy.typing as npt
 
 from simkit import msgs
+from simkit.msgs.message_types import Message
 from simkit.pose import rpy_from_quat
 from simkit.sensors.cameras.bounding_boxes import Box2D, Box3D, project_edges
 from simkit.sensors.cameras.camera_model import CameraModel
@@ -59,7 +60,7 @@ def detections_3d(header: msgs.Header, boxes: Sequence[Box3D], *, in_ogre_axes: 
     return message
 
 
-def boxes_as_csv(message: Any) -> bytes:
+def boxes_as_csv(message: Message) -> bytes:
     """The boxes of a message as a table, in Gazebo's columns."""
     is_flat = message.__msgtype__ == TYPE_2D
     rows = ["label,x_center,y_center,width,height" if is_flat else "label,x,y,z,w,h,l,roll,pitch,yaw"]

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -101,7 +100,7 @@ class CubeMap:
         cv2.remap(self._sheet, *self._maps, cv2.INTER_LINEAR, dst=out, borderMode=border)
         if self._rim is not None:
             rows, weights = self._rim
-            part: Any = out[rows]
+            part = out[rows]
             cv2.multiply(part, weights[rows], dst=part, scale=1 / 255)
         return out
 
@@ -153,7 +152,9 @@ def _pixel_bounds(values: Vector, scale: float) -> tuple[float, int]:
     return low, math.ceil((high - low) * scale)
 
 
-def _cutoff_fade(radius: Vector, known: npt.NDArray[np.bool_], model: WideAngleModel) -> Any | None:
+def _cutoff_fade(
+    radius: Vector, known: npt.NDArray[np.bool_], model: WideAngleModel
+) -> tuple[slice, npt.NDArray[np.uint8]] | None:
     """Rows that fade at the cutoff angle, and what their colours are multiplied by [1/255]; None where none does."""
     lens = model.lens
     if lens.cutoff > lens.widest:

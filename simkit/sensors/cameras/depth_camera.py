@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from simkit.diagnostics import Diagnostics
 from simkit.sensors.cameras.rendering.view import Colours, Depths, Shot
 from simkit.sensors.cameras.rgbd_camera import RgbdCamera
+from simkit.sensors.sample import Reading
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
@@ -47,7 +48,7 @@ class DepthCamera(RgbdCamera):
         topic = self._default_topic("depth_image")
         return {"depth_image": topic, "points": topic + "/points", "camera_info": self._info_topic(topic)}
 
-    def _cloud_colours(self, reading: Any) -> Colours:
+    def _cloud_colours(self, reading: Reading) -> Colours:
         """White at the camera, black at the farthest point and at infinite ones (gz-sensors, DepthCameraSensor.cc).
 
         Gazebo Classic's clouds have the picture's colours.

@@ -5,7 +5,6 @@ cameras give them.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -125,7 +124,7 @@ def crop_cloud(cloud: msgs.PointCloud2, near: float, far: float) -> msgs.PointCl
     return replace(cloud, data=data, is_dense=not outside.any())
 
 
-def _cloud_axes(cloud: msgs.PointCloud2, data: npt.NDArray[np.uint8]) -> npt.NDArray[Any]:
+def _cloud_axes(cloud: msgs.PointCloud2, data: npt.NDArray[np.uint8]) -> npt.NDArray[np.void]:
     """x, y and z in the bytes of a cloud, writable."""
     fields = {field.name: field for field in cloud.fields}
     assert all(fields[axis].datatype == DATATYPES["f4"] for axis in "xyz")

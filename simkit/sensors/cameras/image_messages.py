@@ -47,7 +47,11 @@ def grey(colours: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
     return np.asarray(cv2.cvtColor(colours, cv2.COLOR_RGB2GRAY), dtype=np.uint8)
 
 
-def image_message(header: msgs.Header, pixels: npt.NDArray[Any], encoding: str) -> msgs.Image:
+Pixels = npt.NDArray[Any]
+"""Pixels of an image, bytes, whole numbers or floats as its encoding says."""
+
+
+def image_message(header: msgs.Header, pixels: Pixels, encoding: str) -> msgs.Image:
     """A message of pixels, shape (h, w) or (h, w, n), in their own byte order (little-endian)."""
     data = np.ascontiguousarray(pixels)
     height, width = data.shape[:2]
@@ -66,7 +70,7 @@ def colour_message(header: msgs.Header, colours: npt.NDArray[np.uint8], encoding
     return image_message(header, _encode_colours(colours, encoding), encoding)
 
 
-def _encode_colours(colours: npt.NDArray[np.uint8], encoding: str) -> npt.NDArray[Any]:
+def _encode_colours(colours: npt.NDArray[np.uint8], encoding: str) -> Pixels:
     import cv2
 
     if encoding.startswith("bayer_"):
@@ -104,7 +108,7 @@ _PIXELS: Mapping[str, tuple[str, int]] = MappingProxyType(
 )  # fmt: skip
 
 
-def pixels_of(message: msgs.Image) -> npt.NDArray[Any]:
+def pixels_of(message: msgs.Image) -> Pixels:
     """The pixels of an `Image`, shape (h, w), or (h, w, n) with more channels than one."""
     kind, channels = _PIXELS.get(message.encoding, ("u1", 1))
     flat = np.asarray(message.data, dtype=np.uint8).view(kind)

@@ -40,7 +40,7 @@ def _looks_up_words() -> bool:
     return int(cv2.__version__.split(".")[0]) >= 5
 
 
-def _look_up(table: npt.NDArray[Any], words: npt.NDArray[np.uint16], out: npt.NDArray[Any]) -> None:
+def _look_up(table: npt.NDArray[np.generic], words: npt.NDArray[np.uint16], out: npt.NDArray[np.generic]) -> None:
     """`out[...] = table[words]`; OpenCV from version 5 on does it three times as fast."""
     if _looks_up_words():
         import cv2
@@ -68,7 +68,9 @@ class ImageNoise:
         self._own = threading.local()
         self.is_silent = model.stddev == 0 and model.mean == 0
 
-    def _strips(self, channel: str, index: int, shape: tuple[int, ...]) -> Iterator[tuple[slice, Any]]:
+    def _strips(
+        self, channel: str, index: int, shape: tuple[int, ...]
+    ) -> Iterator[tuple[slice, npt.NDArray[np.uint16]]]:
         """Rows of a picture, strip by strip, with a random word for each of their pixels."""
         height, width = shape[:2]
         # a generator of its own per frame, so that what was drawn before does not matter; the fastest one for the bulk

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, Final
+from typing import TYPE_CHECKING, ClassVar, Final
 
 import numpy as np
 import numpy.typing as npt
 
 from simkit.diagnostics import Diagnostics, did_you_mean
+from simkit.msgs.message_types import Message
 from simkit.params import Params
 from simkit.sensors.base import Product
 from simkit.sensors.cameras import image_messages
@@ -45,7 +46,7 @@ class DatasetSaver(ImageSaver):
         super().__init__(sim, sensor, folder / _FOLDERS[what], what, None)
         self._count = _count_files(folder / _FOLDERS[IMAGE])
 
-    def _file(self, message: Any) -> tuple[str, bytes]:
+    def _file(self, message: Message) -> tuple[str, bytes]:
         is_table = message.__msgtype__ in (TYPE_2D, TYPE_3D)
         data, ending = (boxes_as_csv(message), "csv") if is_table else (encode_png(message), "png")
         return f"{self._name}_{self._count:07d}.{ending}", data

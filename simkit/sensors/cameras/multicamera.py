@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -27,6 +27,7 @@ from simkit.sensors.cameras.image_noise import ImageNoise
 from simkit.sensors.cameras.rendered_camera import RenderedCamera
 from simkit.sensors.cameras.rendering.renderer import renderer_of
 from simkit.sensors.cameras.rendering.view import Film, Shot
+from simkit.sensors.sample import Reading
 from simkit.sensors.topics_and_frames import OPTICAL_POSE, sibling_topic
 
 if TYPE_CHECKING:
@@ -217,7 +218,7 @@ class MultiCamera(RenderedCamera):
     def develop(self, films: Iterator[Film], notes: object) -> tuple[CameraReading, ...]:
         return tuple(eye.develop(next(films)) for eye in self.eyes)
 
-    def perturb(self, reading: Any, index: int) -> tuple[object, ...]:
+    def perturb(self, reading: Reading, index: int) -> tuple[object, ...]:
         return tuple(eye.perturb(picture, index) for eye, picture in zip(self.eyes, reading, strict=True))
 
     # ------------------------------------------------------------------ messages
@@ -247,7 +248,7 @@ class MultiCamera(RenderedCamera):
     def saved_products(self) -> dict[str, str]:
         return {f"{eye.name}/image": f"{self.scoped}::{eye.name}" for eye in self.eyes if eye.options.save}
 
-    def _image_of(self, number: int, reading: Any, time_ns: int) -> msgs.Image:
+    def _image_of(self, number: int, reading: Reading, time_ns: int) -> msgs.Image:
         eye = self.eyes[number]
         header = msgs.header(time_ns, self._frame_of(eye))
         return image_messages.colour_message(header, reading[number].colours, eye.options.encoding)

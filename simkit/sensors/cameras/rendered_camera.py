@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
 from simkit import msgs
 from simkit.diagnostics import Diagnostics
+from simkit.msgs.message_types import Message
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.pose import IDENTITY, Pose
@@ -30,6 +31,7 @@ from simkit.sensors.cameras.rendering import render_thread
 from simkit.sensors.cameras.rendering.renderer import renderer_of
 from simkit.sensors.cameras.rendering.view import Film, Shot, View
 from simkit.sensors.cameras.saved_images import ImageSaver
+from simkit.sensors.sample import Memory, Reading
 from simkit.sensors.topics_and_frames import OPTICAL_POSE, sibling_topic
 from simkit.sensors.visibility_mask import hidden_geoms
 
@@ -111,7 +113,7 @@ class RenderedCamera(RenderedSampler):
         self.options = replace(self.options, model=replace(model, info_model=change(model)))
         self._info = CameraInfoMaker(self.options.model, self._baseline)
 
-    def transform_messages(self, product: str, change: Callable[[Any], Any]) -> None:
+    def transform_messages(self, product: str, change: Callable[[Message], Message]) -> None:
         """Publishes what `change` makes of each message of a product, instead of it; before the first."""
         of = self._products[product]
         make_message = of.make
@@ -157,7 +159,7 @@ class RenderedCamera(RenderedSampler):
         self._hidden_geoms = hidden_geoms(self.options.visibility_mask, compiled.names)
         renderer_of(self.sim).reserve(self.options.model.width, self.options.model.height)
 
-    def develop(self, films: Iterator[Film], notes: Any) -> object:
+    def develop(self, films: Iterator[Film], notes: Memory) -> object:
         colours = next(films).colours
         assert colours is not None
         return CameraReading(self._develop_colours(colours), None)
@@ -174,7 +176,7 @@ class RenderedCamera(RenderedSampler):
         np.copyto(kept, colours)
         return kept
 
-    def perturb(self, reading: CameraReading, index: int) -> object:
+    def perturb(self, reading: Reading, index: int) -> object:
         if self._noise.is_silent:
             return reading
         return NoisyCameraReading(reading, self._noise, index)
@@ -182,7 +184,7 @@ class RenderedCamera(RenderedSampler):
     def memory(self) -> object:
         return self._trigger.pending if self._trigger else 0
 
-    def remember(self, memory: Any) -> None:
+    def remember(self, memory: Memory) -> None:
         if self._trigger:
             self._trigger.pending = memory
 
@@ -228,7 +230,7 @@ class RenderedCamera(RenderedSampler):
         """Of images, whose axes are optical."""
         return msgs.header(time_ns, self.optical_frame_id or self.frame_id)
 
-    def _colour_message(self, reading: Any, time_ns: int) -> msgs.Image:
+    def _colour_message(self, reading: CameraReading, time_ns: int) -> msgs.Image:
         return image_messages.colour_message(self._image_header(time_ns), reading.colours, self.options.encoding)
 
     def _info_message(self, _: object, time_ns: int) -> msgs.CameraInfo:

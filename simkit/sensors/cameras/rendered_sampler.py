@@ -5,10 +5,11 @@ from __future__ import annotations
 import abc
 import functools
 from collections.abc import Callable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simkit.diagnostics import Diagnostics
 from simkit.errors import RenderError
+from simkit.msgs.message_types import Message
 from simkit.runtime.communication.topic_bus import NO_MESSAGE
 from simkit.sensors.base import Sample, Sensor
 from simkit.sensors.cameras.camera_options import CameraOptions
@@ -16,6 +17,7 @@ from simkit.sensors.cameras.rendering import gl_context, render_thread
 from simkit.sensors.cameras.rendering.lights_and_shadows import read_lights, use_lights
 from simkit.sensors.cameras.rendering.renderer import Composition, Renderer, free_renderer, renderer_of
 from simkit.sensors.cameras.rendering.view import Film, Shot
+from simkit.sensors.sample import Memory, Reading
 
 if TYPE_CHECKING:
     import mujoco
@@ -46,7 +48,7 @@ class RenderedSampler(Sensor):
         self._failure: RenderError | None = None
         self._picture_error: RenderError | None = None  # what went wrong with a picture, perhaps on the render thread
         self._has_callback = False
-        self.surroundings: Any = None
+        self.surroundings: Memory = None
 
     @abc.abstractmethod
     def shots(self) -> Sequence[Shot]:
@@ -86,7 +88,7 @@ class RenderedSampler(Sensor):
     def finish(self, raw: render_thread.RenderJob) -> object:
         return raw.result()
 
-    def _make_exposure(self, model: mujoco.MjModel, data: mujoco.MjData) -> Callable[[], Any]:
+    def _make_exposure(self, model: mujoco.MjModel, data: mujoco.MjData) -> Callable[[], Reading]:
         """What draws and develops the pictures of a state; it needs the state no more."""
         renderer = renderer_of(self.sim)
         smooth = self.options.anti_aliasing > 0
@@ -95,7 +97,7 @@ class RenderedSampler(Sensor):
         )
         return functools.partial(self._expose, renderer, composition, self.shots(), self.take_notes(model, data))
 
-    def _expose(self, renderer: Renderer, composition: Composition, shots: Sequence[Shot], notes: Any) -> Any:
+    def _expose(self, renderer: Renderer, composition: Composition, shots: Sequence[Shot], notes: Memory) -> Reading:
         films = renderer.films(composition, shots)
         try:
             return self.develop(films, notes)
@@ -105,7 +107,7 @@ class RenderedSampler(Sensor):
         finally:
             films.close()
 
-    def capture_surroundings(self) -> Any:
+    def capture_surroundings(self) -> Memory:
         """Return what a sample is made of besides the physics; `take_notes` reads it in `surroundings`."""
         return None
 
@@ -115,12 +117,12 @@ class RenderedSampler(Sensor):
         sample.surroundings = self.surroundings, read_lights(self.sim.mj_model)
         return sample
 
-    def take_notes(self, model: mujoco.MjModel, data: mujoco.MjData) -> Any:
+    def take_notes(self, model: mujoco.MjModel, data: mujoco.MjData) -> Memory:
         """What `develop` needs of the state besides pictures."""
         return None
 
     @abc.abstractmethod
-    def develop(self, films: Iterator[Film], notes: Any) -> object:
+    def develop(self, films: Iterator[Film], notes: Memory) -> object:
         """The reading without noise, of what was drawn.
 
         Args:
@@ -171,7 +173,7 @@ class RenderedSampler(Sensor):
         drawing: render_thread.RenderJob | None = sample.raw
         return None if drawing is None or drawing.is_at_once else drawing
 
-    def _message(self, sample: Sample, product: str) -> Any:
+    def _message(self, sample: Sample, product: str) -> Message:
         if sample.work is not None and self._products[product].needs_reading:
             sample.work.wait()
         return super()._message(sample, product)
@@ -183,14 +185,14 @@ class RenderedSampler(Sensor):
             return NO_MESSAGE  # it has been said why
 
     @property
-    def latest(self) -> Any:
+    def latest(self) -> Message:
         """The newest picture, or None before the first; raises RenderError where there is no renderer."""
         if self._failure is not None:
             raise self._failure
         return super().latest
 
     @property
-    def truth(self) -> Any:
+    def truth(self) -> Message:
         """The newest picture without noise; raises RenderError where there is no renderer."""
         if self._failure is not None:
             raise self._failure

@@ -6,7 +6,7 @@ import functools
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -25,6 +25,7 @@ from simkit.sensors.cameras.image_noise import ImageNoise
 from simkit.sensors.cameras.rendered_camera import RenderedCamera
 from simkit.sensors.cameras.rendering.render_quality import Appearance
 from simkit.sensors.cameras.rendering.view import Colours, Depths, Film, Shot, View
+from simkit.sensors.sample import Reading
 from simkit.sensors.topics_and_frames import OPTICAL_POSE
 
 if TYPE_CHECKING:
@@ -186,7 +187,7 @@ class RgbdCamera(RenderedCamera):
         reading = self._noisy_reading()
         return None if reading is None else self._clouds.points(reading.depths, self._shift(reading))
 
-    def _noisy_reading(self) -> Any | None:
+    def _noisy_reading(self) -> Reading | None:
         if self._failure is not None:
             raise self._failure
         sample = self._sample
@@ -195,7 +196,7 @@ class RgbdCamera(RenderedCamera):
         self._finish_sample(sample)
         return sample.noisy
 
-    def _newest_depths(self, reading: Any | None) -> Depths | None:
+    def _newest_depths(self, reading: Reading | None) -> Depths | None:
         return None if reading is None else reading.depths
 
     def perturb(self, reading: CameraReading, index: int) -> object:
@@ -213,10 +214,10 @@ class RgbdCamera(RenderedCamera):
 
     # ------------------------------------------------------------------ messages
 
-    def _depth_message(self, reading: Any, time_ns: int) -> msgs.Image:
+    def _depth_message(self, reading: Reading, time_ns: int) -> msgs.Image:
         return image_messages.image_message(self._image_header(time_ns), reading.depths, "32FC1")
 
-    def _cloud(self, reading: Any, time_ns: int) -> msgs.PointCloud2:
+    def _cloud(self, reading: Reading, time_ns: int) -> msgs.PointCloud2:
         header = msgs.header(time_ns, self._cloud_frame)
         return self._clouds.message(header, reading.depths, self._cloud_colours(reading), self._shift(reading))
 
@@ -227,7 +228,7 @@ class RgbdCamera(RenderedCamera):
             self._clouds_made = DepthClouds(self.options.model, self._is_cloud_optical, step)
         return self._clouds_made
 
-    def _shift(self, reading: Any) -> Depths | None:
+    def _shift(self, reading: Reading) -> Depths | None:
         """Gazebo adds its noise to all three coordinates alike, not along the ray (gaussian_noise_depth_fs.glsl)."""
         if not self.sim.world.gazebo_quirks or not isinstance(reading, NoisyDepths):
             return None
@@ -235,7 +236,7 @@ class RgbdCamera(RenderedCamera):
             shift: Depths = reading.depths - reading.true_depths
         return shift
 
-    def _cloud_colours(self, reading: Any) -> Colours:
+    def _cloud_colours(self, reading: Reading) -> Colours:
         colours: Colours = reading.colours
         return colours
 

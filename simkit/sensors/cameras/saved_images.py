@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from simkit import msgs
+from simkit.msgs.message_types import Message
 from simkit.params import Params
 from simkit.runtime.communication.publisher import Publisher, TopicSides
 from simkit.runtime.communication.subscription import TopicReaders
@@ -89,7 +90,7 @@ class ImageSaver(Publisher):
     def patience(self) -> float:
         return 0
 
-    def publish(self, message: Any) -> None:
+    def publish(self, message: Message) -> None:
         """Writes one picture."""
         if self._is_over:
             return
@@ -104,7 +105,7 @@ class ImageSaver(Publisher):
             self._end(str(error))
         self._count += 1
 
-    def _file(self, message: Any) -> tuple[str, bytes]:
+    def _file(self, message: Message) -> tuple[str, bytes]:
         """Name and content of the next file."""
         return f"{self._name}_{self._count}.png", encode_png(message, self._far)
 

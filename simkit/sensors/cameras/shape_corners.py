@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Final
 
 import mujoco
 import numpy as np
@@ -83,7 +83,7 @@ def _grid_edges(rows: int, columns: int, is_closed: bool = False) -> Pairs:
     return np.concatenate((along.reshape(-1, 2), across.reshape(-1, 2)))
 
 
-def _unique_edges(faces: npt.NDArray[Any]) -> Pairs:
+def _unique_edges(faces: npt.NDArray[np.integer]) -> Pairs:
     """Each edge of triangles (m, 3) once."""
     ends = np.sort(np.concatenate((faces[:, :2], faces[:, 1:], faces[:, ::2])), axis=1).astype(np.int32)
     found: Pairs = np.unique(ends, axis=0)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import numpy.typing as npt
@@ -20,6 +20,7 @@ from simkit.sensors.cameras.camera_options import CameraOptions, extend_options
 from simkit.sensors.cameras.rendered_camera import RenderedCamera
 from simkit.sensors.cameras.rendering.view import Film, Shot, View
 from simkit.sensors.cameras.temperature_map import Kelvins, TemperatureMap, make_temperature_map
+from simkit.sensors.sample import Reading
 
 if TYPE_CHECKING:
     import mujoco
@@ -184,7 +185,7 @@ class ThermalCamera(RenderedCamera):
         coarse: Kelvins = np.rint(np.clip(kelvins / full, 0, 1) * 255).astype(np.float32) * np.float32(full / 255)
         return coarse
 
-    def perturb(self, reading: Any, index: int) -> object:
+    def perturb(self, reading: Reading, index: int) -> object:
         if self._noise.is_silent or self._quirks:  # Gazebo adds none
             return reading
         draws = self._noise.on_depths(np.zeros_like(reading), index)

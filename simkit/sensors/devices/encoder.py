@@ -16,6 +16,7 @@ from simkit.pose import Vector
 from simkit.runtime.handles.joint_mechanics import joint_position, joint_velocity
 from simkit.sensors.base import Product, Sensor
 from simkit.sensors.noise import NoiseModel, quantise, read_noise
+from simkit.sensors.sample import Memory
 
 if TYPE_CHECKING:
     from simkit.compiler import Compiled, SpecBuilder
@@ -238,5 +239,5 @@ class CountHistory:
     def memory(self) -> object:
         return self.state
 
-    def remember(self, memory: Any) -> None:
+    def remember(self, memory: Memory) -> None:
         self.state = memory

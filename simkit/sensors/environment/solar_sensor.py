@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from simkit.sensors.base import Product, Sample, Sensor
 from simkit.sensors.environment import solar_irradiance
 from simkit.sensors.environment.solar_irradiance import NO_LIGHT, SolarOptions, SolarReading, SolarView
 from simkit.sensors.noise import Noise, NoiseModel, quantise, read_noise
+from simkit.sensors.sample import Memory
 
 if TYPE_CHECKING:
     import mujoco
@@ -101,7 +102,9 @@ class SolarSensor(Sensor):
     def products(self) -> dict[str, Product]:
         number, truth_value, text = msgs.types_of(NUMBER, "std_msgs/msg/Bool", "std_msgs/msg/String")
 
-        def part(make: Callable[[Any], object], of: Callable[[SolarReading], object]) -> Callable[[Any, int], object]:
+        def part(
+            make: Callable[[object], object], of: Callable[[SolarReading], object]
+        ) -> Callable[[SolarReading, int], object]:
             return lambda reading, _: make(of(reading))
 
         return {
@@ -170,7 +173,7 @@ class SolarSensor(Sensor):
     def memory(self) -> object:
         return super().memory(), tuple(self._motions)
 
-    def remember(self, memory: Any) -> None:
+    def remember(self, memory: Memory) -> None:
         noise, motions = memory
         super().remember(noise)
         self._motions = list(motions)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Self
 
 from simkit import msgs
 from simkit.sensors.base import Product
@@ -19,7 +19,7 @@ class Imu(ImuMeasurement):
     example = "<imu/>"
 
     @classmethod
-    def make_batches(cls, sensors: Sequence[Any]) -> None:
+    def make_batches(cls, sensors: Sequence[Self]) -> None:
         if cls is Imu:
             form_imu_batches(sensors)
 

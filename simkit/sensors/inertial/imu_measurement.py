@@ -5,7 +5,7 @@ from __future__ import annotations
 import struct
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -23,6 +23,7 @@ from simkit.sensors.inertial.inertial_kinematics import (
 )
 from simkit.sensors.inertial.orientation_reference import OrientationReference, read_reference, reference_orientation
 from simkit.sensors.noise import Noise, NoiseModel, ThreeAxes, read_axes, read_noise
+from simkit.sensors.sample import Memory
 
 if TYPE_CHECKING:
     import mujoco
@@ -209,7 +210,7 @@ class ImuMeasurement(Sensor):
     def memory(self) -> object:
         return super().memory(), self.reference
 
-    def remember(self, memory: Any) -> None:
+    def remember(self, memory: Memory) -> None:
         super().remember(memory[0])
         self.set_orientation_reference(memory[1])
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from simkit.sensors.presets.preset import Preset, Settings
 
@@ -30,7 +30,7 @@ def load_presets() -> Iterator[Preset]:
             yield _make_preset({**table, **entry})
 
 
-def _make_preset(fields: dict[str, Any]) -> Preset:
+def _make_preset(fields: Settings) -> Preset:
     lists = {name: tuple(value) for name, value in fields.items() if isinstance(value, list)}
     return Preset(**{**fields, **lists, "settings": _expand_axes(fields["settings"])})
 

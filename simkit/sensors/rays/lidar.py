@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
+from typing import Self
 
 import numpy as np
+import numpy.typing as npt
 
 from simkit import msgs
 from simkit.sensors.base import Product
@@ -43,7 +44,7 @@ class Lidar(LidarMeasurement):
     field_of_view: float | None = None
 
     @classmethod
-    def make_batches(cls, sensors: Sequence[Any]) -> None:
+    def make_batches(cls, sensors: Sequence[Self]) -> None:
         if cls is Lidar:
             form_lidar_batches(sensors)
 
@@ -103,7 +104,7 @@ class Lidar(LidarMeasurement):
         self._fill(points, reading, hit)
         return point_cloud(msgs.header(time_ns, self.frame_id), points, 1, len(hit), True)
 
-    def _fill(self, points: Any, reading: LidarReading, which: Any) -> None:
+    def _fill(self, points: npt.NDArray[np.void], reading: LidarReading, which: npt.NDArray[np.intp] | slice) -> None:
         with np.errstate(invalid="ignore"):
             places = self._directions[which] * reading.ranges[which, None]
         for axis, name in enumerate("xyz"):

@@ -57,7 +57,7 @@ class RenderJob:
         self.is_at_once = is_at_once
         self._do: Callable[[], object] | None = do
         self._owner, self._done = _thread, threading.Event()
-        self._result: Any = None
+        self._result: object = None
         self._error: BaseException | None = None
 
     @property

@@ -7,7 +7,8 @@ and before anything is behind them where there is only background.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Final
+from types import ModuleType
+from typing import Final
 
 import mujoco
 import numpy as np
@@ -57,7 +58,7 @@ def draw_transparent(scene: mujoco.MjvScene, context: mujoco.MjrContext, places:
         GL.glDisable(GL.GL_LIGHT0 + light)
 
 
-def _draw(gl: Any, geom: mujoco.MjvGeom, context: mujoco.MjrContext) -> None:
+def _draw(gl: ModuleType, geom: mujoco.MjvGeom, context: mujoco.MjrContext) -> None:
     rgba, both = np.asarray(geom.rgba), gl.GL_FRONT_AND_BACK
     gl.glColor4fv(rgba)
     gl.glMaterialfv(both, gl.GL_EMISSION, (*(float(geom.emission) * rgba[:3]), 1.0))
@@ -74,7 +75,7 @@ def _draw(gl: Any, geom: mujoco.MjvGeom, context: mujoco.MjrContext) -> None:
         gl.glDisable(switch)
 
 
-def _call(gl: Any, geom: mujoco.MjvGeom, context: mujoco.MjrContext) -> None:
+def _call(gl: ModuleType, geom: mujoco.MjvGeom, context: mujoco.MjrContext) -> None:
     """The shape itself, in its own frame."""
     kind, size, builtin = int(geom.type), [float(s) for s in geom.size], int(context.baseBuiltin)
     if kind == _KINDS.mjGEOM_PLANE:
@@ -99,7 +100,7 @@ def _call(gl: Any, geom: mujoco.MjvGeom, context: mujoco.MjrContext) -> None:
         gl.glCallList(builtin + _BUILTIN[kind])
 
 
-def _bind_texture(gl: Any, geom: mujoco.MjvGeom, context: mujoco.MjrContext) -> tuple[Any, ...]:
+def _bind_texture(gl: ModuleType, geom: mujoco.MjvGeom, context: mujoco.MjrContext) -> tuple[int, ...]:
     """Lets the shape wear its material's picture; what has to be switched off again."""
     role = int(mujoco.mjtTextureRole.mjTEXROLE_RGB)
     number = int(context.mat_texid.reshape(-1, int(mujoco.mjtTextureRole.mjNTEXROLE))[geom.matid, role])
