@@ -17,7 +17,9 @@ from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, Literal
+from typing import Literal
+
+from simkit.cli.terminal.output import JsonObject
 
 Kind = Literal["xml", "command", "python"]
 
@@ -140,13 +142,13 @@ def _area(name: str) -> Area:
     return Area(name, title, position, {code: _code(code, entry) for code, entry in sorted(table.items())})
 
 
-def _code(name: str, entry: dict[str, Any]) -> Code:
+def _code(name: str, entry: JsonObject) -> Code:
     """Build a code from its table."""
     example = entry.pop("example", None)
     return Code(name, **entry, example=None if example is None else _example(example))
 
 
-def _example(entry: dict[str, Any]) -> Example:
+def _example(entry: JsonObject) -> Example:
     """Build an example from its table."""
     files = {
         name: content if isinstance(content, str) else bytes.fromhex(content["hex"])

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from contextlib import chdir, nullcontext, redirect_stdout
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -32,6 +32,7 @@ from simkit.cli.terminal.options import (
 )
 from simkit.cli.terminal.output import (
     JsonObject,
+    JsonValue,
     print_diagnostics,
     print_error,
     print_status,
@@ -195,7 +196,7 @@ def result_dict(result: CheckResult) -> JsonObject:
     return found
 
 
-def _json_number(value: Any) -> object:
+def _json_number(value: JsonValue) -> object:
     """Convert a value to JSON; NaN and infinity become null."""
     if isinstance(value, dict):
         return {str(key): _json_number(one) for key, one in value.items()}

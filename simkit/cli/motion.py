@@ -28,7 +28,7 @@ from simkit.errors import InputError, RenderError
 
 if TYPE_CHECKING:
     from simkit.plugins.play_motion.motion import Motion
-    from simkit.runtime import Simulation
+    from simkit.runtime import Model, Simulation
 
 motion = typer.Typer(help="Lists the motions that a robot knows by name, and plays them.", no_args_is_help=True)
 
@@ -65,7 +65,7 @@ def list_motions(
     else:
         from simkit.plugins.play_motion.motion_session import choose_player, motion_players
 
-        options: Any = source_arguments(resource_path, package_path, xacro_arg)
+        options = source_arguments(resource_path, package_path, xacro_arg)
         with _open_world(file, None, motions, 0, plugin_path, options, verbose=False) as sim:
             found = list(choose_player(motion_players(sim), model).motions.values())
     if json_:
@@ -157,7 +157,7 @@ def _open_world(
     options: Any,
     *,
     verbose: bool,
-) -> Any:
+) -> Simulation:
     """The world with its robot, ready to play; further motions are known by then."""
     from simkit.build import load
     from simkit.plugins.play_motion.motion_session import controlled_models, empty_world_with, motion_players
@@ -213,7 +213,7 @@ def _check_files(paths: Sequence[Path]) -> None:
     broken.raise_if_errors()
 
 
-def _spawn_robot(sim: Simulation, robot: str) -> Any:
+def _spawn_robot(sim: Simulation, robot: str) -> Model:
     """The robot, put into a world that may have it already."""
     from simkit.plugins.play_motion.motion_session import motion_players
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Final
+from typing import TYPE_CHECKING, Annotated, Final
 
 import typer
 
@@ -17,6 +17,8 @@ from simkit.run_spec import LoadOptions, RunSpec
 from simkit.writers.atomic_output import check_writable, write_atomically
 
 if TYPE_CHECKING:
+    from rosbags.typesys.store import Typestore
+
     from simkit.recording.charts.chart import Chart, Style
     from simkit.recording.charts.fields import Curve
     from simkit.recording.charts.series import Series
@@ -176,7 +178,7 @@ def _series(source: str, fields: Sequence[str], request: PlotRequest) -> list[Se
 
 
 def _curves(
-    fields: Sequence[str], topics: Mapping[str, str], store_of: Callable[[str], Any], where: str
+    fields: Sequence[str], topics: Mapping[str, str], store_of: Callable[[str], Typestore], where: str
 ) -> tuple[list[Curve], list[int]]:
     """The curves of fields, and how many each field stands for."""
     from simkit.recording.charts.fields import curves_of

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -142,7 +142,7 @@ def new_plugin(
     else:
         from simkit.build import read_scene
 
-        options: Any = source_arguments(resource_path, package_path, xacro_arg)
+        options = source_arguments(resource_path, package_path, xacro_arg)
         scene, _ = read_scene(from_, missing_meshes=True, **options)
         wanted = plugins_missing_in(scene, plugin_path)
         if not wanted:
@@ -275,7 +275,7 @@ def _service_as_dict(service: Service) -> JsonObject:
     return {"name": service.name, "type": service.type, "named_by": list(service.elements)}
 
 
-def _plain(value: object) -> Any:
+def _plain(value: object) -> object:
     """A value that JSON can hold; what is infinite as text."""
     if isinstance(value, tuple):
         return [_plain(v) for v in value]

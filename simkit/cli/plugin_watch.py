@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import typer
 
@@ -14,6 +14,7 @@ from simkit.errors import PluginError
 
 if TYPE_CHECKING:
     from simkit.cli.run_loop import Interrupts, RunLoop
+    from simkit.runtime import Simulation, Snapshot
 
 _POLL_SECONDS = 0.1  # [s] of wall time between two looks at the files while the run waits
 
@@ -29,12 +30,12 @@ class PluginWatch:
             since the last slice twice, so with one it does not.
     """
 
-    def __init__(self, sim: Any, plugin_paths: Sequence[Path], interrupts: Interrupts, *, waits: bool) -> None:
+    def __init__(self, sim: Simulation, plugin_paths: Sequence[Path], interrupts: Interrupts, *, waits: bool) -> None:
         from simkit.plugins.authoring.plugin_reload import PluginReloader
 
         self._sim, self._interrupts, self._waits = sim, interrupts, waits
         self._reloader = PluginReloader(sim, plugin_paths, print_status)
-        self._checkpoint: Any = None
+        self._checkpoint: Snapshot | None = None
         files = self._reloader.files
         if files:
             print_status(f"watching {', '.join(path.name for path in files)}")

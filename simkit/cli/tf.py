@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import time
-from typing import TYPE_CHECKING, Annotated, Any
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -109,7 +110,7 @@ def _print(pose: Pose, time_ns: int, precision: int, json_: bool) -> None:
         print_json({"time": time_ns * 1e-9, "translation": [float(v) for v in xyz], "rotation": rotation})
         return
 
-    def listed(numbers: Any) -> str:
+    def listed(numbers: Iterable[float]) -> str:
         return "[" + ", ".join(f"{float(n) + 0.0:.{precision}f}" for n in numbers) + "]"
 
     print_line(f"At time {time_ns // 10**9}.{time_ns % 10**9:09d}")

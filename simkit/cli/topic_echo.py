@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -15,6 +15,7 @@ from simkit.cli.terminal.options import Json
 from simkit.cli.terminal.output import print_json, print_line, print_note, report_errors_quietly
 from simkit.cli.terminal.topic_sources import Feed, ReceivedMessage, Source, find_topic, open_source, wait_for_topic
 from simkit.errors import InputError, MessageError
+from simkit.msgs.message_types import FieldNode, FieldValue, Message
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from simkit.msgs.message_text import TextStyle
 
 TRUNCATE = 128
-MessageFilter = Callable[[Any], bool]
+MessageFilter = Callable[[Message], bool]
 _SEPARATOR = "---"
 
 
@@ -111,7 +112,7 @@ def compile_filter(expression: str | None) -> MessageFilter | None:
             f"SK-CLI-033 --filter: {expression!r} is no Python expression: {error}", "SK-CLI-033"
         ) from None
 
-    def wanted(message: Any) -> bool:
+    def wanted(message: Message) -> bool:
         try:
             return bool(eval(code, {"m": message}))
         except Exception as error:  # noqa: BLE001 (the user's own)
@@ -160,7 +161,9 @@ class _MessagePrinter:
         self._print(received, message, node, store)
         return True
 
-    def _print(self, received: ReceivedMessage, message: Any, node: Any, store: Typestore | None) -> None:
+    def _print(
+        self, received: ReceivedMessage, message: FieldValue, node: FieldNode | None, store: Typestore | None
+    ) -> None:
         from simkit.msgs.message_text import field_text, is_message, message_to_csv, message_to_yaml, to_plain_value
 
         style = self._style

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -15,6 +15,7 @@ from simkit.cli.terminal.message_arguments import make_message, parse_fields, sp
 from simkit.cli.terminal.options import Json
 from simkit.cli.terminal.output import (
     JsonObject,
+    JsonValue,
     absolute_name,
     print_json,
     print_line,
@@ -150,7 +151,7 @@ def _uses_time(value: object) -> bool:
     return isinstance(value, list) and any(_uses_time(v) for v in value)
 
 
-def _with_time(value: object, now_ns: int) -> Any:
+def _with_time(value: object, now_ns: int) -> JsonValue:
     stamp = {"sec": now_ns // 10**9, "nanosec": now_ns % 10**9}
     if isinstance(value, dict):
         return {

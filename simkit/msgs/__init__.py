@@ -14,10 +14,20 @@ from __future__ import annotations
 import struct
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simkit.errors import MessageError
-from simkit.msgs.message_types import definition, full_name, message_class, rihs, type_of, type_store, types_of
+from simkit.msgs.message_types import (
+    FieldValue,
+    Message,
+    definition,
+    full_name,
+    message_class,
+    rihs,
+    type_of,
+    type_store,
+    types_of,
+)
 
 if TYPE_CHECKING:
     from simkit.msgs.message_builder import MessageBuilder
@@ -60,7 +70,7 @@ def _builder_of() -> Callable[[str], MessageBuilder]:
     return builder_of
 
 
-def make(type_name: str, /, **fields: Any) -> Any:
+def make(type_name: str, /, **fields: FieldValue) -> Message:
     """Build a message; fields left out are zero (a quaternion's w is 1), dicts become messages, numbers become arrays.
 
     Raises:
@@ -69,7 +79,7 @@ def make(type_name: str, /, **fields: Any) -> Any:
     return _builder_of()(type_name).build(fields)
 
 
-def from_dict(type_names: Sequence[str], values: Mapping[str, Any]) -> Any:
+def from_dict(type_names: Sequence[str], values: Mapping[str, FieldValue]) -> Message:
     """Build a message of the first type that the values fit.
 
     Raises:
@@ -87,7 +97,7 @@ def from_dict(type_names: Sequence[str], values: Mapping[str, Any]) -> Any:
     raise MessageError(f"{first}{others}")
 
 
-def type_name(message: Any) -> str:
+def type_name(message: Message) -> str:
     """Return the ROS type name of a message object, such as `sensor_msgs/msg/Imu`.
 
     Raises:
@@ -138,7 +148,7 @@ def stamp_ns(stamp: Time | Duration) -> int:
     return int(stamp.sec) * _NS + int(stamp.nanosec)
 
 
-def serialize(message: Any) -> bytes:
+def serialize(message: Message) -> bytes:
     """Serialise a message as CDR, little-endian, as ROS 2 sends it.
 
     Raises:
@@ -151,6 +161,6 @@ def serialize(message: Any) -> bytes:
         raise MessageError(f"{name} cannot be written: {error}") from None
 
 
-def deserialize(data: bytes | memoryview, type_name: str) -> Any:
+def deserialize(data: bytes | memoryview, type_name: str) -> Message:
     """Return the message that `serialize` wrote."""
     return type_store().deserialize_cdr(data, full_name(type_name))

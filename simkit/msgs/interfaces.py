@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import MessageError
 from simkit.msgs.message_builder import builder_of
 from simkit.msgs.message_text import message_to_dict
-from simkit.msgs.message_types import definition_files, definition_text, full_name, type_store
+from simkit.msgs.message_types import FieldValue, definition_files, definition_text, full_name, type_store
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
@@ -80,7 +80,7 @@ def _text(name: str, store: Typestore | None) -> str:
     return str(found).split("=" * 80)[0].rstrip()
 
 
-def prototype(type_name: str) -> dict[str, Any]:
+def prototype(type_name: str) -> dict[str, FieldValue]:
     """Return the fields of a message with their defaults, to be filled in: of a service's request, an action's goal.
 
     Raises:

@@ -5,13 +5,13 @@ from __future__ import annotations
 import operator
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache, partial
-from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import MessageError
-from simkit.msgs.message_types import ARRAY, BASE, NAME, SEQUENCE, full_name, type_store
+from simkit.msgs.message_types import ARRAY, BASE, NAME, SEQUENCE, FieldNode, FieldValue, Message, full_name, type_store
 
 _INTEGERS: dict[str, tuple[int, int]] = {
     **{f"int{n}": (-(1 << (n - 1)), (1 << (n - 1)) - 1) for n in (8, 16, 32, 64)},
@@ -24,8 +24,8 @@ _DTYPES = {"byte": "uint8", "char": "uint8", "bool": "bool"}
 # The defaults that ROS gives other than zero.
 _DEFAULTS: dict[tuple[str, str], float] = {("geometry_msgs/msg/Quaternion", "w"): 1.0}
 
-_Default = Callable[[], Any]
-_Conversion = Callable[[Any], Any]
+_Default = Callable[[], FieldValue]
+_Conversion = Callable[[FieldValue], FieldValue]
 
 
 class MessageBuilder:
@@ -42,7 +42,7 @@ class MessageBuilder:
 
         store = type_store()
         self.name = name
-        self.cls: type[Any] = store.types[name]
+        self.cls: type[Message] = store.types[name]
         self.fields: list[tuple[str, _Default, _Conversion]] = []
         for field, node in store.fielddefs[name][1]:
             default, convert = _default_and_conversion(node)
@@ -51,11 +51,11 @@ class MessageBuilder:
             self.fields.append((normalize_fieldname(field), default, convert))
         self._defaults = [default for _, default, _ in self.fields]
 
-    def default(self) -> Any:
+    def default(self) -> Message:
         """Return a message with every field at its default."""
         return self.cls(*[default() for default in self._defaults])
 
-    def build(self, fields: Mapping[str, Any]) -> Any:
+    def build(self, fields: Mapping[str, FieldValue]) -> Message:
         """Return a message of the given fields; the others have their defaults.
 
         Raises:
@@ -81,7 +81,7 @@ class MessageBuilder:
             raise MessageError(f"{self.name} has no field {unknown!r}; {hint}")
         return self.cls(*values)
 
-    def convert(self, value: Any) -> Any:
+    def convert(self, value: FieldValue) -> Message:
         """Return a message unchanged; build one from a dict."""
         if type(value) is self.cls:
             return value
@@ -98,12 +98,12 @@ def builder_of(type_name: str) -> MessageBuilder:
     return MessageBuilder(full_name(type_name))
 
 
-def _short(value: Any) -> str:
+def _short(value: object) -> str:
     text = repr(value)
     return text if len(text) <= 60 else text[:57] + "..."
 
 
-def _default_and_conversion(node: Any) -> tuple[_Default, _Conversion]:
+def _default_and_conversion(node: FieldNode) -> tuple[_Default, _Conversion]:
     """Return what makes the default of a field, and what converts a value for it, from its node in the type store."""
     kind, what = int(node[0]), node[1]
     if kind == NAME:
@@ -131,13 +131,13 @@ def _scalar(name: str) -> tuple[_Default, _Conversion]:
     return float, _float
 
 
-def _float(value: Any) -> float:
+def _float(value: FieldValue) -> float:
     if isinstance(value, (str, bytes, bool)):
         raise MessageError(f"found {_short(value)}, allowed is a number")
     return float(value)
 
 
-def _integer(low: int, high: int, value: Any) -> int:
+def _integer(low: int, high: int, value: FieldValue) -> int:
     if isinstance(value, float) and value.is_integer():
         value = int(value)
     number = operator.index(value)
@@ -146,13 +146,13 @@ def _integer(low: int, high: int, value: Any) -> int:
     return number
 
 
-def _boolean(value: Any) -> bool:
+def _boolean(value: FieldValue) -> bool:
     if value is True or value is False or isinstance(value, np.bool_):
         return bool(value)
     raise MessageError(f"found {_short(value)}, allowed is true or false")
 
 
-def _text(value: Any) -> str:
+def _text(value: FieldValue) -> str:
     if not isinstance(value, str):
         raise MessageError(f"found {_short(value)}, allowed is a text")
     return value
@@ -165,7 +165,9 @@ def _check_length(count: int, length: int | None, bound: int | None) -> None:
         raise MessageError(f"found {count} entries, allowed is at most {bound}")
 
 
-def _numbers(dtype: np.dtype[Any], length: int | None, bound: int | None, value: Any) -> Any:
+def _numbers(
+    dtype: np.dtype[np.generic], length: int | None, bound: int | None, value: FieldValue
+) -> npt.NDArray[np.generic]:
     if type(value) is np.ndarray and value.dtype == dtype and value.ndim == 1:
         array = value
     elif isinstance(value, (bytes, bytearray, memoryview)):
@@ -179,7 +181,7 @@ def _numbers(dtype: np.dtype[Any], length: int | None, bound: int | None, value:
     return array
 
 
-def _items(convert: _Conversion, length: int | None, bound: int | None, value: Any) -> list[Any]:
+def _items(convert: _Conversion, length: int | None, bound: int | None, value: FieldValue) -> list[FieldValue]:
     if isinstance(value, (str, bytes, Mapping)) or not isinstance(value, (Sequence, np.ndarray)):
         raise MessageError(f"found {_short(value)}, allowed is a list")
     _check_length(len(value), length, bound)

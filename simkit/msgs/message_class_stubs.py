@@ -8,9 +8,8 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator
 from itertools import groupby
-from typing import Any
 
-from simkit.msgs.message_types import ARRAY, BASE, NAME, SEQUENCE, class_names, type_store
+from simkit.msgs.message_types import ARRAY, BASE, NAME, SEQUENCE, FieldNode, class_names, type_store
 
 _HEAD = '''# Written by `python -m simkit.msgs.message_class_stubs`; a test compares it with the definitions.
 # ruff: noqa
@@ -53,7 +52,7 @@ def _class_lines(type_name: str, classes: dict[str, str]) -> Iterator[str]:
     yield "    __msgtype__: ClassVar[str]"
 
 
-def _annotation(node: Any, classes: dict[str, str]) -> str:
+def _annotation(node: FieldNode, classes: dict[str, str]) -> str:
     """Return the annotation of a field from its node in the type store."""
     kind, content = node
     if kind == NAME:

@@ -6,15 +6,15 @@ Every function takes the type store that the message is of, where that is not si
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sized
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import MessageError
-from simkit.msgs.message_types import ARRAY, NAME, SEQUENCE, type_store
+from simkit.msgs.message_types import ARRAY, NAME, SEQUENCE, FieldNode, FieldValue, Message, type_store
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
@@ -59,13 +59,13 @@ class TextStyle:
 FULL_TEXT = TextStyle()
 
 
-def field_nodes(type_name: str, store: Typestore | None = None) -> list[tuple[str, Any]]:
+def field_nodes(type_name: str, store: Typestore | None = None) -> list[tuple[str, FieldNode]]:
     """Return the name of each field of a type with its node in the type store; nothing of a type without fields."""
     found = (store or type_store()).fielddefs[type_name][1]
     return [(name, node) for name, node in found if name != _EMPTY]
 
 
-def field_value(message: Any, field: str) -> Any:
+def field_value(message: Message, field: str) -> FieldValue:
     """Return a field's value; a field that is named like a keyword of Python is an attribute with `_` at its end."""
     try:
         return getattr(message, field)
@@ -73,12 +73,14 @@ def field_value(message: Any, field: str) -> Any:
         return getattr(message, f"{field}_")
 
 
-def is_message(value: Any) -> bool:
+def is_message(value: object) -> bool:
     """Check whether a value is a message."""
     return isinstance(getattr(value, "__msgtype__", None), str)
 
 
-def message_to_dict(message: Any, style: TextStyle = FULL_TEXT, store: Typestore | None = None) -> dict[str, Any]:
+def message_to_dict(
+    message: Message, style: TextStyle = FULL_TEXT, store: Typestore | None = None
+) -> dict[str, FieldValue]:
     """Convert a message to a dict of dicts, lists, numbers and texts, in the order of the fields."""
     return {
         name: _array_summary(field_value(message, name), node)
@@ -88,7 +90,7 @@ def message_to_dict(message: Any, style: TextStyle = FULL_TEXT, store: Typestore
     }
 
 
-def to_plain_value(value: Any, style: TextStyle = FULL_TEXT, store: Typestore | None = None) -> Any:
+def to_plain_value(value: FieldValue, style: TextStyle = FULL_TEXT, store: Typestore | None = None) -> FieldValue:
     """Convert a field's value to dicts, lists, numbers and texts."""
     if isinstance(value, str):
         if style.no_str:
@@ -106,11 +108,11 @@ def to_plain_value(value: Any, style: TextStyle = FULL_TEXT, store: Typestore | 
     return message_to_dict(value, style, store)
 
 
-def _node_type(node: Any) -> str:
+def _node_type(node: FieldNode) -> str:
     return str(node[1] if int(node[0]) == NAME else node[1][0])
 
 
-def _array_summary(value: Any, node: Any) -> str:
+def _array_summary(value: Sized, node: FieldNode) -> str:
     inner, size = node[1]
     kind = _node_type(inner)
     if int(node[0]) == ARRAY:
@@ -118,12 +120,12 @@ def _array_summary(value: Any, node: Any) -> str:
     return f"<sequence type: {kind}{f'[{size}]' if size else ''}, length: {len(value)}>"
 
 
-def message_to_yaml(message: Any, style: TextStyle = FULL_TEXT, store: Typestore | None = None) -> str:
+def message_to_yaml(message: Message, style: TextStyle = FULL_TEXT, store: Typestore | None = None) -> str:
     """Format a message as YAML, ending with a line break."""
     return to_yaml(message_to_dict(message, style, store), flow=style.flow)
 
 
-def to_yaml(value: Any, *, flow: bool | None = False) -> str:
+def to_yaml(value: object, *, flow: bool | None = False) -> str:
     """Format plain values as YAML with lines of any length; mappings keep their order."""
     import yaml
 
@@ -133,7 +135,7 @@ def to_yaml(value: Any, *, flow: bool | None = False) -> str:
     )
 
 
-def message_to_csv(message: Any, style: TextStyle = FULL_TEXT, store: Typestore | None = None) -> str:
+def message_to_csv(message: Message, style: TextStyle = FULL_TEXT, store: Typestore | None = None) -> str:
     """Format all numbers and texts of a message with commas between, in the order of its fields."""
     parts = []
     for name, node in field_nodes(message.__msgtype__, store):
@@ -145,7 +147,7 @@ def message_to_csv(message: Any, style: TextStyle = FULL_TEXT, store: Typestore 
     return ",".join(parts)
 
 
-def _csv_values(value: Any, style: TextStyle, store: Typestore | None) -> Iterator[str]:
+def _csv_values(value: FieldValue, style: TextStyle, store: Typestore | None) -> Iterator[str]:
     if is_message(value):
         yield message_to_csv(value, style, store)
     elif isinstance(value, (list, tuple, np.ndarray)):
@@ -158,7 +160,7 @@ def _csv_values(value: Any, style: TextStyle, store: Typestore | None) -> Iterat
         yield str(to_plain_value(value, style, store))
 
 
-def to_python(value: Any, store: Typestore | None = None) -> str:
+def to_python(value: FieldValue, store: Typestore | None = None) -> str:
     """Format a message as rclpy writes it: `geometry_msgs.msg.Point(x=0.0, y=0.0, z=1.0)`."""
     if is_message(value):
         name = value.__msgtype__.replace("/", ".")
@@ -170,13 +172,13 @@ def to_python(value: Any, store: Typestore | None = None) -> str:
     return repr(to_plain_value(value, FULL_TEXT, store))
 
 
-def _python_field(value: Any, node: Any, store: Typestore | None) -> str:
+def _python_field(value: FieldValue, node: FieldNode, store: Typestore | None) -> str:
     if int(node[0]) == ARRAY and isinstance(value, np.ndarray):
         return repr(value)
     return repr(value.tolist()) if isinstance(value, np.ndarray) else to_python(value, store)
 
 
-def field_text(value: Any, node: Any, store: Typestore | None = None) -> str:
+def field_text(value: FieldValue, node: FieldNode | None, store: Typestore | None = None) -> str:
     """Format one field alone, as `ros2 topic echo --field` prints a value that is no message."""
     if isinstance(value, np.ndarray):
         inner = node[1][0] if node is not None and int(node[0]) in (ARRAY, SEQUENCE) else None
@@ -189,7 +191,7 @@ def field_text(value: Any, node: Any, store: Typestore | None = None) -> str:
     return str(value.item() if isinstance(value, np.generic) else value)
 
 
-def field_at_path(message: Any, path: str, store: Typestore | None = None) -> tuple[Any, Any]:
+def field_at_path(message: Message, path: str, store: Typestore | None = None) -> tuple[FieldValue, FieldNode | None]:
     """Return the value at a path such as `pose.pose.position.x`, `transforms[0].child_frame_id` or `ranges[0:9]`.
 
     Returns:
@@ -216,7 +218,9 @@ def field_at_path(message: Any, path: str, store: Typestore | None = None) -> tu
     return value, node
 
 
-def _step_into_field(value: Any, name: str, walked: str, store: Typestore | None) -> tuple[Any, Any]:
+def _step_into_field(
+    value: FieldValue, name: str, walked: str, store: Typestore | None
+) -> tuple[FieldValue, FieldNode | None]:
     if not is_message(value):
         raise MessageError(f"{walked!r} is no message and has no field {name!r}")
     fields = dict(field_nodes(value.__msgtype__, store))
@@ -226,7 +230,9 @@ def _step_into_field(value: Any, name: str, walked: str, store: Typestore | None
     return field_value(value, name), fields[name]
 
 
-def _step_into_item(value: Any, found: re.Match[str], node: Any, walked: str) -> tuple[Any, Any]:
+def _step_into_item(
+    value: FieldValue, found: re.Match[str], node: FieldNode | None, walked: str
+) -> tuple[FieldValue, FieldNode | None]:
     if not isinstance(value, (list, tuple, np.ndarray)):
         raise MessageError(f"{walked!r} is no array and has no item {found[0]}")
     if found[3]:

@@ -58,15 +58,16 @@ FieldValue = Any
 """Value of a message's field: a number, a text, an array, a message or a list of such."""
 FieldNode = tuple[int, Any]
 """Type of a field in the type store: its kind (`BASE`, `NAME`, `ARRAY`, `SEQUENCE`) and what the kind says of it."""
+_Entry = Any  # of the type store: a class, or its constants and fields
 
 
-class _ReadOnDemand(dict[str, Any]):
+class _ReadOnDemand(dict[str, _Entry]):
     """Table of the type store that contains our types as well; one is registered when it is first looked up."""
 
     def __contains__(self, type_name: object) -> bool:
         return super().__contains__(type_name) or type_name in _message_sources()
 
-    def __missing__(self, type_name: str) -> Any:
+    def __missing__(self, type_name: str) -> _Entry:
         _register(type_name)
         return self[type_name]
 
@@ -120,7 +121,7 @@ def full_name(type_name: str) -> str:
 
 
 @cache
-def type_of(type_name: str) -> type[Any]:
+def type_of(type_name: str) -> type[Message]:
     """Return the dataclass of a message type; construct it directly where every microsecond counts."""
     return type_store().types[full_name(type_name)]
 
@@ -145,7 +146,7 @@ def class_names() -> dict[str, str]:
     return found
 
 
-def message_class(class_name: str) -> type[Any]:
+def message_class(class_name: str) -> type[Message]:
     """Return a message class by its name in `simkit.msgs`.
 
     Raises:
@@ -161,7 +162,7 @@ def message_class(class_name: str) -> type[Any]:
 
 
 @cache
-def types_of(*type_names: str) -> tuple[type[Any], ...]:
+def types_of(*type_names: str) -> tuple[type[Message], ...]:
     """Return the dataclasses of several types; the first call of a process loads the type store, which takes 0.2 s."""
     return tuple(map(type_of, type_names))
 

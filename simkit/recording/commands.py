@@ -13,7 +13,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError, MessageError
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 JsonObject = dict[str, Any]
 JsonMapping = Mapping[str, Any]
+_Item = TypeVar("_Item")
+_Made = TypeVar("_Made")
 _KEYS = ("at", "topic", "message", "until", "rate")
 _RATE = 10.0  # [Hz] of a command that is repeated without saying how often
 _TWISTS = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
@@ -209,7 +211,7 @@ def commands_of(items: Iterable[JsonMapping], topics: Mapping[str, str]) -> list
     return _collect(command, items)
 
 
-def _collect(make: Callable[[Any], Any], items: Iterable[Any]) -> list[Any]:
+def _collect(make: Callable[[_Item], _Made], items: Iterable[_Item]) -> list[_Made]:
     """Makes something of each item; what is wrong with any of them is told at once."""
     found, wrong = [], []
     for item in items:

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Generic, TypeVar
 
+from simkit.msgs.message_types import Message
 from simkit.runtime.communication.topic_bus import NO_MESSAGE, LazyMessage
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation, Subscription
 
-Receiver = Callable[[Any], None]
+Receiver = Callable[[Message | LazyMessage], None]
 """Is called with each message of a topic, which may be a `LazyMessage`."""
 _Label = TypeVar("_Label")
 
@@ -64,11 +65,13 @@ class MessageQueue(Generic[_Label]):
             returns it. Without it nothing but pictures waits: whatever follows one has it drawn at once.
     """
 
-    def __init__(self, deliver: Callable[[_Label, Any], None], freeze: Callable[[Any], Any] | None = None) -> None:
+    def __init__(
+        self, deliver: Callable[[_Label, Message], None], freeze: Callable[[Message], Message] | None = None
+    ) -> None:
         self._deliver, self._freeze = deliver, freeze
-        self._waiting: deque[tuple[_Label, Any]] = deque()
+        self._waiting: deque[tuple[_Label, Message | LazyMessage]] = deque()
 
-    def add(self, label: _Label, message: Any) -> None:
+    def add(self, label: _Label, message: Message | LazyMessage) -> None:
         """Deliver a message that was published now, or have it wait behind those before it."""
         is_lazy = type(message) is LazyMessage
         if self._waiting or (is_lazy and not message.is_ready):
@@ -101,7 +104,7 @@ class MessageQueue(Generic[_Label]):
         else:  # frozen already
             self._deliver(label, message)
 
-    def _resolve(self, label: _Label, message: Any) -> None:
+    def _resolve(self, label: _Label, message: Message | LazyMessage) -> None:
         made = message.get() if type(message) is LazyMessage else message
         if made is not NO_MESSAGE:
             self._deliver(label, made if self._freeze is None else self._freeze(made))

@@ -6,13 +6,13 @@ import time
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from types import TracebackType
-from typing import Any
 
 from simkit import msgs
 from simkit.bridges.live.client_handles import LiveGoal, LivePublisher, LiveSubscription
 from simkit.bridges.live.discovery import find_socket
-from simkit.bridges.live.protocol import JsonObject, LiveClosed, LiveError
+from simkit.bridges.live.protocol import JsonObject, JsonValue, LiveClosed, LiveError
 from simkit.bridges.live.server_link import CONNECT_PERIOD, ServerLink
+from simkit.msgs.message_types import Message
 
 DEFAULT_DEPTH = 1000
 """So many messages of a subscription wait at most, here and at the simulation, where nothing is said."""
@@ -74,7 +74,7 @@ class Client:
 
     # ------------------------------------------------------------------ asking
 
-    def ask(self, question: str, **args: object) -> Any:
+    def ask(self, question: str, **args: object) -> JsonValue:
         """The answer to a question.
 
         Raises:
@@ -189,7 +189,7 @@ class Client:
         found: dict[str, str] = self.ask("services")
         return found
 
-    def call(self, name: str, request: object = None) -> Any:
+    def call(self, name: str, request: object = None) -> Message:
         """The response of a service, which is at work when this returns.
 
         Args:
@@ -207,7 +207,9 @@ class Client:
         found: dict[str, str] = self.ask("actions")
         return found
 
-    def send_goal(self, name: str, goal: object = None, on_feedback: Callable[[Any], None] | None = None) -> LiveGoal:
+    def send_goal(
+        self, name: str, goal: object = None, on_feedback: Callable[[Message], None] | None = None
+    ) -> LiveGoal:
         """Sends a goal to an action.
 
         Args:
@@ -227,7 +229,7 @@ class Client:
 
     def _request_with_message(
         self, question: str, name: str, message: object, **more: object
-    ) -> tuple[Any, bytes, str]:
+    ) -> tuple[JsonValue, bytes, str]:
         if message is None or isinstance(message, Mapping):
             return self._link.request(question, {"name": name, "fields": dict(message or {}), **more})
         content = {"name": name, "type": msgs.type_name(message), **more}

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from simkit import msgs
-from simkit.bridges.live.protocol import LiveClosed, LiveError, message_frame
+from simkit.bridges.live.protocol import JsonObject, LiveClosed, LiveError, message_frame
 from simkit.bridges.live.server_link import ServerLink
+from simkit.msgs.message_types import Message
 
 if TYPE_CHECKING:
     from simkit.runtime.communication.action_server import GoalStatus
@@ -35,7 +36,7 @@ class Received(NamedTuple):
     data: bytes
 
     @property
-    def message(self) -> Any:
+    def message(self) -> Message:
         """The message itself."""
         return msgs.deserialize(self.data, self.type_name)
 
@@ -150,12 +151,12 @@ class LiveGoal:
         reason: why it was rejected, or what else was said with its end.
     """
 
-    def __init__(self, link: ServerLink, number: int, on_feedback: Callable[[Any], None] | None) -> None:
+    def __init__(self, link: ServerLink, number: int, on_feedback: Callable[[Message], None] | None) -> None:
         self._link, self.number, self._on_feedback = link, number, on_feedback
         self.action, self.id = "", 0
         self.status: GoalStatus = _goal_statuses().UNKNOWN
-        self.result: Any = None
-        self.feedback: Any = None
+        self.result: Message | None = None
+        self.feedback: Message | None = None
         self.reason = ""
 
     @property
@@ -188,7 +189,7 @@ class LiveGoal:
         except LiveError:
             return False
 
-    def take(self, words: Mapping[str, Any], data: bytes) -> None:
+    def take(self, words: JsonObject, data: bytes) -> None:
         """Take feedback, a status or a result."""
         message = msgs.deserialize(data, str(words["type"])) if "type" in words else None
         if "status" not in words:

@@ -10,10 +10,10 @@ from typing import Any
 
 from simkit.msgs import type_store
 from simkit.msgs.message_text import NUMBER_CODES
-from simkit.msgs.message_types import BASE, NAME
+from simkit.msgs.message_types import BASE, NAME, Message
 
 _CODES = {**NUMBER_CODES, "bool": "?"}
-Reader = Callable[[bytes, int], Any]
+Reader = Callable[[bytes, int], Message]
 
 
 @cache
@@ -27,7 +27,7 @@ def message_reader(type_name: str) -> Reader:
     """
     store = type_store()
 
-    def usual(data: bytes, begin: int) -> Any:
+    def usual(data: bytes, begin: int) -> Message:
         return store.deserialize_cdr(data[begin:], type_name)
 
     try:
@@ -38,7 +38,7 @@ def message_reader(type_name: str) -> Reader:
     unpack, size = little.unpack_from, little.size
     make = _message_builder(classes)
 
-    def read(data: bytes, begin: int) -> Any:
+    def read(data: bytes, begin: int) -> Message:
         if not 4 <= len(data) - begin - size <= 7 or data[begin] or data[begin + 1] > 1:
             return usual(data, begin)  # says what is wrong
         return make((unpack if data[begin + 1] else big.unpack_from)(data, begin + 4))
@@ -50,7 +50,8 @@ class _VariableSizeError(Exception):
     """A type has messages of other sizes than one, or arrays."""
 
 
-Classes = tuple[Any, tuple[Any, ...]]
+Classes = tuple[type[Message], tuple[Any, ...]]
+"""Class of a message, and of each of its fields the same, None for a number."""
 
 
 def _layout(type_name: str) -> tuple[str, Classes]:
@@ -61,7 +62,7 @@ def _layout(type_name: str) -> tuple[str, Classes]:
 
     def walk(name: str) -> Classes:
         nonlocal place
-        parts: list[Any] = []
+        parts: list[Classes | None] = []
         for _, (kind, about) in store.fielddefs[name][1]:
             code = _CODES.get(about[0]) if int(kind) == BASE else None
             if code is not None:
@@ -80,7 +81,7 @@ def _layout(type_name: str) -> tuple[str, Classes]:
     return "".join(formats), classes
 
 
-def _message_builder(classes: Classes) -> Callable[[tuple[Any, ...]], Any]:
+def _message_builder(classes: Classes) -> Callable[[tuple[float, ...]], Message]:
     """Return a function that makes a message of its numbers."""
     cls, parts = classes
     if all(part is None for part in parts):
@@ -94,7 +95,7 @@ def _message_builder(classes: Classes) -> Callable[[tuple[Any, ...]], Any]:
             return lambda values: cls(first(*values[one]), second(*values[two]))
         return lambda values: cls(*[inner(*values[piece]) for inner, piece in pieces])
 
-    def build(each: Classes, values: Iterator[Any]) -> Any:
+    def build(each: Classes, values: Iterator[float]) -> Message:
         return each[0](*[next(values) if part is None else build(part, values) for part in each[1]])
 
     return lambda values: build(classes, iter(values))

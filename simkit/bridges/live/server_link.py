@@ -11,7 +11,7 @@ import time
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Protocol
 
 from simkit.bridges.live.protocol import (
     ANSWER,
@@ -25,6 +25,7 @@ from simkit.bridges.live.protocol import (
     BadFrame,
     FrameReader,
     JsonObject,
+    JsonValue,
     LiveClosed,
     LiveError,
     json_frame,
@@ -47,7 +48,7 @@ class MessageReceiver(Protocol):
 class GoalListener(Protocol):
     """Learns how far one goal is."""
 
-    def take(self, words: Mapping[str, Any], data: bytes) -> None:
+    def take(self, words: JsonObject, data: bytes) -> None:
         """Take feedback, a status or a result."""
 
 
@@ -108,7 +109,7 @@ class ServerLink:
             return False
         return True
 
-    def request(self, question: str, args: Mapping[str, object], data: bytes = b"") -> tuple[Any, bytes, str]:
+    def request(self, question: str, args: Mapping[str, object], data: bytes = b"") -> tuple[JsonValue, bytes, str]:
         """Return the answer to a request, with the CDR behind it and its type.
 
         Raises:
@@ -127,7 +128,7 @@ class ServerLink:
         self.send(frame)
         return number
 
-    def answer(self, number: int) -> tuple[Any, bytes, str]:
+    def answer(self, number: int) -> tuple[JsonValue, bytes, str]:
         """Wait for the answer of that number."""
         self.wait(lambda: number in self._answers, self.timeout)
         words, found = self._answers.pop(number)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections import deque
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simkit import msgs
 from simkit.bridges.live.connection import ClientSubscription
 from simkit.errors import MessageError
+from simkit.msgs.message_types import Message
 from simkit.runtime.communication.topic_bus import NO_MESSAGE, LazyMessage
 
 if TYPE_CHECKING:
@@ -23,7 +24,7 @@ class TopicFeed:
     def __init__(self, sim: Simulation, topic: str) -> None:
         self._sim, self.topic = sim, topic
         self._readers: list[ClientSubscription] = []
-        self._waiting: deque[tuple[int, Any]] = deque()
+        self._waiting: deque[tuple[int, Message]] = deque()
         self._tap: Subscription | None = None
 
     def add(self, reader: ClientSubscription) -> None:

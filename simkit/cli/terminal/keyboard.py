@@ -84,7 +84,7 @@ _READ_BYTES: Final = 1024  # [bytes] looked at at a time
 _SHOW_CURSOR: Final = b"\x1b[?25h"
 
 
-def open_keyboard(stream: IO[Any] | None) -> Keyboard | WindowsKeyboard | None:
+def open_keyboard(stream: IO[str] | None) -> Keyboard | WindowsKeyboard | None:
     """Reads the keys of a terminal; None where `stream` is none."""
     try:
         if stream is None or not stream.isatty():
@@ -111,7 +111,7 @@ class Keyboard:
     def __init__(self, file: int) -> None:
         self._file = file
         self._decoder = KeyDecoder()
-        self._original_modes: list[Any] | None = None  # the terminal's modes, as they were found
+        self._original_modes: list[int | list[bytes | int]] | None = None  # the terminal's modes, as they were found
         self._is_key_mode = False
         self._handlers: dict[int, Any] = {}
         self.is_lost = False

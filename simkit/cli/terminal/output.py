@@ -24,7 +24,9 @@ if TYPE_CHECKING:
     from simkit.diagnostics import Diagnostic
 
 
-JsonObject = dict[str, Any]
+JsonValue = Any
+"""Value that JSON or YAML can hold."""
+JsonObject = dict[str, JsonValue]
 """Object of JSON, as Python has it."""
 P = ParamSpec("P")
 INTERRUPTED = 130

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
-from simkit.cli.terminal.output import JsonObject
+from simkit.cli.terminal.output import JsonObject, JsonValue
 from simkit.errors import InputError
 from simkit.yaml_reader import NotYaml, read_yaml
 
@@ -39,10 +39,10 @@ _FIELDS = (
 _KIND_BY_TYPE: Final[dict[type, int]] = {bool: 1, int: 2, float: 3, str: 4}
 
 
-def plain_value(parameter: ParameterValue) -> Any:
+def plain_value(parameter: ParameterValue) -> JsonValue:
     """The value in a ParameterValue, as plain Python."""
     field = _FIELDS[int(parameter.type)]
-    found: Any = getattr(parameter, field, None)
+    found: JsonValue = getattr(parameter, field, None)
     return found.tolist() if hasattr(found, "tolist") else found
 
 
@@ -56,7 +56,7 @@ def parse_parameter_value(text: str) -> JsonObject:
     return value if value is not None else {"type": 4, "string_value": text}
 
 
-def parameter_value(found: Any) -> JsonObject | None:
+def parameter_value(found: JsonValue) -> JsonObject | None:
     """Plain Python as a ParameterValue; None where no type of parameter is like it."""
     if isinstance(found, list):
         kinds = {type(item) for item in found}
@@ -102,7 +102,7 @@ def read_parameter_file(path: Path, node: str, *, wildcard: bool) -> list[tuple[
     return [(name, value) for name, value in values.items() if value is not None]
 
 
-def _flatten(block: dict[Any, Any], above: str) -> JsonObject:
+def _flatten(block: dict[object, JsonValue], above: str) -> JsonObject:
     found: JsonObject = {}
     for key, value in block.items():
         name = f"{above}{key}"

@@ -9,10 +9,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from simkit.cli.terminal.output import absolute_name, is_hidden, not_found_error, print_note
 from simkit.errors import InputError, MessageError
+from simkit.msgs.message_types import Message
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
@@ -136,7 +137,7 @@ class LiveSource:
             with suppress(MessageError):
                 msgs.type_of(type_name)
 
-    def decode(self, received: ReceivedMessage) -> Any:
+    def decode(self, received: ReceivedMessage) -> Message:
         """The message itself."""
         from simkit import msgs
 
@@ -241,7 +242,7 @@ class BagSource:
     def prepare(self, entry: TopicEntry) -> None:
         """Nothing waits."""
 
-    def decode(self, received: ReceivedMessage) -> Any:
+    def decode(self, received: ReceivedMessage) -> Message:
         """The message itself."""
         return self.bag.decode(received)  # type: ignore[arg-type]
 

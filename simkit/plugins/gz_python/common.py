@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from typing import Any, Final
+from typing import Final, NoReturn
 
 from simkit.plugins.gz_python.math.missing_names import missing_name_error
 
@@ -24,5 +24,5 @@ def verbosity() -> int:
     return _level
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> NoReturn:
     raise missing_name_error("gz.common", name, __all__, {})

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import enum
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Final, TypeVar
+from typing import TYPE_CHECKING, Final, NoReturn, TypeVar
 
 from simkit.params import Params
 from simkit.plugins.gz_python.math.angle import Angle
@@ -178,7 +178,7 @@ class Element:
     def __repr__(self) -> str:
         return f"<Element {self._params.name!r}>"
 
-    def __getattr__(self, name: str) -> Any:
+    def __getattr__(self, name: str) -> NoReturn:
         raise missing_name_error("Element", name, dir(type(self)), {"get_element": "use find_element, or add_element"})
 
     # ------------------------------------------------------------------ values by type
@@ -339,5 +339,5 @@ _DOCUMENT: Final = "Root World Model Link Joint Collision Visual Geometry Geomet
 _INSTEAD: Final = dict.fromkeys(_DOCUMENT.split(), "use simkit.describe(file), which tells what a file means")
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> NoReturn:
     raise missing_name_error("sdformat", name, globals(), _INSTEAD)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 from simkit.diagnostics import NOWHERE
 from simkit.errors import MessageError
@@ -248,7 +248,7 @@ class Node:
     def subscribed_topics(self) -> list[str]:
         return list(self._subscriptions)
 
-    def __getattr__(self, name: str) -> Any:
+    def __getattr__(self, name: str) -> NoReturn:
         raise missing_name_error("Node", name, dir(type(self)), _INSTEAD)
 
     def __deepcopy__(self, memo: dict[int, object]) -> Node:
@@ -275,5 +275,5 @@ def _absolute_topic(topic: str) -> str:
     return topic if topic.startswith("/") else f"/{topic}"
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> NoReturn:
     raise missing_name_error("gz.transport", name, __all__, {})

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Protocol
 
+from simkit.msgs.message_types import Message
 from simkit.plugins.play_motion.motion import Motion, limit_violations, motion_of_message
 from simkit.plugins.play_motion.motion_planning import MotionRefused, find_joints
 from simkit.plugins.play_motion.trajectory_controllers import active_controllers
@@ -41,7 +42,7 @@ class MotionPlayer(Protocol):
     def is_idle(self) -> bool:
         """Check whether no motion is being played."""
 
-    def offer(self, service: str, type_name: str, handler: Callable[[Any], Any]) -> object:
+    def offer(self, service: str, type_name: str, handler: Callable[[Message], object]) -> object:
         """Offer a service below the plugin's namespace."""
 
 

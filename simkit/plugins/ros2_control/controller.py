@@ -8,6 +8,7 @@ import logging
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
+from simkit.msgs.message_types import Message
 from simkit.params import Params
 from simkit.plugins.live_parameters import declare_at
 from simkit.plugins.ros2_control.interfaces import InterfaceSelection
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 
 Key = tuple[str, str]
 Relay = Callable[..., Any]
+"""Callback of a subscriber, a service or an action."""
 Handle = TypeVar("Handle")
 
 
@@ -39,7 +41,7 @@ class ControllerEndpoints:
 
     def __init__(self) -> None:
         self._handles: dict[Key, Any] = {}
-        self.handlers: dict[Key, Callable[..., Any]] = {}
+        self.handlers: dict[Key, Relay] = {}
 
     def open(self, key: Key, make: Callable[[], Handle]) -> Handle:
         """Return the endpoint of that name, and make it where there is none yet."""
@@ -48,7 +50,7 @@ class ControllerEndpoints:
         found: Handle = self._handles[key]
         return found
 
-    def relay(self, key: Key, handler: Callable[..., Any], absent: Callable[..., Any] = lambda *_: None) -> Relay:
+    def relay(self, key: Key, handler: Relay, absent: Relay = lambda *_: None) -> Relay:
         """Return a callback that calls the present handler of an endpoint: `handler` from now on, or else `absent`."""
         self.handlers[key] = handler
         return lambda *values: self.handlers.get(key, absent)(*values)
@@ -159,14 +161,14 @@ class Controller(abc.ABC):
         )
         return publisher
 
-    def listen(self, topic: str, types: str | Sequence[str], callback: Callable[[Any], None]) -> Listener:
+    def listen(self, topic: str, types: str | Sequence[str], callback: Callable[[Message], None]) -> Listener:
         """As `Plugin.listen`, with the controller's node."""
         name, key = self.topic(topic), ("listen", f"{self.topic(topic)} {types}")
         relay = self.endpoints.relay(key, callback)
         listener: Listener = self.endpoints.open(key, lambda: self.plugin.listen(name, types, relay))
         return listener
 
-    def offer(self, service: str, type_name: str, handler: Callable[[Any], Any]) -> Service:
+    def offer(self, service: str, type_name: str, handler: Callable[[Message], object]) -> Service:
         """As `Plugin.offer`, with the controller's node."""
         name, key = self.topic(service), ("offer", self.topic(service))
         relay = self.endpoints.relay(key, handler)
@@ -227,26 +229,26 @@ class Controller(abc.ABC):
             on_change=on_change,
         )
 
-    def get_state(self) -> dict[str, Any]:
+    def get_state(self) -> dict[str, object]:
         """A copy of every attribute it gave itself; handles and publishers stand for themselves.
 
         What cannot be copied is left out and told once (SK-PLUGIN-006).
         """
         own = {k: v for k, v in vars(self).items() if k not in _OWN_ATTRIBUTES}
-        memo: dict[int, Any] = {id(self): self}
+        memo: dict[int, object] = {id(self): self}
         try:
             return copy.deepcopy(own, memo)
         except Exception:  # noqa: BLE001 - a foreign object may raise anything when copied
             return dict(self._copy_attributes(own, memo))
 
-    def set_state(self, state: Mapping[str, Any]) -> None:
+    def set_state(self, state: Mapping[str, object]) -> None:
         """Back to a state from `get_state`; what could not be copied stays as it is."""
         uncopied = vars(self).get("_uncopied", ())
         for key in [k for k in vars(self) if k not in _OWN_ATTRIBUTES and k not in state and k not in uncopied]:
             delattr(self, key)
         vars(self).update(copy.deepcopy(dict(state), {id(self): self}))
 
-    def _copy_attributes(self, own: Mapping[str, Any], memo: dict[int, Any]) -> Iterator[tuple[str, Any]]:
+    def _copy_attributes(self, own: Mapping[str, object], memo: dict[int, object]) -> Iterator[tuple[str, object]]:
         """Copies of the attributes that can be copied."""
         uncopied: set[str] = vars(self).setdefault("_uncopied", set())
         for key, value in own.items():

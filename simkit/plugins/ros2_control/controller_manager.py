@@ -339,7 +339,7 @@ class ControllerManager:
         rate = loaded.controller.update_rate
         return now_ns * rate // _SECOND > loaded.last * rate // _SECOND
 
-    def get_state(self) -> Any:
+    def get_state(self) -> object:
         """A copy of everything that changes as it runs."""
         hardware = self.hardware
         return (

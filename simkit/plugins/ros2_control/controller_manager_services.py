@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
+from simkit.msgs.message_types import Message
 from simkit.plugins.ros2_control.controller import Controller
 from simkit.plugins.ros2_control.controller_manager import ControllerManager, LoadedController, controller_kinds
 
@@ -22,7 +23,7 @@ _ROS_1_STATES: Final = {"unconfigured": "initialized", "inactive": "stopped", "a
 
 def offer_services(manager: ControllerManager) -> None:
     """Opens the services of a controller manager at its node."""
-    handlers: dict[str, Callable[[Any], Any]] = {
+    handlers: dict[str, Callable[[Message], object]] = {
         "ListControllers": lambda _: {"controller": [_state(manager, n, c) for n, c in manager.controllers.items()]},
         "ListControllerTypes": lambda _: _types(),
         "LoadController": lambda request: {"ok": _load(manager, request.name)},

@@ -243,7 +243,7 @@ class Hardware:
 
     # ------------------------------------------------------------------ state
 
-    def get_state(self) -> Any:
+    def get_state(self) -> object:
         """A copy of everything that changes as it runs."""
         values = self.states.values.copy(), self.commands.values.copy()
         own = (*values, dict(self.owners), self._sources.copy(), self._read_interfaces)

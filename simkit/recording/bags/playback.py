@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from simkit import msgs
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError, MessageError
 from simkit.msgs.message_text import message_to_dict
+from simkit.msgs.message_types import Message
 from simkit.recording.bags.reader import BagMessage, BagReader, open_bag_to_read
 from simkit.runtime.communication.topic_bus import absolute_name
 
@@ -176,7 +177,7 @@ class Playback:
         text = f"{self._bag.path}: {topic} is {type_name}, but {new} takes {allowed}"
         raise InputError(f"SK-BAG-015 {text}", "SK-BAG-015")
 
-    def _message_to_send(self, message: BagMessage) -> Any:
+    def _message_to_send(self, message: BagMessage) -> Message:
         """The message as one of simkit's own types."""
         wanted = self._sent_types[message.topic, message.type_name]
         found = self._bag.decode(message)

@@ -18,9 +18,12 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 from simkit import msgs
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError, MessageError
+from simkit.msgs import message_types
 from simkit.yaml_reader import NotYaml, read_yaml
 
 if TYPE_CHECKING:
+    from rosbags.interfaces import Connection
+    from rosbags.interfaces.typing import Typesdict
     from rosbags.typesys.store import Typestore
 
 LATEST_SIMULATED_TIME: Final = 100_000_000 * 1_000_000_000
@@ -125,7 +128,7 @@ class BagReader:
                 raise InputError(f"SK-CLI-030 no topic {name!r} in {self.path}; {hint}", "SK-CLI-030")
         yield from self._source.messages(frozenset(topics), start)
 
-    def decode(self, message: BagMessage) -> Any:
+    def decode(self, message: BagMessage) -> message_types.Message:
         """The message itself.
 
         Raises:
@@ -176,7 +179,7 @@ class BagReader:
             from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
             self._store = get_typestore(Stores.EMPTY)
-            found: dict[str, Any] = {}
+            found: Typesdict = {}
             for topic in self.topics:
                 if topic.definition:
                     try:
@@ -197,7 +200,7 @@ def open_bag_to_read(path: str | Path) -> BagReader:
     return BagReader(Path(path))
 
 
-def _used_types(fields: Sequence[tuple[str, Any]]) -> Iterator[str]:
+def _used_types(fields: Sequence[tuple[str, message_types.FieldNode]]) -> Iterator[str]:
     for _, (kind, what) in fields:
         inner = what[0] if int(kind) in (3, 4) else (kind, what)
         if int(inner[0]) == 2:
@@ -291,7 +294,7 @@ class _CompleteBag:
             self._reader.close()
 
 
-def _definition(connection: Any) -> str:
+def _definition(connection: Connection) -> str:
     return str(connection.msgdef.data) if connection.msgdef.format.name == "MSG" else ""
 
 

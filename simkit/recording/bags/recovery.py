@@ -5,7 +5,7 @@ from __future__ import annotations
 import struct
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, BinaryIO
 
 from simkit.errors import InputError
 from simkit.recording.bags.recorder import open_bag
@@ -76,7 +76,7 @@ class _ReadableMessages:
             with path.open("rb") as file:
                 yield from self._messages_of(file)
 
-    def _messages_of(self, file: Any) -> Iterator[_Record]:
+    def _messages_of(self, file: BinaryIO) -> Iterator[_Record]:
         from mcap.exceptions import McapError
         from mcap.records import Channel, Message, Schema
         from mcap.stream_reader import StreamReader

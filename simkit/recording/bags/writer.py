@@ -5,9 +5,12 @@ from __future__ import annotations
 import shutil
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING
 
 from simkit import msgs
+
+if TYPE_CHECKING:
+    from yaml import SafeDumper
 
 _FOREVER = {"sec": 9223372036, "nsec": 854775807}
 
@@ -204,7 +207,7 @@ class Rosbag2Folder(McapBag):
         }
 
 
-def _plain_dumper() -> Any:
+def _plain_dumper() -> type[SafeDumper]:
     """A dumper that repeats equal values instead of using anchors."""
     import yaml
 

@@ -9,28 +9,26 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
 from simkit.msgs.message_text import NUMBER_CODES, field_nodes, field_value
-from simkit.msgs.message_types import ARRAY, BASE, NAME, SEQUENCE
+from simkit.msgs.message_types import ARRAY, BASE, NAME, SEQUENCE, FieldNode, FieldValue, Message
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
 
     from simkit.msgs import Quaternion, Time
 
-Number = Callable[[Any], float]
-Reader = Callable[[Any], Any]
+Number = Callable[[FieldValue], float]
+Reader = Callable[[FieldValue], FieldValue]
 """Reads a value of a message."""
-FieldNode = tuple[int, Any]
-"""Kind of a field, and what it is of, as in the type store."""
 Unit = Callable[[str, str], str]
 
 MOST_CURVES: Final = 64
@@ -319,15 +317,15 @@ def _compose(first: Reader, second: Reader) -> Reader:
     return second if first is _identity else lambda message: second(first(message))
 
 
-def _field_value(name: str, value: Any) -> Any:
+def _field_value(name: str, value: FieldValue) -> FieldValue:
     return field_value(value, name)
 
 
-def _item(number: int, value: Any) -> Any:
+def _item(number: int, value: FieldValue) -> FieldValue:
     return value[number]
 
 
-def _item_with_name(key: str, name: str, items: Any) -> Any:
+def _item_with_name(key: str, name: str, items: Iterable[Message]) -> Message:
     """The message of a name; names of frames may be written without what stands before their last part."""
     for item in items:
         if field_value(item, key) == name:
@@ -335,12 +333,12 @@ def _item_with_name(key: str, name: str, items: Any) -> Any:
     raise LookupError(name)
 
 
-def _item_at_name(before: Reader, key: str, name: str, read: Reader, message: Any) -> Any:
+def _item_at_name(before: Reader, key: str, name: str, read: Reader, message: Message) -> FieldValue:
     names = field_value(before(message), key)
     return read(message)[list(names).index(name)]
 
 
-def _number(read: Reader, message: Any) -> float:
+def _number(read: Reader, message: Message) -> float:
     try:
         return float(read(message))
     except (LookupError, ValueError):
@@ -351,11 +349,11 @@ def _seconds(stamp: Time) -> float:
     return float(int(stamp.sec) + int(stamp.nanosec) * 1e-9)
 
 
-def _norm(names: list[str], value: Any) -> float:
+def _norm(names: list[str], value: FieldValue) -> float:
     return math.hypot(*(float(getattr(value, name)) for name in names))
 
 
-def _array_statistic(what: str, value: Any) -> float:
+def _array_statistic(what: str, value: FieldValue) -> float:
     """Compute a statistic of the finite items; NaN where there are none."""
     if what == "length":
         return float(len(value))

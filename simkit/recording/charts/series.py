@@ -6,11 +6,12 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from simkit.msgs.message_types import Message
 from simkit.recording.charts.fields import Curve
 
 if TYPE_CHECKING:
@@ -114,7 +115,7 @@ class _SeriesCollector:
         for curve, (times, values) in zip(self._curves, self._rows, strict=True):
             self._of.setdefault(curve.topic, []).append((curve, times, values))
 
-    def take(self, topic: str, time: float, message: Any) -> None:
+    def take(self, topic: str, time: float, message: Message) -> None:
         for curve, times, values in self._of[topic]:
             if message.__msgtype__ != curve.type_name:
                 continue

@@ -7,14 +7,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Protocol
 
 import numpy as np
+import numpy.typing as npt
 
 from simkit.errors import InputError
+from simkit.msgs.message_types import Message
 
 if TYPE_CHECKING:
     from simkit.msgs import CompressedImage
     from simkit.msgs import Image as ImageMessage
 
-Pixels = np.ndarray[Any, Any]
+Pixels = npt.NDArray[Any]
 _ENCODINGS: Final = {
     "mono8": ("u1", 1),
     "mono16": ("u2", 1),
@@ -44,7 +46,7 @@ class MessageWriter(Protocol):
 
     notes: list[str]
 
-    def take(self, time_ns: int, message: Any) -> str:
+    def take(self, time_ns: int, message: Message) -> str:
         """Writes one; the name of its file, relative to the export."""
 
     def close(self) -> None:
@@ -117,7 +119,7 @@ class PngFiles:
         self.notes: list[str] = []
         folder.mkdir()
 
-    def take(self, time_ns: int, message: Any) -> str:
+    def take(self, time_ns: int, message: Message) -> str:
         """Writes one; the name of its file, relative to the export."""
         import cv2
 
@@ -151,7 +153,7 @@ class NpzFile:
         self.notes: list[str] = []
         folder.mkdir()
 
-    def take(self, time_ns: int, message: Any) -> str:
+    def take(self, time_ns: int, message: Message) -> str:
         """Writes one; the name of its file, relative to the export."""
         target = self._folder / f"{self._count:06d}.npz"
         with target.open("wb") as file:
@@ -177,7 +179,7 @@ class VideoFile:
         self._last: Pixels | None = None
         self._size = (0, 0)
 
-    def take(self, time_ns: int, message: Any) -> str:
+    def take(self, time_ns: int, message: Message) -> str:
         """Writes one; the name of the film."""
         frame = _video_pixels(message)
         if not self._early and self._writer is None:
@@ -253,7 +255,7 @@ def _decode_compressed(message: CompressedImage) -> Pixels:
     return np.asarray(found)
 
 
-def _video_pixels(message: Any) -> Pixels:
+def _video_pixels(message: Message) -> Pixels:
     """Three channels of 8 bits, blue first; numbers of more bits and depths from black for 0 to white for the most."""
     if not hasattr(message, "encoding"):
         values = _decode_compressed(message)

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
+import numpy.typing as npt
 
 if TYPE_CHECKING:
     from simkit.msgs import PointCloud2
 
-PointArray = np.ndarray[Any, Any]
+PointArray = npt.NDArray[np.void]
 """Structured array with the fields of a cloud."""
 _KINDS: Final = ("", "i1", "u1", "i2", "u2", "i4", "u4", "f4", "f8")  # sensor_msgs/msg/PointField
 _PLY: Final = {
@@ -96,7 +97,7 @@ def _ply_bytes(found: PointArray) -> bytes:
     names = found.dtype.names or ()
     if {"x", "y", "z"} <= set(names):
         found = found[np.isfinite(found["x"]) & np.isfinite(found["y"]) & np.isfinite(found["z"])]
-    parts: list[tuple[str, str, Any]] = []
+    parts: list[tuple[str, str, npt.NDArray[np.generic]]] = []
     for name in names:
         values = found[name]
         if name in ("rgb", "rgba") and values.dtype.itemsize == 4:

@@ -9,13 +9,14 @@ from dataclasses import dataclass, field
 from importlib import import_module
 from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
+import numpy.typing as npt
 
 from simkit.errors import InputError
 from simkit.msgs.message_text import field_nodes, field_value
-from simkit.msgs.message_types import BASE, NAME
+from simkit.msgs.message_types import BASE, NAME, FieldNode, FieldValue
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
@@ -32,10 +33,8 @@ _DTYPES: Final = {
 }
 _CODES: Final = {"?": "b", "f4": "f", "f8": "d", "i1": "b", "u1": "B", "i2": "h", "u2": "H", "i4": "i", "u4": "I"}
 TEXT: Final = "text"
-Reader = Callable[[Any], Any]
+Reader = Callable[[FieldValue], FieldValue]
 """Reads a value of a message."""
-FieldNode = tuple[int, Any]
-"""Kind of a field, and what it is of, as in the type store."""
 
 
 @dataclass
@@ -54,7 +53,7 @@ class Column:
     kind: str
     is_list: bool
     read: Reader
-    values: Any = field(default_factory=list)
+    values: FieldValue = field(default_factory=list)
     counts: list[int] = field(default_factory=list)
 
     def __post_init__(self) -> None:
@@ -85,13 +84,13 @@ class Column:
         """Largest number of values in a message."""
         return max(self.counts, default=0) if self.is_list else 1
 
-    def numbers(self) -> np.ndarray[Any, Any]:
+    def numbers(self) -> npt.NDArray[np.generic]:
         """Return all values in one array; texts as NumPy's."""
         if self.kind == TEXT:
             return np.array(self.values, dtype=np.str_) if self.values else np.empty(0, dtype="U1")
         return np.frombuffer(self.values, dtype=self.kind) if len(self.values) else np.empty(0, dtype=self.kind)
 
-    def rows(self) -> Iterator[Any]:
+    def rows(self) -> Iterator[FieldValue]:
         """Yield what each message has: a value, or a list of values."""
         values: Sequence[object] = self.values
         if self.kind == "?":
@@ -214,7 +213,7 @@ def _cells(column: Column) -> Iterator[list[object]]:
         yield cells + [""] * (most - len(cells))
 
 
-def _text_writer(kind: str) -> Any:
+def _text_writer(kind: str) -> Callable[[FieldValue], object]:
     """Return a function that writes a value so that reading it gives the same bits."""
     if kind == "f4":
         return lambda value: str(np.float32(value))
@@ -229,7 +228,7 @@ def write_npz(path: Path, times: Sequence[int], columns: Sequence[Column]) -> li
     Lists of one length are a matrix; others lie one behind the other, and message i has those from
     `PATH.offsets[i]` to `PATH.offsets[i + 1]`.
     """
-    arrays: dict[str, np.ndarray[Any, Any]] = {"time_ns": np.array(times, dtype=np.int64)}
+    arrays: dict[str, npt.NDArray[np.generic]] = {"time_ns": np.array(times, dtype=np.int64)}
     for column in columns:
         numbers = column.numbers()
         if column.is_list:

@@ -6,7 +6,7 @@ a simulation.
 
 from __future__ import annotations
 
-from typing import Any, Final
+from typing import Final, NoReturn
 
 from simkit.plugins.gz_python.math.angle import Angle
 from simkit.plugins.gz_python.math.axis_aligned_box import AxisAlignedBox
@@ -121,5 +121,5 @@ _INSTEAD: Final = {
 """What gz-math has, this package has not, and something else does."""
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> NoReturn:
     raise missing_name_error("gz.math", name, __all__, _INSTEAD)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 import sys
-from typing import Any, Final
+from typing import Final
 
+from simkit.plugins.gz_python.math.class_constant import CppArgument
 from simkit.plugins.gz_python.math.vectors import Vector3d, VectorLike
 
 _LARGEST: Final = sys.float_info.max
@@ -16,7 +17,7 @@ class AxisAlignedBox:
 
     __hash__ = None  # type: ignore[assignment]
 
-    def __init__(self, *values: Any) -> None:
+    def __init__(self, *values: CppArgument) -> None:
         self._min, self._max = Vector3d(*[_LARGEST] * 3), Vector3d(*[-_LARGEST] * 3)
         if len(values) == 1:
             values = (values[0].min(), values[0].max())

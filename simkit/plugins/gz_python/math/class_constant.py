@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TypeVar, cast
+from typing import Any, TypeVar, cast
 
 T = TypeVar("T")
+
+
+CppArgument = Any
+"""Argument of a function that C++ overloads; its class tells which overload is meant."""
 
 
 class ClassConstant:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 import sys
-from typing import Any, Final
+from typing import Final
 
-from simkit.plugins.gz_python.math.class_constant import ClassConstant
+from simkit.plugins.gz_python.math.class_constant import ClassConstant, CppArgument
 from simkit.plugins.gz_python.math.scalars import DEFAULT_TOLERANCE, clamp, format_number
 
 _KELVIN: Final = 273.15
@@ -26,7 +26,7 @@ class Color:
     CYAN = ClassConstant(0, 1, 1)
     __hash__ = None  # type: ignore[assignment]
 
-    def __init__(self, *values: Any) -> None:
+    def __init__(self, *values: CppArgument) -> None:
         self._c = [0.0, 0.0, 0.0, 1.0]
         if len(values) == 1:
             values = (values[0].r(), values[0].g(), values[0].b(), values[0].a())

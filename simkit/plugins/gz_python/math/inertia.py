@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
+from simkit.plugins.gz_python.math.class_constant import CppArgument
 from simkit.plugins.gz_python.math.matrices import Matrix3d
 from simkit.plugins.gz_python.math.pose import Pose3d
 from simkit.plugins.gz_python.math.quaternion import Quaterniond
@@ -38,7 +39,7 @@ class MassMatrix3d:
 
     __hash__ = None  # type: ignore[assignment]
 
-    def __init__(self, *values: Any) -> None:
+    def __init__(self, *values: CppArgument) -> None:
         self._mass, self._diagonal, self._rest = 0.0, Vector3d(), Vector3d()
         if len(values) == 1:
             values = (values[0].mass(), values[0].diagonal_moments(), values[0].off_diagonal_moments())
@@ -91,13 +92,13 @@ class MassMatrix3d:
 
     # ------------------------------------------------------------------ of bodies
 
-    def set_from_box(self, *values: Any) -> bool:
+    def set_from_box(self, *values: CppArgument) -> bool:
         """Set the moments of a box: ([mass], size [m], [rotation]); without a mass the present one."""
         mass, (size, *rest) = self._leading_mass(values)
         x, y, z = (v * v for v in components_of(size, 3))
         return self._set_turned(mass, (mass / 12 * (y + z), mass / 12 * (z + x), mass / 12 * (x + y)), rest)
 
-    def set_from_cylinder_z(self, *values: Any) -> bool:
+    def set_from_cylinder_z(self, *values: CppArgument) -> bool:
         """Set the moments of a cylinder along z: (mass, length [m], radius [m], [rotation]), or without the mass."""
         *numbers, last = values
         rest = [last] if callable(getattr(last, "w", None)) else []
@@ -113,12 +114,12 @@ class MassMatrix3d:
         moment = 0.4 * mass * float(values[-1]) ** 2
         return self._set_turned(mass, (moment, moment, moment), [])
 
-    def _leading_mass(self, values: tuple[Any, ...]) -> tuple[float, tuple[Any, ...]]:
+    def _leading_mass(self, values: tuple[CppArgument, ...]) -> tuple[float, tuple[CppArgument, ...]]:
         if isinstance(values[0], (int, float)):
             return float(values[0]), values[1:]
         return self._mass, values
 
-    def _set_turned(self, mass: float, moments: tuple[float, float, float], rotation: list[Any]) -> bool:
+    def _set_turned(self, mass: float, moments: tuple[float, float, float], rotation: list[CppArgument]) -> bool:
         self._mass = mass
         turn = Matrix3d(rotation[0]).array() if rotation else np.eye(3)
         return self.set_moi(Matrix3d.of(turn @ np.diag(moments) @ turn.T))
@@ -207,7 +208,7 @@ class Inertiald:
 
     __hash__ = None  # type: ignore[assignment]
 
-    def __init__(self, *values: Any) -> None:
+    def __init__(self, *values: CppArgument) -> None:
         self._matrix, self._pose = MassMatrix3d(), Pose3d()
         if len(values) == 1:
             values = (values[0].mass_matrix(), values[0].pose())

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from simkit.plugins.gz_python.math.class_constant import ClassConstant
+from simkit.plugins.gz_python.math.class_constant import ClassConstant, CppArgument
 from simkit.plugins.gz_python.math.pose import Pose3d
 from simkit.plugins.gz_python.math.quaternion import Quaterniond
 from simkit.plugins.gz_python.math.scalars import DEFAULT_TOLERANCE, format_number
@@ -23,7 +23,7 @@ class Matrix3d:
     ZERO = ClassConstant()
     __hash__ = None  # type: ignore[assignment]
 
-    def __init__(self, *values: Any) -> None:
+    def __init__(self, *values: CppArgument) -> None:
         self._m: Rows = np.zeros((3, 3))
         if len(values) == 9:
             self.set(*values)
@@ -90,7 +90,7 @@ class Matrix3d:
     def __sub__(self, other: Matrix3d) -> Matrix3d:
         return Matrix3d.of(self._m - other._m)
 
-    def __mul__(self, other: Any) -> Any:
+    def __mul__(self, other: CppArgument) -> Any:
         if isinstance(other, Matrix3d):
             return Matrix3d.of(self._m @ other._m)
         if isinstance(other, (int, float)):
@@ -123,7 +123,7 @@ class Matrix4d:
     ZERO = ClassConstant()
     __hash__ = None  # type: ignore[assignment]
 
-    def __init__(self, *values: Any) -> None:
+    def __init__(self, *values: CppArgument) -> None:
         self._m: Rows = np.zeros((4, 4))
         if len(values) == 16:
             self._m[:] = np.reshape([float(v) for v in values], (4, 4))
@@ -164,7 +164,7 @@ class Matrix4d:
     def transposed(self) -> Matrix4d:
         return self._of(self._m.T.copy())
 
-    def __mul__(self, other: Any) -> Any:
+    def __mul__(self, other: CppArgument) -> Any:
         if isinstance(other, Matrix4d):
             return self._of(self._m @ other._m)
         return Vector3d(*(self._m @ np.array([*components_of(other, 3), 1.0]))[:3].tolist())

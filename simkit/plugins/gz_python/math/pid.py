@@ -6,7 +6,8 @@ import math
 from collections import deque
 from collections.abc import Callable
 from datetime import timedelta
-from typing import Any
+
+from simkit.plugins.gz_python.math.class_constant import CppArgument
 
 
 def _getter(attribute: str) -> Callable[[PID], float]:
@@ -66,7 +67,7 @@ class PID:
         """Forgets errors and command."""
         self._last = self._error = self._integral = self._rate = self._cmd = 0.0
 
-    def update(self, error: float, *rate_and_time: Any) -> float:
+    def update(self, error: float, *rate_and_time: CppArgument) -> float:
         """The command for an error now: `update(error, dt)` or `update(error, rate, dt)`.
 
         Args:

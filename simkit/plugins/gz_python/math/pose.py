@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-from simkit.plugins.gz_python.math.class_constant import ClassConstant
+from simkit.plugins.gz_python.math.class_constant import ClassConstant, CppArgument
 from simkit.plugins.gz_python.math.quaternion import Quaterniond
 from simkit.plugins.gz_python.math.vectors import Vector3d
 
@@ -19,7 +17,7 @@ class Pose3d:
     ZERO = ClassConstant()
     __hash__ = None  # type: ignore[assignment]
 
-    def __init__(self, *values: Any) -> None:
+    def __init__(self, *values: CppArgument) -> None:
         self._p, self._q = Vector3d(), Quaterniond()
         if len(values) == 7:
             self._p.set(*values[:3])
@@ -29,7 +27,7 @@ class Pose3d:
         elif values:
             self.set(*values)
 
-    def set(self, *values: Any) -> None:
+    def set(self, *values: CppArgument) -> None:
         """From six numbers, or a position and either a rotation or roll, pitch, yaw."""
         if len(values) == 6:
             self._p.set(*values[:3])
@@ -108,7 +106,7 @@ class Pose3d:
         self._p, self._q = other._p, other._q
         return self
 
-    def coord_position_add(self, other: Any) -> Vector3d:
+    def coord_position_add(self, other: CppArgument) -> Vector3d:
         """Return a point in the frame that this pose is given in; of a pose, the position of `other * self`."""
         if callable(getattr(other, "pos", None)):
             moved: Vector3d = other.rot().rotate_vector(self._p) + other.pos()

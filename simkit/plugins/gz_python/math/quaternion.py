@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import Any, Final, Protocol
 
-from simkit.plugins.gz_python.math.class_constant import ClassConstant
+from simkit.plugins.gz_python.math.class_constant import ClassConstant, CppArgument
 from simkit.plugins.gz_python.math.scalars import DEFAULT_TOLERANCE, round_half_away
 from simkit.plugins.gz_python.math.vectors import EQUALITY_TOLERANCE, Vector3d, VectorLike, components_of
 
@@ -31,7 +31,7 @@ class Quaterniond:
     ZERO = ClassConstant(0, 0, 0, 0)
     __hash__ = None  # type: ignore[assignment]
 
-    def __init__(self, *values: Any) -> None:
+    def __init__(self, *values: CppArgument) -> None:
         self._q: tuple[float, float, float, float] = (1.0, 0.0, 0.0, 0.0)
         if len(values) == 4:
             self.set(*values)
@@ -44,7 +44,7 @@ class Quaterniond:
         elif values:
             raise TypeError(f"a quaternion takes 0 to 4 values, got {len(values)}")
 
-    def _take(self, value: Any) -> None:
+    def _take(self, value: CppArgument) -> None:
         if callable(getattr(value, "w", None)):
             self.set(value.w(), value.x(), value.y(), value.z())
         elif callable(getattr(value, "determinant", None)):
@@ -83,7 +83,7 @@ class Quaterniond:
 
     # ------------------------------------------------------------------ from and to other forms
 
-    def set_from_axis_angle(self, *values: Any) -> None:
+    def set_from_axis_angle(self, *values: CppArgument) -> None:
         """From (axis, angle) or (x, y, z, angle) [rad]; an axis of no length is no rotation."""
         x, y, z = components_of(values[0], 3) if len(values) == 2 else values[:3]
         square = x * x + y * y + z * z
@@ -95,7 +95,7 @@ class Quaterniond:
         self._q = (math.cos(half), x * scale, y * scale, z * scale)
         self.normalize()
 
-    def set_from_euler(self, *values: Any) -> None:
+    def set_from_euler(self, *values: CppArgument) -> None:
         """From roll, pitch, yaw [rad]: Rz(yaw)·Ry(pitch)·Rx(roll)."""
         roll, pitch, yaw = components_of(values[0], 3) if len(values) == 1 else values
         cr, sr = math.cos(roll / 2), math.sin(roll / 2)
@@ -110,7 +110,7 @@ class Quaterniond:
         self.normalize()
 
     @staticmethod
-    def euler_to_quaternion(*values: Any) -> Quaterniond:
+    def euler_to_quaternion(*values: CppArgument) -> Quaterniond:
         """Make a rotation of roll, pitch, yaw [rad]."""
         found = Quaterniond()
         found.set_from_euler(*values)
@@ -291,7 +291,7 @@ class Quaterniond:
     def __neg__(self) -> Quaterniond:
         return Quaterniond(*(-a for a in self._q))
 
-    def __mul__(self, other: Any) -> Any:
+    def __mul__(self, other: CppArgument) -> Any:
         if isinstance(other, (int, float)):
             return self._times(other)
         if not callable(getattr(other, "w", None)):

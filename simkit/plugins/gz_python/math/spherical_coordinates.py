@@ -9,6 +9,7 @@ from typing import Any, ClassVar, Final
 import numpy as np
 
 from simkit.plugins.gz_python.math.angle import Angle
+from simkit.plugins.gz_python.math.class_constant import CppArgument
 from simkit.plugins.gz_python.math.vectors import Vector3d, VectorLike, components_of
 from simkit.scene import SphericalCoordinates as Place
 from simkit.sensors.environment.geodesy import WorldOnPlanet
@@ -53,7 +54,7 @@ class SphericalCoordinates:
     SPHERICAL, ECEF, GLOBAL, LOCAL = Coordinates
     __hash__ = None  # type: ignore[assignment]
 
-    def __init__(self, *values: Any) -> None:
+    def __init__(self, *values: CppArgument) -> None:
         self._surface = Surface.EARTH_WGS84
         self._equatorial, self._polar = _AXES[self._surface]
         self._latitude, self._longitude, self._heading = Angle(), Angle(), Angle()
@@ -70,7 +71,7 @@ class SphericalCoordinates:
             raise TypeError(f"spherical coordinates take 0, 1, 3 or 5 values, got {len(values)}")
 
     @staticmethod
-    def convert(value: Any) -> Any:
+    def convert(value: CppArgument) -> Any:
         """A surface's name of a surface, and the other way round; an unknown name is the Earth's."""
         if isinstance(value, Surface):
             return value.name

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 import operator
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any, ClassVar, Final, Protocol, TypeAlias, TypeVar
+from typing import ClassVar, Final, Protocol, TypeAlias, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
-from simkit.plugins.gz_python.math.class_constant import ClassConstant
+from simkit.plugins.gz_python.math.class_constant import ClassConstant, CppArgument
 from simkit.plugins.gz_python.math.scalars import DEFAULT_TOLERANCE, format_number, round_half_away
 
 V = TypeVar("V", bound="Vector")
@@ -59,7 +59,7 @@ class Vector:
     NUMBER: ClassVar[type[float] | type[int]] = float
     __hash__ = None  # type: ignore[assignment]
 
-    def __init__(self, *values: Any) -> None:
+    def __init__(self, *values: CppArgument) -> None:
         if len(values) == 1:
             values = components_of(values[0], self.SIZE)
         if values and len(values) != self.SIZE:

@@ -7,7 +7,7 @@ topics, and back. Nothing here is serialised as protobuf, and nothing leaves the
 from __future__ import annotations
 
 import re
-from typing import Any, Final
+from typing import Final
 
 from simkit.plugins.gz_python.math.missing_names import missing_name_error
 from simkit.plugins.gz_python.msgs.message import MESSAGE_CLASSES, Message
@@ -42,7 +42,7 @@ def contents_of(module: str) -> dict[str, object]:
     return {name: MESSAGE_CLASSES[name], "__all__": [name]}
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> type[Message]:
     if name in MESSAGE_CLASSES:
         return MESSAGE_CLASSES[name]
     raise missing_name_error("gz.msgs", name, MESSAGE_CLASSES, {})

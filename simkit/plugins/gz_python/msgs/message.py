@@ -15,14 +15,18 @@ PLAIN_DEFAULTS: Final[Mapping[str, object]] = {"f": 0.0, "i": 0, "s": "", "b": F
 """Letter of a kind of field -> its value at the start: number, whole number, text, truth, bytes."""
 
 
-class Repeated(list[Any]):
+FieldValue = Any
+"""Value of a field: a number, a text, bytes, a message, or a `Repeated` of such."""
+
+
+class Repeated(list[FieldValue]):
     """A field that may be there many times; of messages `add()` makes one more."""
 
     def __init__(self, kind: str, values: Iterable[object] = ()) -> None:
         super().__init__(values)
         self._kind = kind
 
-    def add(self, **fields: object) -> Any:
+    def add(self, **fields: object) -> Message:
         """One more message, with these fields."""
         made = MESSAGE_CLASSES[self._kind](**fields)
         self.append(made)
@@ -53,9 +57,9 @@ class Message:
     DESCRIPTOR: ClassVar[Descriptor]
     FIELDS: ClassVar[Mapping[str, str]] = {}
     __slots__ = ("_values",)
-    _values: dict[str, Any]
+    _values: dict[str, FieldValue]
 
-    def __init__(self, **fields: Any) -> None:
+    def __init__(self, **fields: FieldValue) -> None:
         object.__setattr__(self, "_values", {})
         for name, value in fields.items():
             kind = type(self)._kind_of(name)
@@ -74,7 +78,7 @@ class Message:
             raise AttributeError(f"gz.msgs.{cls.__name__} has no field {name!r}; {hint}")
         return kind
 
-    def __getattr__(self, name: str) -> Any:
+    def __getattr__(self, name: str) -> FieldValue:
         if name.startswith("_"):
             raise AttributeError(name)
         values = self._values
@@ -88,7 +92,7 @@ class Message:
                 values[name] = MESSAGE_CLASSES[kind]()
         return values[name]
 
-    def __setattr__(self, name: str, value: Any) -> None:
+    def __setattr__(self, name: str, value: FieldValue) -> None:
         kind = type(self)._kind_of(name)
         if kind not in PLAIN_DEFAULTS:
             raise AttributeError(f"{name} of gz.msgs.{type(self).__name__} cannot be assigned to; use CopyFrom")

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import MessageError
-from simkit.plugins.gz_python.msgs.message import MESSAGE_CLASSES, PLAIN_DEFAULTS, Message
+from simkit.plugins.gz_python.msgs.message import MESSAGE_CLASSES, PLAIN_DEFAULTS, FieldValue, Message
 from simkit.plugins.gz_python.msgs.text_format import parse_message, parse_value
 
 TOLERANCE: Final = 1e-8
@@ -51,7 +51,7 @@ class MessageMatcher:
         self._path: tuple[str, ...] = tuple(field.split(".")) if field else ()
         self._owner = kind.__name__
         self._kind = ""
-        self._wanted: Any
+        self._wanted: FieldValue
         if not self._path:
             self._wanted = parse_message(kind, text)
             return
@@ -65,7 +65,7 @@ class MessageMatcher:
         return self._is_same(message) == self._is_positive
 
     def _is_same(self, message: Message) -> bool:
-        found: Any = message
+        found: FieldValue = message
         for name in self._path:
             found = getattr(found, name)
         single = self._owner in _SINGLE_PRECISION_MESSAGES
@@ -94,7 +94,7 @@ def _find_field(kind: type[Message], path: Sequence[str]) -> tuple[str, str]:
     return owner, found
 
 
-def _values_match(want: object, found: Any, tolerance: float, single: bool, is_partial: bool) -> bool:
+def _values_match(want: object, found: FieldValue, tolerance: float, single: bool, is_partial: bool) -> bool:
     """Check whether a value is the wanted one; `is_partial`: fields that are not set in it do not count."""
     if isinstance(want, Message):
         single = type(want).__name__ in _SINGLE_PRECISION_MESSAGES

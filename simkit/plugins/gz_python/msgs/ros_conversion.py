@@ -6,13 +6,13 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 import numpy as np
 
 from simkit import msgs
 from simkit.errors import InputError, MessageError
-from simkit.plugins.gz_python.msgs.message import MESSAGE_CLASSES, PLAIN_DEFAULTS, Message
+from simkit.plugins.gz_python.msgs.message import MESSAGE_CLASSES, PLAIN_DEFAULTS, FieldValue, Message
 
 if TYPE_CHECKING:
     from simkit.msgs import Header, Image, JointState, LaserScan, Odometry, Quaternion, TFMessage
@@ -60,7 +60,7 @@ Contacts ros_gz_interfaces/msg/Contacts header contact=contacts
 """Message, ROS type, fields: `gz`, `gz=ros` under another name, `gz<ros` only read, `.` the whole message."""
 
 
-RosFields: TypeAlias = dict[str, Any]
+RosFields: TypeAlias = dict[str, FieldValue]
 """Fields of a ROS message, for `simkit.msgs.make`."""
 
 
@@ -77,7 +77,7 @@ class RosTwin:
 
     ros: str
     to_ros: Callable[[Message], RosFields]
-    from_ros: Callable[[Message, Any], None]
+    from_ros: Callable[[Message, FieldValue], None]
     is_wrapped: bool = False
 
 
@@ -121,7 +121,7 @@ def _twin_of_field(kind: str) -> RosTwin:
     return next(twin for twin in _all_twins()[kind] if not twin.is_wrapped)
 
 
-def _value_to_ros(kind: str, value: Any) -> object:
+def _value_to_ros(kind: str, value: FieldValue) -> object:
     if kind in PLAIN_DEFAULTS:
         return value
     if not kind.endswith("[]"):
@@ -129,7 +129,7 @@ def _value_to_ros(kind: str, value: Any) -> object:
     return list(value) if kind[:-2] in PLAIN_DEFAULTS else [_value_to_ros(kind[:-2], one) for one in value]
 
 
-def _value_from_ros(gz: Message, ours: str, kind: str, value: Any) -> None:
+def _value_from_ros(gz: Message, ours: str, kind: str, value: FieldValue) -> None:
     if kind in PLAIN_DEFAULTS:
         setattr(gz, ours, value)
     elif not kind.endswith("[]"):

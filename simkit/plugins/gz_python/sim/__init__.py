@@ -7,7 +7,7 @@ commands that take effect before the next step by the rules of gz-sim's physics 
 
 from __future__ import annotations
 
-from typing import Any, Final
+from typing import Final, NoReturn
 
 from simkit.plugins.gz_python.math.missing_names import missing_name_error
 from simkit.plugins.gz_python.sim import components
@@ -53,5 +53,5 @@ _IN_FIXTURE: Final = ("Server", "ServerConfig", "TestFixture")
 """Names that `gz.sim` has from `simkit.testing.gz_fixture`."""
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> NoReturn:
     raise missing_name_error("gz.sim", name, (*__all__, *_IN_FIXTURE), _INSTEAD)

@@ -310,7 +310,7 @@ def each_entity(ecm: EntityView, kinds: list[ComponentProxy]) -> Iterator[Compon
             yield cursor
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> ComponentProxy:
     if name in COMPONENT_NAMES:
         return ComponentProxy(name)
     raise missing_name_error(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 from simkit.plugins.gz_python.math.missing_names import missing_name_error
 from simkit.plugins.gz_python.sim import components
@@ -108,7 +108,7 @@ class EntityComponentManager(EntityView):
         """The same as a list, as later versions have it: (entity, data, data, …)."""
         return [(item.entity, *item.components) for item in self.each(kinds)]
 
-    def __getattr__(self, name: str) -> Any:
+    def __getattr__(self, name: str) -> NoReturn:
         raise missing_name_error("EntityComponentManager", name, dir(type(self)), _INSTEAD)
 
 

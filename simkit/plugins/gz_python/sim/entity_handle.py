@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, TypeVar
+from typing import ClassVar, NoReturn, TypeVar
 
 from simkit.plugins.gz_python.math.missing_names import missing_name_error
-from simkit.plugins.gz_python.sim.entity_table import K_NULL_ENTITY, EntityRecord
+from simkit.plugins.gz_python.sim.entity_table import K_NULL_ENTITY, EntityRecord, Handle
 from simkit.plugins.gz_python.sim.entity_view import EntityView
 
 E = TypeVar("E", bound="EntityHandle")
@@ -20,7 +20,7 @@ class EntityHandle:
 
     KIND: ClassVar[str]
 
-    def __init__(self, entity: Any = K_NULL_ENTITY) -> None:
+    def __init__(self, entity: EntityHandle | int = K_NULL_ENTITY) -> None:
         self._entity: int = entity._entity if isinstance(entity, EntityHandle) else int(entity)
 
     def entity(self) -> int:
@@ -42,7 +42,7 @@ class EntityHandle:
     def _record(self, ecm: EntityView) -> EntityRecord | None:
         return ecm.record(self._entity, self.KIND)
 
-    def _handle(self, ecm: EntityView) -> Any:
+    def _handle(self, ecm: EntityView) -> Handle:
         return ecm.handle(self._entity, self.KIND)
 
     def _named(self, ecm: EntityView, kind: str, name: str) -> int:
@@ -54,7 +54,7 @@ class EntityHandle:
     def _reading(self, ecm: EntityView, what: str) -> bool | None:
         return ecm.is_enabled(self._entity, what)
 
-    def __getattr__(self, name: str) -> Any:
+    def __getattr__(self, name: str) -> NoReturn:
         raise missing_name_error(type(self).__name__, name, dir(type(self)), {})
 
     def __eq__(self, other: object) -> bool:

@@ -20,6 +20,10 @@ FIRST_ENTITY: Final = 4
 """The number of the first entity after the world's own."""
 
 
+Handle = Any
+"""simkit's handle of a model, link, joint, light, sensor, ...: of the class that is simulated under a kind."""
+
+
 @dataclass(slots=True)
 class EntityRecord:
     """One entity.
@@ -38,7 +42,7 @@ class EntityRecord:
     scene: Any  # the scene's dataclass of the kind
     parent: int
     children: list[int] = field(default_factory=list)
-    handle: Any = None
+    handle: Handle = None
 
 
 Key = tuple[str, int]

@@ -7,7 +7,7 @@ import weakref
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from simkit.plugins.gz_python.sim.entity_table import EntityRecord, EntityTable
+from simkit.plugins.gz_python.sim.entity_table import EntityRecord, EntityTable, Handle
 from simkit.plugins.gz_python.sim.physics_commands import PhysicsCommands
 
 if TYPE_CHECKING:
@@ -77,7 +77,7 @@ class EntityView:
         found = self.sync().records.get(entity)
         return found if found is not None and (not kind or found.kind == kind) else None
 
-    def handle(self, entity: int, kind: str) -> Any:
+    def handle(self, entity: int, kind: str) -> Handle:
         """simkit's handle of a model, link, joint, light or sensor; None where the entity is none, or not simulated."""
         record = self.record(entity, kind)
         if record is None:

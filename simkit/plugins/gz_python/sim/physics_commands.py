@@ -8,18 +8,19 @@ was given a force no longer takes velocities.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from simkit.plugins.gz_python.math.simkit_conversion import cross_product
+from simkit.plugins.gz_python.sim.entity_table import Handle
 from simkit.pose import Pose, Vector, quat_conjugate, quat_rotate
 
 if TYPE_CHECKING:
     from simkit.runtime import Joint, Link, Simulation
 
 Numbers = tuple[float, ...]
-FindHandle = Callable[[int, str], Any]
+FindHandle = Callable[[int, str], Handle]
 """Gives simkit's handle of an entity that is of a kind; None where it is not."""
 
 

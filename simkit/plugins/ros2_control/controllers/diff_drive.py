@@ -6,7 +6,7 @@ import math
 from collections import deque
 from collections.abc import Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -111,7 +111,7 @@ class DiffDriveController(Controller):
         self._accepts_commands = False  # commands, while it is active
         self._command, self._stamp_ns = _NO_MOTION, 0
         self._last, self._before_last = _NO_MOTION, _NO_MOTION
-        self._commanded: tuple[Any, ...] | None = None  # what the wheels are told, and by which sizes
+        self._commanded: tuple[object, object] | None = None  # what the wheels are told, and by which sizes
         self._odometry = RollingMeanOdometry(options.window)
         self._has_begun = False
         self._angles: tuple[float, float] | None = None  # of the wheels, up to which the way is reckoned

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, ClassVar, Final
+from typing import TYPE_CHECKING, ClassVar, Final
 
 import numpy as np
 
 from simkit import msgs
+from simkit.msgs.message_types import Message
 from simkit.plugins.ros2_control.controller import Controller, OneTimeWarnings
 from simkit.plugins.ros2_control.joint_pids import JointPids
 from simkit.plugins.ros2_control.trajectory import SECOND
@@ -111,7 +112,7 @@ class GripperActionController(Controller):
         self._goal, self._target, self._effort = goal, position, effort
         self._moved_ns, self._next_feedback, self._is_new = self.sim.time_ns, 0, True
 
-    def _read_command(self, request: Any) -> tuple[float, float, str]:
+    def _read_command(self, request: Message) -> tuple[float, float, str]:
         """Position and effort of a goal, and why it cannot be taken."""
         position, effort = float(request.command.position), float(request.command.max_effort)
         fault = "" if math.isfinite(position) and math.isfinite(effort) else "The command is not a finite number."
@@ -190,7 +191,7 @@ class ParallelGripperActionController(GripperActionController):
             [v for name, v in zip(self._names, self._default_velocity_and_effort, strict=True) if name]
         )
 
-    def _read_command(self, request: Any) -> tuple[float, float, str]:
+    def _read_command(self, request: Message) -> tuple[float, float, str]:
         command = request.command
         if not len(command.position):
             return 0.0, 0.0, "The command has no position."
