@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from simkit.cli.terminal import completion
-from simkit.cli.terminal.live_options import Ros2Command, Sim
+from simkit.cli.terminal.live_options import Ros2Command, ShowTypes, Sim
 from simkit.cli.terminal.message_arguments import check_type, make_message, parse_fields, split_type_and_values
 from simkit.cli.terminal.options import Json
 from simkit.cli.terminal.output import (
@@ -39,7 +39,7 @@ def _group() -> None:
 @action.command("list", cls=Ros2Command)
 @report_errors_quietly
 def list_(
-    show_types: Annotated[bool, typer.Option("--show-types", "-t", help="Shows the types too.")] = False,
+    show_types: ShowTypes = False,
     count: Annotated[bool, typer.Option("--count-actions", "-c", help="Says only how many.")] = False,
     sim: Sim = None,
     json_: Json = False,
@@ -68,7 +68,7 @@ def type_(action: Name, sim: Sim = None, json_: Json = False) -> int:
 @report_errors_quietly
 def info(
     action: Name,
-    show_types: Annotated[bool, typer.Option("--show-types", "-t", help="Shows the types too.")] = False,
+    show_types: ShowTypes = False,
     count: Annotated[bool, typer.Option("--count", "-c", help="Says only how many.")] = False,
     sim: Sim = None,
     json_: Json = False,

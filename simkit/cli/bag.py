@@ -20,7 +20,7 @@ from simkit.cli.plot_sources import (
     is_bag,
     split_sources_and_fields,
 )
-from simkit.cli.terminal.live_options import Sim
+from simkit.cli.terminal.live_options import Recording, Sim
 from simkit.cli.terminal.options import Force, Json
 from simkit.cli.terminal.output import (
     absolute_name,
@@ -69,9 +69,7 @@ def plot(
 
 @report_errors_quietly
 def export(
-    recording: Annotated[
-        Path, typer.Argument(help="An .mcap or .db3 file, or a folder of rosbag2.", metavar="BAG", show_default=False)
-    ],
+    recording: Recording,
     output: Annotated[
         Path | None,
         typer.Option("--output", "-o", help="The folder; NAME_export beside the bag's name where not given."),
@@ -85,8 +83,8 @@ def export(
     ] = "csv",
     images: Annotated[str, typer.Option(help="What becomes of pictures.", metavar="png|mp4|npz|none")] = "png",
     clouds: Annotated[str, typer.Option(help="What becomes of point clouds.", metavar="npz|ply|none")] = "npz",
-    start: Annotated[float | None, typer.Option("--start", help="Leaves out what was before.", metavar="S")] = None,
-    end: Annotated[float | None, typer.Option("--end", help="Leaves out what was after.", metavar="S")] = None,
+    start: Start = None,
+    end: End = None,
     force: Force = False,
     json_: Json = False,
 ) -> int:
@@ -121,9 +119,7 @@ def export(
 
 @report_errors_quietly
 def play(
-    recording: Annotated[
-        Path, typer.Argument(help="An .mcap or .db3 file, or a folder of rosbag2.", metavar="BAG", show_default=False)
-    ],
+    recording: Recording,
     topics: Annotated[
         list[str], typer.Option("--topics", help="Only this one; repeatable. Else all that the world takes.")
     ] = [],
@@ -211,9 +207,7 @@ def _group() -> None:
 @bag.command()
 @report_errors_quietly
 def info(
-    recording: Annotated[
-        Path, typer.Argument(help="An .mcap or .db3 file, or a folder of rosbag2.", metavar="BAG", show_default=False)
-    ],
+    recording: Recording,
     topic_name: Annotated[
         bool, typer.Option("--topic-name", "-t", help="Prints the names of the topics only.")
     ] = False,

@@ -5,6 +5,7 @@ A shell that completes a word, or a user who asks a running simulation something
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from importlib import import_module
 from typing import Any
@@ -12,13 +13,22 @@ from typing import Any
 import typer
 from typer.core import TyperCommand, TyperGroup
 
+Command = Any
+"""Command of click, which newer versions of Typer have as a private module."""
+Context = Any
+"""Context of click."""
+Parameter = Any
+"""Parameter of click."""
+
 
 class Commands(TyperGroup):
     """All commands of the command line."""
 
     _is_spared = False
 
-    def make_context(self, info_name: Any, args: Any, parent: Any = None, **extra: Any) -> Any:
+    def make_context(
+        self, info_name: str | None, args: list[str], parent: Context | None = None, **extra: object
+    ) -> Context:
         """The context of what is on a line, or on one that is being completed."""
         if not self._is_spared:
             self._is_spared = True
@@ -33,10 +43,10 @@ class DeferredCommand(TyperCommand):
     comes through `make_context`, and finds the real one.
     """
 
-    _real: Any = None
+    _real: Command | None = None
 
     @property
-    def real(self) -> Any:
+    def real(self) -> Command:
         """The command itself."""
         if self._real is None:
             assert self.name is not None
@@ -48,12 +58,14 @@ class DeferredCommand(TyperCommand):
                 maker.add_typer(found, name=self.name)
             else:
                 maker.command(self.name, cls=getattr(module, "COMMAND", None))(found)
-            made: Any = typer.main.get_command(maker)
+            made: Command = typer.main.get_command(maker)
             self._real = made.commands[self.name]
             _bypass_conversion(self._real)
         return self._real
 
-    def make_context(self, info_name: Any, args: Any, parent: Any = None, **extra: Any) -> Any:
+    def make_context(
+        self, info_name: str | None, args: list[str], parent: Context | None = None, **extra: object
+    ) -> Context:
         """The context of the real one."""
         return self.real.make_context(info_name, args, parent, **extra)
 
@@ -73,7 +85,7 @@ def _placeholder() -> None:
     """Stands for a command until its module is there."""
 
 
-def _bypass_conversion(command: Any) -> None:
+def _bypass_conversion(command: Command) -> None:
     """Takes texts, defaults and what is not given as they are.
 
     Typer may send these too through pydantic, whose import takes longer than many a command.
@@ -83,16 +95,18 @@ def _bypass_conversion(command: Any) -> None:
     command.get_params = partial(_converted_parameters, command.get_params)
 
 
-def _converted_parameters(usual: Any, ctx: Any) -> list[Any]:
+def _converted_parameters(usual: Callable[[Context], list[Parameter]], ctx: Context) -> list[Parameter]:
     """The parameters of a command, `--help` among them."""
-    found: list[Any] = usual(ctx)
+    found = usual(ctx)
     for each in found:
         if each.nargs == 1 and not getattr(each, "multiple", False) and "process_value" not in vars(each):
             each.process_value = partial(_process_value, each, each.process_value)
     return found
 
 
-def _process_value(parameter: Any, usual: Any, ctx: Any, value: Any) -> Any:
+def _process_value(
+    parameter: Parameter, usual: Callable[[Context, object], object], ctx: Context, value: object
+) -> object:
     """The value of a parameter that is to have one."""
     kind = getattr(getattr(parameter, "type_descriptor", None), "annotation", None)
     is_there = type(value) is kind and (kind is str or value is parameter.default)

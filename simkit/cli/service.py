@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from simkit.cli.terminal import completion
-from simkit.cli.terminal.live_options import Ros2Command, Sim
+from simkit.cli.terminal.live_options import Ros2Command, ShowTypes, Sim
 from simkit.cli.terminal.message_arguments import (
     check_type,
     is_same_type,
@@ -39,6 +39,7 @@ Name = Annotated[
         help="Name of a service.", metavar="SERVICE", show_default=False, autocompletion=completion.services
     ),
 ]
+Count = Annotated[bool, typer.Option("--count-services", "--count", "-c", help="Says only how many.")]
 
 
 @service.callback()
@@ -49,8 +50,8 @@ def _group() -> None:
 @service.command("list", cls=Ros2Command)
 @report_errors_quietly
 def list_(
-    show_types: Annotated[bool, typer.Option("--show-types", "-t", help="Shows the types too.")] = False,
-    count: Annotated[bool, typer.Option("--count-services", "--count", "-c", help="Says only how many.")] = False,
+    show_types: ShowTypes = False,
+    count: Count = False,
     hidden: Annotated[
         bool, typer.Option("--include-hidden-services", "-a", "--all", help="Shows hidden ones too.")
     ] = False,
@@ -102,7 +103,7 @@ def find(
             autocompletion=completion.service_types,
         ),
     ],
-    count: Annotated[bool, typer.Option("--count-services", "--count", "-c", help="Says only how many.")] = False,
+    count: Count = False,
     sim: Sim = None,
     json_: Json = False,
 ) -> int:

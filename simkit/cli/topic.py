@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from simkit.cli.terminal import completion
-from simkit.cli.terminal.live_options import Bag, Ros2Command, Sim, Topic
+from simkit.cli.terminal.live_options import Bag, Ros2Command, ShowTypes, Sim, Topic
 from simkit.cli.terminal.message_arguments import is_same_type
 from simkit.cli.terminal.options import Json
 from simkit.cli.terminal.output import JsonObject, is_hidden, print_json, print_line, print_names, report_errors_quietly
@@ -26,6 +26,7 @@ def _group() -> None:
     """Topics of a running simulation, or of a bag."""
 
 
+Count = Annotated[bool, typer.Option("--count-topics", "--count", "-c", help="Says only how many.")]
 Hidden = Annotated[
     bool, typer.Option("--include-hidden-topics", "-a", "--all", help="Shows those with a part that begins with _ too.")
 ]
@@ -34,9 +35,9 @@ Hidden = Annotated[
 @topic.command("list", cls=Ros2Command)
 @report_errors_quietly
 def list_(
-    show_types: Annotated[bool, typer.Option("--show-types", "-t", help="Shows the types too.")] = False,
+    show_types: ShowTypes = False,
     verbose: Annotated[bool, typer.Option("--verbose", "-v", help="Says who publishes and who takes.")] = False,
-    count: Annotated[bool, typer.Option("--count-topics", "--count", "-c", help="Says only how many.")] = False,
+    count: Count = False,
     hidden: Hidden = False,
     sim: Sim = None,
     bag: Bag = None,
@@ -164,7 +165,7 @@ def find(
             autocompletion=completion.message_types,
         ),
     ],
-    count: Annotated[bool, typer.Option("--count-topics", "--count", "-c", help="Says only how many.")] = False,
+    count: Count = False,
     hidden: Hidden = False,
     sim: Sim = None,
     bag: Bag = None,

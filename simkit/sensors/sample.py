@@ -12,8 +12,12 @@ if TYPE_CHECKING:
 
 Reading = Any
 """What a sensor of some kind measures: the kind's own dataclass, or an array."""
+ReadingFunction = Callable[[Reading, int], object]
+"""Function of a reading and of its time [ns] or the number of its sample."""
 Memory = Any
 """State of some noise or sensor that continues from sample to sample: values of its own types, never written to."""
+Member = Any
+"""The sampler that is a member of a batch; its own module uses this one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +31,7 @@ class Product:
     """
 
     type_name: str
-    make: Callable[[Reading, int], object]
+    make: ReadingFunction
     needs_reading: bool = True
 
 
@@ -89,3 +93,16 @@ class NoiseProcess(Protocol):
 
     def remember(self, memory: Memory) -> None:
         """Restore the state that `memory` returned."""
+
+
+class Batch(Protocol):
+    """What a sampler needs of the batch that it is a member of; see `simkit.sensors.batch`."""
+
+    def is_ready(self, member: Member, tick: int) -> bool:
+        """Capture all members for a tick, once; False where the member has to do it by itself."""
+
+    def captured(self, place: int) -> object:
+        """Return what `capture` would give of a member."""
+
+    def publish_sample(self, member: Member, tick: int) -> bool:
+        """Make and publish a sample; False where the member has to do it."""

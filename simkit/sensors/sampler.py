@@ -5,10 +5,10 @@ from __future__ import annotations
 import abc
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, ClassVar, Protocol, Self
+from typing import TYPE_CHECKING, ClassVar, Self
 
 from simkit.msgs.message_types import Message
-from simkit.sensors.sample import Memory, NoiseProcess, Product, Reading, Sample
+from simkit.sensors.sample import Batch, Memory, NoiseProcess, Product, Reading, ReadingFunction, Sample
 from simkit.sensors.timing import DelayedReadings, LatencyTimetable, SampleTimes, TimingOptions
 
 if TYPE_CHECKING:
@@ -25,19 +25,6 @@ _MAX_GATHERED = 64  # gathered before samples are made of them
 
 def _is_always_on() -> bool:
     return True
-
-
-class Batch(Protocol):
-    """What a sampler needs of the batch that it is a member of; see `simkit.sensors.batch`."""
-
-    def is_ready(self, member: Sampler, tick: int) -> bool:
-        """Capture all members for a tick, once; False where the member has to do it by itself."""
-
-    def captured(self, place: int) -> object:
-        """Return what `capture` would give of a member."""
-
-    def publish_sample(self, member: Sampler, tick: int) -> bool:
-        """Make and publish a sample; False where the member has to do it."""
 
 
 class Sampler(abc.ABC):
@@ -396,15 +383,11 @@ class Sampler(abc.ABC):
 
     def _make_message(self, sample: Sample, product: str, reading: Reading) -> object:
         make = self._products[product].make
-        return (
-            self._with_noise_of(sample, make, reading, sample.time_ns)
-            if sample.drifts
-            else make(reading, sample.time_ns)
-        )
+        if sample.drifts:
+            return self._with_noise_of(sample, make, reading, sample.time_ns)
+        return make(reading, sample.time_ns)
 
-    def _with_noise_of(
-        self, sample: Sample, make: Callable[[Reading, int], object], reading: Reading, number: int
-    ) -> object:
+    def _with_noise_of(self, sample: Sample, make: ReadingFunction, reading: Reading, number: int) -> object:
         """Call `make(reading, number)` with the noise as it was at a sample."""
         now = [noise.state for noise in self._wandering]
         for noise, state in zip(self._wandering, sample.drifts, strict=True):

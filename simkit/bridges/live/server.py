@@ -137,11 +137,6 @@ class Server:
         factor = _BUSY_SLICE if self._busy else _SLICE
         return tuple(length * factor for length in lengths)
 
-    @property
-    def has_clients(self) -> bool:
-        """Whether a client is connected."""
-        return bool(self.peers)
-
     def _serve_busy_clients(self, until: float) -> None:
         """Takes frames, a few of each client in turn, as long as there is time."""
         busy = self._busy

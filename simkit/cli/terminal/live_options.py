@@ -26,6 +26,10 @@ Bag = Annotated[
     Path | None,
     typer.Option("--bag", help="Reads a bag instead: an .mcap file or a folder of rosbag2.", metavar="BAG"),
 ]
+Recording = Annotated[
+    Path, typer.Argument(help="An .mcap or .db3 file, or a folder of rosbag2.", metavar="BAG", show_default=False)
+]
+ShowTypes = Annotated[bool, typer.Option("--show-types", "-t", help="Shows the types too.")]
 Topic = Annotated[
     str,
     typer.Argument(

@@ -13,6 +13,10 @@ import numpy.typing as npt
 _MAX_ARRAYS = 6
 
 
+AnyArray = npt.NDArray[Any]
+"""Array of bytes, whole numbers or floats."""
+
+
 class ArrayPool:
     """Arrays of one shape, each used again once nobody holds it or a view of it any more. Several threads may ask.
 
@@ -24,15 +28,13 @@ class ArrayPool:
         make: makes one of them; `np.zeros` for arrays that are not written to everywhere.
     """
 
-    def __init__(
-        self, shape: tuple[int, ...], dtype: npt.DTypeLike, make: Callable[..., npt.NDArray[Any]] = np.empty
-    ) -> None:
+    def __init__(self, shape: tuple[int, ...], dtype: npt.DTypeLike, make: Callable[..., AnyArray] = np.empty) -> None:
         self._shape, self._dtype, self._make = shape, dtype, make
-        self._arrays: list[npt.NDArray[Any]] = [make(shape, dtype)]
+        self._arrays: list[AnyArray] = [make(shape, dtype)]
         self._turn = threading.Lock()
         self._idle = self._holders(0)
 
-    def take(self) -> npt.NDArray[Any]:
+    def take(self) -> AnyArray:
         """An array that nobody else uses, with anything in it."""
         with self._turn:  # until whoever asked holds it
             for i in range(len(self._arrays)):

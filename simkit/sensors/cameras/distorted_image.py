@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.pose import Vector
+from simkit.sensors.cameras.array_pool import AnyArray
 from simkit.sensors.cameras.camera_model import CameraModel
 from simkit.sensors.cameras.rendering.view import View
 
@@ -17,6 +18,9 @@ _MOST_TIMES = 4.0  # as many pixels as the picture has
 _FINEST = 1.5  # as fine as the picture in its middle
 _DENSE = 1.5  # drawn pixels per pixel of the picture from which they are averaged first
 _EDGE = 0.01  # of a raw depth: neighbours that differ by more than a plane's do belong to two surfaces
+
+
+_Maps = tuple[AnyArray, AnyArray]  # the place and the fraction of each pixel, as OpenCV keeps them
 
 
 class ImageDistorter:
@@ -50,7 +54,7 @@ class ImageDistorter:
         places = np.clip(np.rint(row), 0, height - 1).astype(np.int32) * np.int32(width)
         self._nearest = places + np.clip(np.rint(column), 0, width - 1).astype(np.int32)
         self._empty = None if self._is_full else row < -50
-        self._coarse: tuple[Any, Any, Any] | None = None
+        self._coarse: tuple[_Maps, npt.NDArray[np.float32], npt.NDArray[np.float32]] | None = None
         if min(row.shape) > 1:
             step = np.maximum(*(np.hypot(np.gradient(column, axis=a), np.gradient(row, axis=a)) for a in (0, 1)))
             if np.count_nonzero(step > _DENSE) > 0.01 * step.size:
@@ -110,10 +114,10 @@ class ImageDistorter:
             bent[self._empty] = -1
         return bent
 
-    def _taken(self, what: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    def _taken(self, what: AnyArray) -> AnyArray:
         return np.ascontiguousarray(what).ravel().take(self._nearest)
 
-    def _remap(self, what: npt.NDArray[Any], maps: Any, out: npt.NDArray[Any] | None = None) -> Any:
+    def _remap(self, what: AnyArray, maps: _Maps, out: AnyArray | None = None) -> Any:
         import cv2
 
         border = cv2.BORDER_REPLICATE if self._is_full else cv2.BORDER_CONSTANT

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from simkit import msgs
+from simkit.sensors.cameras.array_pool import AnyArray
 from simkit.sensors.cameras.camera_model import CameraModel
 
 IMAGE_TYPE = "sensor_msgs/msg/Image"
@@ -47,7 +47,7 @@ def grey(colours: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
     return np.asarray(cv2.cvtColor(colours, cv2.COLOR_RGB2GRAY), dtype=np.uint8)
 
 
-Pixels = npt.NDArray[Any]
+Pixels = AnyArray
 """Pixels of an image, bytes, whole numbers or floats as its encoding says."""
 
 

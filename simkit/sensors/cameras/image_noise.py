@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from simkit.sensors.cameras.array_pool import ArrayPool
+from simkit.sensors.cameras.array_pool import AnyArray, ArrayPool
 from simkit.sensors.noise import NoiseModel
 
 if TYPE_CHECKING:
@@ -92,7 +92,7 @@ class ImageNoise:
             kept[shape] = _BrightnessChanges(self._step_tables, shape)
         return kept[shape]
 
-    def _output_buffer(self, like: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    def _output_buffer(self, like: AnyArray) -> AnyArray:
         """An array to be written to."""
         key = like.shape, like.dtype.str
         if key not in self._spares:

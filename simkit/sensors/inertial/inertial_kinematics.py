@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
+
+Number = Any
+"""A float, or an array with one float for each of several sensors."""
+Numbers = tuple[Number, ...]
 
 QuaternionTuple = tuple[float, float, float, float]
 """(w, x, y, z)."""
@@ -13,8 +17,12 @@ NO_ROTATION: QuaternionTuple = (1.0, 0.0, 0.0, 0.0)
 
 
 def sensor_motion(
-    numbers: Any, arm: Any, mount: Any | None, rotation: Any, reference: Any | None
-) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
+    numbers: Iterable[Number],
+    arm: Iterable[Number],
+    mount: Iterable[Number] | None,
+    rotation: Iterable[Number],
+    reference: Iterable[Number] | None,
+) -> tuple[Numbers, Numbers]:
     """Return the attitude (w, x, y, z), and rate [rad/s] and specific force [m/s²] in the sensor's frame, six numbers.
 
     Each number is a float, or an array with one float for each of several sensors: the bits are the same.
@@ -29,7 +37,7 @@ def sensor_motion(
     """
     qw, qx, qy, qz, a, b, c, d, e, f, g, h, i, px, py, pz, ox, oy, oz, *motion = numbers
     wx, wy, wz, vx, vy, vz, dx, dy, dz, fx, fy, fz = motion
-    attitude: tuple[Any, ...] = (qw, qx, qy, qz)
+    attitude: Numbers = (qw, qx, qy, qz)
     # from there to the sensor, in world axes
     ax, ay, az = arm
     x = px - ox + a * ax + b * ay + c * az
@@ -56,7 +64,7 @@ def sensor_motion(
     return attitude, (wx, wy, wz, fx, fy, fz)
 
 
-def hamilton_product(a: Any, b: Any) -> Any:
+def hamilton_product(a: Iterable[Number], b: Iterable[Number]) -> Numbers:
     """Hamilton product of two (w, x, y, z), each a number or a row of them."""
     aw, ax, ay, az = a
     bw, bx, by, bz = b
