@@ -13,12 +13,12 @@ from typing import Any
 import typer
 from typer.core import TyperCommand, TyperGroup
 
+# Command of click, which newer versions of Typer have as a private module.
 Command = Any
-"""Command of click, which newer versions of Typer have as a private module."""
+# Context of click.
 Context = Any
-"""Context of click."""
+# Parameter of click.
 Parameter = Any
-"""Parameter of click."""
 
 
 class Commands(TyperGroup):
@@ -26,9 +26,7 @@ class Commands(TyperGroup):
 
     _is_spared = False
 
-    def make_context(
-        self, info_name: str | None, args: list[str], parent: Context | None = None, **extra: object
-    ) -> Context:
+    def make_context(self, info_name: str | None, args: list[str], parent: Context = None, **extra: object) -> Context:
         """The context of what is on a line, or on one that is being completed."""
         if not self._is_spared:
             self._is_spared = True
@@ -63,9 +61,7 @@ class DeferredCommand(TyperCommand):
             _bypass_conversion(self._real)
         return self._real
 
-    def make_context(
-        self, info_name: str | None, args: list[str], parent: Context | None = None, **extra: object
-    ) -> Context:
+    def make_context(self, info_name: str | None, args: list[str], parent: Context = None, **extra: object) -> Context:
         """The context of the real one."""
         return self.real.make_context(info_name, args, parent, **extra)
 
@@ -104,9 +100,7 @@ def _converted_parameters(usual: Callable[[Context], list[Parameter]], ctx: Cont
     return found
 
 
-def _process_value(
-    parameter: Parameter, usual: Callable[[Context, object], object], ctx: Context, value: object
-) -> object:
+def _process_value(parameter: Parameter, usual: Callable[..., object], ctx: Context, value: object) -> object:
     """The value of a parameter that is to have one."""
     kind = getattr(getattr(parameter, "type_descriptor", None), "annotation", None)
     is_there = type(value) is kind and (kind is str or value is parameter.default)

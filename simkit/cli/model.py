@@ -10,14 +10,7 @@ import typer
 from simkit.cli.terminal import completion
 from simkit.cli.terminal.live_options import Sim
 from simkit.cli.terminal.options import Json
-from simkit.cli.terminal.output import (
-    JsonObject,
-    JsonValue,
-    not_found_error,
-    print_json,
-    print_line,
-    report_errors_quietly,
-)
+from simkit.cli.terminal.output import JsonObject, not_found_error, print_json, print_line, report_errors_quietly
 from simkit.cli.terminal.topic_sources import connect_to_simulation, connection_name
 
 if TYPE_CHECKING:
@@ -141,7 +134,7 @@ def joint(
     return 0
 
 
-def _numbers(value: JsonValue) -> str:
+def _numbers(value: float | list[float]) -> str:
     if isinstance(value, list):
         return "[" + ", ".join(_numbers(v) for v in value) + "]"
     return f"{value + 0.0:.6f}"

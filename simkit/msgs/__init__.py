@@ -17,22 +17,13 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 from simkit.errors import MessageError
-from simkit.msgs.message_types import (
-    FieldValue,
-    Message,
-    definition,
-    full_name,
-    message_class,
-    rihs,
-    type_of,
-    type_store,
-    types_of,
-)
+from simkit.msgs.message_types import definition, full_name, message_class, rihs, type_of, type_store, types_of
 
 if TYPE_CHECKING:
     from simkit.msgs.message_builder import MessageBuilder
     from simkit.msgs.message_classes import *  # noqa: F403
     from simkit.msgs.message_classes import Duration, Header, Time
+    from simkit.msgs.message_types import FieldValue, Message
 
 __all__ = [
     "definition",

@@ -36,6 +36,7 @@ NUMBER_CODES = {
 }
 """Letters of Python's `array` (in which rclpy keeps numbers) and `struct` for the numbers of messages."""
 _STEP = re.compile(r"([^.\[\]]+)|\[(-?\d*)(:?)(-?\d*)\]")
+_TypedValue = tuple[FieldValue, FieldNode | None]
 _WIDEST = 2**31 - 1
 
 
@@ -191,7 +192,7 @@ def field_text(value: FieldValue, node: FieldNode | None, store: Typestore | Non
     return str(value.item() if isinstance(value, np.generic) else value)
 
 
-def field_at_path(message: Message, path: str, store: Typestore | None = None) -> tuple[FieldValue, FieldNode | None]:
+def field_at_path(message: Message, path: str, store: Typestore | None = None) -> _TypedValue:
     """Return the value at a path such as `pose.pose.position.x`, `transforms[0].child_frame_id` or `ranges[0:9]`.
 
     Returns:
@@ -218,9 +219,7 @@ def field_at_path(message: Message, path: str, store: Typestore | None = None) -
     return value, node
 
 
-def _step_into_field(
-    value: FieldValue, name: str, walked: str, store: Typestore | None
-) -> tuple[FieldValue, FieldNode | None]:
+def _step_into_field(value: FieldValue, name: str, walked: str, store: Typestore | None) -> _TypedValue:
     if not is_message(value):
         raise MessageError(f"{walked!r} is no message and has no field {name!r}")
     fields = dict(field_nodes(value.__msgtype__, store))
@@ -230,9 +229,7 @@ def _step_into_field(
     return field_value(value, name), fields[name]
 
 
-def _step_into_item(
-    value: FieldValue, found: re.Match[str], node: FieldNode | None, walked: str
-) -> tuple[FieldValue, FieldNode | None]:
+def _step_into_item(value: FieldValue, found: re.Match[str], node: FieldNode | None, walked: str) -> _TypedValue:
     if not isinstance(value, (list, tuple, np.ndarray)):
         raise MessageError(f"{walked!r} is no array and has no item {found[0]}")
     if found[3]:

@@ -52,12 +52,12 @@ def _message_sources() -> dict[str, tuple[str, int]]:
     }
 
 
+# A message of any type: an object of a dataclass that rosbags makes while a program runs.
 Message = Any
-"""A message of any type: an object of a dataclass that rosbags makes while a program runs."""
+# Value of a message's field: a number, a text, an array, a message or a list of such.
 FieldValue = Any
-"""Value of a message's field: a number, a text, an array, a message or a list of such."""
+# Type of a field in the type store: its kind (`BASE`, `NAME`, `ARRAY`, `SEQUENCE`) and what the kind says of it.
 FieldNode = tuple[int, Any]
-"""Type of a field in the type store: its kind (`BASE`, `NAME`, `ARRAY`, `SEQUENCE`) and what the kind says of it."""
 _Entry = Any  # of the type store: a class, or its constants and fields
 
 

@@ -243,14 +243,9 @@ class Sensor(Sampler):
 
     def _make_noise(self, models: Sequence[NoiseModel], group: str) -> Noise:
         """Make the noise of a few channels, one model each; for `self.noise`."""
-        return self._register_noise(
-            Noise(
-                [self._effective_noise(m) for m in models],
-                *self._noise_stream_names(group),
-                interval=self._noise_interval(),
-                random_sign=self.sim.world.gazebo_quirks,
-            )
-        )
+        quirks, names = self.sim.world.gazebo_quirks, self._noise_stream_names(group)
+        models = [self._effective_noise(m) for m in models]
+        return self._register_noise(Noise(models, *names, interval=self._noise_interval(), random_sign=quirks))
 
     def _make_uniform_noise(self, model: NoiseModel, width: int, group: str) -> UniformNoise:
         """Make noise with the same model on each of many channels; for `self.noise`."""
@@ -258,11 +253,8 @@ class Sensor(Sampler):
         model = (
             NO_NOISE if quirks and model.is_quantized else self._effective_noise(model)
         )  # Gazebo has none of it on rays
-        return self._register_noise(
-            UniformNoise(
-                model, width, *self._noise_stream_names(group), interval=self._noise_interval(), random_sign=quirks
-            )
-        )
+        names, interval = self._noise_stream_names(group), self._noise_interval()
+        return self._register_noise(UniformNoise(model, width, *names, interval=interval, random_sign=quirks))
 
     def _noise_stream_names(self, group: str) -> tuple[RandomStreams, str, str]:
         return self.sim.engine.streams, self.scoped, group

@@ -10,14 +10,14 @@ if TYPE_CHECKING:
     from simkit.runtime.engine.held_state import HeldState
 
 
+# What a sensor of some kind measures: the kind's own dataclass, or an array.
 Reading = Any
-"""What a sensor of some kind measures: the kind's own dataclass, or an array."""
+# Function of a reading and of its time [ns] or the number of its sample.
 ReadingFunction = Callable[[Reading, int], object]
-"""Function of a reading and of its time [ns] or the number of its sample."""
+# State of some noise or sensor that continues from sample to sample: values of its own types, never written to.
 Memory = Any
-"""State of some noise or sensor that continues from sample to sample: values of its own types, never written to."""
+# The sampler that is a member of a batch; its own module uses this one.
 Member = Any
-"""The sampler that is a member of a batch; its own module uses this one."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -50,8 +50,8 @@ class _VariableSizeError(Exception):
     """A type has messages of other sizes than one, or arrays."""
 
 
+# Class of a message, and of each of its fields the same, None for a number.
 Classes = tuple[type[Message], tuple[Any, ...]]
-"""Class of a message, and of each of its fields the same, None for a number."""
 
 
 def _layout(type_name: str) -> tuple[str, Classes]:

@@ -31,8 +31,8 @@ class BadFrame(Exception):
     """Received bytes are not a frame of the protocol."""
 
 
+# Value of JSON, as Python has it.
 JsonValue = Any
-"""Value of JSON, as Python has it."""
 JsonObject = dict[str, JsonValue]
 PROTOCOL: Final = 1
 ASK, ANSWER, TELL, MESSAGE = 1, 2, 3, 4

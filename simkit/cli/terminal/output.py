@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from simkit.diagnostics import Diagnostic
 
 
+# Value that JSON or YAML can hold.
 JsonValue = Any
-"""Value that JSON or YAML can hold."""
 JsonObject = dict[str, JsonValue]
 """Object of JSON, as Python has it."""
 P = ParamSpec("P")

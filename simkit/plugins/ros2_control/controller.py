@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
 
 Key = tuple[str, str]
+# Callback of a subscriber, a service or an action.
 Relay = Callable[..., Any]
-"""Callback of a subscriber, a service or an action."""
 Handle = TypeVar("Handle")
 
 

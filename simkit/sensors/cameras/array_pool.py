@@ -13,8 +13,8 @@ import numpy.typing as npt
 _MAX_ARRAYS = 6
 
 
+# Array of bytes, whole numbers or floats.
 AnyArray = npt.NDArray[Any]
-"""Array of bytes, whole numbers or floats."""
 
 
 class ArrayPool:

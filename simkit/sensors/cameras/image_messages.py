@@ -47,8 +47,8 @@ def grey(colours: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
     return np.asarray(cv2.cvtColor(colours, cv2.COLOR_RGB2GRAY), dtype=np.uint8)
 
 
+# Pixels of an image, bytes, whole numbers or floats as its encoding says.
 Pixels = AnyArray
-"""Pixels of an image, bytes, whole numbers or floats as its encoding says."""
 
 
 def image_message(header: msgs.Header, pixels: Pixels, encoding: str) -> msgs.Image:

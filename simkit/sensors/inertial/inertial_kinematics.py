@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterable, Sequence
 from typing import Any
 
+# A float, or an array with one float for each of several sensors.
 Number = Any
-"""A float, or an array with one float for each of several sensors."""
 Numbers = tuple[Number, ...]
 
 QuaternionTuple = tuple[float, float, float, float]

@@ -7,8 +7,8 @@ from typing import Any, TypeVar, cast
 T = TypeVar("T")
 
 
+# Argument of a function that C++ overloads; its class tells which overload is meant.
 CppArgument = Any
-"""Argument of a function that C++ overloads; its class tells which overload is meant."""
 
 
 class ClassConstant:

@@ -15,8 +15,8 @@ PLAIN_DEFAULTS: Final[Mapping[str, object]] = {"f": 0.0, "i": 0, "s": "", "b": F
 """Letter of a kind of field -> its value at the start: number, whole number, text, truth, bytes."""
 
 
+# Value of a field: a number, a text, bytes, a message, or a `Repeated` of such.
 FieldValue = Any
-"""Value of a field: a number, a text, bytes, a message, or a `Repeated` of such."""
 
 
 class Repeated(list[FieldValue]):

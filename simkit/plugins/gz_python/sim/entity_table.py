@@ -20,8 +20,8 @@ FIRST_ENTITY: Final = 4
 """The number of the first entity after the world's own."""
 
 
+# simkit's handle of a model, link, joint, light, sensor, ...: of the class that is simulated under a kind.
 Handle = Any
-"""simkit's handle of a model, link, joint, light, sensor, ...: of the class that is simulated under a kind."""
 
 
 @dataclass(slots=True)
