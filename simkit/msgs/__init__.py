@@ -17,15 +17,16 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 from simkit.errors import MessageError
-from simkit.msgs.message_types import definition, full_name, message_class, rihs, type_of, type_store, types_of
+from simkit.msgs.message_types import Message, definition, full_name, message_class, rihs, type_of, type_store, types_of
 
 if TYPE_CHECKING:
     from simkit.msgs.message_builder import MessageBuilder
     from simkit.msgs.message_classes import *  # noqa: F403
     from simkit.msgs.message_classes import Duration, Header, Time
-    from simkit.msgs.message_types import FieldValue, Message
+    from simkit.msgs.message_types import FieldValue
 
 __all__ = [
+    "Message",
     "definition",
     "deserialize",
     "duration",
@@ -43,9 +44,6 @@ __all__ = [
     "type_store",
     "types_of",
 ]
-
-Message = Any
-"""An object of any message class; a checker knows its fields only where its class is named."""
 
 _NS = 1_000_000_000
 

@@ -26,7 +26,7 @@ from simkit.plugins.ros_names import RosNames
 from simkit.plugins.unread_parameters import report_unread
 
 if TYPE_CHECKING:
-    from simkit.compiler import SpecBuilder
+    from simkit.compiler import ActuatorRef, SpecBuilder
     from simkit.run_spec import PluginErrorPolicy
     from simkit.runtime import Simulation
     from simkit.runtime.communication.action_server import Action, GoalHandle
@@ -86,7 +86,7 @@ class Plugin(abc.ABC):
     on_error: PluginErrorPolicy | None = None
 
     _failed: tuple[str, Exception] | None = None  # what it raised before there was a simulation, and where
-    _actuators: tuple[object, ...] = ()  # servos and motors that its `prepare` added
+    _actuators: tuple[ActuatorRef, ...] = ()  # servos and motors that its `prepare` added
     _order: tuple[object, ...] = ()  # where it stands among all plugins
     plugin_paths: tuple[Path, ...] = ()  # folders whose Python the user allows
     _source: ScenePlugin | None = None

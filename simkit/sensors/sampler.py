@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     import mujoco
 
     from simkit.runtime import Publisher, Simulation
+    from simkit.runtime.communication.subscription import PendingWork
     from simkit.runtime.communication.topic_bus import LazyMessage
     from simkit.runtime.engine.held_state import HeldState
     from simkit.runtime.engine.scheduler import Timetable
@@ -341,7 +342,7 @@ class Sampler(abc.ABC):
                 publisher.publish(self._message(sample, product))
         return put_off
 
-    def _pending_job(self, sample: Sample) -> object:
+    def _pending_job(self, sample: Sample) -> PendingWork | None:
         """Return the job of another thread that a sample waits for; None by default."""
         return None
 

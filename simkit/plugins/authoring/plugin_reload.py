@@ -23,6 +23,7 @@ from simkit.scene import SceneModel, SceneSensor, SceneVisual
 if TYPE_CHECKING:
     from simkit.plugins.base import Plugin
     from simkit.runtime import Simulation
+    from simkit.runtime.engine.world_structure import AttachedPlugin
 
 _BROKEN, _REFUSED = "SK-PLUGIN-071", "SK-PLUGIN-076"
 
@@ -136,7 +137,7 @@ class PluginReloader:
         sys.modules[name] = old
         return False
 
-    def _exchange(self, old: Plugin, before: dict[str, ModuleType]) -> bool:
+    def _exchange(self, old: AttachedPlugin, before: dict[str, ModuleType]) -> bool:
         """Puts the new code's plugin in the place of the old one's."""
         from simkit.runtime.plugin_replacement import replace_plugin
 
@@ -169,7 +170,7 @@ class PluginReloader:
         self._say(f"{file.name}: {new.name!r} reloaded at {sim.time:.6g} s")
         return True
 
-    def _made_anew(self, old: Plugin, found: Diagnostics) -> Plugin | None:
+    def _made_anew(self, old: AttachedPlugin, found: Diagnostics) -> Plugin | None:
         """An instance of the new class, with the parameters that the file gives it."""
         new: Plugin | None
         if old.source is None:

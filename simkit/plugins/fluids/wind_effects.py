@@ -10,7 +10,7 @@ import numpy as np
 
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
-from simkit.plugins.base import NEVER, Plugin, WorldPlugin
+from simkit.plugins.base import NEVER, WorldPlugin
 from simkit.plugins.endpoints import listens, offers
 from simkit.plugins.fluids.link_forces import PushedLinks, moving_data
 from simkit.plugins.fluids.wind_field import WindField, WindFieldOptions, read_field
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
     from simkit.pose import Vector
     from simkit.runtime import Simulation
+    from simkit.runtime.engine.world_structure import AttachedPlugin
 
 
 WIND: Final = "simkit_msgs/msg/Wind"
@@ -85,7 +86,7 @@ class WindPluginBase(WorldPlugin):
     def before_step_rate(self, rate: float | None) -> None:
         raise AttributeError("a wind is called as long as something feels it")
 
-    def _before(self) -> list[Plugin]:
+    def _before(self) -> list[AttachedPlugin]:
         """The plugins that stand before this one."""
         return list(takewhile(lambda plugin: plugin is not self, self.sim.engine.structure.all_plugins()))
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 Message = Any
 """A message: an instance of a class of `simkit.msgs`, which are made as definitions are read."""
 
-Callback = Callable[[Message], None]
+Callback = Callable[[Message], object]
 CallbackErrorPolicy = Literal["stop", "drop"]
 
 MAX_KEPT_MESSAGES: Final = 1_000_000

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any, Protocol
 from simkit.scene import SceneModel
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from simkit.compiler import ActuatorRef, Compiled, SpecBuilder
     from simkit.diagnostics import Where
     from simkit.params import Params
@@ -34,8 +36,12 @@ class AttachedSensor(Protocol):
 
     scene: SceneSensor
     scoped: str
-    reads_contacts: bool
     _topics: dict[str, str]
+
+    @property
+    def reads_contacts(self) -> bool:
+        """Whether it needs the contacts of its bodies."""
+        ...
 
     @property
     def _products(self) -> Mapping[str, PublishedProduct]: ...
@@ -62,9 +68,6 @@ class AttachedSensor(Protocol):
 
     def take_held(self) -> None:
         """Takes what still has to be read of the present model."""
-
-    def finish_samples(self) -> None:
-        """Makes the messages of samples that wait to be looked at."""
 
     def reset(self) -> None:
         """Goes back to its beginning."""
@@ -94,6 +97,7 @@ class AttachedPlugin(Protocol):
     after_step_rate: float | None
     on_error: PluginErrorPolicy | None
     source: ScenePlugin | None
+    plugin_paths: tuple[Path, ...]
     _order: tuple[Any, ...]
     _actuators: tuple[ActuatorRef, ...]
     _failed: tuple[str, Exception] | None

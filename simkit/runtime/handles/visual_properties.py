@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, MutableMapping
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, ClassVar, Final, Self, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Final, Self, TypeVar
 
 from simkit.runtime.handles.handle import look_up
 
@@ -122,9 +122,11 @@ class VisualProperty(MutableMapping[str, Value], abc.ABC):
 
     def _change(self, values: dict[str, Value]) -> None:
         """Samples that wait to be looked at are measured with the values of their time."""
-        for sensor in self._handles.engine.structure.all_sensors():
-            if getattr(sensor, self.read_by, False):
-                sensor.finish_samples()
+        cameras: list[Any] = [
+            s for s in self._handles.engine.structure.all_sensors() if getattr(s, self.read_by, False)
+        ]
+        for camera in cameras:
+            camera.finish_samples()
         self.state = MappingProxyType(values)
 
 
