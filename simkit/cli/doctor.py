@@ -97,7 +97,7 @@ def _engine() -> list[str]:
     elif not found["mujoco"].startswith("4."):
         problems.append(f"simkit needs mujoco 4: {_REINSTALL}")
     probe = subprocess.run(
-        [sys.executable, "-c", "import mujoco; print(mujoco.__version__)"],
+        [sys.executable, "-P", "-c", "import mujoco; print(mujoco.__version__)"],
         capture_output=True,
         text=True,
         check=False,
@@ -111,7 +111,11 @@ def _engine() -> list[str]:
 def _renderer() -> list[str]:
     try:
         probe = subprocess.run(
-            [sys.executable, "-c", _DRAW], capture_output=True, text=True, check=False, timeout=_RENDERER_TIMEOUT
+            [sys.executable, "-P", "-c", _DRAW],
+            capture_output=True,
+            text=True,
+            check=False,
+            timeout=_RENDERER_TIMEOUT,
         )
     except subprocess.TimeoutExpired:
         _line("renderer", "hangs")
