@@ -63,7 +63,7 @@ def prepare(name: str, folder: Path) -> Any:
     from simkit.testing.golden.store import write_golden
     from simkit.testing.run_record.run_recorder import run_record
     from simkit.testing.scenarios.scenario_file import read_scenario
-    from simkit.writers.vendor import vendor
+    from simkit.writers.vendored_folder import vendor
 
     place = folder / name
     if name == "workshop":

@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING, Any
 from simkit.diagnostics import Diagnostics, Where
 from simkit.errors import InputError, LoadError, PluginError
 from simkit.loaders import Resolver, load_scene
-from simkit.loaders.spawn_option import SpawnedModel, add_spawned_models
+from simkit.loaders.spawned_models import SpawnedModel, add_spawned_models
 from simkit.mujoco_import import import_mujoco
 from simkit.plugins.discovery.builtin_plugins import add_actor_models, apply_scene_plugins
-from simkit.plugins.discovery.scene_instances import make_model_parts, report_unread
-from simkit.plugins.discovery.world_instances import find_more_problems, make_all_parts
+from simkit.plugins.discovery.instance_check import find_more_problems, make_all_parts
+from simkit.plugins.discovery.make_instances import make_model_parts, report_unread
 from simkit.pose import Pose
 from simkit.run_spec import LoadOptions, PluginErrorPolicy, RunSpec
 from simkit.scene import Mesh, Scene, SceneModel, SceneSensor, SceneWorld
@@ -26,7 +26,7 @@ from simkit.scene.overrides import apply_overrides
 from simkit.sensors import sensor_kinds
 from simkit.sensors.cameras.rendering.render_thread import usable_cores
 from simkit.sensors.presets.preset_defaults import add_preset_defaults
-from simkit.writers.description import describe_scene
+from simkit.writers.inspect_description import describe_scene
 
 if TYPE_CHECKING:
     from simkit.compiler.mjcf_parser import MjcfParser

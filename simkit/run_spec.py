@@ -110,7 +110,7 @@ class Tolerance:
 
 
 class SpawnRequest(Protocol):
-    """A model that comes into the world as it is loaded; `simkit.loaders.spawn_option.SpawnedModel` is one.
+    """A model that comes into the world as it is loaded; `simkit.loaders.spawned_models.SpawnedModel` is one.
 
     Attributes:
         source: a file or a bare name.

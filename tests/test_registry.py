@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from simkit.loaders import loader_kinds
-from simkit.plugins.discovery.plugin_kinds import plugin_kinds
+from simkit.plugins.discovery.find_plugin_class import plugin_kinds
 from simkit.plugins.ros2_control.controller_manager import controller_kinds
 from simkit.registry import Kinds, discover
 from simkit.sensors import sensor_kinds
@@ -107,7 +107,7 @@ def test_a_load_imports_neither_the_kinds_that_it_does_not_use_nor_the_message_t
     program = "import sys, simkit; simkit.load('empty'); print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True)
     imported = set(done.stdout.split())
-    assert "simkit.plugins.world.clock" in imported
+    assert "simkit.plugins.world.clock_publisher" in imported
     unwanted = {
         "simkit.plugins.gz.thermal",
         "simkit.sensors.rays.lidar",

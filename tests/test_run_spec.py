@@ -8,7 +8,7 @@ import pytest
 
 import simkit
 from simkit.cli.run_options import load_options, scenario_spec
-from simkit.cli.terminal.options import source_arguments
+from simkit.cli.terminal.shared_options import source_arguments
 from simkit.run_spec import Check, Recording, RunSpec
 from simkit.testing.bundles import keep, open_bundle, write_bundle
 from simkit.testing.scenarios.scenario_file import read_scenario

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import simkit
 from simkit import msgs
-from simkit.msgs.interfaces import interface_names
+from simkit.msgs.interface_definitions import interface_names
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "services.md"
 ROW = re.compile(r"^\| `(/[^`]+)` \| `([\w/]+/srv/\w+)` \| (.+) \|$", re.MULTILINE)

@@ -10,7 +10,6 @@ import typer
 from simkit.cli.terminal import completion
 from simkit.cli.terminal.live_options import Ros2Command, ShowTypes, Sim
 from simkit.cli.terminal.message_arguments import check_type, make_message, parse_fields, split_type_and_values
-from simkit.cli.terminal.options import Json
 from simkit.cli.terminal.output import (
     absolute_name,
     print_json,
@@ -18,6 +17,7 @@ from simkit.cli.terminal.output import (
     print_names_and_types,
     report_errors_quietly,
 )
+from simkit.cli.terminal.shared_options import Json
 from simkit.cli.terminal.topic_sources import connect_to_simulation, interface_type
 
 if TYPE_CHECKING:

@@ -21,7 +21,6 @@ from simkit.cli.plot_sources import (
     split_sources_and_fields,
 )
 from simkit.cli.terminal.live_options import Recording, Sim
-from simkit.cli.terminal.options import Force, Json
 from simkit.cli.terminal.output import (
     absolute_name,
     print_json,
@@ -31,6 +30,7 @@ from simkit.cli.terminal.output import (
     report_errors_quietly,
     stdout_console,
 )
+from simkit.cli.terminal.shared_options import Force, Json
 from simkit.cli.terminal.topic_sources import SimClock, connect_to_simulation
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError

@@ -13,8 +13,8 @@ from simkit.cli.run_loop import Interrupts
 from simkit.cli.terminal import completion
 from simkit.cli.terminal.live_options import Sim
 from simkit.cli.terminal.message_arguments import compile_pattern
-from simkit.cli.terminal.options import Force, Json
 from simkit.cli.terminal.output import absolute_name, is_hidden, print_json, print_note, report_errors_quietly
+from simkit.cli.terminal.shared_options import Force, Json
 from simkit.cli.terminal.topic_sources import LiveSource, connect_to_simulation
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError

@@ -7,7 +7,8 @@ from typing import Annotated
 import typer
 
 from simkit.cli.run_options import load_options
-from simkit.cli.terminal.options import (
+from simkit.cli.terminal.output import report_errors, stdout_console
+from simkit.cli.terminal.shared_options import (
     Base,
     PackagePaths,
     PluginPaths,
@@ -16,7 +17,6 @@ from simkit.cli.terminal.options import (
     XacroArgs,
     source_arguments,
 )
-from simkit.cli.terminal.output import report_errors, stdout_console
 from simkit.run_spec import RunSpec
 
 _HOUR = 3600.0

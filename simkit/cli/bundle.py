@@ -8,7 +8,8 @@ from typing import Annotated
 import typer
 
 from simkit.cli.run_options import load_options, scenario_spec
-from simkit.cli.terminal.options import (
+from simkit.cli.terminal.output import print_diagnostics, print_status, report_errors, stdout_console
+from simkit.cli.terminal.shared_options import (
     Base,
     CmdVel,
     Force,
@@ -23,7 +24,6 @@ from simkit.cli.terminal.options import (
     XacroArgs,
     source_arguments,
 )
-from simkit.cli.terminal.output import print_diagnostics, print_status, report_errors, stdout_console
 from simkit.errors import InputError, SimkitError
 from simkit.writers.atomic_output import check_file
 

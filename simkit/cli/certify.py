@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from simkit.cli.run_options import load_options, scenario_spec
-from simkit.cli.terminal.options import (
+from simkit.cli.terminal.output import print_json, print_status, report_errors, stdout_console
+from simkit.cli.terminal.shared_options import (
     Base,
     CmdVel,
     Json,
@@ -24,7 +25,6 @@ from simkit.cli.terminal.options import (
     XacroArgs,
     source_arguments,
 )
-from simkit.cli.terminal.output import print_json, print_status, report_errors, stdout_console
 from simkit.writers.atomic_output import check_writable, write_atomically
 
 if TYPE_CHECKING:

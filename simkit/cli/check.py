@@ -10,7 +10,8 @@ from typing import Annotated
 
 import typer
 
-from simkit.cli.terminal.options import (
+from simkit.cli.terminal.output import print_diagnostics, report_errors, stdout_console
+from simkit.cli.terminal.shared_options import (
     Base,
     File,
     Force,
@@ -22,7 +23,6 @@ from simkit.cli.terminal.options import (
     XacroArgs,
     source_arguments,
 )
-from simkit.cli.terminal.output import print_diagnostics, report_errors, stdout_console
 from simkit.diagnostics import Diagnostic
 from simkit.errors import InputError
 from simkit.writers.atomic_output import check_file
@@ -72,7 +72,7 @@ def _counts(found: Sequence[Diagnostic]) -> str:
 
 
 def _fix_inertia(file: str, output: Path | None, force: bool, resource_paths: list[Path], json_: bool) -> int:
-    from simkit.writers.inertia_repair import find_inertia_fixes
+    from simkit.writers.fix_inertia import find_inertia_fixes
 
     found = find_inertia_fixes(Path(file), resource_paths)
     if output is not None:

@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-from simkit.cli.terminal.options import (
+from simkit.cli.terminal.output import print_diagnostics, print_status, report_errors, stdout_console
+from simkit.cli.terminal.shared_options import (
     Base,
     File,
     Force,
@@ -18,7 +19,6 @@ from simkit.cli.terminal.options import (
     XacroArgs,
     source_arguments,
 )
-from simkit.cli.terminal.output import print_diagnostics, print_status, report_errors, stdout_console
 from simkit.diagnostics import Diagnostics
 from simkit.errors import InputError
 from simkit.run_spec import SourceOptions

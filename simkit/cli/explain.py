@@ -8,8 +8,8 @@ from typing import Annotated
 
 import typer
 
-from simkit.cli.terminal.options import Json
 from simkit.cli.terminal.output import report_errors, stdout_console
+from simkit.cli.terminal.shared_options import Json
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
 

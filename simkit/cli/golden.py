@@ -14,7 +14,16 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from simkit.cli.run_options import load_options, scenario_spec
-from simkit.cli.terminal.options import (
+from simkit.cli.terminal.output import (
+    JsonObject,
+    JsonValue,
+    print_diagnostics,
+    print_error,
+    print_status,
+    report_errors,
+    stdout_console,
+)
+from simkit.cli.terminal.shared_options import (
     Base,
     CmdVel,
     Force,
@@ -29,15 +38,6 @@ from simkit.cli.terminal.options import (
     Spawns,
     XacroArgs,
     source_arguments,
-)
-from simkit.cli.terminal.output import (
-    JsonObject,
-    JsonValue,
-    print_diagnostics,
-    print_error,
-    print_status,
-    report_errors,
-    stdout_console,
 )
 from simkit.errors import InputError, RegressionError
 from simkit.testing.golden.parallel_check import CheckResult

@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from simkit.cli.terminal.options import Json
 from simkit.cli.terminal.output import print_json, report_errors, stdout_console
+from simkit.cli.terminal.shared_options import Json
 from simkit.errors import InputError
 from simkit.writers.atomic_output import check_writable
 

@@ -5,8 +5,16 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 
-from simkit.cli.terminal.options import Base, File, Json, PackagePaths, ResourcePaths, XacroArgs, source_arguments
 from simkit.cli.terminal.output import JsonObject, report_errors, stdout_console
+from simkit.cli.terminal.shared_options import (
+    Base,
+    File,
+    Json,
+    PackagePaths,
+    ResourcePaths,
+    XacroArgs,
+    source_arguments,
+)
 
 
 @report_errors

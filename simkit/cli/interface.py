@@ -9,8 +9,8 @@ import typer
 
 from simkit.cli.terminal import completion
 from simkit.cli.terminal.live_options import Bag
-from simkit.cli.terminal.options import Json
 from simkit.cli.terminal.output import not_found_error, print_json, print_line, report_errors_quietly
+from simkit.cli.terminal.shared_options import Json
 from simkit.errors import InputError, MessageError
 
 _KINDS = (("msg", "Messages"), ("srv", "Services"), ("action", "Actions"))
@@ -40,7 +40,7 @@ def list_(
     json_: Json = False,
 ) -> int:
     """Lists the types that simkit knows."""
-    from simkit.msgs.interfaces import interface_names
+    from simkit.msgs.interface_definitions import interface_names
 
     wanted = {"msg": only_msgs, "srv": only_srvs, "action": only_actions}
     kinds = [(kind, title) for kind, title in _KINDS if wanted[kind] or not any(wanted.values())]
@@ -58,7 +58,7 @@ def list_(
 @report_errors_quietly
 def packages(json_: Json = False) -> int:
     """Lists the packages that the types are of."""
-    from simkit.msgs.interfaces import interface_names
+    from simkit.msgs.interface_definitions import interface_names
 
     found = sorted({name.split("/")[0] for kind, _ in _KINDS for name in interface_names(kind)})
     if json_:
@@ -73,7 +73,7 @@ def packages(json_: Json = False) -> int:
 @report_errors_quietly
 def package(name: Annotated[str, typer.Argument(metavar="PACKAGE", show_default=False)], json_: Json = False) -> int:
     """Lists the types of a package."""
-    from simkit.msgs.interfaces import interface_names
+    from simkit.msgs.interface_definitions import interface_names
 
     known = [n for kind, _ in _KINDS for n in interface_names(kind)]
     found = [n for n in known if n.split("/")[0] == name]
@@ -97,7 +97,7 @@ def show(
     json_: Json = False,
 ) -> int:
     """Prints the definition of a type, with those of its parts below."""
-    from simkit.msgs.interfaces import interface_text
+    from simkit.msgs.interface_definitions import interface_text
 
     name = _read(type_)
     try:
@@ -116,7 +116,7 @@ def show(
 
 def _of_bag(name: str, bag: object, *, comments: bool, all_comments: bool) -> str:
     """The definition as a bag has it."""
-    from simkit.msgs.interfaces import interface_text
+    from simkit.msgs.interface_definitions import interface_text
     from simkit.recording.bags.reader import open_bag_to_read
 
     with open_bag_to_read(str(bag)) as reader:
@@ -133,7 +133,7 @@ def proto(
     json_: Json = False,
 ) -> int:
     """Prints a message with every field, to be filled in."""
-    from simkit.msgs.interfaces import prototype
+    from simkit.msgs.interface_definitions import prototype
     from simkit.msgs.message_text import to_yaml
 
     try:

@@ -9,8 +9,8 @@ import typer
 
 from simkit.cli.terminal import completion
 from simkit.cli.terminal.live_options import Sim
-from simkit.cli.terminal.options import Json
 from simkit.cli.terminal.output import JsonObject, not_found_error, print_json, print_line, report_errors_quietly
+from simkit.cli.terminal.shared_options import Json
 from simkit.cli.terminal.topic_sources import connect_to_simulation, connection_name
 
 if TYPE_CHECKING:

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from simkit.cli.terminal.options import (
+from simkit.cli.terminal.output import print_diagnostics, print_status, report_errors, stdout_console
+from simkit.cli.terminal.shared_options import (
     Force,
     Json,
     PackagePaths,
@@ -22,7 +23,6 @@ from simkit.cli.terminal.options import (
     XacroArgs,
     source_arguments,
 )
-from simkit.cli.terminal.output import print_diagnostics, print_status, report_errors, stdout_console
 from simkit.diagnostics import Diagnostics
 from simkit.errors import InputError, RenderError
 

@@ -8,7 +8,6 @@ import typer
 
 from simkit.cli.terminal import completion
 from simkit.cli.terminal.live_options import Ros2Command, Sim
-from simkit.cli.terminal.options import Json
 from simkit.cli.terminal.output import (
     JsonObject,
     absolute_name,
@@ -19,6 +18,7 @@ from simkit.cli.terminal.output import (
     print_names,
     report_errors_quietly,
 )
+from simkit.cli.terminal.shared_options import Json
 from simkit.cli.terminal.topic_sources import connect_to_simulation, connection_name, node_names
 
 node = typer.Typer(help="Nodes of a running simulation: its plugins, sensors and clients.", no_args_is_help=True)

@@ -10,7 +10,6 @@ import typer
 from simkit.cli.terminal import completion
 from simkit.cli.terminal.live_options import Ros2Command, Sim
 from simkit.cli.terminal.message_arguments import compile_pattern
-from simkit.cli.terminal.options import Json
 from simkit.cli.terminal.output import (
     JsonObject,
     absolute_name,
@@ -21,6 +20,7 @@ from simkit.cli.terminal.output import (
     report_errors_quietly,
 )
 from simkit.cli.terminal.parameter_values import KINDS, parse_parameter_value, plain_value, read_parameter_file
+from simkit.cli.terminal.shared_options import Json
 from simkit.cli.terminal.topic_sources import LIST_PARAMETERS, connect_to_simulation, connection_name, parameter_nodes
 from simkit.errors import InputError
 

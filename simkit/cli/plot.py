@@ -19,7 +19,8 @@ from simkit.cli.plot_sources import (
     split_sources_and_fields,
 )
 from simkit.cli.run_options import load_options, scenario_spec
-from simkit.cli.terminal.options import (
+from simkit.cli.terminal.output import report_errors_quietly
+from simkit.cli.terminal.shared_options import (
     Base,
     CmdVel,
     Json,
@@ -32,7 +33,6 @@ from simkit.cli.terminal.options import (
     XacroArgs,
     source_arguments,
 )
-from simkit.cli.terminal.output import report_errors_quietly
 
 
 @report_errors_quietly

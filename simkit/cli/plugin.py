@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from simkit.cli.terminal.options import (
+from simkit.cli.terminal.output import JsonObject, print_diagnostics, print_status, report_errors, stdout_console
+from simkit.cli.terminal.shared_options import (
     Force,
     Json,
     PackagePaths,
@@ -18,7 +19,6 @@ from simkit.cli.terminal.options import (
     XacroArgs,
     source_arguments,
 )
-from simkit.cli.terminal.output import JsonObject, print_diagnostics, print_status, report_errors, stdout_console
 from simkit.diagnostics import Diagnostics
 from simkit.errors import InputError
 

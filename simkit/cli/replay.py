@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from simkit.cli.terminal.options import Json
 from simkit.cli.terminal.output import JsonObject, report_errors, stdout_console
+from simkit.cli.terminal.shared_options import Json
 from simkit.errors import InputError
 
 if TYPE_CHECKING:

@@ -14,7 +14,8 @@ from simkit.cli.failure_bundle import DEFAULT_FOLDER as BUNDLES
 from simkit.cli.failure_bundle import FailureBundle
 from simkit.cli.run_options import RunDisplay, load_options
 from simkit.cli.terminal.blocked_plugins import BlockedPlugins
-from simkit.cli.terminal.options import (
+from simkit.cli.terminal.output import print_diagnostics, print_status, report_errors
+from simkit.cli.terminal.shared_options import (
     Base,
     CmdVel,
     Force,
@@ -31,7 +32,6 @@ from simkit.cli.terminal.options import (
     XacroArgs,
     source_arguments,
 )
-from simkit.cli.terminal.output import print_diagnostics, print_status, report_errors
 from simkit.cli.terminal.teleop import KEY_TIMEOUT
 from simkit.run_spec import Check, PluginErrorPolicy, Recording, RunSpec
 

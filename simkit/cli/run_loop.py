@@ -18,7 +18,7 @@ from simkit.cli.wall_time_limit import SignalHandler
 
 if TYPE_CHECKING:
     from simkit.bridges.live.server import Server
-    from simkit.recording.commands import Commands
+    from simkit.recording.command_script import Commands
     from simkit.runtime import Simulation
 
 

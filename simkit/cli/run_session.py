@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from simkit.cli.terminal.teleop import Teleop
     from simkit.recording.bags.playback import Playback
     from simkit.recording.bags.recorder import Recorder
-    from simkit.recording.commands import Command
+    from simkit.recording.command_script import Command
     from simkit.recording.run_picture import DrivenPath
     from simkit.recording.topic_counts import TopicCounter
     from simkit.runtime import Simulation
@@ -132,7 +132,7 @@ class Session:
         """Runs it to its end; the exit code."""
         from simkit.cli.terminal.progress import Stopwatch
         from simkit.recording.bags.recorder import Recorder
-        from simkit.recording.commands import Commands
+        from simkit.recording.command_script import Commands
         from simkit.recording.run_picture import DrivenPath
         from simkit.recording.topic_counts import RENDERED, TopicCounter
 
@@ -197,7 +197,7 @@ class Session:
     # ------------------------------------------------------------------ who drives
 
     def _commands(self) -> list[Command]:
-        from simkit.recording.commands import read_script, steady_velocity
+        from simkit.recording.command_script import read_script, steady_velocity
 
         topics = self.sim.topics()
         found = []

@@ -17,7 +17,6 @@ from simkit.cli.terminal.message_arguments import (
     parse_fields,
     split_type_and_values,
 )
-from simkit.cli.terminal.options import Json
 from simkit.cli.terminal.output import (
     absolute_name,
     is_hidden,
@@ -27,6 +26,7 @@ from simkit.cli.terminal.output import (
     print_names_and_types,
     report_errors_quietly,
 )
+from simkit.cli.terminal.shared_options import Json
 from simkit.cli.terminal.topic_sources import connect_to_simulation, interface_type
 
 if TYPE_CHECKING:

@@ -12,8 +12,8 @@ import typer
 from simkit.cli.terminal import completion
 from simkit.cli.terminal.frame_tree import FrameTree, receive_transforms
 from simkit.cli.terminal.live_options import Bag, Sim
-from simkit.cli.terminal.options import Json
 from simkit.cli.terminal.output import not_found_error, print_json, print_line, report_errors_quietly
+from simkit.cli.terminal.shared_options import Json
 from simkit.cli.terminal.topic_sources import open_source
 from simkit.errors import InputError
 

@@ -10,8 +10,8 @@ import typer
 from simkit.cli.terminal import completion
 from simkit.cli.terminal.live_options import Bag, Ros2Command, ShowTypes, Sim, Topic
 from simkit.cli.terminal.message_arguments import is_same_type
-from simkit.cli.terminal.options import Json
 from simkit.cli.terminal.output import JsonObject, is_hidden, print_json, print_line, print_names, report_errors_quietly
+from simkit.cli.terminal.shared_options import Json
 from simkit.cli.terminal.topic_sources import TopicEndpoint, TopicEntry, find_topic, open_source
 from simkit.cli.topic_echo import echo
 from simkit.cli.topic_pub import pub

@@ -11,8 +11,8 @@ import typer
 from simkit.cli.terminal import completion
 from simkit.cli.terminal.live_options import Bag, Sim, Topic
 from simkit.cli.terminal.message_arguments import check_type
-from simkit.cli.terminal.options import Json
 from simkit.cli.terminal.output import print_json, print_line, print_note, report_errors_quietly
+from simkit.cli.terminal.shared_options import Json
 from simkit.cli.terminal.topic_sources import Feed, ReceivedMessage, Source, find_topic, open_source, wait_for_topic
 from simkit.errors import InputError, MessageError
 from simkit.msgs.message_types import FieldNode, FieldValue, Message

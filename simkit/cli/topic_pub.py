@@ -12,7 +12,6 @@ import typer
 from simkit.cli.terminal import completion
 from simkit.cli.terminal.live_options import Sim, Topic
 from simkit.cli.terminal.message_arguments import make_message, parse_fields, split_type_and_values
-from simkit.cli.terminal.options import Json
 from simkit.cli.terminal.output import (
     JsonObject,
     JsonValue,
@@ -22,6 +21,7 @@ from simkit.cli.terminal.output import (
     print_note,
     report_errors_quietly,
 )
+from simkit.cli.terminal.shared_options import Json
 from simkit.cli.terminal.topic_sources import LONGEST_WAIT, LiveSource, SimClock, connect_to_simulation, find_topic
 from simkit.errors import InputError, MessageError
 

@@ -15,8 +15,8 @@ from typing import Annotated
 import typer
 
 from simkit.cli.terminal.live_options import Bag, Sim, Topic
-from simkit.cli.terminal.options import Json
 from simkit.cli.terminal.output import JsonObject, print_json, print_line, print_note, report_errors_quietly
+from simkit.cli.terminal.shared_options import Json
 from simkit.cli.terminal.topic_sources import Feed, ReceivedMessage, Source, find_topic, open_source
 from simkit.cli.topic_echo import compile_filter
 from simkit.errors import InputError

@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from simkit.cli.terminal.options import Base, File, PackagePaths, ResourcePaths, XacroArgs, source_arguments
 from simkit.cli.terminal.output import report_errors, stdout_console
+from simkit.cli.terminal.shared_options import Base, File, PackagePaths, ResourcePaths, XacroArgs, source_arguments
 
 
 @report_errors
@@ -22,7 +22,7 @@ def vendor(
 ) -> int:
     """Writes a folder that holds a world and everything it names, and that opens anywhere."""
     from simkit.build import describe
-    from simkit.writers.vendor import vendor as write
+    from simkit.writers.vendored_folder import vendor as write
 
     main, count = write(file, folder, describe, **source_arguments(resource_path, package_path, xacro_arg, base))
     stdout_console().print(f"{folder / main} and {count - 1} files that it needs")

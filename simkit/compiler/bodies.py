@@ -7,7 +7,7 @@ from typing import Final
 import mujoco
 import numpy as np
 
-from simkit.compiler.inertia_repair import LEAST_MASS, BodyInertia
+from simkit.compiler.refused_inertias import LEAST_MASS, BodyInertia
 from simkit.pose import Pose
 from simkit.scene import Inertial, SceneLink
 
@@ -28,7 +28,7 @@ def add_body(
     """A body whose frame is the link frame, `pose` in the parent body's frame; returns MuJoCo's handle.
 
     Args:
-        written: its mass and inertia (`simkit.compiler.inertia_repair.plan_inertials`); None for a link without mass.
+        written: its mass and inertia (`simkit.compiler.refused_inertias.plan_inertials`); None for a link without mass.
         needs_mass: whether it moves by itself; a link without mass that does not is a frame and weighs nothing.
     """
     body = parent.add_body(name=link.scoped, pos=pose.position, quat=pose.quaternion)

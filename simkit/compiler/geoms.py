@@ -19,7 +19,7 @@ from simkit.compiler.meshes.companion_files import Pixels
 from simkit.compiler.meshes.mesh_part import Colour, Floats, Ints, MeshFileError, MeshPart, has_area, join_parts
 from simkit.compiler.meshes.mesh_reader import load_mesh, report_once
 from simkit.compiler.name_map import GeomOwner, ModelRecord
-from simkit.compiler.shapes import (
+from simkit.compiler.shape_geometry import (
     cone_triangles,
     heightmap_rows,
     polyline_pieces,

@@ -8,12 +8,12 @@ from typing import Final
 import mujoco
 
 from simkit.compiler.engine_options import apply_size, choose_islands, set_extent
-from simkit.compiler.first_state import add_idle_armature, apply_velocity_decay, check_derived_numbers
-from simkit.compiler.inertia_repair import restore_file_inertias
+from simkit.compiler.initial_state import add_idle_armature, apply_velocity_decay, check_derived_numbers
 from simkit.compiler.lights import refine_for_lamps
 from simkit.compiler.mjcf_attachment import assign_geom_groups, silence_engine_warnings
 from simkit.compiler.name_map import ModelRecord
-from simkit.compiler.servos import tune_servos
+from simkit.compiler.refused_inertias import restore_file_inertias
+from simkit.compiler.servo_gains import tune_servos
 from simkit.diagnostics import Diagnostics
 from simkit.scene import SceneWorld
 

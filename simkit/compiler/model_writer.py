@@ -11,11 +11,11 @@ import mujoco
 from simkit.compiler.assets import Assets
 from simkit.compiler.bodies import KINEMATIC_ARMATURE, add_body, is_massless
 from simkit.compiler.geoms import GeomParent, GeomWriter
-from simkit.compiler.inertia_repair import BodyInertia, plan_inertials
 from simkit.compiler.joints import JointWriter
 from simkit.compiler.kinematic_tree import WORLD, KinematicTree, plan_tree
 from simkit.compiler.lights import add_light, report_light
 from simkit.compiler.name_map import LightBinding, LinkBinding, ModelRecord
+from simkit.compiler.refused_inertias import BodyInertia, plan_inertials
 from simkit.compiler.self_collision import exclude_self_collisions
 from simkit.compiler.wheel_cylinders import turning_axis
 from simkit.diagnostics import Diagnostics
@@ -227,7 +227,7 @@ class ModelWriter:
         """Whether a link has to weigh something: it moves by itself, and no link that is one with it has mass.
 
         Without mass anywhere below there is nothing that an effort could move: an error where the link moves freely;
-        a joint gets an armature (`first_state.steady_idle`).
+        a joint gets an armature (`initial_state.steady_idle`).
         """
         edge = tree.edges.get(link.scoped)
         moves = is_free or (edge is not None and edge.joint.type != "fixed")

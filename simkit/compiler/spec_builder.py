@@ -13,7 +13,7 @@ import mujoco
 from simkit.compiler.assets import Assets
 from simkit.compiler.bodies import remove_split_body
 from simkit.compiler.engine_options import apply_options
-from simkit.compiler.first_state import place_followers, report_overlaps
+from simkit.compiler.initial_state import place_followers, report_overlaps
 from simkit.compiler.kinematic_tree import WORLD
 from simkit.compiler.lights import add_light, report_light, report_lights
 from simkit.compiler.mjcf_attachment import (
@@ -29,7 +29,7 @@ from simkit.compiler.model_compilation import compile_spec, finish_model
 from simkit.compiler.model_writer import ModelWriter
 from simkit.compiler.name_map import ActuatorRef, JointBinding, LightBinding, ModelRecord, NameMap, lookup
 from simkit.compiler.self_collision import FIRST_OWN_BIT, PAIRS_MOST
-from simkit.compiler.servos import add_actuator, add_armature, add_drive_armature
+from simkit.compiler.servo_gains import add_actuator, add_armature, add_drive_armature
 from simkit.compiler.state_transfer import transfer_state
 from simkit.diagnostics import Diagnostics
 from simkit.pose import Pose

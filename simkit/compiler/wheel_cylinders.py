@@ -18,7 +18,7 @@ import numpy as np
 from simkit.compiler.kinematic_tree import KinematicTree
 from simkit.compiler.meshes.convex_pieces import hull_volume
 from simkit.compiler.meshes.mesh_part import Floats, Ints
-from simkit.compiler.shapes import turn_z_to
+from simkit.compiler.shape_geometry import turn_z_to
 from simkit.pose import Pose
 from simkit.scene import SceneLink
 

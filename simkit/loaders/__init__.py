@@ -22,8 +22,8 @@ from simkit.loaders.resources.bundled_models import (
 )
 from simkit.loaders.resources.loader import Loader, LoadRequest, MeshReader, MjcfParser
 from simkit.loaders.resources.model_folder import model_file
-from simkit.loaders.resources.paths import access_problem, sibling_names
-from simkit.loaders.resources.resolver import Resolver
+from simkit.loaders.resources.uri_resolver import Resolver
+from simkit.loaders.resources.uris import access_problem, sibling_names
 from simkit.loaders.resources.xml_reader import ALLOWED_FORMATS, Document, foreign_root_hint, parse_file, parse_text
 from simkit.loaders.xacro import expand, needs_expansion
 from simkit.pose import Pose

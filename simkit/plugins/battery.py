@@ -8,10 +8,10 @@ from dataclasses import dataclass, field
 from typing import ClassVar, Final
 
 from simkit import msgs
-from simkit.msgs.topics import valid_topic
+from simkit.msgs.topic_names import valid_topic
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.endpoints import Endpoint, publishes
-from simkit.plugins.on_demand import publish_while_subscribed
+from simkit.plugins.publish_on_demand import publish_while_subscribed
 
 _HOUR: Final = 3600.0  # [s]
 _WINDOW: Final = 100  # steps

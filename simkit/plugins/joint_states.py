@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from simkit import msgs
-from simkit.msgs.topics import valid_topic
+from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.endpoints import publishes
-from simkit.plugins.lookups import find_joint
+from simkit.plugins.find_entities import find_joint
 from simkit.plugins.options import Options, OptionsOf, number, text, texts
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from simkit.diagnostics import Diagnostics, Where, did_you_mean
 from simkit.plugins.ros_parameter_files import ParameterFile, read_parameter_file
 
 if TYPE_CHECKING:
-    from simkit.runtime.engine.world_structure import AttachedPlugin
+    from simkit.runtime.engine.entity_structure import AttachedPlugin
     from simkit.scene import SceneModel, SceneWorld
 
 ParameterFileArgument = str | os.PathLike[str] | tuple[str, str | os.PathLike[str]]

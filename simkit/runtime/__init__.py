@@ -8,8 +8,8 @@ and plugins by name, and sockets. `contact` is below `engine`, that is below `co
 
 from simkit.mujoco_import import mujoco  # noqa: F401  (before any module imports MuJoCo by itself)
 from simkit.runtime.communication.topic_bus import Publisher, Subscription
+from simkit.runtime.engine.entity_structure import SensorsAndPlugins, WorldStructure
 from simkit.runtime.engine.snapshot import Snapshot
-from simkit.runtime.engine.world_structure import SensorsAndPlugins, WorldStructure
 from simkit.runtime.handles.joint import Joint
 from simkit.runtime.handles.light import Light
 from simkit.runtime.handles.link import Link

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from simkit.errors import InputError, SimkitError
+from simkit.runtime.engine.entity_structure import AttachedPlugin, SensorsAndPlugins, WorldStructure
 from simkit.runtime.engine.snapshot import Snapshot
-from simkit.runtime.engine.world_structure import AttachedPlugin, SensorsAndPlugins, WorldStructure
 
 if TYPE_CHECKING:
     from simkit.compiler import ActuatorRef, SpecBuilder

@@ -11,7 +11,7 @@ from simkit.runtime.handles.handle import look_up
 from simkit.scene import SceneJoint, SceneLink, SceneModel, SceneSensor
 
 if TYPE_CHECKING:
-    from simkit.runtime.engine.world_structure import WorldStructure
+    from simkit.runtime.engine.entity_structure import WorldStructure
 
 _XML_ATTRIBUTES = frozenset(("name", "type"))
 

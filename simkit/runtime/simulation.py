@@ -13,9 +13,9 @@ from simkit.runtime.communication.communication import Communication
 from simkit.runtime.communication.journal import journaled
 from simkit.runtime.communication.service_server import Service, ServiceHandler
 from simkit.runtime.communication.topic_bus import Callback, CallbackErrorPolicy, Subscription, TopicBus
-from simkit.runtime.engine.clock import Clock
 from simkit.runtime.engine.engine import Engine
 from simkit.runtime.engine.plugin_faults import add_driver_hints
+from simkit.runtime.engine.simulated_time import Clock
 from simkit.runtime.engine.snapshot import Snapshot, Stateful
 from simkit.runtime.engine.step_tasks import fill_schedule
 from simkit.runtime.handles.joint import Joint
@@ -33,8 +33,8 @@ if TYPE_CHECKING:
     from simkit.diagnostics import Diagnostic, Diagnostics
     from simkit.runtime.communication.journal import Journal
     from simkit.runtime.communication.subscription import Callback, Message
+    from simkit.runtime.engine.entity_structure import WorldStructure
     from simkit.runtime.engine.scheduler import Scheduler
-    from simkit.runtime.engine.world_structure import WorldStructure
     from simkit.scene import SceneWorld
 
 

@@ -12,10 +12,7 @@ from simkit.errors import InputError, LoadError, SimkitError
 from simkit.pose import Pose
 from simkit.runtime import sensor_attachment
 from simkit.runtime.communication.topic_conflicts import report_topic_conflicts
-from simkit.runtime.engine.model_fields import copy_fields_by_name, restore_compiled_fields
-from simkit.runtime.engine.plugin_faults import call_plugin
-from simkit.runtime.engine.snapshot import Snapshot, Snapshots, Stateful
-from simkit.runtime.engine.world_structure import (
+from simkit.runtime.engine.entity_structure import (
     FROM_SPAWN,
     AttachedPlugin,
     AttachedSensor,
@@ -24,6 +21,9 @@ from simkit.runtime.engine.world_structure import (
     bodies_kept_awake,
     plugins_in_order,
 )
+from simkit.runtime.engine.model_edits import copy_fields_by_name, restore_compiled_fields
+from simkit.runtime.engine.plugin_faults import call_plugin
+from simkit.runtime.engine.snapshot import Snapshot, Snapshots, Stateful
 from simkit.scene import SceneJoint, SceneModel
 
 if TYPE_CHECKING:

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, ClassVar, TypeVar
 from simkit import msgs
 from simkit.diagnostics import Diagnostics, Where
 from simkit.msgs.message_types import Message
-from simkit.msgs.topics import valid_topic
+from simkit.msgs.topic_names import valid_topic
 from simkit.pose import Pose, Vector
 from simkit.sensors.noise import NO_NOISE, Noise, NoiseModel, UniformNoise
 from simkit.sensors.sample import NoiseProcess, Product, Reading, Sample
+from simkit.sensors.sample_times import DelayedReadings, SampleTimes, read_timing
 from simkit.sensors.sampler import Sampler
-from simkit.sensors.timing import DelayedReadings, SampleTimes, read_timing
 from simkit.sensors.topics_and_frames import check_topic, entity_topic, read_frame_id
 
 if TYPE_CHECKING:

@@ -96,7 +96,7 @@ class NoiseProcess(Protocol):
 
 
 class Batch(Protocol):
-    """What a sampler needs of the batch that it is a member of; see `simkit.sensors.batch`."""
+    """What a sampler needs of the batch that it is a member of; see `simkit.sensors.sensor_batch`."""
 
     def is_ready(self, member: Member, tick: int) -> bool:
         """Capture all members for a tick, once; False where the member has to do it by itself."""

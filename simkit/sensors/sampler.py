@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, ClassVar, Self
 
 from simkit.msgs.message_types import Message
 from simkit.sensors.sample import Batch, Memory, NoiseProcess, Product, Reading, ReadingFunction, Sample
-from simkit.sensors.timing import DelayedReadings, LatencyTimetable, SampleTimes, TimingOptions
+from simkit.sensors.sample_times import DelayedReadings, LatencyTimetable, SampleTimes, TimingOptions
 
 if TYPE_CHECKING:
     import mujoco
@@ -123,7 +123,7 @@ class Sampler(abc.ABC):
 
     @classmethod
     def make_batches(cls, sensors: Sequence[Self]) -> None:
-        """Make batches of the sensors of this kind that can sample together; see `simkit.sensors.batch`."""
+        """Make batches of the sensors of this kind that can sample together; see `simkit.sensors.sensor_batch`."""
 
     # ------------------------------------------------------------------ what the simulation calls
 

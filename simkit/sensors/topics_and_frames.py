@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from simkit.msgs.topics import valid_topic
+from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.pose import Pose
 from simkit.scene import SceneSensor

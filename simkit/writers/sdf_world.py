@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 
-from simkit.compiler.inertia_repair import format_moments, repair_inertia
+from simkit.compiler.refused_inertias import format_moments, repair_inertia
 from simkit.diagnostics import Diagnostics
 from simkit.params import Params
 from simkit.pose import IDENTITY, Pose

@@ -77,7 +77,7 @@ def test_interfaces_are_shown_with_their_parts(simkit_line: Any) -> None:
 
 
 def test_every_interface_can_be_shown(simkit_line: Any) -> None:
-    from simkit.msgs.interfaces import interface_names, interface_text, prototype
+    from simkit.msgs.interface_definitions import interface_names, interface_text, prototype
 
     for kind in ("msg", "srv", "action"):
         for name in interface_names(kind):

@@ -8,7 +8,7 @@ import pytest
 
 import simkit
 from simkit.cli.run_loop import RunLoop
-from simkit.recording.commands import Commands
+from simkit.recording.command_script import Commands
 
 BALL = '<sdf version="1.9"><world name="w"><model name="ball"><link name="l"/></model></world></sdf>'
 

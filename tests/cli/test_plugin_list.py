@@ -11,7 +11,7 @@ from typer.testing import CliRunner, Result
 from simkit.cli import app
 from simkit.params import Params
 from simkit.plugins.authoring.catalogue import known_plugins
-from simkit.plugins.discovery.plugin_kinds import find_plugin
+from simkit.plugins.discovery.find_plugin_class import find_plugin
 from simkit.scene import ScenePlugin
 
 BRAKE = """

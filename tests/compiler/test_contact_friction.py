@@ -13,8 +13,8 @@ from simkit.compiler import SpecBuilder
 from simkit.compiler.contact_friction import MU_MOST, contact_properties, friction_priority
 from simkit.diagnostics import Diagnostics
 from simkit.pose import Pose
-from simkit.runtime.engine.clock import Clock
-from simkit.runtime.engine.physics import Physics
+from simkit.runtime.engine.physics_step import Physics
+from simkit.runtime.engine.simulated_time import Clock
 from simkit.scene import Box, Sphere, Surface
 
 G = 9.8

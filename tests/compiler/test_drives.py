@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from simkit.compiler.servos import add_drive_armature, drive_gains, felt_inertias
+from simkit.compiler.servo_gains import add_drive_armature, drive_gains, felt_inertias
 from simkit.diagnostics import NOWHERE, Diagnostics
 
 TWO_LINKS = """

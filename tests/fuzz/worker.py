@@ -166,7 +166,7 @@ def numbers_that_are_none(model: Any) -> str:
 def commanded(file: Path) -> dict[str, str]:
     """A script of commands, sent to a model that listens."""
     import simkit
-    from simkit.recording.commands import Commands, read_script
+    from simkit.recording.command_script import Commands, read_script
 
     try:
         with simkit.load(STAND) as sim:

@@ -9,8 +9,8 @@ import pytest
 from wide_sdf import BARE, BARE_INCLUDE, BOX, WORLD
 
 from simkit.loaders.sdf.element_table import sdf_elements
+from simkit.loaders.sdf.load_context import Workspace
 from simkit.loaders.sdf.loader import SdfLoader
-from simkit.loaders.sdf.workspace import Workspace
 from simkit.params import Params
 
 ELEMENTS = sdf_elements()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from simkit.msgs.topics import valid_topic
+from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.plugins.ros_names import RosNames
 

@@ -91,7 +91,7 @@ def topics(ctx: typer.Context) -> Iterable[str]:
 @_silent
 def topic_types(ctx: typer.Context) -> Iterable[str]:
     """Types of the topic named before; all message types where it has none yet."""
-    from simkit.msgs.interfaces import interface_names
+    from simkit.msgs.interface_definitions import interface_names
 
     topic = _topic_before(ctx)
     if topic:
@@ -106,7 +106,7 @@ def topic_types(ctx: typer.Context) -> Iterable[str]:
 @_silent
 def message_types(_: typer.Context) -> Iterable[str]:
     """Complete message types."""
-    from simkit.msgs.interfaces import interface_names
+    from simkit.msgs.interface_definitions import interface_names
 
     return interface_names("msg")
 
@@ -114,7 +114,7 @@ def message_types(_: typer.Context) -> Iterable[str]:
 @_silent
 def interfaces(_: typer.Context) -> Iterable[str]:
     """Complete message, service and action types."""
-    from simkit.msgs.interfaces import interface_names
+    from simkit.msgs.interface_definitions import interface_names
 
     return [name for kind in ("msg", "srv", "action") for name in interface_names(kind)]
 
@@ -163,7 +163,7 @@ def goal_values(ctx: typer.Context) -> Iterable[str]:
 
 
 def _prototype(type_name: str) -> list[str]:
-    from simkit.msgs.interfaces import prototype
+    from simkit.msgs.interface_definitions import prototype
     from simkit.msgs.message_text import to_yaml
 
     return [to_yaml(prototype(type_name), flow=True).strip()] if type_name else []
@@ -197,7 +197,7 @@ def action_types(ctx: typer.Context) -> Iterable[str]:
 
 def _types_of_name(ctx: typer.Context, what: str, kind: str) -> list[str]:
     """The type of the service or action that was written before; where there is none, all types of that kind."""
-    from simkit.msgs.interfaces import interface_names
+    from simkit.msgs.interface_definitions import interface_names
 
     name = ctx.params.get(what)
     if name:

@@ -16,7 +16,7 @@ from simkit.diagnostics import Diagnostics, Where
 from simkit.params import Params
 from simkit.scene import SceneWorld
 
-_GAIN_LIMIT: Final = 1.5  # as in simkit.compiler.servos: gains beyond this are capped
+_GAIN_LIMIT: Final = 1.5  # as in simkit.compiler.servo_gains: gains beyond this are capped
 _RINGING_DAMPING: Final = 2.0  # of d·dt/I, for a force that is computed once a step
 _RINGING_STIFFNESS: Final = 4.0  # of k·dt²/I, likewise
 LARGEST_LOAD_RATIO: Final = 1e4

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
 from simkit.diagnostics import Where
-from simkit.loaders.mjcf.gathered_file import GatheredFile
+from simkit.loaders.mjcf.includes import GatheredFile
 from simkit.loaders.resources.loader import CompiledMjcf
 from simkit.pose import IDENTITY, Pose
 from simkit.scene import ScenePlugin

@@ -9,16 +9,16 @@ from typing import ClassVar
 
 from simkit.diagnostics import Diagnostics, Where
 from simkit.loaders.mjcf.compiled_file import WORLD_LINK, CompiledFile, ElementIds, ModelPlacement
-from simkit.loaders.mjcf.gathered_file import gather_files
+from simkit.loaders.mjcf.includes import gather_files
 from simkit.loaders.mjcf.lights import read_lights
 from simkit.loaders.mjcf.model import ModelReader
 from simkit.loaders.mjcf.schema import check_names
 from simkit.loaders.mjcf.size_limits import check_bounds
 from simkit.loaders.resources.loader import LoadRequest, MjcfParser
-from simkit.loaders.resources.resolver import Resolver
+from simkit.loaders.resources.uri_resolver import Resolver
 from simkit.loaders.resources.xml_reader import Document
+from simkit.loaders.sdf.load_context import IncludableLoader, IncludedModel, ModelDraft, Workspace
 from simkit.loaders.sdf.plugin import read_plugins
-from simkit.loaders.sdf.workspace import IncludableLoader, IncludedModel, ModelDraft, Workspace
 from simkit.params import Params
 from simkit.pose import IDENTITY, Pose
 from simkit.scene import Physics, Scene, SceneModel, ScenePlugin, SceneWorld, Surroundings

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 from simkit.diagnostics import Diagnostics, Where
-from simkit.loaders.resources.resolver import Resolver
+from simkit.loaders.resources.uri_resolver import Resolver
 from simkit.loaders.resources.xml_reader import Document
 from simkit.params import Params
 from simkit.pose import Pose

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from simkit.diagnostics import Diagnostics, Where
-from simkit.loaders.resources.paths import is_file, is_small_integer, leaves_folder
+from simkit.loaders.resources.uris import is_file, is_small_integer, leaves_folder
 from simkit.loaders.resources.xml_reader import parse_file
 from simkit.params import Params
 

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
 from simkit.loaders.resources.bounded_file import read_bounded
-from simkit.loaders.resources.paths import is_file
+from simkit.loaders.resources.uris import is_file
 
 _PARENT_LEVELS = 6  # folders above a file in which its package.xml is looked for
 _SEARCH_DEPTH = 4  # folders below a search path

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from simkit.loaders.resources.paths import is_small_integer
+from simkit.loaders.resources.uris import is_small_integer
 from simkit.loaders.sdf.plugin import read_plugins
 from simkit.params import Params
 from simkit.pose import Pose

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from simkit.diagnostics import did_you_mean
-from simkit.loaders.sdf.workspace import SdfFile, Workspace
+from simkit.loaders.sdf.load_context import SdfFile, Workspace
 from simkit.params import Params
 from simkit.scene import (
     Box,

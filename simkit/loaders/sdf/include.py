@@ -10,7 +10,7 @@ from simkit.loaders.resources.model_folder import model_file
 from simkit.loaders.resources.xml_reader import parse_text
 from simkit.loaders.sdf.entity_names import read_name
 from simkit.loaders.sdf.experimental_params import BLOCK, apply_changes
-from simkit.loaders.sdf.workspace import EntitySource, SdfFile, Workspace, pose_location, read_pose
+from simkit.loaders.sdf.load_context import EntitySource, SdfFile, Workspace, pose_location, read_pose
 from simkit.params import Params
 
 _ENTITIES = ("model", "light", "actor")

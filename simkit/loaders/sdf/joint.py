@@ -7,9 +7,9 @@ import math
 from simkit.diagnostics import Where, did_you_mean
 from simkit.loaders.sdf.entity_names import named_elements, scoped
 from simkit.loaders.sdf.frames import MODEL, WORLD, Frame, world_pose
+from simkit.loaders.sdf.load_context import NamedElement, Workspace, local_pose
 from simkit.loaders.sdf.plugin import read_plugins
 from simkit.loaders.sdf.sensor import read_sensor
-from simkit.loaders.sdf.workspace import NamedElement, Workspace, local_pose
 from simkit.params import Params
 from simkit.pose import IDENTITY, Pose
 from simkit.scene import Axis, Mimic, SceneJoint, SceneSensor

@@ -10,11 +10,11 @@ from simkit.loaders.sdf.frames import world_pose
 from simkit.loaders.sdf.geometry import read_geometry
 from simkit.loaders.sdf.inertial import read_inertial
 from simkit.loaders.sdf.light import read_light
+from simkit.loaders.sdf.load_context import NamedElement, Workspace, local_pose
 from simkit.loaders.sdf.material import read_material
 from simkit.loaders.sdf.plugin import read_plugins
 from simkit.loaders.sdf.sensor import read_sensor
 from simkit.loaders.sdf.surface import read_surface
-from simkit.loaders.sdf.workspace import NamedElement, Workspace, local_pose
 from simkit.params import Params
 from simkit.pose import Pose
 from simkit.scene import SceneCollision, SceneLight, SceneLink, SceneSensor, SceneVisual, Surface

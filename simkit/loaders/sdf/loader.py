@@ -10,9 +10,9 @@ from simkit.loaders.resources.loader import Loader, LoadRequest
 from simkit.loaders.resources.xml_reader import Document
 from simkit.loaders.sdf.include import read_include, read_inline_entity
 from simkit.loaders.sdf.light import read_light
+from simkit.loaders.sdf.load_context import EntitySource, SdfFile, Workspace
 from simkit.loaders.sdf.model import build_model, declare_model, place_model
 from simkit.loaders.sdf.unread_elements import report_unread
-from simkit.loaders.sdf.workspace import EntitySource, SdfFile, Workspace
 from simkit.loaders.sdf.world import read_world, world_scope
 from simkit.scene import Scene, SceneModel
 

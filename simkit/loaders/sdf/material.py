@@ -7,8 +7,8 @@ from pathlib import Path
 
 from simkit.diagnostics import closest, did_you_mean
 from simkit.loaders.sdf.gazebo_materials import gazebo_material, gazebo_materials
+from simkit.loaders.sdf.load_context import SdfFile, Workspace
 from simkit.loaders.sdf.material_script import OgreMaterial, find_material, find_texture
-from simkit.loaders.sdf.workspace import SdfFile, Workspace
 from simkit.params import Params
 from simkit.scene import Material
 from simkit.scene.model import Colour

@@ -11,8 +11,7 @@ from simkit.loaders.sdf.frames import MODEL, Frame, Scope, world_pose
 from simkit.loaders.sdf.include import read_include, read_inline_entity
 from simkit.loaders.sdf.joint import joint_link_name, read_joint
 from simkit.loaders.sdf.link import read_link
-from simkit.loaders.sdf.plugin import read_plugins
-from simkit.loaders.sdf.workspace import (
+from simkit.loaders.sdf.load_context import (
     EntitySource,
     ModelDraft,
     NamedElement,
@@ -21,6 +20,7 @@ from simkit.loaders.sdf.workspace import (
     pose_location,
     read_pose,
 )
+from simkit.loaders.sdf.plugin import read_plugins
 from simkit.params import Params
 from simkit.pose import IDENTITY, Pose
 from simkit.scene import SceneFrame, SceneModel

@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from simkit.diagnostics import did_you_mean
 from simkit.loaders.sdf.entity_names import read_name
-from simkit.loaders.sdf.workspace import MAX_MODELS, EntitySource, SdfFile, Workspace, read_pose
+from simkit.loaders.sdf.load_context import MAX_MODELS, EntitySource, SdfFile, Workspace, read_pose
 from simkit.params import Params
 from simkit.pose import Pose
 

@@ -11,7 +11,7 @@ from collections.abc import Iterable
 
 from simkit.diagnostics import Diagnostics, did_you_mean
 from simkit.loaders.sdf.frames import Frame, world_pose
-from simkit.loaders.sdf.workspace import ModelDraft
+from simkit.loaders.sdf.load_context import ModelDraft
 from simkit.params import Params
 from simkit.pose import Pose
 

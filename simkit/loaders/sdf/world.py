@@ -9,6 +9,15 @@ from simkit.loaders.sdf.entity_names import named_elements, read_name
 from simkit.loaders.sdf.frames import WORLD, Frame, Scope, world_pose
 from simkit.loaders.sdf.joint import joint_link_name, read_joint
 from simkit.loaders.sdf.light import read_light
+from simkit.loaders.sdf.load_context import (
+    EntitySource,
+    ModelDraft,
+    NamedElement,
+    SdfFile,
+    Workspace,
+    pose_location,
+    read_pose,
+)
 from simkit.loaders.sdf.model import (
     build_model,
     declare_model,
@@ -27,15 +36,6 @@ from simkit.loaders.sdf.saved_state import (
     report_unapplied,
     saved_light_poses,
     saved_states,
-)
-from simkit.loaders.sdf.workspace import (
-    EntitySource,
-    ModelDraft,
-    NamedElement,
-    SdfFile,
-    Workspace,
-    pose_location,
-    read_pose,
 )
 from simkit.loaders.sdf.world_settings import (
     read_atmosphere,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from simkit.diagnostics import Diagnostics, did_you_mean
-from simkit.loaders.urdf.attributes import extension_boolean, extension_numbers, extension_text, text_attribute
+from simkit.loaders.urdf.element_attributes import extension_boolean, extension_numbers, extension_text, text_attribute
 from simkit.params import Params
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from simkit.diagnostics import did_you_mean
-from simkit.loaders.urdf.attributes import (
+from simkit.loaders.urdf.element_attributes import (
     FARTHEST,
     leading_numbers,
     number_attribute,

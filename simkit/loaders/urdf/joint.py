@@ -6,11 +6,11 @@ import math
 
 from simkit.diagnostics import did_you_mean
 from simkit.loaders.sdf.entity_names import named_elements
+from simkit.loaders.sdf.load_context import local_pose
 from simkit.loaders.sdf.plugin import read_plugins
 from simkit.loaders.sdf.sensor import read_sensor
-from simkit.loaders.sdf.workspace import local_pose
 from simkit.loaders.urdf import gazebo_extensions
-from simkit.loaders.urdf.attributes import (
+from simkit.loaders.urdf.element_attributes import (
     number_attribute,
     parse_number,
     report_missing,

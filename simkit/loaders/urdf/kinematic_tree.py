@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from simkit.diagnostics import did_you_mean
 from simkit.loaders.sdf.frames import Frame
-from simkit.loaders.urdf.attributes import read_origin, report_missing, skip_element, text_attribute
+from simkit.loaders.urdf.element_attributes import read_origin, report_missing, skip_element, text_attribute
 from simkit.loaders.urdf.robot_draft import JointDraft, RobotDraft
 from simkit.params import Params
 from simkit.pose import IDENTITY

@@ -9,13 +9,13 @@ import numpy as np
 
 from simkit.loaders.sdf.entity_names import named_elements
 from simkit.loaders.sdf.light import read_light
-from simkit.loaders.sdf.older_versions import modernise
+from simkit.loaders.sdf.load_context import local_pose
 from simkit.loaders.sdf.plugin import read_plugins
 from simkit.loaders.sdf.sensor import read_sensor
 from simkit.loaders.sdf.surface import read_surface
-from simkit.loaders.sdf.workspace import local_pose
-from simkit.loaders.urdf.attributes import number_attribute as attribute_number
-from simkit.loaders.urdf.attributes import read_origin, report_bad_value, report_substitute, text_attribute
+from simkit.loaders.sdf.version_upgrade import modernise
+from simkit.loaders.urdf.element_attributes import number_attribute as attribute_number
+from simkit.loaders.urdf.element_attributes import read_origin, report_bad_value, report_substitute, text_attribute
 from simkit.loaders.urdf.gazebo_extensions import read_flag, read_number, read_vector
 from simkit.loaders.urdf.geometry import read_geometry
 from simkit.loaders.urdf.material import Materials, extended_material

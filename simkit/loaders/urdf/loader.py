@@ -8,8 +8,8 @@ from typing import ClassVar
 
 from simkit.loaders.resources.loader import LoadRequest
 from simkit.loaders.resources.xml_reader import Document
+from simkit.loaders.sdf.load_context import IncludableLoader, IncludedModel, ModelDraft, SdfFile, Workspace
 from simkit.loaders.sdf.plugin import read_plugins
-from simkit.loaders.sdf.workspace import IncludableLoader, IncludedModel, ModelDraft, SdfFile, Workspace
 from simkit.loaders.urdf.gazebo_extensions import read_flag
 from simkit.loaders.urdf.kinematic_tree import place_links
 from simkit.loaders.urdf.robot import build_robot, declare_robot

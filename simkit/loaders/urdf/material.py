@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from simkit.diagnostics import did_you_mean
 from simkit.loaders.sdf.gazebo_materials import gazebo_material, gazebo_materials
 from simkit.loaders.sdf.material import read_material
-from simkit.loaders.urdf.attributes import (
+from simkit.loaders.urdf.element_attributes import (
     extension_text,
     leading_numbers,
     report_missing,

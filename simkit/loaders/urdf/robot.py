@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from simkit.loaders.resources.resolver import Resolver
+from simkit.loaders.resources.uri_resolver import Resolver
 from simkit.loaders.sdf.entity_names import named_elements, scoped
 from simkit.loaders.sdf.frames import Frame, Scope
 from simkit.loaders.sdf.joint import joint_link_name
 from simkit.loaders.sdf.joint import read_joint as read_sdf_joint
 from simkit.loaders.sdf.link import read_link as read_sdf_link
+from simkit.loaders.sdf.load_context import NamedElement, SdfFile, Workspace, read_pose
 from simkit.loaders.sdf.model import read_frames
 from simkit.loaders.sdf.plugin import read_plugins
-from simkit.loaders.sdf.workspace import NamedElement, SdfFile, Workspace, read_pose
-from simkit.loaders.urdf.attributes import text_attribute
+from simkit.loaders.urdf.element_attributes import text_attribute
 from simkit.loaders.urdf.gazebo_extensions import GazeboExtensions, read_flag
 from simkit.loaders.urdf.joint import read_joint
 from simkit.loaders.urdf.kinematic_tree import declare_tree, place_links

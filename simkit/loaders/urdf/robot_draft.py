@@ -6,10 +6,10 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from simkit.diagnostics import Diagnostic, Diagnostics
-from simkit.loaders.resources.resolver import Resolver
+from simkit.loaders.resources.uri_resolver import Resolver
 from simkit.loaders.sdf.entity_names import scoped
 from simkit.loaders.sdf.frames import Frame, Scope
-from simkit.loaders.sdf.workspace import SdfFile, Workspace
+from simkit.loaders.sdf.load_context import SdfFile, Workspace
 from simkit.loaders.urdf.gazebo_extensions import GazeboExtensions
 from simkit.params import Params
 from simkit.pose import IDENTITY, Pose

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from simkit.diagnostics import did_you_mean
-from simkit.loaders.urdf.attributes import (
+from simkit.loaders.urdf.element_attributes import (
     extension_text,
     parse_number,
     report_missing,

@@ -10,7 +10,7 @@ import re
 from collections.abc import Mapping
 
 from simkit.diagnostics import Diagnostics
-from simkit.loaders.resources.resolver import Resolver
+from simkit.loaders.resources.uri_resolver import Resolver
 from simkit.loaders.resources.xml_reader import Document
 from simkit.loaders.xacro import expansion
 

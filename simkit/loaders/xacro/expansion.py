@@ -9,10 +9,10 @@ from pathlib import Path
 from xml.dom import minidom
 
 from simkit.diagnostics import NOWHERE, Diagnostics, Where, did_you_mean
-from simkit.loaders.resources.resolver import Resolver
+from simkit.loaders.resources.uri_resolver import Resolver
 from simkit.loaders.resources.xml_reader import Document
-from simkit.loaders.xacro.budget import MAX_FILES_DEEP, BoundError, Budget, ExpansionError
 from simkit.loaders.xacro.dom import place_of, to_document, to_params
+from simkit.loaders.xacro.expansion_limits import MAX_FILES_DEEP, BoundError, Budget, ExpansionError
 from simkit.loaders.xacro.expression import Evaluator, Function, Names, Value
 from simkit.loaders.xacro.expression_functions import direct_names, math_functions, python_functions, tokenize
 from simkit.loaders.xacro.file_access import FileAccess, MissingError

@@ -12,7 +12,7 @@ import re
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from simkit.loaders.xacro.budget import MAX_BITS, MAX_ITEMS, MAX_TEXT, BoundError, Budget, ExpansionError
+from simkit.loaders.xacro.expansion_limits import MAX_BITS, MAX_ITEMS, MAX_TEXT, BoundError, Budget, ExpansionError
 
 MAX_EXPRESSION = 20_000
 

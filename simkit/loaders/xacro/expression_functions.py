@@ -6,7 +6,7 @@ import math
 import re
 from collections.abc import Callable
 
-from simkit.loaders.xacro.budget import MAX_ITEMS, BoundError, ExpansionError
+from simkit.loaders.xacro.expansion_limits import MAX_ITEMS, BoundError, ExpansionError
 from simkit.loaders.xacro.expression import Evaluator, Function, Value
 
 _DIRECT = ("list", "dict", "map", "len", "str", "float", "int", "bool", "min", "max", "round", "sorted", "range")

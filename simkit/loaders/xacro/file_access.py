@@ -9,9 +9,9 @@ from typing import Any
 
 from simkit.diagnostics import Diagnostics, Where
 from simkit.loaders.resources.bounded_file import read_bounded
-from simkit.loaders.resources.resolver import Resolver
+from simkit.loaders.resources.uri_resolver import Resolver
 from simkit.loaders.resources.xml_reader import parse_file
-from simkit.loaders.xacro.budget import MAX_ITEMS, Budget, ExpansionError
+from simkit.loaders.xacro.expansion_limits import MAX_ITEMS, Budget, ExpansionError
 from simkit.loaders.xacro.expression import Value
 from simkit.params import Params
 

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from simkit.plugins.actors.animated_actor import AnimatedActor
 from simkit.plugins.base import WorldPlugin
-from simkit.runtime.engine.physics import STALE
+from simkit.runtime.engine.physics_step import STALE
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -16,7 +16,7 @@ from simkit.params import Params
 from simkit.plugins import Plugin
 from simkit.plugins.authoring.plugin_facts import Facts, Parameter, Service, Topic, merged
 from simkit.plugins.authoring.source_scan import scan, scan_function
-from simkit.plugins.discovery.plugin_kinds import find_plugin, plugin_kinds
+from simkit.plugins.discovery.find_plugin_class import find_plugin, plugin_kinds
 from simkit.plugins.endpoints import Endpoint
 from simkit.plugins.options import Option, Options, block, choice, option_types_of, text, texts
 from simkit.plugins.plugin_names import ENTRY_POINT_GROUP, normalise

@@ -14,7 +14,7 @@ from simkit.errors import InputError
 from simkit.params import Params
 from simkit.plugins.authoring.element_types import Element, elements_of
 from simkit.plugins.base import ParentKind
-from simkit.plugins.discovery.plugin_kinds import find_plugin, plugin_kinds
+from simkit.plugins.discovery.find_plugin_class import find_plugin, plugin_kinds
 from simkit.plugins.plugin_names import normalise
 from simkit.plugins.ros_names import RosNames
 from simkit.scene import Scene, SceneJoint, SceneLink, SceneModel, ScenePlugin

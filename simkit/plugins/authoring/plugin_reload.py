@@ -15,15 +15,15 @@ from typing import TYPE_CHECKING
 from simkit.diagnostics import Diagnostic, Diagnostics
 from simkit.errors import LoadError, SimkitError
 from simkit.params import Params
-from simkit.plugins.discovery.attachment import SceneEntity
-from simkit.plugins.discovery.plugin_kinds import find_plugin
+from simkit.plugins.discovery.find_plugin_class import find_plugin
+from simkit.plugins.discovery.python_plugins import SceneEntity
 from simkit.plugins.gz_python.import_hook import importable
 from simkit.scene import SceneModel, SceneSensor, SceneVisual
 
 if TYPE_CHECKING:
     from simkit.plugins.base import Plugin
     from simkit.runtime import Simulation
-    from simkit.runtime.engine.world_structure import AttachedPlugin
+    from simkit.runtime.engine.entity_structure import AttachedPlugin
 
 _BROKEN, _REFUSED = "SK-PLUGIN-071", "SK-PLUGIN-076"
 

@@ -9,10 +9,10 @@ import numpy as np
 
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
+from simkit.plugins.find_entities import find_link
 from simkit.plugins.fluids.buoyant_force import Fluid
 from simkit.plugins.fluids.collision_volumes import Hull
 from simkit.plugins.fluids.floating_links import BuoyancyBase
-from simkit.plugins.lookups import find_link
 from simkit.plugins.options import Options, OptionsOf, blocks, number, text, vector3
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ import numpy as np
 from simkit.params import Params
 from simkit.plugins.base import Plugin, SensorPlugin
 from simkit.plugins.endpoints import Endpoint, publishes
-from simkit.plugins.lookups import link_name
+from simkit.plugins.find_entities import link_name
 from simkit.plugins.options import Options, OptionsOf, boolean, number, text, without_effect
 
 if TYPE_CHECKING:

@@ -5,15 +5,15 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Final, Literal
 
-from simkit.msgs.topics import valid_topic
+from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.endpoints import listens
+from simkit.plugins.find_entities import find_axis_joint, read_topic
 from simkit.plugins.joints.joint_axis import JointAxis
-from simkit.plugins.lookups import find_axis_joint, read_topic
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, OptionsOf, integer, number, text
-from simkit.runtime.engine.physics import CONTROL
+from simkit.runtime.engine.physics_step import CONTROL
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from simkit.params import Params
 from simkit.plugins.classic.ft_sensor import GazeboRosFtSensor
 from simkit.plugins.endpoints import publishes
-from simkit.plugins.lookups import find_named_link
+from simkit.plugins.find_entities import find_named_link
 from simkit.plugins.options import Options, OptionsOf, text, without_effect
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ import numpy as np
 from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.endpoints import listens
-from simkit.plugins.lookups import find_named_link
+from simkit.plugins.find_entities import find_named_link
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, OptionsOf, choice, text
 from simkit.pose import Vector, quat_rotate

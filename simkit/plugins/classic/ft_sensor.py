@@ -12,7 +12,7 @@ from simkit import msgs
 from simkit.params import LARGEST, Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.endpoints import publishes
-from simkit.plugins.lookups import find_joint, find_link
+from simkit.plugins.find_entities import find_joint, find_link
 from simkit.plugins.options import Options, OptionsOf, number, text
 from simkit.plugins.ros_names import is_ros_1
 from simkit.pose import Vector

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from simkit.params import Params
 from simkit.plugins.base import SensorPlugin
 from simkit.plugins.endpoints import publishes
-from simkit.plugins.lookups import link_name
+from simkit.plugins.find_entities import link_name
 from simkit.plugins.options import Options, OptionsOf, text
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ import numpy as np
 from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.drives.odometry import TRANSFORMS, transforms
-from simkit.plugins.lookups import find_named_link
+from simkit.plugins.find_entities import find_named_link
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, OptionsOf, number, text
 from simkit.plugins.ros_names import is_ros_1

@@ -11,7 +11,7 @@ from simkit import msgs
 from simkit.params import LARGEST, Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.endpoints import offers, publishes
-from simkit.plugins.lookups import find_named_link
+from simkit.plugins.find_entities import find_named_link
 from simkit.plugins.options import Options, OptionsOf, number, text, vector3, without_effect
 from simkit.pose import Pose, Vector, quat_from_rpy, quat_multiply
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from simkit.params import LARGEST, Params
 from simkit.plugins.base import SensorPlugin
 from simkit.plugins.endpoints import publishes
-from simkit.plugins.lookups import link_name
+from simkit.plugins.find_entities import link_name
 from simkit.plugins.options import Options, OptionsOf, boolean, number, text, vector3
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from simkit.diagnostics import did_you_mean
 from simkit.params import Params
 from simkit.plugins.battery import Battery, BatteryConsumer, Cell
-from simkit.plugins.lookups import find_named_link, read_required_name
+from simkit.plugins.find_entities import find_named_link, read_required_name
 from simkit.plugins.options import Options, OptionsOf, number, text
 
 if TYPE_CHECKING:

@@ -13,9 +13,9 @@ from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.drives.odometry import ODOMETRY, BodyTwist, odometry_message
 from simkit.plugins.endpoints import publishes
-from simkit.plugins.lookups import find_named_link
-from simkit.plugins.on_demand import count_instants, publish_while_subscribed
+from simkit.plugins.find_entities import find_named_link
 from simkit.plugins.options import Options, OptionsOf, number, text, vector3, without_effect
+from simkit.plugins.publish_on_demand import count_instants, publish_while_subscribed
 from simkit.plugins.ros_names import is_ros_1
 from simkit.pose import Pose, Vector, quat_conjugate, quat_from_rpy, quat_multiply, quat_rotate
 

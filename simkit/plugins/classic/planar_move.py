@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.msgs import Twist, TwistStamped
     from simkit.runtime import Model
-    from simkit.runtime.engine.clock import TickGrid
+    from simkit.runtime.engine.simulated_time import TickGrid
     from simkit.scene import SceneModel
 
 _ROS_1 = (

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from simkit.plugins.world.entities import RequestRefused, colour_of, find_entity, pose_fields, require_finite
+from simkit.plugins.world.service_entities import RequestRefused, colour_of, find_entity, pose_fields, require_finite
 from simkit.pose import Pose
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from simkit.params import Params
 from simkit.plugins.base import SensorPlugin
 from simkit.plugins.classic.ray_sensor import RADIATION
 from simkit.plugins.endpoints import publishes
-from simkit.plugins.lookups import link_name
+from simkit.plugins.find_entities import link_name
 from simkit.plugins.options import Options, OptionsOf, choice, number, text
 
 if TYPE_CHECKING:

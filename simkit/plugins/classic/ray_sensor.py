@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from simkit.params import LARGEST, Params
 from simkit.plugins.base import SensorPlugin
 from simkit.plugins.endpoints import publishes
-from simkit.plugins.lookups import read_frame
+from simkit.plugins.find_entities import read_frame
 from simkit.plugins.options import Options, OptionsOf, boolean, choice, number, text
 
 if TYPE_CHECKING:

@@ -14,8 +14,14 @@ from simkit.plugins.classic import property_services as properties
 from simkit.plugins.classic import state_services as states
 from simkit.plugins.classic.state_services import LINK_STATES, MODEL_STATES, STATES_RATE
 from simkit.plugins.classic.wrench_services import TimedWrench, apply_wrenches, joint_effort, link_wrench
-from simkit.plugins.world.entities import RequestRefused, answer_handler, command_handler, find_entity, pose_fields
 from simkit.plugins.world.physics_settings import physics_fields, set_physics
+from simkit.plugins.world.service_entities import (
+    RequestRefused,
+    answer_handler,
+    command_handler,
+    find_entity,
+    pose_fields,
+)
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder

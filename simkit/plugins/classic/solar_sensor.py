@@ -14,7 +14,7 @@ from simkit.diagnostics import NOWHERE
 from simkit.params import LARGEST, Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.endpoints import publishes
-from simkit.plugins.lookups import find_light, find_link
+from simkit.plugins.find_entities import find_light, find_link
 from simkit.plugins.options import Options, OptionsOf, block, boolean, choice, number, text, vector3
 from simkit.pose import Pose, Vector, quat_conjugate, quat_from_rpy, quat_multiply, quat_rotate, quat_to_matrix
 from simkit.sensors.environment import solar_irradiance

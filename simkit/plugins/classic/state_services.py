@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit import msgs
-from simkit.plugins.world.entities import (
+from simkit.plugins.world.service_entities import (
     RequestRefused,
     find_entity,
     frame_of,

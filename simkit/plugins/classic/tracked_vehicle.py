@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING
 
 from simkit import msgs
 from simkit.compiler.contact_friction import MU_MOST, directional_friction, friction_priority
-from simkit.msgs.topics import valid_topic
+from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.drives.odometry import COMMAND_TYPES, command_of
 from simkit.plugins.drives.tracks import belt_of, needs_direction, report_missing_collisions
 from simkit.plugins.drives.wheel_joints import find_wheels
 from simkit.plugins.endpoints import listens, publishes
-from simkit.plugins.lookups import find_link
+from simkit.plugins.find_entities import find_link
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, OptionsOf, integer, number, text, texts
 from simkit.pose import IDENTITY

@@ -11,9 +11,9 @@ import numpy as np
 
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
-from simkit.plugins.lookups import find_joint
+from simkit.plugins.find_entities import find_joint
 from simkit.plugins.options import Options, OptionsOf, block, blocks, number, text, texts
-from simkit.runtime.engine.physics import CONTROL
+from simkit.runtime.engine.physics_step import CONTROL
 
 if TYPE_CHECKING:
     import mujoco

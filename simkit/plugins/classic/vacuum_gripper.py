@@ -12,11 +12,11 @@ from simkit import msgs
 from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.endpoints import offers, publishes
-from simkit.plugins.lookups import find_link, find_named_link
-from simkit.plugins.on_demand import publish_while_subscribed
+from simkit.plugins.find_entities import find_link, find_named_link
 from simkit.plugins.options import Options, OptionsOf, number, text, texts
+from simkit.plugins.publish_on_demand import publish_while_subscribed
 from simkit.plugins.ros_names import is_ros_1
-from simkit.runtime.engine.physics import STALE
+from simkit.runtime.engine.physics_step import STALE
 
 if TYPE_CHECKING:
     import mujoco

@@ -10,7 +10,7 @@ import numpy as np
 
 from simkit import msgs
 from simkit.plugins.classic.property_services import joint_of
-from simkit.plugins.world.entities import RequestRefused, find_entity, frame_of, require_finite, vector_of
+from simkit.plugins.world.service_entities import RequestRefused, find_entity, frame_of, require_finite, vector_of
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation

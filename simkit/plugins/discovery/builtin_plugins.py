@@ -13,7 +13,7 @@ from simkit.diagnostics import Diagnostics
 from simkit.plugins.classic.server_services import ClassicServices
 from simkit.plugins.drives.robot_transforms import StaticTransforms
 from simkit.plugins.gz.sensors import with_sensors_colours
-from simkit.plugins.world.clock import ClockPublisher
+from simkit.plugins.world.clock_publisher import ClockPublisher
 from simkit.plugins.world.world_statistics import WorldStats
 from simkit.scene import Scene, SceneWorld
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from simkit.diagnostics import NOWHERE, Diagnostics, Where
 from simkit.plugins.base import Plugin
-from simkit.plugins.gz.gz_system import HOOKS, GzSystem
+from simkit.plugins.gz.gz_system_plugin import HOOKS, GzSystem
 
 
 def as_plugin(made: object, diagnostics: Diagnostics, where: Where = NOWHERE) -> Plugin | None:

@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from simkit.params import LARGEST
 from simkit.pose import IDENTITY, Pose, Vector
-from simkit.runtime.engine.physics import STALE, VELOCITY
+from simkit.runtime.engine.physics_step import STALE, VELOCITY
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from simkit.params import Params
 from simkit.plugins.drives.odometry import LONGEST, MEAN_STEPS, BodyTwist, DeadReckoning
-from simkit.plugins.lookups import find_axis_joint
+from simkit.plugins.find_entities import find_axis_joint
 from simkit.pose import Pose
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from simkit.params import Params
-from simkit.plugins.lookups import find_axis_joint
+from simkit.plugins.find_entities import find_axis_joint
 from simkit.scene import SceneJoint, SceneModel
 
 if TYPE_CHECKING:

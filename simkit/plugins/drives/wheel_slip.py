@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from simkit import msgs
-from simkit.msgs.topics import valid_topic
+from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.endpoints import listens, publishes
-from simkit.plugins.lookups import find_link
-from simkit.plugins.on_demand import publish_while_subscribed
+from simkit.plugins.find_entities import find_link
 from simkit.plugins.options import Options, OptionsOf, blocks, number, text
+from simkit.plugins.publish_on_demand import publish_while_subscribed
 from simkit.pose import quat_conjugate, quat_rotate
 from simkit.runtime.contact.anisotropic_friction import SlippingWheel
 from simkit.scene import Cylinder, SceneJoint, SceneLink, SceneModel, Sphere

@@ -83,7 +83,7 @@ def _surface(shape: Geometry, collision: SceneCollision) -> tuple[Vector, npt.ND
     """Vertices and faces; what is wrong with a file was said when the world was compiled."""
     from simkit.compiler.meshes.mesh_part import join_parts
     from simkit.compiler.meshes.mesh_reader import load_mesh
-    from simkit.compiler.shapes import polyline_triangles
+    from simkit.compiler.shape_geometry import polyline_triangles
 
     if isinstance(shape, Polyline):
         try:

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, ClassVar
 
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
+from simkit.plugins.find_entities import find_axis_joint, find_named_link
 from simkit.plugins.fluids.aerofoil import AerofoilOptions, MomentAerofoilOptions, Triple, read_aerofoil
 from simkit.plugins.fluids.link_forces import moving_data
-from simkit.plugins.lookups import find_axis_joint, find_named_link
 from simkit.plugins.options import OptionsOf
-from simkit.runtime.engine.physics import CONTROL
+from simkit.runtime.engine.physics_step import CONTROL
 
 if TYPE_CHECKING:
     import mujoco

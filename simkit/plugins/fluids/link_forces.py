@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 
 from simkit.pose import Vector
-from simkit.runtime.engine.physics import CONTROL
+from simkit.runtime.engine.physics_step import CONTROL
 
 if TYPE_CHECKING:
     import mujoco

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from simkit.msgs.topics import valid_topic
+from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import NEVER, WorldPlugin
 from simkit.plugins.endpoints import listens, offers
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from simkit.pose import Vector
     from simkit.runtime import Simulation
-    from simkit.runtime.engine.world_structure import AttachedPlugin
+    from simkit.runtime.engine.entity_structure import AttachedPlugin
 
 
 WIND: Final = "simkit_msgs/msg/Wind"

@@ -20,7 +20,7 @@ from simkit.plugins.drives.speed_limits import SpeedLimitOptions, limit_each, sp
 from simkit.plugins.drives.steering import AckermannOdometry, find_drive_joint, joint_angles, steering_angles
 from simkit.plugins.drives.wheel_joints import add_wheel_servos, find_wheels
 from simkit.plugins.endpoints import listens, publishes
-from simkit.plugins.lookups import read_topic
+from simkit.plugins.find_entities import read_topic
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import OptionsOf, boolean, integer, number, text, texts
 

@@ -11,11 +11,11 @@ import numpy as np
 
 from simkit.params import Params
 from simkit.plugins.base import NEVER, WorldPlugin
-from simkit.plugins.lookups import read_required_name, read_topic
-from simkit.plugins.on_demand import set_before_step_rate
+from simkit.plugins.find_entities import read_required_name, read_topic
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, OptionsOf, blocks, boolean, choice, text, vector3
-from simkit.plugins.world.entities import RequestRefused, entity_of
+from simkit.plugins.publish_on_demand import set_before_step_rate
+from simkit.plugins.world.service_entities import RequestRefused, entity_of
 from simkit.pose import Vector
 
 if TYPE_CHECKING:

@@ -6,13 +6,13 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Final
 
 from simkit import msgs
-from simkit.msgs.topics import valid_topic
+from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.endpoints import listens, publishes
-from simkit.plugins.lookups import find_named_link, read_required_name, read_topic
-from simkit.plugins.on_demand import set_before_step_rate
+from simkit.plugins.find_entities import find_named_link, read_required_name, read_topic
 from simkit.plugins.options import Options, OptionsOf, boolean, text
+from simkit.plugins.publish_on_demand import set_before_step_rate
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder

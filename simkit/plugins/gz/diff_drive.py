@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from simkit.msgs.topics import valid_topic
+from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.drives.odometry import (
@@ -29,7 +29,7 @@ from simkit.plugins.drives.odometry import (
 from simkit.plugins.drives.odometry_noise import NoisyOdometry, OdometryNoiseOptions, odometry_noise
 from simkit.plugins.drives.speed_limits import SpeedLimitOptions, limit_each, speed_limits
 from simkit.plugins.drives.wheel_joints import add_wheel_servos, find_wheels
-from simkit.plugins.lookups import read_topic
+from simkit.plugins.find_entities import read_topic
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import OptionsOf, block, boolean, number, text, texts
 from simkit.pose import Vector

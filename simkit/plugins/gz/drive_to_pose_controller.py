@@ -6,11 +6,11 @@ import math
 from typing import TYPE_CHECKING, Any, Final
 
 from simkit import msgs
-from simkit.msgs.topics import valid_topic
+from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
-from simkit.plugins.on_demand import set_after_step_rate
 from simkit.plugins.one_time_warnings import OneTimeWarnings
+from simkit.plugins.publish_on_demand import set_after_step_rate
 from simkit.pose import rpy_from_quat
 
 if TYPE_CHECKING:

@@ -7,15 +7,15 @@ from functools import partial
 from typing import TYPE_CHECKING, Final, Literal
 
 from simkit import msgs
-from simkit.msgs.topics import valid_topic
+from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.endpoints import listens, publishes
+from simkit.plugins.find_entities import find_axis_joint, find_link, read_topic
 from simkit.plugins.joints.joint_axis import JointAxis
-from simkit.plugins.lookups import find_axis_joint, find_link, read_topic
-from simkit.plugins.on_demand import publish_while_subscribed, set_after_step_rate
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, OptionsOf, number, text
+from simkit.plugins.publish_on_demand import publish_while_subscribed, set_after_step_rate
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder

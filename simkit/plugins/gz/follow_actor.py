@@ -15,9 +15,9 @@ from simkit.plugins.actors.animated_actor import AnimatedActor
 from simkit.plugins.actors.skin import SkinRig
 from simkit.plugins.actors.walk_cycle import Gait
 from simkit.plugins.base import ModelPlugin
-from simkit.plugins.lookups import read_required_name
+from simkit.plugins.find_entities import read_required_name
 from simkit.plugins.options import Options, OptionsOf, number, text
-from simkit.runtime.engine.physics import STALE
+from simkit.runtime.engine.physics_step import STALE
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder

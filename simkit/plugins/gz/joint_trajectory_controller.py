@@ -7,10 +7,11 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 from simkit import msgs
-from simkit.msgs.topics import valid_topic
+from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.endpoints import listens, publishes
+from simkit.plugins.find_entities import find_joint
 from simkit.plugins.joints.joint_axis import JointAxis, has_axis, suggest_names
 from simkit.plugins.joints.joint_commands import ControlledJoints
 from simkit.plugins.joints.joint_trajectory import (
@@ -24,7 +25,6 @@ from simkit.plugins.joints.joint_trajectory import (
     trajectory_faults,
 )
 from simkit.plugins.joints.pid import FIELDS, Pid, declare_pid
-from simkit.plugins.lookups import find_joint
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, OptionsOf, choice, numbers, text, texts
 

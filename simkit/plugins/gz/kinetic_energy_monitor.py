@@ -10,9 +10,9 @@ import numpy as np
 from simkit import msgs
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
-from simkit.plugins.lookups import find_named_link, read_topic
-from simkit.plugins.on_demand import watch_while_subscribed
+from simkit.plugins.find_entities import find_named_link, read_topic
 from simkit.plugins.options import Options, OptionsOf, number, text
+from simkit.plugins.publish_on_demand import watch_while_subscribed
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder

@@ -8,12 +8,12 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from simkit.msgs.topics import valid_topic
+from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.plugins.battery import Battery, Cell
 from simkit.plugins.endpoints import listens, offers, publishes
+from simkit.plugins.find_entities import read_required_name
 from simkit.plugins.gz.sensors import SensorsSystem
-from simkit.plugins.lookups import read_required_name
 from simkit.plugins.options import Options, OptionsOf, boolean, number, text, texts
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ import numpy as np
 
 from simkit import msgs
 from simkit.errors import SimkitError
-from simkit.msgs.topics import valid_topic
+from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import NEVER, WorldPlugin
 from simkit.plugins.endpoints import publishes

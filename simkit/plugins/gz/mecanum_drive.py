@@ -18,7 +18,7 @@ from simkit.plugins.drives.odometry import COMMAND_TYPES, ODOMETRY, TRANSFORMS, 
 from simkit.plugins.drives.speed_limits import SpeedLimitOptions, limit_each, speed_limits
 from simkit.plugins.drives.steering import Motion, TravelOdometry, joint_angles
 from simkit.plugins.drives.wheel_joints import add_wheel_servos, find_wheels
-from simkit.plugins.lookups import read_topic
+from simkit.plugins.find_entities import read_topic
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import OptionsOf, number, text, texts
 

@@ -20,7 +20,7 @@ from simkit.plugins.drives.odometry import (
     odometry_message,
     transforms,
 )
-from simkit.plugins.lookups import read_topic
+from simkit.plugins.find_entities import read_topic
 from simkit.plugins.options import Options, OptionsOf, integer, number, text, vector3
 from simkit.pose import IDENTITY, Pose, Vector, quat_conjugate, quat_from_rpy, quat_multiply, quat_rotate
 

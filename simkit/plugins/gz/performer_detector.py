@@ -9,11 +9,11 @@ from simkit import msgs
 from simkit.diagnostics import did_you_mean
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin, WorldPlugin
+from simkit.plugins.find_entities import read_required_name, read_topic
 from simkit.plugins.gz_python.msgs.message import MESSAGE_CLASSES, Message
-from simkit.plugins.lookups import read_required_name, read_topic
-from simkit.plugins.on_demand import watch_while_subscribed
 from simkit.plugins.options import Options, OptionsOf, block, blocks, pose, text, texts, vector3
-from simkit.plugins.world.entities import pose_fields
+from simkit.plugins.publish_on_demand import watch_while_subscribed
+from simkit.plugins.world.service_entities import pose_fields
 from simkit.pose import Pose, quat_rotate
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from simkit.params import Params
-from simkit.plugins.gz.gz_system import HOOKS, GzSystem, System, line_of
+from simkit.plugins.gz.gz_system_plugin import HOOKS, GzSystem, System, line_of
 from simkit.plugins.gz_python import import_hook
 from simkit.plugins.options import Options, OptionsOf, text
 from simkit.plugins.plugin_names import ENTRY_POINT_GROUP

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, ClassVar, Final
 
 from simkit import msgs
 from simkit.diagnostics import did_you_mean
-from simkit.msgs.topics import valid_topic
+from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.endpoints import listens, offers, publishes
-from simkit.plugins.lookups import read_required_name
-from simkit.plugins.on_demand import set_after_step_rate
+from simkit.plugins.find_entities import read_required_name
 from simkit.plugins.options import Options, OptionsOf, boolean, number, text, texts
+from simkit.plugins.publish_on_demand import set_after_step_rate
 from simkit.runtime.contact.collision_contacts import Bools, collision_table, find_contacts
 
 if TYPE_CHECKING:

@@ -12,10 +12,10 @@ from simkit.plugins.drives.odometry import ODOMETRY, BodyTwist, odometry_message
 from simkit.plugins.drives.speed_limits import LimiterOptions, speed_limiter
 from simkit.plugins.drives.tracks import belt_of, needs_direction, report_missing_collisions
 from simkit.plugins.endpoints import listens, publishes
-from simkit.plugins.lookups import find_link, read_topic
-from simkit.plugins.on_demand import publish_while_subscribed, set_before_step_rate
+from simkit.plugins.find_entities import find_link, read_topic
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import OptionsOf, boolean, number, text, vector3
+from simkit.plugins.publish_on_demand import publish_while_subscribed, set_before_step_rate
 from simkit.pose import Pose
 from simkit.runtime.contact.belt import Belt, BeltMotion
 

@@ -22,11 +22,11 @@ from simkit.plugins.drives.odometry import (
 from simkit.plugins.drives.speed_limits import LimiterOptions, limit_each, speed_limiter
 from simkit.plugins.drives.tracks import TrackOdometry
 from simkit.plugins.endpoints import listens, publishes
+from simkit.plugins.find_entities import find_link, find_named_link, read_topic
 from simkit.plugins.gz.track_controller import CENTRE, SPEED
-from simkit.plugins.lookups import find_link, find_named_link, read_topic
-from simkit.plugins.on_demand import publish_while_subscribed, set_after_step_rate
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, OptionsOf, block, blocks, boolean, number, text
+from simkit.plugins.publish_on_demand import publish_while_subscribed, set_after_step_rate
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Final
 
 from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
-from simkit.plugins.lookups import find_named_link, read_topic
-from simkit.plugins.on_demand import set_before_step_rate
+from simkit.plugins.find_entities import find_named_link, read_topic
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, OptionsOf, block, boolean, number, text, vector
+from simkit.plugins.publish_on_demand import set_before_step_rate
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import MessageError
-from simkit.msgs.topics import valid_topic
+from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import NEVER, WorldPlugin
 from simkit.plugins.gz.performer_detector import DETAILS, STATUS, pose_of_status
@@ -17,9 +17,9 @@ from simkit.plugins.gz_python.msgs.message import MESSAGE_CLASSES, Message
 from simkit.plugins.gz_python.msgs.message_matcher import TOLERANCE, MessageMatcher
 from simkit.plugins.gz_python.msgs.ros_conversion import SERVICE_REQUEST_TYPES, call_service, from_ros, to_ros, twins_of
 from simkit.plugins.gz_python.msgs.text_format import parse_message
-from simkit.plugins.on_demand import set_before_step_rate
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, OptionsOf, blocks, integer, text
+from simkit.plugins.publish_on_demand import set_before_step_rate
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -7,12 +7,12 @@ from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from simkit.msgs.topics import valid_topic
+from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.drives.kinematic_motion import KinematicMotion, KinematicMover, Triple, VelocityTarget
 from simkit.plugins.drives.odometry import COMMAND_TYPES
-from simkit.plugins.lookups import find_link
+from simkit.plugins.find_entities import find_link
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, OptionsOf, text, texts
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from simkit.diagnostics import did_you_mean
 from simkit.params import LARGEST, Params
-from simkit.plugins.lookups import find_joint
+from simkit.plugins.find_entities import find_joint
 from simkit.pose import Vector
 from simkit.scene import SceneJoint, SceneModel
 

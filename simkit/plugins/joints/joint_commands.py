@@ -6,7 +6,7 @@ import abc
 import math
 from typing import TYPE_CHECKING, ClassVar, Final
 
-from simkit.msgs.topics import valid_topic
+from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.joints.joint_axis import JointAxis, find_joints

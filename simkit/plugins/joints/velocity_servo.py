@@ -13,7 +13,7 @@ from simkit.params import LARGEST
 from simkit.plugins.joints.joint_axis import JointAxis
 from simkit.plugins.joints.kinematic_trees import Keys, KinematicTrees
 from simkit.pose import Vector
-from simkit.runtime.engine.physics import CONTROL
+from simkit.runtime.engine.physics_step import CONTROL
 
 if TYPE_CHECKING:
     from simkit.plugins.joints.kinematic_trees import Flags

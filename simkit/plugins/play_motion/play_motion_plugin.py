@@ -15,7 +15,7 @@ from simkit.diagnostics import Diagnostics, did_you_mean
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.endpoints import acts, offers_all
-from simkit.plugins.lookups import find_plugin_file
+from simkit.plugins.find_entities import find_plugin_file
 from simkit.plugins.play_motion.motion import Motion, limit_violations, motion_of_message, speed_limits
 from simkit.plugins.play_motion.motion_files import MotionFile, read_motions
 from simkit.plugins.play_motion.motion_planning import (

@@ -10,8 +10,8 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from simkit.compiler.servos import drive_gains, felt_inertias
-from simkit.plugins.ros2_control.interfaces import POSITION, VELOCITY, Indices
+from simkit.compiler.servo_gains import drive_gains, felt_inertias
+from simkit.plugins.ros2_control.hardware_interfaces import POSITION, VELOCITY, Indices
 from simkit.pose import Vector
 
 if TYPE_CHECKING:

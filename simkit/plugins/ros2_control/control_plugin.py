@@ -9,14 +9,14 @@ from simkit.diagnostics import did_you_mean
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.endpoints import offers_all
-from simkit.plugins.lookups import find_plugin_file
+from simkit.plugins.find_entities import find_plugin_file
 from simkit.plugins.options import Options, OptionsOf, boolean, text, texts
 from simkit.plugins.ros2_control.controller_manager import ControllerManager
 from simkit.plugins.ros2_control.controller_manager_services import offer_services
 from simkit.plugins.ros2_control.hardware import Hardware
 from simkit.plugins.ros2_control.hardware_description import describe_hardware
+from simkit.plugins.ros2_control.hardware_interfaces import POSITION, VELOCITY
 from simkit.plugins.ros2_control.hardware_joint import PidGains, read_pid_gains
-from simkit.plugins.ros2_control.interfaces import POSITION, VELOCITY
 from simkit.plugins.ros2_control.parameter_file_checks import report_high_rates, report_unused_parameters
 from simkit.plugins.ros2_control.parameter_file_namespaces import adapt_to_manager
 from simkit.plugins.ros2_control.transmissions import transmissions_of

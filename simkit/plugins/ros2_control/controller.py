@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 from simkit.msgs.message_types import Message
 from simkit.params import Params
 from simkit.plugins.live_parameters import declare_at
-from simkit.plugins.ros2_control.interfaces import InterfaceSelection
+from simkit.plugins.ros2_control.hardware_interfaces import InterfaceSelection
 
 if TYPE_CHECKING:
     from simkit.plugins.base import Plugin

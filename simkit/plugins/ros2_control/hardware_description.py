@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Final
 
 from simkit.diagnostics import NOWHERE, Diagnostics, Where, did_you_mean
 from simkit.params import Params
+from simkit.plugins.ros2_control.hardware_interfaces import EFFORT, POSITION, VELOCITY
 from simkit.plugins.ros2_control.hardware_joint import PidGains
-from simkit.plugins.ros2_control.interfaces import EFFORT, POSITION, VELOCITY
 
 if TYPE_CHECKING:
     from simkit.scene import SceneJoint, SceneModel

@@ -23,10 +23,10 @@ import numpy as np
 
 from simkit.plugins.ros2_control.actuator_modes import FREE, POSITION_MODE, SPRING_MODE, ActiveModes, ControlLoops, Mask
 from simkit.plugins.ros2_control.gravity_efforts import GravityEfforts
-from simkit.plugins.ros2_control.interfaces import POSITION, VELOCITY, Indices
+from simkit.plugins.ros2_control.hardware_interfaces import POSITION, VELOCITY, Indices
 from simkit.plugins.ros2_control.velocity_references import advance_references
 from simkit.pose import Vector
-from simkit.runtime.engine.physics import CONTROL
+from simkit.runtime.engine.physics_step import CONTROL
 
 if TYPE_CHECKING:
     import mujoco

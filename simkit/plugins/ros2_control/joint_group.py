@@ -11,7 +11,7 @@ import numpy as np
 from simkit import msgs
 from simkit.params import Params
 from simkit.plugins.ros2_control.hardware import Hardware
-from simkit.plugins.ros2_control.interfaces import EFFORT, POSITION, VELOCITY, array_index
+from simkit.plugins.ros2_control.hardware_interfaces import EFFORT, POSITION, VELOCITY, array_index
 from simkit.plugins.ros2_control.joint_pids import JointPids
 from simkit.plugins.ros2_control.trajectory import Setpoint
 from simkit.plugins.ros_parameter_block import read_names
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
         JointTrajectoryPoint,
         MultiDOFJointTrajectoryPoint,
     )
-    from simkit.plugins.ros2_control.interfaces import Indices
+    from simkit.plugins.ros2_control.hardware_interfaces import Indices
 
 ACCELERATION: Final = "acceleration"
 _INTERFACE_ORDER: Final = (POSITION, VELOCITY, ACCELERATION, EFFORT)

@@ -19,7 +19,7 @@ import numpy as np
 
 from simkit.diagnostics import Diagnostics, did_you_mean
 from simkit.params import Params
-from simkit.plugins.ros2_control.interfaces import EFFORT, POSITION
+from simkit.plugins.ros2_control.hardware_interfaces import EFFORT, POSITION
 from simkit.pose import Vector
 from simkit.scene.actuation import Transmission, TransmissionEnd
 

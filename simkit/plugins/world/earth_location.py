@@ -6,7 +6,7 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
-from simkit.plugins.world.entities import RequestRefused, require_finite
+from simkit.plugins.world.service_entities import RequestRefused, require_finite
 from simkit.pose import Pose, quat_from_rpy
 from simkit.scene import SphericalCoordinates
 from simkit.sensors.environment.geodesy import WorldOnPlanet

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from simkit.plugins.world.entities import RequestRefused, require_finite, vector_fields, vector_of
+from simkit.plugins.world.service_entities import RequestRefused, require_finite, vector_fields, vector_of
 
 if TYPE_CHECKING:
     from simkit.msgs import SetPhysicsProperties_Request

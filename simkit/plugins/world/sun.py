@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from simkit.params import LARGEST, Params
 from simkit.plugins.base import WorldPlugin
-from simkit.plugins.lookups import find_light
+from simkit.plugins.find_entities import find_light
 from simkit.plugins.options import Options, OptionsOf, number, text
 from simkit.plugins.world.sun_position import Site, SunPath, clear_sky
 from simkit.pose import Pose

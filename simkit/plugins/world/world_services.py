@@ -8,12 +8,13 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final
 
 from simkit import msgs
-from simkit.msgs.topics import valid_topic
+from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import WorldPlugin
 from simkit.plugins.drives.wheel_slip import set_compliances
 from simkit.plugins.world.earth_location import set_entity_location, set_world_location
-from simkit.plugins.world.entities import (
+from simkit.plugins.world.physics_settings import set_physics
+from simkit.plugins.world.service_entities import (
     KINDS,
     RequestRefused,
     answer_handler,
@@ -31,7 +32,6 @@ from simkit.plugins.world.entities import (
     spawn_entities,
     vector_of,
 )
-from simkit.plugins.world.physics_settings import set_physics
 from simkit.pose import IDENTITY, Pose
 
 if TYPE_CHECKING:

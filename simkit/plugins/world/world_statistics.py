@@ -9,12 +9,12 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 from simkit import msgs
-from simkit.msgs.topics import valid_topic
+from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import WorldPlugin
 from simkit.plugins.drives.entity_poses import EntityPoses, PosedEntity, PoseSample, pose_numbers, transforms_message
 from simkit.plugins.drives.odometry import TRANSFORMS
-from simkit.plugins.world.clock import TYPE as CLOCK
+from simkit.plugins.world.clock_publisher import TYPE as CLOCK
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation

@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 
 from simkit.errors import SimulationDiverged
-from simkit.runtime.engine.clock import Clock
+from simkit.runtime.engine.simulated_time import Clock
 
 BAD_POSITION: Final = int(mujoco.mjtWarning.mjWARN_BADQPOS)
 BAD_VELOCITY: Final = int(mujoco.mjtWarning.mjWARN_BADQVEL)

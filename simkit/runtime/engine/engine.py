@@ -20,9 +20,9 @@ if TYPE_CHECKING:
     from simkit.compiler import ActuatorRef
     from simkit.diagnostics import Diagnostics
     from simkit.run_spec import PluginErrorPolicy
-    from simkit.runtime.engine.clock import Clock
+    from simkit.runtime.engine.entity_structure import WorldStructure
     from simkit.runtime.engine.scheduler import Scheduler
-    from simkit.runtime.engine.world_structure import WorldStructure
+    from simkit.runtime.engine.simulated_time import Clock
     from simkit.scene import SceneWorld
 
 _LARGEST_CONTROL: Final = 9e9

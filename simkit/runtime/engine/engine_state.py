@@ -6,7 +6,7 @@ import logging
 from typing import TYPE_CHECKING
 
 from simkit.errors import InputError
-from simkit.runtime.engine.physics import Physics
+from simkit.runtime.engine.physics_step import Physics
 
 if TYPE_CHECKING:
     import mujoco
@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from simkit.compiler import Compiled
     from simkit.compiler.name_map import NameMap
     from simkit.diagnostics import Diagnostics
-    from simkit.runtime.engine.clock import Clock
-    from simkit.runtime.engine.world_structure import WorldStructure
+    from simkit.runtime.engine.entity_structure import WorldStructure
+    from simkit.runtime.engine.simulated_time import Clock
     from simkit.scene import SceneWorld
 
 

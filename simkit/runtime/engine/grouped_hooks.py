@@ -21,8 +21,8 @@ from typing import TYPE_CHECKING
 from simkit.runtime.engine.scheduler import Task
 
 if TYPE_CHECKING:
+    from simkit.runtime.engine.entity_structure import AttachedPlugin
     from simkit.runtime.engine.plugin_faults import PluginFaults
-    from simkit.runtime.engine.world_structure import AttachedPlugin
 
 MIN_GROUP_SIZE = 4
 """So few are as soon called one by one."""

@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from simkit.runtime.engine.model_fields import pair_by_name
+from simkit.runtime.engine.model_edits import pair_by_name
 from simkit.runtime.engine.physics_state import STALE
 
 if TYPE_CHECKING:

@@ -12,10 +12,10 @@ import numpy.typing as npt
 from simkit.compiler.engine_options import has_engine_contacts
 from simkit.runtime.contact.contact_law import ContactLaw, ContactShaper, window_length
 from simkit.runtime.contact.speculative_contacts import SPECULATIVE_FLAG, FastBodyDetector
-from simkit.runtime.engine.clock import Clock
 from simkit.runtime.engine.divergence import ENGINE_WARNINGS
 from simkit.runtime.engine.free_motion import FreeMotionIntegrator
 from simkit.runtime.engine.held_state import HeldState
+from simkit.runtime.engine.simulated_time import Clock
 from simkit.runtime.engine.sleep import Sleep
 
 FRESH, CONTROL, VELOCITY, STALE = range(4)

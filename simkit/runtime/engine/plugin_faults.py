@@ -19,7 +19,7 @@ from simkit.run_spec import PluginErrorPolicy
 
 if TYPE_CHECKING:
     from simkit.runtime.engine.engine_state import EngineState
-    from simkit.runtime.engine.world_structure import AttachedPlugin, AttachedSensor, AttachedState, WorldStructure
+    from simkit.runtime.engine.entity_structure import AttachedPlugin, AttachedSensor, AttachedState, WorldStructure
 
 R = TypeVar("R")
 

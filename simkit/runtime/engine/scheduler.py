@@ -7,7 +7,7 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Literal, Protocol
 
-from simkit.runtime.engine.clock import Clock, TickGrid
+from simkit.runtime.engine.simulated_time import Clock, TickGrid
 
 Phase = Literal["before", "sense", "after"]
 Task = Callable[[int], None]

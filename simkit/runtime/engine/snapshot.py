@@ -12,13 +12,13 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from simkit.runtime.engine.model_fields import restore_compiled_fields
+from simkit.runtime.engine.model_edits import restore_compiled_fields
 from simkit.runtime.engine.physics_state import STALE, StepWindow
 
 if TYPE_CHECKING:
     from simkit.runtime.engine.engine import Engine
+    from simkit.runtime.engine.entity_structure import AttachedPlugin, AttachedSensor, AttachedState, WorldStructure
     from simkit.runtime.engine.sleep import RestState
-    from simkit.runtime.engine.world_structure import AttachedPlugin, AttachedSensor, AttachedState, WorldStructure
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from collections.abc import Callable, Sized
 from typing import Final, Protocol
 
 from simkit.errors import InputError
-from simkit.runtime.engine.physics import Physics
+from simkit.runtime.engine.physics_step import Physics
 from simkit.runtime.engine.scheduler import Scheduler
 
 ScheduleFiller = Callable[[Scheduler], None]

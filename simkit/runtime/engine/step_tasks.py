@@ -12,7 +12,7 @@ from simkit.runtime.engine.scheduler import Scheduler, Task
 
 if TYPE_CHECKING:
     from simkit.runtime.engine.engine import Engine
-    from simkit.runtime.engine.world_structure import AttachedSensor
+    from simkit.runtime.engine.entity_structure import AttachedSensor
 
 _LIMIT_SHARE = 0.999  # of the sum of squares of velocities over their limits
 _NO_LIMIT = 1e6  # [rad/s or m/s] from which on a limit of the file is none

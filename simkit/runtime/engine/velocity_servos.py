@@ -29,8 +29,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from simkit.compiler.engine_options import SHORTEST_STEP
-from simkit.compiler.servos import ServoTraits, servo_traits
-from simkit.runtime.engine.physics import CONTROL
+from simkit.compiler.servo_gains import ServoTraits, servo_traits
+from simkit.runtime.engine.physics_step import CONTROL
 
 if TYPE_CHECKING:
     import mujoco

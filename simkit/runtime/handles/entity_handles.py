@@ -16,8 +16,8 @@ from simkit.scene import SceneLink, SceneModel
 
 if TYPE_CHECKING:
     from simkit.runtime.engine.engine import Engine
+    from simkit.runtime.engine.entity_structure import WorldStructure
     from simkit.runtime.engine.snapshot import Stateful
-    from simkit.runtime.engine.world_structure import WorldStructure
 
 HandleTables = dict[str, dict[str, Any]]
 """Handles and sensors by scoped name, by kind."""

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final, Self, TypeVar
 from simkit.runtime.handles.handle import look_up
 
 if TYPE_CHECKING:
-    from simkit.runtime.engine.world_structure import WorldStructure
+    from simkit.runtime.engine.entity_structure import WorldStructure
     from simkit.runtime.handles.entity_handles import EntityHandles
     from simkit.scene import SceneModel
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     import mujoco
 
     from simkit.compiler import Compiled, LinkBinding
-    from simkit.runtime.engine.world_structure import WorldStructure
+    from simkit.runtime.engine.entity_structure import WorldStructure
     from simkit.scene import SceneVisual
 
 

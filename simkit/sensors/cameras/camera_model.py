@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from simkit.params import Params
 from simkit.pose import Vector
-from simkit.sensors.cameras.lens_distortion import NO_DISTORTION, Distortion, distort, undistort
+from simkit.sensors.cameras.distortion_model import NO_DISTORTION, Distortion, distort, undistort
 from simkit.sensors.cameras.rendering.view import View
 
 MAX_PIXELS = 4096

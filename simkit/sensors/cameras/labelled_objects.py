@@ -12,7 +12,7 @@ import numpy.typing as npt
 if TYPE_CHECKING:
     from simkit.compiler.name_map import NameMap
     from simkit.runtime import Simulation
-    from simkit.runtime.engine.world_structure import WorldStructure
+    from simkit.runtime.engine.entity_structure import WorldStructure
 
 Numbers = npt.NDArray[np.int32]
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from simkit import msgs
 from simkit.diagnostics import Diagnostics
-from simkit.msgs.topics import valid_topic
+from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.pose import IDENTITY, Pose
 from simkit.sensors.base import Product
@@ -21,7 +21,7 @@ from simkit.sensors.cameras.array_pool import ArrayPool
 from simkit.sensors.cameras.camera_model import CameraModel
 from simkit.sensors.cameras.camera_options import CameraOptions, read_camera
 from simkit.sensors.cameras.camera_reading import CameraReading, NoisyCameraReading
-from simkit.sensors.cameras.distorted_image import ImageDistorter
+from simkit.sensors.cameras.image_distortion import ImageDistorter
 from simkit.sensors.cameras.image_messages import CameraInfoMaker
 from simkit.sensors.cameras.image_noise import ImageNoise
 from simkit.sensors.cameras.rendered_camera import RenderedCamera

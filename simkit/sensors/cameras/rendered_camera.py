@@ -13,7 +13,7 @@ import numpy.typing as npt
 from simkit import msgs
 from simkit.diagnostics import Diagnostics
 from simkit.msgs.message_types import Message
-from simkit.msgs.topics import valid_topic
+from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.pose import IDENTITY, Pose
 from simkit.sensors.base import Product
@@ -23,7 +23,7 @@ from simkit.sensors.cameras.camera_model import CameraModel, read_camera_model
 from simkit.sensors.cameras.camera_options import CameraOptions, read_options
 from simkit.sensors.cameras.camera_reading import CameraReading, NoisyCameraReading
 from simkit.sensors.cameras.camera_trigger import Trigger
-from simkit.sensors.cameras.distorted_image import ImageDistorter
+from simkit.sensors.cameras.image_distortion import ImageDistorter
 from simkit.sensors.cameras.image_messages import CameraInfoMaker
 from simkit.sensors.cameras.image_noise import ImageNoise
 from simkit.sensors.cameras.rendered_sampler import RenderedSampler

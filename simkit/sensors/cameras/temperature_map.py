@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from simkit.compiler.meshes.companion_files import read_pixels
 from simkit.compiler.meshes.mesh_reader import load_mesh
-from simkit.compiler.shapes import textured_triangles, turn_z_to
+from simkit.compiler.shape_geometry import textured_triangles, turn_z_to
 from simkit.diagnostics import NOWHERE, Diagnostics
 from simkit.pose import Pose, Vector
 from simkit.runtime.handles.visual_properties import HeatSignature

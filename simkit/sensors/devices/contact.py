@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 from simkit import msgs
 from simkit.diagnostics import Diagnostics, Where, did_you_mean
-from simkit.msgs.topics import valid_topic
+from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.pose import Vector
 from simkit.runtime.contact.collision_contacts import CollisionTable, collision_table, find_contacts

@@ -9,11 +9,11 @@ import numpy as np
 
 from simkit import msgs
 from simkit.pose import Vector
-from simkit.sensors.batch import SensorBatch, form_batches
 from simkit.sensors.bias_drift import NoiseInterval, NoiseState
 from simkit.sensors.inertial.imu_measurement import ImuMeasurement
 from simkit.sensors.inertial.inertial_kinematics import sensor_motion
 from simkit.sensors.sample import Sample
+from simkit.sensors.sensor_batch import SensorBatch, form_batches
 
 if TYPE_CHECKING:
     import mujoco

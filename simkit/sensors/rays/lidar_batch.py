@@ -9,12 +9,12 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.pose import Vector
-from simkit.sensors.batch import MIN_MEMBERS, SensorBatch, form_batches
 from simkit.sensors.rays.geom_types import Ids
 from simkit.sensors.rays.lidar_measurement import LidarMeasurement, LidarReading
 from simkit.sensors.rays.numpy_rays import Shapes, cast_on_shapes, in_frame
 from simkit.sensors.rays.ray_culling import geom_half_sizes, reaches_between_cones
 from simkit.sensors.rays.ray_fan import RayFan
+from simkit.sensors.sensor_batch import MIN_MEMBERS, SensorBatch, form_batches
 
 if TYPE_CHECKING:
     import mujoco

@@ -15,11 +15,11 @@ from simkit.build import describe
 from simkit.diagnostics import Diagnostics
 from simkit.errors import InputError, SimkitError
 from simkit.loaders import Resolver
-from simkit.loaders.spawn_option import parse_spawn
+from simkit.loaders.spawned_models import parse_spawn
 from simkit.run_spec import FilePath, RunSpec, SourceOptions
 from simkit.testing.bundles.manifest import PackedModel
 from simkit.testing.bundles.packed_world import load_packed_world, model_hash, packed_run_spec
-from simkit.writers.vendor import vendor
+from simkit.writers.vendored_folder import vendor
 
 if TYPE_CHECKING:
     from simkit.testing.bundles.bundle_recorder import BundleRecorder

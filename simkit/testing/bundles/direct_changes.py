@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.errors import MessageError
-from simkit.runtime.engine.physics import STALE
+from simkit.runtime.engine.physics_step import STALE
 from simkit.testing.bundles.journal_values import decode_array, encode_value
 from simkit.testing.run_record.record import Array
 

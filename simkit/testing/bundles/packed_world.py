@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from simkit.build import load
-from simkit.loaders.spawn_option import SpawnedModel
+from simkit.loaders.spawned_models import SpawnedModel
 from simkit.run_spec import LoadOptions, RunSpec
 from simkit.testing.bundles.manifest import PackedModel
 

@@ -7,7 +7,7 @@ Python reads or runs an expression, and whoever looks changes no bits.
 from __future__ import annotations
 
 from simkit.testing.conditions.checks import CheckResult
+from simkit.testing.conditions.condition_watch import Watch
 from simkit.testing.conditions.parser import parse
-from simkit.testing.conditions.watch import Watch
 
 __all__ = ["CheckResult", "Watch", "parse"]

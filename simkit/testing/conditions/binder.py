@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from simkit.diagnostics import did_you_mean
-from simkit.testing.conditions.attributes import attribute_of, listed_attributes
 from simkit.testing.conditions.bound_expression import BoundNode, Function, as_vector, is_scalar
 from simkit.testing.conditions.list_functions import LIST_FUNCTIONS
 from simkit.testing.conditions.number_functions import NUMBER_FUNCTIONS, NUMBER_OPERATORS, VECTOR_OPERATORS
@@ -34,6 +33,7 @@ from simkit.testing.conditions.syntax_tree import (
     UndecidedValue,
     expression_error,
 )
+from simkit.testing.conditions.value_fields import attribute_of, listed_attributes
 from simkit.testing.conditions.value_types import NUMBER, NUMBERS, TEXT, TRUTH, VECTOR, ValueType, is_vector_like
 from simkit.testing.conditions.world_functions import CONTACT_FUNCTIONS, WORLD_FUNCTIONS
 

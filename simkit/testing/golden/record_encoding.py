@@ -12,7 +12,7 @@ from simkit.run_spec import JsonMapping, JsonObject, RunSpec
 from simkit.testing.golden.array_packing import Packer, PackingError, Unpacker
 from simkit.testing.golden.compare.tolerances import storage_step
 from simkit.testing.golden.scenario_encoding import is_long_text
-from simkit.testing.run_record.model_fields import ModelFields
+from simkit.testing.run_record.compiled_model import ModelFields
 from simkit.testing.run_record.noise_statistics import NoiseStatistics
 from simkit.testing.run_record.record import Array, Column, Pictures, RunRecord, States, Stream
 from simkit.testing.run_record.run_recorder import ENVIRONMENT_VARIABLES

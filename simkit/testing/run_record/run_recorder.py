@@ -19,9 +19,9 @@ from simkit.errors import PluginError, SimulationDiverged, SubscriberError
 from simkit.msgs import Message
 from simkit.recording.bags.recorder import matches_topic
 from simkit.recording.message_taps import MessageQueue, TopicTaps
+from simkit.testing.run_record.compiled_model import fields_of_model
 from simkit.testing.run_record.fingerprint import fingerprint
 from simkit.testing.run_record.message_recorder import message_recorder_for
-from simkit.testing.run_record.model_fields import fields_of_model
 from simkit.testing.run_record.record import RunRecord, Stream
 from simkit.testing.run_record.source_files import source_hashes
 from simkit.testing.run_record.state_recorder import StateRecorder

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     import mujoco
 
     from simkit.runtime import Simulation
-    from simkit.runtime.engine.physics import Physics
+    from simkit.runtime.engine.physics_step import Physics
 
 _STATES_KEPT: Final = 64  # states of a run, where the world is small
 _MAX_VALUES: Final = 6000  # of all of them together

@@ -10,7 +10,7 @@ from typing import Any, Final, get_args
 
 from simkit.diagnostics import Diagnostics, Where
 from simkit.errors import InputError, LoadError
-from simkit.recording.commands import validate_items
+from simkit.recording.command_script import validate_items
 from simkit.run_spec import Check, CheckKind, RunSpec, Tolerance
 from simkit.testing.scenarios.yaml_document import resolve_spawn_file, short_repr
 from simkit.yaml_reader import finite_number

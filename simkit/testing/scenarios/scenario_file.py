@@ -13,7 +13,7 @@ from typing import Any, Final, cast
 from simkit.diagnostics import Diagnostics, Where
 from simkit.errors import InputError, LoadError
 from simkit.recording.bags.reader import open_bag_to_read
-from simkit.recording.commands import script_items, validate_items
+from simkit.recording.command_script import script_items, validate_items
 from simkit.run_spec import Check, CheckKind, JsonObject, LoadOptions, RunSpec, Tolerance
 from simkit.testing.scenarios.python_file import load_python_scenario
 from simkit.testing.scenarios.yaml_document import Document, ValueReader, resolve_spawn_file

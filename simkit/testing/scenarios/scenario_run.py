@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Literal
 
-from simkit.recording.commands import Commands, commands_of, read_script, steady_velocity
+from simkit.recording.command_script import Commands, commands_of, read_script, steady_velocity
 from simkit.run_spec import RunSpec
 
 if TYPE_CHECKING:

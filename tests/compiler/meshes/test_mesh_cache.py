@@ -17,7 +17,7 @@ from simkit.compiler.meshes import collision_bodies as mesh_collision
 from simkit.compiler.meshes import mesh_cache, mesh_reader
 from simkit.compiler.meshes.collision_bodies import convex_bodies
 from simkit.compiler.meshes.mesh_reader import convert_file, load_file
-from simkit.compiler.shapes import polyline_triangles
+from simkit.compiler.shape_geometry import polyline_triangles
 from simkit.scene import Polyline
 
 TRIANGLES = [[(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 0, 0), (0, 1, 0), (0, 0, 1)]]

@@ -15,7 +15,7 @@ from simkit.compiler import SpecBuilder, geom_groups
 from simkit.compiler.meshes.convex_pieces import thin_mesh
 from simkit.compiler.meshes.mesh_part import join_parts
 from simkit.compiler.meshes.mesh_reader import load_file, load_mesh
-from simkit.compiler.shapes import polyline_triangles
+from simkit.compiler.shape_geometry import polyline_triangles
 from simkit.diagnostics import NOWHERE, Diagnostics
 from simkit.pose import IDENTITY, Pose
 from simkit.scene import Box, Material, Mesh, Polyline, SceneVisual, Sphere

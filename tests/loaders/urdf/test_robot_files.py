@@ -15,7 +15,7 @@ from simkit.diagnostics import Diagnostics
 from simkit.loaders import Resolver, load_scene
 from simkit.loaders.elements_page import urdf_elements
 from simkit.loaders.resources.xml_reader import parse_text
-from simkit.loaders.sdf.workspace import SdfFile, Workspace
+from simkit.loaders.sdf.load_context import SdfFile, Workspace
 from simkit.loaders.urdf.robot import build_robot, declare_robot
 
 ELEMENTS = urdf_elements()

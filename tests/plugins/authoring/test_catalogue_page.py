@@ -6,7 +6,7 @@ from pathlib import Path
 
 import simkit
 from simkit.plugins.authoring.catalogue_page import page
-from simkit.plugins.discovery.plugin_kinds import plugin_kinds
+from simkit.plugins.discovery.find_plugin_class import plugin_kinds
 from simkit.plugins.discovery.unsupported_plugins import UNSUPPORTED_REASONS
 
 PAGE = Path(__file__).resolve().parents[3] / "docs" / "catalogue.md"

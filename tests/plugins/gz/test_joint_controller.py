@@ -15,7 +15,7 @@ from joint_worlds import codes, gz, load, rotor, velocity
 
 import simkit
 from simkit import LoadError
-from simkit.runtime.engine.physics import FRESH, Physics
+from simkit.runtime.engine.physics_step import FRESH, Physics
 
 A, B = "<joint_name>j_a</joint_name>", "<joint_name>j_b</joint_name>"
 FORCE = "<use_force_commands>true</use_force_commands>"

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 import simkit
-from simkit.plugins.gz.gz_system import GzSystem
+from simkit.plugins.gz.gz_system_plugin import GzSystem
 from simkit.plugins.gz_python.math import Pose3d, Vector3d
 from simkit.plugins.gz_python.sim import EntityComponentManager, components
 

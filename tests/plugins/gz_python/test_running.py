@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 import simkit
-from simkit.plugins.gz.gz_system import GzSystem
+from simkit.plugins.gz.gz_system_plugin import GzSystem
 from simkit.plugins.gz_python.msgs import message_class
 from simkit.plugins.gz_python.sim import Joint, Model, World, world_entity
 from simkit.plugins.gz_python.transport import Node

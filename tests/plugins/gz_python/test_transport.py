@@ -10,7 +10,7 @@ import pytest
 
 import simkit
 from simkit import msgs
-from simkit.plugins.gz.gz_system import GzSystem
+from simkit.plugins.gz.gz_system_plugin import GzSystem
 from simkit.plugins.gz_python.msgs import contents_of, message_class
 from simkit.plugins.gz_python.msgs.ros_conversion import _all_twins, from_ros, to_ros
 from simkit.plugins.gz_python.transport import AdvertiseMessageOptions, Node

@@ -11,7 +11,7 @@ from simkit.diagnostics import Diagnostics
 from simkit.params import Params
 from simkit.plugins.ros2_control.controllers.diff_drive import DiffDriveController
 from simkit.plugins.ros2_control.hardware import Hardware
-from simkit.plugins.ros2_control.interfaces import InterfaceTable
+from simkit.plugins.ros2_control.hardware_interfaces import InterfaceTable
 
 PHYSICS = "<physics type='ode'><max_step_size>0.01</max_step_size></physics>"
 EMPTY = f"<sdf version='1.9'><world name='lab'>{PHYSICS}</world></sdf>"

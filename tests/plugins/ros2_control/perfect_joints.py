@@ -12,8 +12,8 @@ from simkit.diagnostics import Diagnostics
 from simkit.params import Params
 from simkit.plugins.ros2_control.controller import Controller
 from simkit.plugins.ros2_control.hardware import Hardware
+from simkit.plugins.ros2_control.hardware_interfaces import InterfaceTable
 from simkit.plugins.ros2_control.hardware_joint import HardwareJoint
-from simkit.plugins.ros2_control.interfaces import InterfaceTable
 
 PERIOD = 0.01  # [s]
 PHYSICS = f"<physics type='ode'><max_step_size>{PERIOD}</max_step_size></physics>"

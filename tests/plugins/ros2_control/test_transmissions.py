@@ -10,7 +10,7 @@ import pytest
 from control_robots import POSITIONS, arm, command, interfaces, opened, told
 
 from simkit.diagnostics import Diagnostics
-from simkit.plugins.ros2_control.interfaces import EFFORT, POSITION, VELOCITY
+from simkit.plugins.ros2_control.hardware_interfaces import EFFORT, POSITION, VELOCITY
 from simkit.plugins.ros2_control.transmissions import transmission_laws
 from simkit.scene.actuation import Transmission, TransmissionEnd
 

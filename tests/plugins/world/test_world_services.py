@@ -12,7 +12,7 @@ from service_worlds import load, model
 
 import simkit
 from simkit import msgs
-from simkit.plugins.world.entities import entity_id
+from simkit.plugins.world.service_entities import entity_id
 
 HALF = {"z": math.sin(math.pi / 4), "w": math.cos(math.pi / 4)}  # a quarter turn about z
 NAVSAT = """<spherical_coordinates><surface_model>EARTH_WGS84</surface_model><latitude_deg>47</latitude_deg>

@@ -15,7 +15,7 @@ from simkit import msgs
 from simkit.errors import InputError
 from simkit.recording.bags.playback import Playback
 from simkit.recording.bags.recorder import Recorder
-from simkit.recording.commands import Command, Commands
+from simkit.recording.command_script import Command, Commands
 from simkit.runtime.engine.snapshot import state_hash
 
 EPOCH = 1_700_000_000 * 1_000_000_000  # a day in 2023

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import simkit
-from simkit.runtime.engine.physics import STALE, VELOCITY
+from simkit.runtime.engine.physics_step import STALE, VELOCITY
 
 G = 9.8
 

@@ -17,7 +17,7 @@ from simkit.errors import SimulationDiverged
 from simkit.runtime.contact import centripetal_friction, contact_law
 from simkit.runtime.contact.contact_correction_arrays import ArrayContactCorrection
 from simkit.runtime.contact.contact_law import window_length
-from simkit.runtime.engine.physics import STALE, VELOCITY
+from simkit.runtime.engine.physics_step import STALE, VELOCITY
 
 UPRIGHT = (1.0, 0.0, 0.0, 0.0)
 SENSORS = """<sensor name="imu" type="imu"><update_rate>1000</update_rate></sensor>

@@ -7,7 +7,7 @@ import simkit
 from simkit import msgs
 from simkit.errors import PluginError, SubscriberError
 from simkit.runtime.engine import grouped_hooks
-from simkit.sensors import batch
+from simkit.sensors import sensor_batch
 
 COUNT = 5
 
@@ -97,7 +97,7 @@ def apart(monkeypatch):
 
     def alone(call, *args, **kwargs):
         with monkeypatch.context() as patch:
-            patch.setattr(batch, "MIN_MEMBERS", 10_000)
+            patch.setattr(sensor_batch, "MIN_MEMBERS", 10_000)
             patch.setattr(grouped_hooks, "MIN_GROUP_SIZE", 10_000)
             return call(*args, **kwargs)
 

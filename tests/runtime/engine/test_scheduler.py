@@ -6,8 +6,8 @@ from functools import partial
 
 import pytest
 
-from simkit.runtime.engine.clock import Clock
 from simkit.runtime.engine.scheduler import Scheduler
+from simkit.runtime.engine.simulated_time import Clock
 
 
 def _note(called: list[tuple[int, int]], number: int, tick: int) -> None:

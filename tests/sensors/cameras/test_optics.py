@@ -14,8 +14,8 @@ from sensor_worlds import box, cloud, colours, depths, sensor, world
 
 import simkit
 from simkit.sensors.cameras.camera_model import CameraModel
-from simkit.sensors.cameras.distorted_image import ImageDistorter
-from simkit.sensors.cameras.lens_distortion import Distortion, distort, undistort
+from simkit.sensors.cameras.distortion_model import Distortion, distort, undistort
+from simkit.sensors.cameras.image_distortion import ImageDistorter
 
 draws = NEEDS_RENDERER
 

@@ -11,7 +11,7 @@ import pytest
 from renderer import RENDERS
 
 from simkit.plugins import Plugin
-from simkit.plugins.discovery.plugin_kinds import plugin_kinds
+from simkit.plugins.discovery.find_plugin_class import plugin_kinds
 from simkit.testing.certify.plugin_calls import PluginCallRecorder, record_plugin_calls
 from simkit.testing.certify.topic_hashes import plugin_title
 

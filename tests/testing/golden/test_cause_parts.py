@@ -12,7 +12,7 @@ import simkit
 from simkit.build import read_scene
 from simkit.runtime.engine.snapshot import state_hash
 from simkit.scene import SceneWorld
-from simkit.testing.golden.cause.changes import find_changes
+from simkit.testing.golden.cause.edits import find_changes
 from simkit.testing.golden.cause.explanation import find_effective_changes
 from simkit.testing.golden.cause.first_tick import distinct_digits, first_different_tick
 from simkit.testing.golden.cause.world_patch import ABSENT, CannotPatch, files_named_by, patch_world

@@ -156,7 +156,7 @@ def _free_root(sim: Simulation, entity: int, handle: FindHandle) -> tuple[Link, 
 
 def _set_link_velocity(sim: Simulation, link: Link, frame: Pose, part: str, velocity: Numbers) -> None:
     """Gives a free link a linear or an angular velocity; the other part stays."""
-    from simkit.runtime.engine.physics import VELOCITY
+    from simkit.runtime.engine.physics_step import VELOCITY
 
     binding, data = sim.engine.names.link(link.scoped), sim.mj_data
     start, dof = int(binding.root_joint_qpos), int(binding.root_joint_dof)

@@ -8,7 +8,7 @@ from typing import ClassVar, Final
 import numpy as np
 
 from simkit.plugins.ros2_control.controller import Controller
-from simkit.plugins.ros2_control.interfaces import EFFORT, POSITION, VELOCITY
+from simkit.plugins.ros2_control.hardware_interfaces import EFFORT, POSITION, VELOCITY
 from simkit.plugins.ros_parameter_block import read_names
 from simkit.pose import Vector
 

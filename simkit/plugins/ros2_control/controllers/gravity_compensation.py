@@ -9,7 +9,7 @@ import numpy as np
 
 from simkit.plugins.ros2_control.controller import Controller
 from simkit.plugins.ros2_control.gravity_efforts import GravityEfforts
-from simkit.plugins.ros2_control.interfaces import EFFORT, VELOCITY
+from simkit.plugins.ros2_control.hardware_interfaces import EFFORT, VELOCITY
 from simkit.plugins.ros_parameter_block import read_names, read_numbers
 
 _MOTOR_PARAMETERS: Final = ("motor_torque_constants", "reduction_ratios", "dt")

@@ -6,7 +6,7 @@ from typing import ClassVar
 
 from simkit.plugins.ros2_control.controllers.joint_trajectory import JointTrajectoryController
 from simkit.plugins.ros2_control.gravity_efforts import GravityEfforts
-from simkit.plugins.ros2_control.interfaces import EFFORT, POSITION, VELOCITY
+from simkit.plugins.ros2_control.hardware_interfaces import EFFORT, POSITION, VELOCITY
 from simkit.plugins.ros2_control.joint_pids import JointPids
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from simkit import msgs
 from simkit.params import Params
 from simkit.plugins.ros2_control.controller import Controller
-from simkit.plugins.ros2_control.interfaces import EFFORT, POSITION, VELOCITY
+from simkit.plugins.ros2_control.hardware_interfaces import EFFORT, POSITION, VELOCITY
 from simkit.plugins.ros2_control.joint_pids import JointPids
 from simkit.plugins.ros_parameter_block import read_names
 from simkit.pose import Vector

@@ -9,7 +9,7 @@ import numpy as np
 
 from simkit import msgs
 from simkit.plugins.ros2_control.controller import Controller
-from simkit.plugins.ros2_control.interfaces import EFFORT, POSITION, VELOCITY
+from simkit.plugins.ros2_control.hardware_interfaces import EFFORT, POSITION, VELOCITY
 from simkit.plugins.ros_parameter_block import read_names
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ import numpy as np
 
 from simkit import msgs
 from simkit.plugins.ros2_control.controller import Controller, OneTimeWarnings
-from simkit.plugins.ros2_control.interfaces import POSITION
+from simkit.plugins.ros2_control.hardware_interfaces import POSITION
 from simkit.plugins.ros2_control.joint_group import TRAJECTORY, JointGroup, TrajectoryMessages
 from simkit.plugins.ros2_control.joint_pids import JointPids
 from simkit.plugins.ros2_control.trajectory import (

@@ -6,7 +6,7 @@ import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
-from simkit.testing.golden.cause.changes import Change, find_changes
+from simkit.testing.golden.cause.edits import Change, find_changes
 from simkit.testing.golden.cause.file_changes import changes_outside_world, engine_changes
 from simkit.testing.golden.cause.first_tick import FirstDifferentTick, first_different_tick, largest_final_difference
 from simkit.testing.golden.cause.rerun import RunChangedWorld, ScenarioRerun, can_be_put_back, rerun_scenario

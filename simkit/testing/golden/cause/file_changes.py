@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from simkit.testing.golden.cause.change_text import list_names, single_value_text, values_text
-from simkit.testing.golden.cause.changes import Change
+from simkit.testing.golden.cause.edits import Change
 from simkit.testing.golden.compare.world_edits import (
     ABSENT,
     Edit,

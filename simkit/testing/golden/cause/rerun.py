@@ -13,7 +13,7 @@ import numpy as np
 
 from simkit.run_spec import RunSpec
 from simkit.scene import SceneWorld
-from simkit.testing.golden.cause.changes import Change
+from simkit.testing.golden.cause.edits import Change
 from simkit.testing.golden.cause.world_patch import patch_world
 from simkit.testing.golden.compare.difference import Comparison
 from simkit.testing.golden.compare.runs import compare

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.testing.golden.compare.difference import Difference
-from simkit.testing.golden.compare.numbers import HALF_STEP, field_finding
+from simkit.testing.golden.compare.number_columns import HALF_STEP, field_finding
 from simkit.testing.golden.compare.tolerances import FieldFinding, FieldTerms, FlatValues
 from simkit.testing.golden.compare.units import time_text
 from simkit.testing.run_record.record import Array, Column

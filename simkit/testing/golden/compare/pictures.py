@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from simkit.run_spec import Tolerance
 from simkit.testing.golden.compare.difference import Difference
-from simkit.testing.golden.compare.numbers import compare_column
+from simkit.testing.golden.compare.number_columns import compare_column
 from simkit.testing.golden.compare.tolerances import FieldTerms
 from simkit.testing.golden.compare.units import time_text
 from simkit.testing.run_record.pictures import TILE, structural_similarity

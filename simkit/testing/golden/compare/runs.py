@@ -9,7 +9,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from simkit.testing.golden.compare.difference import Comparison, Difference
-from simkit.testing.golden.compare.physics import compare_physics
+from simkit.testing.golden.compare.physics_states import compare_physics
 from simkit.testing.golden.compare.streams import StreamPair, compare_stream
 from simkit.testing.golden.compare.times import begin_time
 from simkit.testing.golden.compare.tolerances import tolerance_of

@@ -13,7 +13,6 @@ from collections.abc import Callable
 import mujoco
 import numpy as np
 
-from simkit.runtime.engine.clock import Clock
 from simkit.runtime.engine.control_callback import call_before_forces
 from simkit.runtime.engine.divergence import (
     BAD_ACCELERATION,
@@ -24,6 +23,7 @@ from simkit.runtime.engine.divergence import (
 )
 from simkit.runtime.engine.forward_pass import SKIPPED_STAGE, ForwardPass
 from simkit.runtime.engine.physics_state import CONTROL, FRESH, STALE, VELOCITY
+from simkit.runtime.engine.simulated_time import Clock
 
 __all__ = ["CONTROL", "FRESH", "STALE", "VELOCITY", "Physics"]
 

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 from simkit.diagnostics import Diagnostics, did_you_mean
 from simkit.errors import SimkitError
 from simkit.params import Params
-from simkit.plugins.discovery.attachment import Attachment, ParentGetter, SceneEntity, attach_plugins, handle_getter
 from simkit.plugins.discovery.builtin_plugins import plugins_of_every_world
-from simkit.plugins.discovery.plugin_kinds import find_plugin
+from simkit.plugins.discovery.find_plugin_class import find_plugin
+from simkit.plugins.discovery.python_plugins import Attachment, ParentGetter, SceneEntity, attach_plugins, handle_getter
 from simkit.scene import SceneJoint, SceneLink, SceneModel, ScenePlugin, SceneSensor, SceneWorld
 from simkit.sensors import sensor_kinds
 from simkit.sensors.presets.preset_defaults import add_preset_defaults
@@ -127,7 +127,7 @@ def add_python_plugins(
 def _add_python_plugin(
     parts: SensorsAndPlugins, hung: Attachment, rank: int, builder: SpecBuilder, diagnostics: Diagnostics
 ) -> None:
-    from simkit.runtime.engine.world_structure import FROM_PYTHON
+    from simkit.runtime.engine.entity_structure import FROM_PYTHON
 
     plugin = hung.plugin
     plugin.hand_over(diagnostics, hung.scoped)
@@ -163,7 +163,7 @@ def _add_plugin(
     diagnostics: Diagnostics,
     plugin_paths: Sequence[Path],
 ) -> None:
-    from simkit.runtime.engine.world_structure import FROM_FILE
+    from simkit.runtime.engine.entity_structure import FROM_FILE
 
     plugin, scene = one.plugin, one.scene
     cls = find_plugin(plugin, plugin_paths, diagnostics, one.kind)

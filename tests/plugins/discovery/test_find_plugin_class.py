@@ -8,7 +8,7 @@ import pytest
 
 from simkit.params import Params
 from simkit.plugins import ModelPlugin, Plugin, SensorPlugin, WorldPlugin
-from simkit.plugins.discovery.plugin_kinds import find_plugin, plugin_kinds
+from simkit.plugins.discovery.find_plugin_class import find_plugin, plugin_kinds
 from simkit.plugins.plugin_names import normalise
 from simkit.scene import ScenePlugin
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import simkit
-from simkit.plugins.gz.gz_system import GzSystem
+from simkit.plugins.gz.gz_system_plugin import GzSystem
 from simkit.plugins.gz_python.math import Vector3d
 from simkit.plugins.gz_python.sim import Link, Model, World, world_entity
 

@@ -10,7 +10,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from simkit.params import Params
-from simkit.runtime.engine.clock import Clock, SampleTiming, exact_fraction, exact_rate
+from simkit.runtime.engine.simulated_time import Clock, SampleTiming, exact_fraction, exact_rate
 from simkit.sensors.sample import Sample
 
 if TYPE_CHECKING:

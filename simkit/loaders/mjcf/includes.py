@@ -15,7 +15,7 @@ from xml.sax.saxutils import quoteattr  # it brings the network's modules along,
 from simkit.diagnostics import NOWHERE, Diagnostics, Where
 from simkit.loaders.mjcf.asset_files import placeholder, read_asset
 from simkit.loaders.mjcf.size_limits import MOST_ELEMENTS
-from simkit.loaders.resources.resolver import Resolver
+from simkit.loaders.resources.uri_resolver import Resolver
 from simkit.loaders.resources.xml_reader import parse_file
 from simkit.params import Params
 

@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import pytest
 
-from simkit.runtime.engine.clock import Clock, exact_rate
+from simkit.runtime.engine.simulated_time import Clock, exact_rate
 
 
 def test_thirty_hertz_at_a_millisecond_gives_thirty_samples_in_every_second():

@@ -12,7 +12,7 @@ import pytest
 from sensor_worlds import sensor, world
 
 import simkit
-from simkit.runtime.engine.clock import Clock, SampleTiming
+from simkit.runtime.engine.simulated_time import Clock, SampleTiming
 
 IMU = "<imu><angular_velocity><x>{}</x></angular_velocity></imu>"
 NOISE = (

@@ -11,10 +11,10 @@ from typing import ClassVar
 from simkit.diagnostics import Diagnostics, Where
 from simkit.loaders.resources.loader import Loader, LoadRequest, MeshReader, MjcfParser
 from simkit.loaders.resources.model_folder import NEWEST_SDF, sdf_version
-from simkit.loaders.resources.resolver import Resolver
+from simkit.loaders.resources.uri_resolver import Resolver
 from simkit.loaders.resources.xml_reader import Document, parse_file
 from simkit.loaders.sdf.frames import Frame, Scope, pose_base
-from simkit.loaders.sdf.older_versions import modernise, nest_flattened_models
+from simkit.loaders.sdf.version_upgrade import modernise, nest_flattened_models
 from simkit.params import Params
 from simkit.pose import IDENTITY, Pose
 from simkit.scene import SceneModel

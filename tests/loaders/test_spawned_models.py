@@ -11,7 +11,7 @@ import simkit
 from simkit.cli import app
 from simkit.diagnostics import Diagnostics
 from simkit.errors import LoadError
-from simkit.loaders.spawn_option import SpawnedModel, parse_spawn
+from simkit.loaders.spawned_models import SpawnedModel, parse_spawn
 
 BOX = """<sdf version="1.9"><model name="box"><pose>0 0 0.25 0 0 1</pose><link name="link">
 <collision name="c"><geometry><box><size>0.5 0.5 0.5</size></box></geometry></collision></link></model></sdf>"""

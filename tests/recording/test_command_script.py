@@ -8,7 +8,7 @@ import pytest
 
 import simkit
 from simkit.errors import InputError
-from simkit.recording.commands import Command, Commands, read_script, steady_velocity
+from simkit.recording.command_script import Command, Commands, read_script, steady_velocity
 
 TOPICS = {"/cmd_vel": "geometry_msgs/msg/Twist", "/imu": "sensor_msgs/msg/Imu"}
 EMPTY = "<sdf version='1.9'><world name='w'/></sdf>"

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from simkit.diagnostics import Diagnostics, follows_from
 from simkit.errors import LoadError, SimkitError
-from simkit.plugins.discovery.scene_instances import (
+from simkit.plugins.discovery.make_instances import (
     add_python_plugins,
     make_model_parts,
     make_world_parts,

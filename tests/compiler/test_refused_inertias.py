@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from simkit.compiler.inertia_repair import inertia_matrix, plan_inertials, repair_inertia, rigid_sum
+from simkit.compiler.refused_inertias import inertia_matrix, plan_inertials, repair_inertia, rigid_sum
 from simkit.diagnostics import Diagnostics, Where
 from simkit.pose import Pose
 from simkit.scene import Inertial, SceneLink

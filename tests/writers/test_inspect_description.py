@@ -10,7 +10,7 @@ import pytest
 from simkit.build import describe_sensor
 from simkit.diagnostics import Diagnostics
 from simkit.loaders import Resolver, load_scene
-from simkit.writers.description import describe_scene
+from simkit.writers.inspect_description import describe_scene
 
 MODEL = """<sdf version="1.9"><model name="m"><link name="a"/><link name="b"><inertial><mass>2</mass></inertial>
 <visual name="v"><geometry><capsule><radius>0.1</radius><length>0.5</length></capsule></geometry></visual>

@@ -14,7 +14,7 @@ from simkit.testing.golden.cause.change_text import (
     owner_title,
     single_value_text,
 )
-from simkit.testing.golden.cause.motion import Motion, find_motions, local_path
+from simkit.testing.golden.cause.moved_bodies import Motion, find_motions, local_path
 from simkit.testing.golden.compare.difference import CauseKind
 from simkit.testing.golden.compare.world_edits import (
     ABSENT,

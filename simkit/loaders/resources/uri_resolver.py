@@ -12,7 +12,8 @@ from urllib.parse import unquote
 
 from simkit.diagnostics import Diagnostic, Diagnostics, Where, did_you_mean
 from simkit.loaders.resources.bundled_models import bundled_folders, is_bare_name
-from simkit.loaders.resources.paths import (
+from simkit.loaders.resources.ros_packages import enclosing_package, package_folders
+from simkit.loaders.resources.uris import (
     absolute_path,
     first_existing,
     format_searched,
@@ -26,7 +27,6 @@ from simkit.loaders.resources.paths import (
     package_uri,
     sibling_names,
 )
-from simkit.loaders.resources.ros_packages import enclosing_package, package_folders
 
 _SEARCH_VARIABLES = (
     "SIMKIT_RESOURCE_PATH",

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from simkit.compiler.inertia_repair import format_moments, repair_inertia
 from simkit.compiler.mjcf_parser import MjcfParser
+from simkit.compiler.refused_inertias import format_moments, repair_inertia
 from simkit.diagnostics import Diagnostics
 from simkit.errors import InputError
 from simkit.loaders import Resolver, load_scene

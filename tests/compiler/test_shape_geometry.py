@@ -13,7 +13,7 @@ from PIL import Image
 
 from simkit.compiler import SpecBuilder, geom_groups
 from simkit.compiler.meshes.mesh_part import MeshFileError
-from simkit.compiler.shapes import heightmap_rows, polyline_pieces, polyline_triangles, textured_triangles
+from simkit.compiler.shape_geometry import heightmap_rows, polyline_pieces, polyline_triangles, textured_triangles
 from simkit.diagnostics import Diagnostics
 from simkit.pose import Pose
 from simkit.scene import (
