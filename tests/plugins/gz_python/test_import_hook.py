@@ -23,7 +23,7 @@ from simkit.plugins.gz_python import import_hook
         ("ignition.gazebo6", "simkit.plugins.gz_python.sim"),
         ("gz.math7", "simkit.plugins.gz_python.math"),
         ("ignition.math6", "simkit.plugins.gz_python.math"),
-        ("gz.common5", "simkit.plugins.gz_python.gz_common"),
+        ("gz.common5", "simkit.plugins.gz_python.common"),
         ("gz.transport13", "simkit.plugins.gz_python.transport"),
         ("gz.msgs10.twist_pb2", "simkit.plugins.gz_python.msgs.twist_pb2"),
         ("gz.sim8.components", "simkit.plugins.gz_python.sim.components"),
