@@ -6,6 +6,7 @@ import re
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
+REPOSITORY = "https://github.com/simkit-robotics/simkit/"
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 DOCUMENTS = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md"), *(ROOT / "benchmarks").glob("*.md")])
 TEXTS = [
@@ -26,6 +27,33 @@ def test_links_lead_somewhere() -> None:
             if not (path.parent / target.split("#")[0]).exists():
                 missing.append(f"{path.relative_to(ROOT)}: {target}")
     assert not missing
+
+
+def test_links_of_the_readme_work_on_the_package_index() -> None:
+    """Links are absolute there, and those into the repository name a file of it."""
+    targets = LINK.findall((ROOT / "README.md").read_text(encoding="utf-8"))
+    assert not [target for target in targets if not target.startswith("https://")]
+    own = [
+        re.sub(r"^(blob|tree|raw)/main/", "", t.removeprefix(REPOSITORY)) for t in targets if t.startswith(REPOSITORY)
+    ]
+    assert len(own) > 20
+    assert not [target for target in own if not (ROOT / target).exists()]
+
+
+def test_the_readme_has_at_most_150_lines() -> None:
+    assert len((ROOT / "README.md").read_text(encoding="utf-8").splitlines()) <= 150
+
+
+def test_every_page_is_named_by_an_index() -> None:
+    """A page is linked from the index of its folder or from the index of all pages."""
+    indexes = [ROOT / "docs" / "index.md", ROOT / "docs" / "sensors" / "index.md"]
+    linked = {
+        (index.parent / target.split("#")[0]).resolve()
+        for index in indexes
+        for target in LINK.findall(index.read_text(encoding="utf-8"))
+    }
+    pages = [page for page in (ROOT / "docs").rglob("*.md") if page.name not in {"index.md", "diagnostics.md"}]
+    assert not [page.relative_to(ROOT).as_posix() for page in sorted(pages) if page.resolve() not in linked]
 
 
 def test_links_to_headings_lead_to_one() -> None:
