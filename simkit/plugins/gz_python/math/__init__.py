@@ -56,56 +56,13 @@ from simkit.plugins.gz_python.math.vectors import (
 Quaternionf, Pose3f, Matrix3f, Matrix4f = Quaterniond, Pose3d, Matrix3d, Matrix4d
 MassMatrix3f, Inertialf = MassMatrix3d, Inertiald
 
-__all__ = [
-    "PID",
-    "Angle",
-    "AxisAlignedBox",
-    "Color",
-    "Inertiald",
-    "Inertialf",
-    "MassMatrix3d",
-    "MassMatrix3f",
-    "Matrix3d",
-    "Matrix3f",
-    "Matrix4d",
-    "Matrix4f",
-    "Pose3d",
-    "Pose3f",
-    "Quaterniond",
-    "Quaternionf",
-    "RollingMean",
-    "SphericalCoordinates",
-    "Temperature",
-    "Vector2d",
-    "Vector2f",
-    "Vector2i",
-    "Vector3d",
-    "Vector3f",
-    "Vector3i",
-    "Vector4d",
-    "Vector4f",
-    "Vector4i",
-    "clamp",
-    "equal",
-    "fixnan",
-    "greater_or_near_equal",
-    "is_even",
-    "is_odd",
-    "is_power_of_two",
-    "isnan",
-    "less_or_near_equal",
-    "mean",
-    "parse_float",
-    "parse_int",
-    "precision",
-    "round_up_multiple",
-    "round_up_power_of_two",
-    "sgn",
-    "signum",
-    "sort2",
-    "sort3",
-    "variance",
-]
+__all__ = ["PID", "Angle", "AxisAlignedBox", "Color", "RollingMean", "SphericalCoordinates", "Temperature"]
+__all__ += ["Vector2d", "Vector2f", "Vector2i", "Vector3d", "Vector3f", "Vector3i", "Vector4d", "Vector4f", "Vector4i"]
+__all__ += ["Inertiald", "Inertialf", "MassMatrix3d", "MassMatrix3f", "Matrix3d", "Matrix3f", "Matrix4d", "Matrix4f"]
+__all__ += ["Pose3d", "Pose3f", "Quaterniond", "Quaternionf"]
+__all__ += ["clamp", "equal", "fixnan", "greater_or_near_equal", "is_even", "is_odd", "is_power_of_two", "isnan"]
+__all__ += ["less_or_near_equal", "mean", "parse_float", "parse_int", "precision", "round_up_multiple"]
+__all__ += ["round_up_power_of_two", "sgn", "signum", "sort2", "sort3", "variance"]
 
 _INSTEAD: Final = {
     "Rand": "use random.Random(seed), which two runs with one seed draw the same from",

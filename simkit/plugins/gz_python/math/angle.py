@@ -4,22 +4,20 @@ from __future__ import annotations
 
 import math
 
-from simkit.plugins.gz_python.math.class_constant import ClassConstant
-from simkit.plugins.gz_python.math.scalars import format_number
+from simkit.plugins.gz_python.math.value_base import ClassConstant, Scalar
 from simkit.plugins.gz_python.math.vectors import EQUALITY_TOLERANCE
 
 
-class Angle:
+class Angle(Scalar):
     """An angle; `==` and the order are those of gz-math: within 1e-3 is the same."""
 
     ZERO = ClassConstant(0.0)
     PI = ClassConstant(math.pi)
     HALF_PI = ClassConstant(math.pi / 2)
     TWO_PI = ClassConstant(math.tau)
-    __hash__ = None  # type: ignore[assignment]
 
     def __init__(self, radian: Angle | float = 0.0) -> None:
-        self._value: float = radian._value if isinstance(radian, Angle) else float(radian)
+        self._value = float(radian)
 
     def radian(self, *value: float) -> float:
         """[rad]; with an argument, sets it."""
@@ -50,17 +48,10 @@ class Angle:
         angle.normalize()
         return angle
 
-    def __call__(self) -> float:
-        return self._value
-
-    def __float__(self) -> float:
-        return self._value
-
-    def __add__(self, other: Angle) -> Angle:
-        return Angle(self._value + other._value)
-
-    def __sub__(self, other: Angle) -> Angle:
-        return Angle(self._value - other._value)
+    def _number_of(self, other: Angle | float) -> float:
+        if not isinstance(other, Angle):
+            raise TypeError(f"an angle is needed, got {other!r}")
+        return other._value
 
     def __mul__(self, other: Angle) -> Angle:
         return Angle(self._value * other._value)
@@ -71,17 +62,8 @@ class Angle:
     def __eq__(self, other: object) -> bool:
         return abs(self._value - other._value) <= EQUALITY_TOLERANCE if isinstance(other, Angle) else NotImplemented
 
-    def __lt__(self, other: Angle) -> bool:
-        return self._value < other._value
-
     def __le__(self, other: Angle) -> bool:
         return self._value < other._value or self == other
 
-    def __gt__(self, other: Angle) -> bool:
-        return self._value > other._value
-
     def __ge__(self, other: Angle) -> bool:
         return self._value > other._value or self == other
-
-    def __repr__(self) -> str:
-        return format_number(self._value)

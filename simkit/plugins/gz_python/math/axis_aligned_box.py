@@ -6,7 +6,7 @@ import math
 import sys
 from typing import Final
 
-from simkit.plugins.gz_python.math.class_constant import CppArgument
+from simkit.plugins.gz_python.math.value_base import CppArgument
 from simkit.plugins.gz_python.math.vectors import Vector3d, VectorLike
 
 _LARGEST: Final = sys.float_info.max

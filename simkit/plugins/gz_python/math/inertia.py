@@ -8,22 +8,15 @@ from typing import Final
 
 import numpy as np
 
-from simkit.plugins.gz_python.math.class_constant import CppArgument
 from simkit.plugins.gz_python.math.matrices import Matrix3d
 from simkit.plugins.gz_python.math.pose import Pose3d
 from simkit.plugins.gz_python.math.quaternion import Quaterniond
 from simkit.plugins.gz_python.math.scalars import DEFAULT_TOLERANCE
+from simkit.plugins.gz_python.math.value_base import CppArgument, Value, component_getter
 from simkit.plugins.gz_python.math.vectors import Vector3d, VectorLike, components_of
 
 TOLERANCE: Final = 10.0
 """In units of what rounding does, as gz-math's default."""
-
-
-def _moment_getter(attribute: str, index: int) -> Callable[[MassMatrix3d], float]:
-    def read(self: MassMatrix3d) -> float:
-        return float(getattr(self, attribute)[index])
-
-    return read
 
 
 def _moment_setter(attribute: str, index: int) -> Callable[[MassMatrix3d, float], bool]:
@@ -34,10 +27,8 @@ def _moment_setter(attribute: str, index: int) -> Callable[[MassMatrix3d, float]
     return write
 
 
-class MassMatrix3d:
+class MassMatrix3d(Value):
     """A mass [kg] and the moments of inertia about its centre [kg·m²]: (mass, (ixx, iyy, izz), (ixy, ixz, iyz))."""
-
-    __hash__ = None  # type: ignore[assignment]
 
     def __init__(self, *values: CppArgument) -> None:
         self._mass, self._diagonal, self._rest = 0.0, Vector3d(), Vector3d()
@@ -68,12 +59,12 @@ class MassMatrix3d:
         self._rest = Vector3d(moments)
         return self.is_valid()
 
-    ixx, set_ixx = _moment_getter("_diagonal", 0), _moment_setter("_diagonal", 0)
-    iyy, set_iyy = _moment_getter("_diagonal", 1), _moment_setter("_diagonal", 1)
-    izz, set_izz = _moment_getter("_diagonal", 2), _moment_setter("_diagonal", 2)
-    ixy, set_ixy = _moment_getter("_rest", 0), _moment_setter("_rest", 0)
-    ixz, set_ixz = _moment_getter("_rest", 1), _moment_setter("_rest", 1)
-    iyz, set_iyz = _moment_getter("_rest", 2), _moment_setter("_rest", 2)
+    ixx, set_ixx = component_getter("_diagonal", 0), _moment_setter("_diagonal", 0)
+    iyy, set_iyy = component_getter("_diagonal", 1), _moment_setter("_diagonal", 1)
+    izz, set_izz = component_getter("_diagonal", 2), _moment_setter("_diagonal", 2)
+    ixy, set_ixy = component_getter("_rest", 0), _moment_setter("_rest", 0)
+    ixz, set_ixz = component_getter("_rest", 1), _moment_setter("_rest", 1)
+    iyz, set_iyz = component_getter("_rest", 2), _moment_setter("_rest", 2)
 
     def moi(self) -> Matrix3d:
         """The moments as a matrix."""
@@ -154,7 +145,7 @@ class MassMatrix3d:
         if size is not None:
             size.set(*map(math.sqrt, squares))
         if rotation is not None:
-            rotation.set(*self.principal_axes_offset(tolerance)._q)
+            rotation.set(*self.principal_axes_offset(tolerance)._v)
         return True
 
     # ------------------------------------------------------------------ soundness
@@ -196,17 +187,9 @@ class MassMatrix3d:
         is_same = abs(self._mass - other._mass) <= DEFAULT_TOLERANCE
         return is_same and self._diagonal == other._diagonal and self._rest == other._rest
 
-    def __copy__(self) -> MassMatrix3d:
-        return MassMatrix3d(self)
 
-    def __deepcopy__(self, memo: dict[int, object]) -> MassMatrix3d:
-        return MassMatrix3d(self)
-
-
-class Inertiald:
+class Inertiald(Value):
     """A mass matrix at a pose: of the centre of mass, with the moments in that pose's axes."""
-
-    __hash__ = None  # type: ignore[assignment]
 
     def __init__(self, *values: CppArgument) -> None:
         self._matrix, self._pose = MassMatrix3d(), Pose3d()
@@ -268,9 +251,3 @@ class Inertiald:
         if not isinstance(other, Inertiald):
             return NotImplemented
         return self._pose == other._pose and self._matrix == other._matrix
-
-    def __copy__(self) -> Inertiald:
-        return Inertiald(self)
-
-    def __deepcopy__(self, memo: dict[int, object]) -> Inertiald:
-        return Inertiald(self)

@@ -2,29 +2,72 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
-from simkit.plugins.gz_python.math.class_constant import ClassConstant, CppArgument
 from simkit.plugins.gz_python.math.pose import Pose3d
 from simkit.plugins.gz_python.math.quaternion import Quaterniond
 from simkit.plugins.gz_python.math.scalars import DEFAULT_TOLERANCE, format_number
+from simkit.plugins.gz_python.math.value_base import ClassConstant, CppArgument, Value
 from simkit.plugins.gz_python.math.vectors import Vector3d, VectorLike, components_of
 
 Rows = npt.NDArray[np.float64]
+M = TypeVar("M", bound="_SquareMatrix")
 
 
-class Matrix3d:
+class _SquareMatrix(Value):
+    """Base of matrices; `m(row, column)` reads a number.
+
+    Attributes:
+        SIZE: how many rows and columns.
+    """
+
+    SIZE: ClassVar[int]
+    _m: Rows
+
+    @classmethod
+    def of(cls: type[M], rows: npt.ArrayLike) -> M:
+        """From an array of rows."""
+        return cls(*np.asarray(rows, dtype=float).reshape(-1).tolist())
+
+    def _index(self, row: int, column: int) -> tuple[int, int]:
+        return min(int(row), self.SIZE - 1), min(int(column), self.SIZE - 1)
+
+    def __call__(self, row: int, column: int) -> float:
+        return float(self._m[self._index(row, column)])
+
+    def determinant(self) -> float:
+        return float(np.linalg.det(self._m))
+
+    def inverse(self: M) -> M:
+        return self.of(np.linalg.inv(self._m))
+
+    def transposed(self: M) -> M:
+        return self.of(self._m.T)
+
+    def _is_near(self, other: _SquareMatrix, tolerance: float) -> bool:
+        return bool((np.abs(self._m - other._m) <= tolerance).all())
+
+    def __eq__(self, other: object) -> bool:
+        if isinstance(other, _SquareMatrix) and other.SIZE == self.SIZE:
+            return self._is_near(other, DEFAULT_TOLERANCE)
+        return NotImplemented
+
+    def __repr__(self) -> str:
+        return " ".join(format_number(v) for v in self._m.reshape(-1).tolist())
+
+
+class Matrix3d(_SquareMatrix):
     """Three by three numbers: `Matrix3d()`, nine numbers row by row, or of a rotation; `m(row, column)` reads one."""
 
+    SIZE = 3
     IDENTITY = ClassConstant(1, 0, 0, 0, 1, 0, 0, 0, 1)
     ZERO = ClassConstant()
-    __hash__ = None  # type: ignore[assignment]
 
     def __init__(self, *values: CppArgument) -> None:
-        self._m: Rows = np.zeros((3, 3))
+        self._m = np.zeros((3, 3))
         if len(values) == 9:
             self.set(*values)
         elif len(values) == 1 and callable(getattr(values[0], "w", None)):
@@ -34,11 +77,6 @@ class Matrix3d:
         elif values:
             raise TypeError(f"a 3 x 3 matrix takes nothing, nine numbers, a rotation or a matrix, got {values!r}")
 
-    @classmethod
-    def of(cls, rows: npt.ArrayLike) -> Matrix3d:
-        """From an array of rows."""
-        return cls(*np.asarray(rows, dtype=float).reshape(9).tolist())
-
     def array(self) -> Rows:
         """A copy as NumPy's array, shape (3, 3)."""
         return self._m.copy()
@@ -46,15 +84,12 @@ class Matrix3d:
     def __array__(self, dtype: npt.DTypeLike | None = None, copy: bool | None = None) -> Rows:
         return np.array(self._m, dtype=dtype)
 
-    def __call__(self, row: int, column: int) -> float:
-        return float(self._m[min(row, 2), min(column, 2)])
-
     def set(self, *values: float) -> None:
         """Nine numbers row by row, or (row, column, number)."""
         if len(values) == 9:
             self._m[:] = np.reshape([float(v) for v in values], (3, 3))
         else:
-            self._m[min(int(values[0]), 2), min(int(values[1]), 2)] = values[2]
+            self._m[self._index(int(values[0]), int(values[1]))] = values[2]
 
     def set_axes(self, x: VectorLike, y: VectorLike, z: VectorLike) -> None:
         """One axis for each column."""
@@ -72,17 +107,8 @@ class Matrix3d:
         rotation.set_from_2_axes(first, second)
         self._m[:] = Matrix3d(rotation)._m
 
-    def determinant(self) -> float:
-        return float(np.linalg.det(self._m))
-
-    def inverse(self) -> Matrix3d:
-        return Matrix3d.of(np.linalg.inv(self._m))
-
     def transpose(self) -> None:
         self._m = self._m.T.copy()
-
-    def transposed(self) -> Matrix3d:
-        return Matrix3d.of(self._m.T)
 
     def __add__(self, other: Matrix3d) -> Matrix3d:
         return Matrix3d.of(self._m + other._m)
@@ -101,30 +127,18 @@ class Matrix3d:
         return Matrix3d.of(self._m * other)
 
     def equal(self, other: Matrix3d, tolerance: float) -> bool:
-        return bool((np.abs(self._m - other._m) <= tolerance).all())
-
-    def __eq__(self, other: object) -> bool:
-        return self.equal(other, DEFAULT_TOLERANCE) if isinstance(other, Matrix3d) else NotImplemented
-
-    def __copy__(self) -> Matrix3d:
-        return Matrix3d.of(self._m)
-
-    def __deepcopy__(self, memo: dict[int, object]) -> Matrix3d:
-        return Matrix3d.of(self._m)
-
-    def __repr__(self) -> str:
-        return " ".join(format_number(v) for v in self._m.reshape(9).tolist())
+        return self._is_near(other, tolerance)
 
 
-class Matrix4d:
+class Matrix4d(_SquareMatrix):
     """Four by four numbers, mostly a homogeneous transform: nothing, 16 numbers, a rotation or a pose."""
 
+    SIZE = 4
     IDENTITY = ClassConstant(*np.eye(4).reshape(16).tolist())
     ZERO = ClassConstant()
-    __hash__ = None  # type: ignore[assignment]
 
     def __init__(self, *values: CppArgument) -> None:
-        self._m: Rows = np.zeros((4, 4))
+        self._m = np.zeros((4, 4))
         if len(values) == 16:
             self._m[:] = np.reshape([float(v) for v in values], (4, 4))
         elif len(values) == 1 and isinstance(values[0], Matrix4d):
@@ -135,9 +149,6 @@ class Matrix4d:
             self._m[:3, :3], self._m[3, 3] = Matrix3d(rotation)._m, 1.0
             if rotation is not value:
                 self._m[:3, 3] = components_of(value.pos(), 3)
-
-    def __call__(self, row: int, column: int) -> float:
-        return float(self._m[min(row, 3), min(column, 3)])
 
     def translation(self) -> Vector3d:
         return Vector3d(*self._m[:3, 3].tolist())
@@ -152,29 +163,7 @@ class Matrix4d:
         """The transform as a pose."""
         return Pose3d(self.translation(), self.rotation())
 
-    def determinant(self) -> float:
-        return float(np.linalg.det(self._m))
-
-    def _of(self, rows: npt.NDArray[np.floating]) -> Matrix4d:
-        return Matrix4d(*rows.reshape(16).tolist())
-
-    def inverse(self) -> Matrix4d:
-        return self._of(np.linalg.inv(self._m))
-
-    def transposed(self) -> Matrix4d:
-        return self._of(self._m.T.copy())
-
     def __mul__(self, other: CppArgument) -> Any:
         if isinstance(other, Matrix4d):
-            return self._of(self._m @ other._m)
+            return Matrix4d.of(self._m @ other._m)
         return Vector3d(*(self._m @ np.array([*components_of(other, 3), 1.0]))[:3].tolist())
-
-    def __eq__(self, other: object) -> bool:
-        return (
-            bool((np.abs(self._m - other._m) <= DEFAULT_TOLERANCE).all())
-            if isinstance(other, Matrix4d)
-            else NotImplemented
-        )
-
-    def __repr__(self) -> str:
-        return " ".join(format_number(v) for v in self._m.reshape(16).tolist())

@@ -7,7 +7,7 @@ from collections import deque
 from collections.abc import Callable
 from datetime import timedelta
 
-from simkit.plugins.gz_python.math.class_constant import CppArgument
+from simkit.plugins.gz_python.math.value_base import CppArgument
 
 
 def _getter(attribute: str) -> Callable[[PID], float]:

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
-from simkit.plugins.gz_python.math.class_constant import ClassConstant, CppArgument
 from simkit.plugins.gz_python.math.quaternion import Quaterniond
+from simkit.plugins.gz_python.math.value_base import (
+    ClassConstant,
+    CppArgument,
+    Value,
+    component_getter,
+    component_setter,
+)
 from simkit.plugins.gz_python.math.vectors import Vector3d
 
 
-class Pose3d:
+class Pose3d(Value):
     """A position [m] and a rotation.
 
     `Pose3d()`, `(x, y, z, roll, pitch, yaw)`, `(x, y, z, qw, qx, qy, qz)`, `(position, rotation)` or `(pose)`.
@@ -15,7 +21,6 @@ class Pose3d:
     """
 
     ZERO = ClassConstant()
-    __hash__ = None  # type: ignore[assignment]
 
     def __init__(self, *values: CppArgument) -> None:
         self._p, self._q = Vector3d(), Quaterniond()
@@ -46,23 +51,9 @@ class Pose3d:
     def rot(self) -> Quaterniond:
         return self._q
 
-    def x(self) -> float:
-        return float(self._p.x())
-
-    def y(self) -> float:
-        return float(self._p.y())
-
-    def z(self) -> float:
-        return float(self._p.z())
-
-    def set_x(self, value: float) -> None:
-        self._p.set_x(value)
-
-    def set_y(self, value: float) -> None:
-        self._p.set_y(value)
-
-    def set_z(self, value: float) -> None:
-        self._p.set_z(value)
+    x, set_x = component_getter("_p", 0), component_setter("_p", 0)
+    y, set_y = component_getter("_p", 1), component_setter("_p", 1)
+    z, set_z = component_getter("_p", 2), component_setter("_p", 2)
 
     def roll(self) -> float:
         return self._q.roll()
@@ -154,14 +145,8 @@ class Pose3d:
     def __eq__(self, other: object) -> bool:
         return self._p == other._p and self._q == other._q if isinstance(other, Pose3d) else NotImplemented
 
-    def __copy__(self) -> Pose3d:
-        return Pose3d(self)
-
-    def __deepcopy__(self, memo: dict[int, object]) -> Pose3d:
-        return Pose3d(self)
-
     def __reduce__(self) -> tuple[type[Pose3d], tuple[float, ...]]:
-        return (Pose3d, (*self._p, *self._q._q))
+        return (Pose3d, (*self._p, *self._q._v))
 
     def __repr__(self) -> str:
         return f"{self._p} {self._q}"

@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from typing import Any, Final, Protocol
 
-from simkit.plugins.gz_python.math.class_constant import ClassConstant, CppArgument
 from simkit.plugins.gz_python.math.scalars import DEFAULT_TOLERANCE, round_half_away
+from simkit.plugins.gz_python.math.value_base import (
+    ClassConstant,
+    Components,
+    CppArgument,
+    Operand,
+    component_getter,
+    component_setter,
+)
 from simkit.plugins.gz_python.math.vectors import EQUALITY_TOLERANCE, Vector3d, VectorLike, components_of
 
 _POLE: Final = 1e-15
@@ -20,7 +26,7 @@ class RotationMatrix(Protocol):
     def __call__(self, row: int, column: int) -> float: ...
 
 
-class Quaterniond:
+class Quaterniond(Components):
     """A rotation.
 
     `Quaterniond()`, `(w, x, y, z)`, `(roll, pitch, yaw)`, `(axis, angle)`, `(rpy vector)`, `(rotation matrix)` or
@@ -29,10 +35,9 @@ class Quaterniond:
 
     IDENTITY = ClassConstant()
     ZERO = ClassConstant(0, 0, 0, 0)
-    __hash__ = None  # type: ignore[assignment]
 
     def __init__(self, *values: CppArgument) -> None:
-        self._q: tuple[float, float, float, float] = (1.0, 0.0, 0.0, 0.0)
+        self._v = [1.0, 0.0, 0.0, 0.0]
         if len(values) == 4:
             self.set(*values)
         elif len(values) == 3:
@@ -54,32 +59,13 @@ class Quaterniond:
 
     # ------------------------------------------------------------------ components
 
-    def w(self) -> float:
-        return self._q[0]
-
-    def x(self) -> float:
-        return self._q[1]
-
-    def y(self) -> float:
-        return self._q[2]
-
-    def z(self) -> float:
-        return self._q[3]
-
-    def set_w(self, value: float) -> None:
-        self._q = (float(value), *self._q[1:])
-
-    def set_x(self, value: float) -> None:
-        self._q = (self._q[0], float(value), *self._q[2:])
-
-    def set_y(self, value: float) -> None:
-        self._q = (*self._q[:2], float(value), self._q[3])
-
-    def set_z(self, value: float) -> None:
-        self._q = (*self._q[:3], float(value))
+    w, set_w = component_getter("_v", 0), component_setter("_v", 0)
+    x, set_x = component_getter("_v", 1), component_setter("_v", 1)
+    y, set_y = component_getter("_v", 2), component_setter("_v", 2)
+    z, set_z = component_getter("_v", 3), component_setter("_v", 3)
 
     def set(self, w: float, x: float, y: float, z: float) -> None:
-        self._q = (float(w), float(x), float(y), float(z))
+        self._v = [float(w), float(x), float(y), float(z)]
 
     # ------------------------------------------------------------------ from and to other forms
 
@@ -88,11 +74,11 @@ class Quaterniond:
         x, y, z = components_of(values[0], 3) if len(values) == 2 else values[:3]
         square = x * x + y * y + z * z
         if square <= DEFAULT_TOLERANCE:
-            self._q = (1.0, 0.0, 0.0, 0.0)
+            self._v = [1.0, 0.0, 0.0, 0.0]
             return
         half = 0.5 * values[-1]
         scale = math.sin(half) / math.sqrt(square)
-        self._q = (math.cos(half), x * scale, y * scale, z * scale)
+        self._v = [math.cos(half), x * scale, y * scale, z * scale]
         self.normalize()
 
     def set_from_euler(self, *values: CppArgument) -> None:
@@ -101,12 +87,12 @@ class Quaterniond:
         cr, sr = math.cos(roll / 2), math.sin(roll / 2)
         cp, sp = math.cos(pitch / 2), math.sin(pitch / 2)
         cy, sy = math.cos(yaw / 2), math.sin(yaw / 2)
-        self._q = (
+        self._v = [
             cr * cp * cy + sr * sp * sy,
             sr * cp * cy - cr * sp * sy,
             cr * sp * cy + sr * cp * sy,
             cr * cp * sy - sr * sp * cy,
-        )
+        ]
         self.normalize()
 
     @staticmethod
@@ -118,7 +104,7 @@ class Quaterniond:
 
     def euler(self) -> Vector3d:
         """Roll, pitch, yaw [rad]; at a pitch of ±π/2, where only their sum is known, the yaw is 0."""
-        w, x, y, z = self.normalized()._q
+        w, x, y, z = self.normalized()._v
         ww, xx, yy, zz = w * w, x * x, y * y, z * z
         sine = -2.0 * (x * z - w * y) / (ww + xx + yy + zz)
         pitch = math.asin(max(-1.0, min(1.0, sine)))
@@ -139,7 +125,7 @@ class Quaterniond:
 
     def axis_angle(self) -> tuple[Vector3d, float]:
         """Unit axis and angle [rad]; of no rotation, x and 0."""
-        w, x, y, z = self._q
+        w, x, y, z = self._v
         square = x * x + y * y + z * z
         if square <= DEFAULT_TOLERANCE**2:
             return Vector3d(1, 0, 0), 0.0
@@ -152,7 +138,7 @@ class Quaterniond:
         if trace > 0.0:
             w = math.sqrt(1.0 + trace) / 2
             s = 1.0 / (4 * w)
-            self._q = (w, (m[2][1] - m[1][2]) * s, (m[0][2] - m[2][0]) * s, (m[1][0] - m[0][1]) * s)
+            self._v = [w, (m[2][1] - m[1][2]) * s, (m[0][2] - m[2][0]) * s, (m[1][0] - m[0][1]) * s]
             return
         i = max(range(3), key=lambda k: m[k][k])
         j, k = (i + 1) % 3, (i + 2) % 3
@@ -160,7 +146,7 @@ class Quaterniond:
         s = 1.0 / (4 * largest)
         vector = [0.0, 0.0, 0.0]
         vector[i], vector[j], vector[k] = largest, (m[j][i] + m[i][j]) * s, (m[k][i] + m[i][k]) * s
-        self._q = ((m[k][j] - m[j][k]) * s, *vector)  # type: ignore[assignment]
+        self._v = [(m[k][j] - m[j][k]) * s, *vector]
 
     def set_from_2_axes(self, first: VectorLike, second: VectorLike) -> None:
         """The shortest rotation that turns the first vector's direction into the second's."""
@@ -176,23 +162,23 @@ class Quaterniond:
 
     def inverse(self) -> Quaterniond:
         """The opposite rotation; of a quaternion without length, none."""
-        w, x, y, z = self._q
+        w, x, y, z = self._v
         square = w * w + x * x + y * y + z * z
         if square <= DEFAULT_TOLERANCE**2:
             return Quaterniond()
         return Quaterniond(w / square, -x / square, -y / square, -z / square)
 
     def invert(self) -> None:
-        self._q = self.normalized().inverse()._q
+        self._v = self.normalized().inverse()._v
 
     def normalize(self) -> None:
         """Makes its length 1; without a length it becomes no rotation."""
-        length = math.sqrt(sum(v * v for v in self._q))
+        length = math.sqrt(sum(v * v for v in self._v))
         if length <= DEFAULT_TOLERANCE:
-            self._q = (1.0, 0.0, 0.0, 0.0)
+            self._v = [1.0, 0.0, 0.0, 0.0]
         else:
-            w, x, y, z = self._q
-            self._q = (w / length, x / length, y / length, z / length)
+            w, x, y, z = self._v
+            self._v = [w / length, x / length, y / length, z / length]
 
     def normalized(self) -> Quaterniond:
         found = Quaterniond(self)
@@ -201,7 +187,7 @@ class Quaterniond:
 
     def log(self) -> Quaterniond:
         """Return the logarithm of a unit quaternion: half its rotation vector, w = 0."""
-        w, x, y, z = self._q
+        w, x, y, z = self._v
         scale = 1.0
         if abs(w) < 1.0:
             angle = math.acos(w)
@@ -211,7 +197,7 @@ class Quaterniond:
 
     def exp(self) -> Quaterniond:
         """The inverse of `log`."""
-        _, x, y, z = self._q
+        _, x, y, z = self._v
         angle = math.sqrt(x * x + y * y + z * z)
         sine = math.sin(angle)
         scale = sine / angle if abs(sine) >= _NEARLY_ONE_AXIS else 1.0
@@ -223,13 +209,13 @@ class Quaterniond:
         self.set_from_axis_angle(axis, angle * factor)
 
     def dot(self, other: Quaterniond) -> float:
-        return sum(a * b for a, b in zip(self._q, other._q, strict=True))
+        return sum(a * b for a, b in zip(self._v, other._v, strict=True))
 
     def rotate_vector(self, vector: VectorLike) -> Vector3d:
         """The vector turned by this rotation."""
         x, y, z = components_of(vector, 3)
         product = self * Quaterniond(0.0, x, y, z) * self.inverse()
-        return Vector3d(*product._q[1:])
+        return Vector3d(*product._v[1:])
 
     def rotate_vector_reverse(self, vector: VectorLike) -> Vector3d:
         """The vector turned by the opposite rotation."""
@@ -282,21 +268,18 @@ class Quaterniond:
 
     # ------------------------------------------------------------------ operators
 
-    def __add__(self, other: Quaterniond) -> Quaterniond:
-        return Quaterniond(*(a + b for a, b in zip(self._q, other._q, strict=True)))
-
-    def __sub__(self, other: Quaterniond) -> Quaterniond:
-        return Quaterniond(*(a - b for a, b in zip(self._q, other._q, strict=True)))
+    def _numbers_of(self, other: Operand) -> list[float] | None:
+        return other._v if isinstance(other, Quaterniond) else None
 
     def __neg__(self) -> Quaterniond:
-        return Quaterniond(*(-a for a in self._q))
+        return Quaterniond(*(-a for a in self._v))
 
     def __mul__(self, other: CppArgument) -> Any:
         if isinstance(other, (int, float)):
             return self._times(other)
         if not callable(getattr(other, "w", None)):
             return self.rotate_vector(other)
-        aw, ax, ay, az = self._q
+        aw, ax, ay, az = self._v
         bw, bx, by, bz = other.w(), other.x(), other.y(), other.z()
         return Quaterniond(
             aw * bw - ax * bx - ay * by - az * bz,
@@ -306,35 +289,26 @@ class Quaterniond:
         )
 
     def _times(self, factor: float) -> Quaterniond:
-        return Quaterniond(*(a * factor for a in self._q))
+        return Quaterniond(*(a * factor for a in self._v))
 
     def equal(self, other: Quaterniond, tolerance: float = EQUALITY_TOLERANCE) -> bool:
         """Check whether every component is within a tolerance."""
-        return all(abs(a - b) <= tolerance for a, b in zip(self._q, other._q, strict=True))
+        return self._is_near(other._v, tolerance)
 
     def __eq__(self, other: object) -> bool:
         return self.equal(other) if isinstance(other, Quaterniond) else NotImplemented
 
     def is_finite(self) -> bool:
-        return all(map(math.isfinite, self._q))
+        return all(map(math.isfinite, self._v))
 
     def correct(self) -> None:
         """Makes it no rotation where a component is not finite."""
         if not self.is_finite():
-            self._q = (1.0, 0.0, 0.0, 0.0)
+            self._v = [1.0, 0.0, 0.0, 0.0]
 
     def round(self, digits: int) -> None:
         power = 10.0**digits
-        self.set(*(round_half_away(v * power) / power for v in self._q))
-
-    def __copy__(self) -> Quaterniond:
-        return Quaterniond(*self._q)
-
-    def __deepcopy__(self, memo: dict[int, object]) -> Quaterniond:
-        return Quaterniond(*self._q)
-
-    def __reduce__(self) -> tuple[type[Quaterniond], Sequence[float]]:
-        return (Quaterniond, self._q)
+        self.set(*(round_half_away(v * power) / power for v in self._v))
 
     def __repr__(self) -> str:
         return repr(self.euler())

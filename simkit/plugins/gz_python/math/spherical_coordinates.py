@@ -9,7 +9,7 @@ from typing import Any, ClassVar, Final
 import numpy as np
 
 from simkit.plugins.gz_python.math.angle import Angle
-from simkit.plugins.gz_python.math.class_constant import CppArgument
+from simkit.plugins.gz_python.math.value_base import CppArgument, Value
 from simkit.plugins.gz_python.math.vectors import Vector3d, VectorLike, components_of
 from simkit.scene import SphericalCoordinates as Place
 from simkit.sensors.environment.geodesy import WorldOnPlanet
@@ -41,7 +41,7 @@ _AXES: Final = {  # semi-axes [m]
 _RADIUS: Final = {Surface.EARTH_WGS84: MEAN_EARTH_RADIUS, Surface.MOON_SCS: 1737400.0}
 
 
-class SphericalCoordinates:
+class SphericalCoordinates(Value):
     """The world's origin on a planet; its x axis is turned from east by the heading, counter-clockwise.
 
     `()`, `(coordinates)`, `(surface)`, `(surface, equatorial, polar)` [m] or
@@ -52,7 +52,6 @@ class SphericalCoordinates:
     CoordinateType: ClassVar = Coordinates
     EARTH_WGS84, MOON_SCS, CUSTOM_SURFACE = Surface
     SPHERICAL, ECEF, GLOBAL, LOCAL = Coordinates
-    __hash__ = None  # type: ignore[assignment]
 
     def __init__(self, *values: CppArgument) -> None:
         self._surface = Surface.EARTH_WGS84
@@ -216,12 +215,6 @@ class SphericalCoordinates:
 
     def __eq__(self, other: object) -> bool:
         return vars(self) == vars(other) if isinstance(other, SphericalCoordinates) else NotImplemented
-
-    def __copy__(self) -> SphericalCoordinates:
-        return SphericalCoordinates(self)
-
-    def __deepcopy__(self, memo: dict[int, object]) -> SphericalCoordinates:
-        return SphericalCoordinates(self)
 
 
 def _along_sphere(radius: float, lat_a: Angle, lon_a: Angle, lat_b: Angle, lon_b: Angle) -> float:

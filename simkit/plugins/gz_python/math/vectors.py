@@ -4,26 +4,18 @@ from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Callable, Iterator, Sequence
-from typing import ClassVar, Final, Protocol, TypeAlias, TypeVar
+from collections.abc import Iterator, Sequence
+from typing import ClassVar, Final, TypeAlias, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
-from simkit.plugins.gz_python.math.class_constant import ClassConstant, CppArgument
-from simkit.plugins.gz_python.math.scalars import DEFAULT_TOLERANCE, format_number, round_half_away
+from simkit.plugins.gz_python.math.scalars import DEFAULT_TOLERANCE, round_half_away
+from simkit.plugins.gz_python.math.value_base import ClassConstant, Components, CppArgument, HasComponents, Operand
 
 V = TypeVar("V", bound="Vector")
 EQUALITY_TOLERANCE: Final = 1e-3
 """How far components may be apart of vectors, quaternions and angles that `==` calls equal."""
-
-
-class HasComponents(Protocol):
-    """A vector of another library of gz-math's kind."""
-
-    def x(self) -> float: ...
-
-    def y(self) -> float: ...
 
 
 VectorLike: TypeAlias = "Vector | HasComponents | Sequence[float] | npt.NDArray[np.float64]"
@@ -47,7 +39,7 @@ def components_of(value: VectorLike, size: int) -> tuple[float, ...]:
     return found
 
 
-class Vector:
+class Vector(Components):
     """Base of vectors of two, three and four numbers.
 
     Attributes:
@@ -57,7 +49,6 @@ class Vector:
 
     SIZE: ClassVar[int]
     NUMBER: ClassVar[type[float] | type[int]] = float
-    __hash__ = None  # type: ignore[assignment]
 
     def __init__(self, *values: CppArgument) -> None:
         if len(values) == 1:
@@ -112,43 +103,32 @@ class Vector:
 
     # ------------------------------------------------------------------ arithmetic, by components
 
-    def _with(self: V, other: VectorLike | float, operation: Callable[[float, float], float]) -> V:
+    def _numbers_of(self, other: Operand) -> Sequence[float] | None:
         if isinstance(other, (int, float)):
-            return type(self)(*(operation(a, other) for a in self._v))
-        if isinstance(other, Vector) or callable(getattr(other, "x", None)):
-            return type(self)(*(operation(a, b) for a, b in zip(self._v, components_of(other, self.SIZE), strict=True)))
-        refused: V = NotImplemented
-        return refused
+            return [other] * self.SIZE
+        is_vector = isinstance(other, Vector) or callable(getattr(other, "x", None))
+        return components_of(other, self.SIZE) if is_vector else None  # type: ignore[arg-type]
 
-    def __add__(self: V, other: VectorLike | float) -> V:
-        return self._with(other, operator.add)
-
-    def __sub__(self: V, other: VectorLike | float) -> V:
-        return self._with(other, operator.sub)
-
-    def __mul__(self: V, other: VectorLike | float) -> V:
+    def __mul__(self: V, other: Operand) -> V:
         return self._with(other, operator.mul)
 
-    def __truediv__(self: V, other: VectorLike | float) -> V:
+    def __truediv__(self: V, other: Operand) -> V:
         return self._with(other, _divide)
 
-    def __iadd__(self: V, other: VectorLike | float) -> V:
+    def __iadd__(self: V, other: Operand) -> V:
         return self._take(self + other)
 
-    def __isub__(self: V, other: VectorLike | float) -> V:
+    def __isub__(self: V, other: Operand) -> V:
         return self._take(self - other)
 
-    def __imul__(self: V, other: VectorLike | float) -> V:
+    def __imul__(self: V, other: Operand) -> V:
         return self._take(self * other)
 
-    def __itruediv__(self: V, other: VectorLike | float) -> V:
+    def __itruediv__(self: V, other: Operand) -> V:
         return self._take(self / other)
 
-    def __rmul__(self: V, other: VectorLike | float) -> V:
-        return self._with(other, operator.mul)
-
-    def __radd__(self: V, other: VectorLike | float) -> V:
-        return self._with(other, operator.add)
+    __rmul__ = __mul__
+    __radd__ = Components.__add__
 
     def __neg__(self: V) -> V:
         return type(self)(*(-a for a in self._v))
@@ -229,24 +209,12 @@ class Vector:
 
     def equal(self, other: VectorLike, tolerance: float = EQUALITY_TOLERANCE) -> bool:
         """Check whether every component is within a tolerance."""
-        return all(abs(a - b) <= tolerance for a, b in zip(self._v, components_of(other, self.SIZE), strict=True))
+        return self._is_near(components_of(other, self.SIZE), tolerance)
 
     def __eq__(self, other: object) -> bool:
         if isinstance(other, Vector):
             return len(other) == self.SIZE and self.equal(other)
         return NotImplemented
-
-    def __copy__(self: V) -> V:
-        return type(self)(*self._v)
-
-    def __deepcopy__(self: V, memo: dict[int, object]) -> V:
-        return type(self)(*self._v)
-
-    def __reduce__(self: V) -> tuple[type[V], tuple[float, ...]]:
-        return (type(self), tuple(self._v))
-
-    def __repr__(self) -> str:
-        return " ".join(format_number(a) for a in self._v)
 
 
 def _divide(a: float, b: float) -> float:

@@ -23,24 +23,9 @@ from simkit.plugins.gz_python.sim.world import World, world_entity, world_pose
 
 K_COMPONENT_TYPE_ID_INVALID: Final = 0
 
-__all__ = [
-    "K_COMPONENT_TYPE_ID_INVALID",
-    "K_NULL_ENTITY",
-    "Actor",
-    "ComponentState",
-    "EntityComponentManager",
-    "EventManager",
-    "Joint",
-    "Light",
-    "Link",
-    "Model",
-    "Sensor",
-    "UpdateInfo",
-    "World",
-    "components",
-    "world_entity",
-    "world_pose",
-]
+__all__ = ["K_COMPONENT_TYPE_ID_INVALID", "K_NULL_ENTITY", "ComponentState", "EntityComponentManager", "EventManager"]
+__all__ += ["Actor", "Joint", "Light", "Link", "Model", "Sensor", "World", "world_entity", "world_pose"]
+__all__ += ["UpdateInfo", "components"]
 
 _INSTEAD: Final = {
     "Gui": "simkit has no user interface",

@@ -8,7 +8,7 @@ import numpy as np
 
 from simkit.plugins.gz_python.math.pose import Pose3d
 from simkit.plugins.gz_python.math.simkit_conversion import gz_pose
-from simkit.plugins.gz_python.math.vectors import HasComponents
+from simkit.plugins.gz_python.math.value_base import HasComponents
 from simkit.plugins.gz_python.msgs import message_class
 from simkit.plugins.gz_python.msgs.message import Message
 from simkit.plugins.gz_python.sdformat import JointAxis, JointType
