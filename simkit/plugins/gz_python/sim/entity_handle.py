@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import ClassVar, NoReturn, TypeVar
+from collections.abc import Callable
+from typing import Any, ClassVar, NoReturn, TypeVar
 
 from simkit.plugins.gz_python.math.missing_names import missing_name_error
 from simkit.plugins.gz_python.sim.entity_table import K_NULL_ENTITY, EntityRecord, Handle
@@ -45,11 +46,19 @@ class EntityHandle:
     def _handle(self, ecm: EntityView) -> Handle:
         return ecm.handle(self._entity, self.KIND)
 
-    def _named(self, ecm: EntityView, kind: str, name: str) -> int:
-        return ecm.sync().named(self._entity, kind, name)
+    def _scene(self, ecm: EntityView) -> Any:
+        """What the file says of it; None where it is not there."""
+        record = self._record(ecm)
+        return record.scene if record is not None else None
 
-    def _below(self, ecm: EntityView, kind: str) -> list[int]:
-        return ecm.sync().below(self._entity, kind)
+    def _parent(self, ecm: EntityView) -> int | None:
+        record = self._record(ecm)
+        return record.parent if record is not None else None
+
+    def _enable(self, ecm: EntityView, what: str, enable: bool) -> None:
+        """Turns a reading on or off, where the entity is there."""
+        if self.valid(ecm):
+            ecm.enable(self._entity, what, enable)
 
     def _reading(self, ecm: EntityView, what: str) -> bool | None:
         return ecm.is_enabled(self._entity, what)
@@ -71,3 +80,23 @@ class EntityHandle:
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self._entity}>"
+
+
+ListChildren = Callable[[EntityHandle, EntityView], list[int]]
+FindChild = Callable[[EntityHandle, EntityView, str], int]
+CountChildren = Callable[[EntityHandle, EntityView], int]
+
+
+def child_methods(kind: str) -> tuple[ListChildren, FindChild, CountChildren]:
+    """Make the methods for an entity's children of a kind: their list, the one of a name (0 for none), their number."""
+
+    def children(self: EntityHandle, ecm: EntityView) -> list[int]:
+        return ecm.sync().below(self._entity, kind)
+
+    def child_by_name(self: EntityHandle, ecm: EntityView, name: str) -> int:
+        return ecm.sync().named(self._entity, kind, name)
+
+    def child_count(self: EntityHandle, ecm: EntityView) -> int:
+        return len(children(self, ecm))
+
+    return children, child_by_name, child_count

@@ -118,5 +118,9 @@ class EntityTable:
         """The child of a kind and name; 0 where there is none."""
         return next((child for child in self.below(entity, kind) if self.records[child].name == name), 0)
 
+    def link(self, scoped: str) -> EntityRecord | None:
+        """The link of a scoped name; None where there is none."""
+        return next((one for one in self if one.kind == "link" and one.scene.scoped == scoped), None)
+
     def __iter__(self) -> Iterator[EntityRecord]:
         return iter([self.records[entity] for entity in sorted(self.records)])

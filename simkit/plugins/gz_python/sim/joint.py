@@ -12,23 +12,18 @@ from simkit.plugins.gz_python.math.value_base import HasComponents
 from simkit.plugins.gz_python.msgs import message_class
 from simkit.plugins.gz_python.msgs.message import Message
 from simkit.plugins.gz_python.sdformat import JointAxis, JointType
-from simkit.plugins.gz_python.sim.entity_handle import EntityHandle
 from simkit.plugins.gz_python.sim.entity_view import EntityView
-from simkit.plugins.gz_python.sim.model import Model
+from simkit.plugins.gz_python.sim.model import PartOfModel
 
 _POSITION, _VELOCITY, _WRENCH = "position", "velocity", "wrench"
 
 
-class Joint(EntityHandle):
+class Joint(PartOfModel):
     """A joint. Position, velocity and wrench are None until they are enabled, and empty until a step has passed."""
 
     KIND = "joint"
 
     # ------------------------------------------------------------------ what it is
-
-    def parent_model(self, ecm: EntityView) -> Model | None:
-        record = self._record(ecm)
-        return Model(record.parent) if record is not None else None
 
     def parent_link_name(self, ecm: EntityView) -> str | None:
         """As seen from its model; `world` where it hangs on the world."""
@@ -47,52 +42,37 @@ class Joint(EntityHandle):
 
     def pose(self, ecm: EntityView) -> Pose3d | None:
         """In its child link's frame."""
-        record = self._record(ecm)
-        if record is None:
+        scene = self._scene(ecm)
+        if scene is None:
             return None
-        scene = record.scene
-        child = next((r for r in ecm.sync() if r.kind == "link" and r.scene.scoped == scene.child_link), None)
+        child = ecm.sync().link(scene.child_link)
         if child is None:
             return gz_pose(scene.pose_world)
         return gz_pose(child.scene.pose_world.inverse() @ scene.pose_world)
 
     def thread_pitch(self, ecm: EntityView) -> float | None:
         """Return the pitch of a screw [m per turn]."""
-        record = self._record(ecm)
-        return float(record.scene.thread_pitch) if record is not None else None
+        scene = self._scene(ecm)
+        return float(scene.thread_pitch) if scene is not None else None
 
     def axis(self, ecm: EntityView) -> list[JointAxis] | None:
-        record = self._record(ecm)
-        return [JointAxis(axis) for axis in record.scene.axes] if record is not None else None
+        scene = self._scene(ecm)
+        return [JointAxis(axis) for axis in scene.axes] if scene is not None else None
 
     def type(self, ecm: EntityView) -> JointType | None:
-        record = self._record(ecm)
-        if record is None:
-            return None
-        return JointType.__members__.get(record.scene.type.upper(), JointType.INVALID)
-
-    def sensor_by_name(self, ecm: EntityView, name: str) -> int:
-        return self._named(ecm, "sensor", name)
-
-    def sensors(self, ecm: EntityView) -> list[int]:
-        return self._below(ecm, "sensor")
-
-    def sensor_count(self, ecm: EntityView) -> int:
-        return len(self.sensors(ecm))
+        scene = self._scene(ecm)
+        return JointType.__members__.get(scene.type.upper(), JointType.INVALID) if scene is not None else None
 
     # ------------------------------------------------------------------ readings
 
     def enable_position_check(self, ecm: EntityView, enable: bool = True) -> None:
-        if self.valid(ecm):
-            ecm.enable(self._entity, _POSITION, enable)
+        self._enable(ecm, _POSITION, enable)
 
     def enable_velocity_check(self, ecm: EntityView, enable: bool = True) -> None:
-        if self.valid(ecm):
-            ecm.enable(self._entity, _VELOCITY, enable)
+        self._enable(ecm, _VELOCITY, enable)
 
     def enable_transmitted_wrench_check(self, ecm: EntityView, enable: bool = True) -> None:
-        if self.valid(ecm):
-            ecm.enable(self._entity, _WRENCH, enable)
+        self._enable(ecm, _WRENCH, enable)
 
     def position(self, ecm: EntityView) -> list[float] | None:
         """[rad or m], one number for each axis."""

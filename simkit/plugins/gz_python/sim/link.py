@@ -4,6 +4,7 @@ bounding boxes.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from itertools import product
 from typing import TYPE_CHECKING, Final
 
@@ -15,9 +16,9 @@ from simkit.plugins.gz_python.math.matrices import Matrix3d
 from simkit.plugins.gz_python.math.pose import Pose3d
 from simkit.plugins.gz_python.math.simkit_conversion import cross_product, gz_pose, gz_vector, three_numbers
 from simkit.plugins.gz_python.math.vectors import Vector3d, VectorLike
-from simkit.plugins.gz_python.sim.entity_handle import EntityHandle
+from simkit.plugins.gz_python.sim.entity_handle import child_methods
 from simkit.plugins.gz_python.sim.entity_view import EntityView
-from simkit.plugins.gz_python.sim.model import Model
+from simkit.plugins.gz_python.sim.model import PartOfModel
 from simkit.pose import Pose, Vector
 
 if TYPE_CHECKING:
@@ -56,16 +57,14 @@ def _box_around(pose: Pose, centre: Vector, half: Vector) -> AxisAlignedBox:
 _VELOCITY, _ACCELERATION, _BOX = "velocity", "acceleration", "box"
 
 
-class Link(EntityHandle):
+class Link(PartOfModel):
     """A link. Velocities and accelerations are None until they are enabled, and 0 until a step has passed since."""
 
     KIND = "link"
+    collisions, collision_by_name, collision_count = child_methods("collision")
+    visuals, visual_by_name, visual_count = child_methods("visual")
 
     # ------------------------------------------------------------------ what it is
-
-    def parent_model(self, ecm: EntityView) -> Model | None:
-        record = self._record(ecm)
-        return Model(record.parent) if record is not None else None
 
     def is_canonical(self, ecm: EntityView) -> bool:
         """Check whether its motion is that of the model it is in."""
@@ -76,35 +75,8 @@ class Link(EntityHandle):
         return bool(model is not None and model.scene.canonical_link == record.scene.scoped)
 
     def wind_mode(self, ecm: EntityView) -> bool:
-        record = self._record(ecm)
-        return bool(record is not None and record.scene.enable_wind)
-
-    def collision_by_name(self, ecm: EntityView, name: str) -> int:
-        return self._named(ecm, "collision", name)
-
-    def visual_by_name(self, ecm: EntityView, name: str) -> int:
-        return self._named(ecm, "visual", name)
-
-    def sensor_by_name(self, ecm: EntityView, name: str) -> int:
-        return self._named(ecm, "sensor", name)
-
-    def collisions(self, ecm: EntityView) -> list[int]:
-        return self._below(ecm, "collision")
-
-    def visuals(self, ecm: EntityView) -> list[int]:
-        return self._below(ecm, "visual")
-
-    def sensors(self, ecm: EntityView) -> list[int]:
-        return self._below(ecm, "sensor")
-
-    def collision_count(self, ecm: EntityView) -> int:
-        return len(self.collisions(ecm))
-
-    def visual_count(self, ecm: EntityView) -> int:
-        return len(self.visuals(ecm))
-
-    def sensor_count(self, ecm: EntityView) -> int:
-        return len(self.sensors(ecm))
+        scene = self._scene(ecm)
+        return bool(scene is not None and scene.enable_wind)
 
     # ------------------------------------------------------------------ where it is and how it moves
 
@@ -133,49 +105,40 @@ class Link(EntityHandle):
         return inertial.moi() if inertial is not None else None
 
     def enable_velocity_checks(self, ecm: EntityView, enable: bool = True) -> None:
-        if self.valid(ecm):
-            ecm.enable(self._entity, _VELOCITY, enable)
+        self._enable(ecm, _VELOCITY, enable)
 
     def enable_acceleration_checks(self, ecm: EntityView, enable: bool = True) -> None:
-        if self.valid(ecm):
-            ecm.enable(self._entity, _ACCELERATION, enable)
+        self._enable(ecm, _ACCELERATION, enable)
 
     def world_linear_velocity(self, ecm: EntityView, offset: VectorLike | None = None) -> Vector3d | None:
         """[m/s] of the origin, or of the point at `offset` [m] in the link frame."""
-        is_read = self._reading(ecm, _VELOCITY)
-        link = self._handle(ecm)
-        if is_read is None or link is None:
-            return None
-        if not is_read:
-            return Vector3d()
-        velocity = link.linear_velocity
-        if offset is not None:
-            velocity = velocity + np.cross(link.angular_velocity, link.pose.rotate(three_numbers(offset)))
-        return gz_vector(velocity)
+
+        def at_offset(link: RuntimeLink) -> Vector:
+            if offset is None:
+                return link.linear_velocity
+            arm = link.pose.rotate(three_numbers(offset))
+            return link.linear_velocity + np.cross(link.angular_velocity, arm)
+
+        return self._motion(ecm, _VELOCITY, at_offset)
 
     def world_angular_velocity(self, ecm: EntityView) -> Vector3d | None:
         """[rad/s]"""
-        is_read = self._reading(ecm, _VELOCITY)
-        link = self._handle(ecm)
-        if is_read is None or link is None:
-            return None
-        return gz_vector(link.angular_velocity) if is_read else Vector3d()
+        return self._motion(ecm, _VELOCITY, lambda link: link.angular_velocity)
 
     def world_linear_acceleration(self, ecm: EntityView) -> Vector3d | None:
         """[m/s²] of the origin; that of a body that falls freely is gravity."""
-        is_read = self._reading(ecm, _ACCELERATION)
-        link = self._handle(ecm)
-        if is_read is None or link is None:
-            return None
-        return gz_vector(link.linear_acceleration) if is_read else Vector3d()
+        return self._motion(ecm, _ACCELERATION, lambda link: link.linear_acceleration)
 
     def world_angular_acceleration(self, ecm: EntityView) -> Vector3d | None:
         """[rad/s²]"""
-        is_read = self._reading(ecm, _ACCELERATION)
-        link = self._handle(ecm)
+        return self._motion(ecm, _ACCELERATION, lambda link: _angular_acceleration(ecm, link))
+
+    def _motion(self, ecm: EntityView, what: str, read: Callable[[RuntimeLink], Vector]) -> Vector3d | None:
+        """A vector of the link's motion; None while its readings are off, 0 until a step has passed since."""
+        is_read, link = self._reading(ecm, what), self._handle(ecm)
         if is_read is None or link is None:
             return None
-        return gz_vector(_angular_acceleration(ecm, link)) if is_read else Vector3d()
+        return gz_vector(read(link)) if is_read else Vector3d()
 
     def world_kinetic_energy(self, ecm: EntityView) -> float | None:
         """[J]; None until velocities are enabled."""
@@ -192,8 +155,7 @@ class Link(EntityHandle):
     # ------------------------------------------------------------------ the box around it
 
     def enable_bounding_box_checks(self, ecm: EntityView, enable: bool = True) -> None:
-        if self.valid(ecm):
-            ecm.enable(self._entity, _BOX, enable)
+        self._enable(ecm, _BOX, enable)
 
     def axis_aligned_box(self, ecm: EntityView) -> AxisAlignedBox | None:
         """Around its collisions, along the link's axes; None until it is enabled, empty without collisions."""

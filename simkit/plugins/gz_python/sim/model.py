@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from simkit.plugins.gz_python.math.simkit_conversion import PoseLike, simkit_pose
-from simkit.plugins.gz_python.sim.entity_handle import EntityHandle
+from simkit.plugins.gz_python.sim.entity_handle import EntityHandle, child_methods
 from simkit.plugins.gz_python.sim.entity_table import K_NULL_ENTITY, WORLD_ENTITY
 from simkit.plugins.gz_python.sim.entity_view import EntityView
 
@@ -12,61 +12,35 @@ class Model(EntityHandle):
     """A model."""
 
     KIND = "model"
+    joints, joint_by_name, joint_count = child_methods("joint")
+    links, link_by_name, link_count = child_methods("link")
+    models, model_by_name = child_methods("model")[:2]
+    """The models directly in it."""
 
     def static(self, ecm: EntityView) -> bool:
-        record = self._record(ecm)
-        return bool(record is not None and record.scene.static)
+        scene = self._scene(ecm)
+        return bool(scene is not None and scene.static)
 
     def self_collide(self, ecm: EntityView) -> bool:
-        record = self._record(ecm)
-        return bool(record is not None and record.scene.self_collide)
+        scene = self._scene(ecm)
+        return bool(scene is not None and scene.self_collide)
 
     def wind_mode(self, ecm: EntityView) -> bool:
         """Check whether the wind pushes it: all of its links."""
-        record = self._record(ecm)
-        links = record.scene.links if record is not None else ()
+        scene = self._scene(ecm)
+        links = scene.links if scene is not None else ()
         return bool(links) and all(link.enable_wind for link in links)
 
     def source_file_path(self, ecm: EntityView) -> str:
         """The file it stands in; empty where it came as a text."""
-        record = self._record(ecm)
-        return (record.scene.where.file or "") if record is not None else ""
-
-    def joint_by_name(self, ecm: EntityView, name: str) -> int:
-        """0 where there is none."""
-        return self._named(ecm, "joint", name)
-
-    def link_by_name(self, ecm: EntityView, name: str) -> int:
-        """0 where there is none."""
-        return self._named(ecm, "link", name)
-
-    def model_by_name(self, ecm: EntityView, name: str) -> int:
-        """A nested model; 0 where there is none."""
-        return self._named(ecm, "model", name)
-
-    def joints(self, ecm: EntityView) -> list[int]:
-        return self._below(ecm, "joint")
-
-    def links(self, ecm: EntityView) -> list[int]:
-        return self._below(ecm, "link")
-
-    def models(self, ecm: EntityView) -> list[int]:
-        """The models directly in it."""
-        return self._below(ecm, "model")
-
-    def joint_count(self, ecm: EntityView) -> int:
-        return len(self.joints(ecm))
-
-    def link_count(self, ecm: EntityView) -> int:
-        return len(self.links(ecm))
+        scene = self._scene(ecm)
+        return (scene.where.file or "") if scene is not None else ""
 
     def canonical_link(self, ecm: EntityView) -> int:
         """The link whose motion is the model's; it may be in a nested model. 0 where there is none."""
-        record = self._record(ecm)
-        if record is None:
-            return K_NULL_ENTITY
-        wanted = record.scene.canonical_link
-        return next((r.entity for r in ecm.sync() if r.kind == "link" and r.scene.scoped == wanted), K_NULL_ENTITY)
+        scene = self._scene(ecm)
+        link = ecm.sync().link(scene.canonical_link) if scene is not None else None
+        return link.entity if link is not None else K_NULL_ENTITY
 
     def set_world_pose_cmd(self, ecm: EntityView, pose: PoseLike) -> None:
         """Puts the model at a pose in the world, before the next step.
@@ -85,3 +59,13 @@ class Model(EntityHandle):
                 sim.engine.reports.warning("SK-PLUGIN-085", message, record.scene.where, f"set the pose of {outer!r}")
             return
         ecm.commands.pose[self._entity] = simkit_pose(pose)
+
+
+class PartOfModel(EntityHandle):
+    """Base of what stands in a model and carries sensors: its links and joints."""
+
+    sensors, sensor_by_name, sensor_count = child_methods("sensor")
+
+    def parent_model(self, ecm: EntityView) -> Model | None:
+        parent = self._parent(ecm)
+        return Model(parent) if parent is not None else None

@@ -23,8 +23,7 @@ class Sensor(EntityHandle):
     KIND = "sensor"
 
     def parent(self, ecm: EntityView) -> int | None:
-        record = self._record(ecm)
-        return record.parent if record is not None else None
+        return self._parent(ecm)
 
     def pose(self, ecm: EntityView) -> Pose3d | None:
         """In the frame of the link or joint that it is on."""
@@ -48,8 +47,8 @@ class Actor(EntityHandle):
 
     def pose(self, ecm: EntityView) -> Pose3d | None:
         """The origin of its trajectory, in the world."""
-        record = self._record(ecm)
-        return gz_pose(record.scene.pose_world) if record is not None else None
+        scene = self._scene(ecm)
+        return gz_pose(scene.pose_world) if scene is not None else None
 
     def trajectory_pose(self, ecm: EntityView) -> Pose3d | None:
         """Return the pose that was set, relative to `pose`; None before."""
@@ -99,8 +98,7 @@ class Light(EntityHandle):
 
     def parent(self, ecm: EntityView) -> int | None:
         """The world or a link."""
-        record = self._record(ecm)
-        return record.parent if record is not None else None
+        return self._parent(ecm)
 
     def pose(self, ecm: EntityView) -> Pose3d | None:
         """In the world, or in the frame of the link that carries it."""
@@ -218,10 +216,8 @@ class Light(EntityHandle):
 
     def _read(self, ecm: EntityView, name: str) -> Any:
         """Return a property as it is now, or as in the file where the light is not simulated."""
-        record, light = self._record(ecm), self._handle(ecm)
-        if record is None:
-            return None
-        return getattr(light.scene if light is not None else record.scene, name)
+        scene, light = self._scene(ecm), self._handle(ecm)
+        return getattr(light.scene if light is not None else scene, name) if scene is not None else None
 
     def _part(self, ecm: EntityView, name: str, index: int) -> float | None:
         values = self._read(ecm, name)

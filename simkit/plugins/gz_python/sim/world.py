@@ -11,7 +11,7 @@ from simkit.plugins.gz_python.math.simkit_conversion import gz_pose, gz_vector
 from simkit.plugins.gz_python.math.spherical_coordinates import SphericalCoordinates, Surface
 from simkit.plugins.gz_python.math.vectors import Vector3d
 from simkit.plugins.gz_python.sdformat import Atmosphere
-from simkit.plugins.gz_python.sim.entity_handle import EntityHandle
+from simkit.plugins.gz_python.sim.entity_handle import EntityHandle, child_methods
 from simkit.plugins.gz_python.sim.entity_table import K_NULL_ENTITY, WORLD_ENTITY
 from simkit.plugins.gz_python.sim.entity_view import EntityView
 from simkit.scene import SphericalCoordinates as Place
@@ -21,6 +21,11 @@ class World(EntityHandle):
     """The world."""
 
     KIND = "world"
+    lights, light_by_name, light_count = child_methods("light")
+    """The lights that are on no link."""
+    actors, actor_by_name, actor_count = child_methods("actor")
+    models, model_by_name, model_count = child_methods("model")
+    """The models that are in no other."""
 
     def gravity(self, ecm: EntityView) -> Vector3d | None:
         """[m/s²]"""
@@ -58,38 +63,6 @@ class World(EntityHandle):
             )
         )
 
-    def light_by_name(self, ecm: EntityView, name: str) -> int:
-        """0 where there is none."""
-        return self._named(ecm, "light", name)
-
-    def actor_by_name(self, ecm: EntityView, name: str) -> int:
-        """0 where there is none."""
-        return self._named(ecm, "actor", name)
-
-    def model_by_name(self, ecm: EntityView, name: str) -> int:
-        """0 where there is none."""
-        return self._named(ecm, "model", name)
-
-    def lights(self, ecm: EntityView) -> list[int]:
-        """The lights that are on no link."""
-        return self._below(ecm, "light")
-
-    def actors(self, ecm: EntityView) -> list[int]:
-        return self._below(ecm, "actor")
-
-    def models(self, ecm: EntityView) -> list[int]:
-        """The models that are in no other."""
-        return self._below(ecm, "model")
-
-    def light_count(self, ecm: EntityView) -> int:
-        return len(self.lights(ecm))
-
-    def actor_count(self, ecm: EntityView) -> int:
-        return len(self.actors(ecm))
-
-    def model_count(self, ecm: EntityView) -> int:
-        return len(self.models(ecm))
-
 
 def _coordinates(place: Place | None) -> SphericalCoordinates | None:
     if place is None:
@@ -122,7 +95,7 @@ def world_pose(entity: int, ecm: EntityView) -> Pose3d:
     if record.kind == "actor":
         return gz_pose(scene.pose_world)
     if record.kind == "joint":
-        child = next((r for r in ecm.sync() if r.kind == "link" and r.scene.scoped == scene.child_link), None)
+        child = ecm.sync().link(scene.child_link)
         if child is None:
             return gz_pose(scene.pose_world)
         return gz_pose(ecm.handle(child.entity, "link").pose @ child.scene.pose_world.inverse() @ scene.pose_world)
