@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
 import mujoco
@@ -32,9 +31,14 @@ _POSITION_REACH: Final = 2.0
 """Times the whole effort that a position servo asks for at most: what damping takes off leaves the whole."""
 
 
-@dataclass(slots=True, eq=False)
 class ControlLoops:
     """The loop of every joint in each mode: that of the file where it has one, else a servo's.
+
+    Args:
+        model: the engine's.
+        ids: of the joints in it.
+        joints: the same, with their limits.
+        pids: the file's loops, by joint and interface.
 
     Attributes:
         gains: kp [N·m/rad or N/m] and kv [N·m·s/rad or N·s/m], shape (joints, modes, 2).
@@ -44,57 +48,46 @@ class ControlLoops:
         calm: the highest kp and kv of a spring that do not ring, shape (joints, 2).
     """
 
-    gains: Vector
-    integral: Vector
-    is_given: Mask
-    bounds: Vector
-    calm: Vector
-
-    @classmethod
-    def choose(
-        cls,
+    def __init__(
+        self,
         model: mujoco.MjModel,
         ids: Indices,
         joints: Sequence[HardwareJoint],
         pids: Mapping[str, Mapping[str, PidGains]],
-    ) -> ControlLoops:
-        """The loops of joints.
-
-        Args:
-            model: the engine's.
-            ids: of the joints in it.
-            joints: the same, with their limits.
-            pids: the file's loops, by joint and interface.
-        """
+    ) -> None:
         count, step = len(joints), float(model.opt.timestep)
         limits = np.array([joint.max_effort for joint in joints], float)
-        bounds = np.repeat(np.stack((-limits, limits), 1)[:, None], 5, 1)
-        made = cls(
-            np.zeros((count, 5, 2)), np.zeros((count, 5, 3)), np.zeros((count, 5), bool), bounds, np.zeros((count, 2))
-        )
+        self.gains, self.integral = np.zeros((count, 5, 2)), np.zeros((count, 5, 3))
+        self.is_given, self.calm = np.zeros((count, 5), bool), np.zeros((count, 2))
+        self.bounds = np.repeat(np.stack((-limits, limits), 1)[:, None], 5, 1)
         if not count:
-            return made
+            return
         least, most = felt_inertias(model, ids)
-        made.calm = np.stack((0.25 * least / step**2, least / step), 1)
+        self.calm = np.stack((0.25 * least / step**2, least / step), 1)
         is_slide = model.jnt_type[ids] == int(mujoco.mjtJoint.mjJNT_SLIDE)
-        made.gains[:, POSITION_MODE] = np.stack(drive_gains(limits, is_slide, least, most, step), 1)
+        self.gains[:, POSITION_MODE] = np.stack(drive_gains(limits, is_slide, least, most, step), 1)
         damping = _VELOCITY_DAMPING * least / step
-        made.gains[:, VELOCITY_MODE] = np.stack((damping / _CATCH_UP_TIME, damping), 1)
+        self.gains[:, VELOCITY_MODE] = np.stack((damping / _CATCH_UP_TIME, damping), 1)
         for k, joint in enumerate(joints):
             for mode, interface in ((POSITION_MODE, POSITION), (VELOCITY_MODE, VELOCITY)):
                 given = pids.get(joint.name, {}).get(interface)
                 if given:
                     wanted = (given.p, given.d) if mode == POSITION_MODE else (0.0, given.p)
-                    made.gains[k, mode] = min(wanted[0], least[k] / step**2), min(wanted[1], least[k] / step)
-                    made.integral[k, mode] = given.i, given.i_min, given.i_max
-                    made.bounds[k, mode] = max(given.u_min, -limits[k]), min(given.u_max, limits[k])
-                    made.is_given[k, mode] = True
-        return made
+                    self.gains[k, mode] = min(wanted[0], least[k] / step**2), min(wanted[1], least[k] / step)
+                    self.integral[k, mode] = given.i, given.i_min, given.i_max
+                    self.bounds[k, mode] = max(given.u_min, -limits[k]), min(given.u_max, limits[k])
+                    self.is_given[k, mode] = True
 
 
-@dataclass(slots=True)
 class ActiveModes:
     """Gains, bounds and losses of the present modes, one value for each joint; made anew when the modes change.
+
+    Args:
+        modes: of the joints.
+        groups: number of the controller that has claimed each joint; 0 for none.
+        loops: of the joints.
+        addresses: of the joints' actuators, positions and velocities in the engine.
+        fastest: top speeds [rad/s or m/s].
 
     Attributes:
         modes: that it is of.
@@ -103,7 +96,7 @@ class ActiveModes:
         servo_stiffness: kp of the servos; 0 for the others.
         lowest, highest: bounds of the effort [N·m or N].
         integral: ki of the file's loops, and the bounds of that part [N·m or N].
-        is_position, is_servo: whether by position; whether by position or velocity.
+        is_position: whether by position.
         is_compensated, compensation: whether gravity and friction are compensated; the same as 1 or 0.
         effort_share: 1 where the command is an effort.
         all_compensated, all_position: whether all joints are compensated, driven by position.
@@ -115,51 +108,14 @@ class ActiveModes:
         period: the time in which references move by `lowest_move` to `highest_move` [s].
     """
 
-    modes: Indices
-    zeros: Vector
-    kp: Vector
-    kv: Vector
-    servo_stiffness: Vector
-    lowest: Vector
-    highest: Vector
-    integral: tuple[Vector, Vector, Vector]
-    is_position: Mask
-    is_servo: Mask
-    is_compensated: Mask
-    compensation: Vector
-    effort_share: Vector
-    all_compensated: bool
-    all_position: bool
-    largest_lag: Vector
-    velocity_joints: list[tuple[int, int, int, int, float, float]]
-    slacks: list[float]
-    catch_up_times: list[float]
-    claimed_groups: Indices
-    groups: list[int]
-    has_effort: bool
-    has_integral: bool
-    period: float = 0.0
-    lowest_move: Vector = field(default_factory=lambda: np.zeros(0))
-    highest_move: Vector = field(default_factory=lambda: np.zeros(0))
-
-    @classmethod
-    def of(
-        cls,
+    def __init__(
+        self,
         modes: Indices,
         groups: Indices,
         loops: ControlLoops,
         addresses: tuple[Indices, Indices, Indices],
         fastest: Vector,
-    ) -> ActiveModes:
-        """Derive gains, bounds and losses from the modes.
-
-        Args:
-            modes: of the joints.
-            groups: number of the controller that has claimed each joint; 0 for none.
-            loops: of the joints.
-            addresses: of the joints' actuators, positions and velocities in the engine.
-            fastest: top speeds [rad/s or m/s].
-        """
+    ) -> None:
         rows = np.arange(len(modes))
         (kp, kv), bounds = loops.gains[rows, modes].T, loops.bounds[rows, modes]
         is_position = modes == POSITION_MODE
@@ -170,28 +126,22 @@ class ActiveModes:
         stiffness = np.maximum(kp[rolls], 1e-12)
         top = np.where(is_servo, fastest, 0.0)[rolls]
         columns = (rolls, *(address[rolls] for address in addresses), stiffness, top)
-        return cls(
-            modes=modes,
-            zeros=np.zeros(len(modes)),
-            kp=kp.copy(),
-            kv=kv.copy(),
-            servo_stiffness=np.where(is_servo, kp, 0.0),
-            lowest=bounds[:, 0].copy(),
-            highest=bounds[:, 1].copy(),
-            integral=(integral[0].copy(), integral[1].copy(), integral[2].copy()),
-            is_position=is_position,
-            is_servo=is_servo,
-            is_compensated=is_compensated,
-            compensation=is_compensated.astype(float),
-            effort_share=((modes == EFFORT_MODE) | (modes == SPRING_MODE)).astype(float),
-            all_compensated=bool(is_compensated.all()),
-            all_position=bool(is_position.all()),
-            largest_lag=np.where(is_position, _POSITION_REACH * bounds[:, 1] / np.maximum(kp, 1e-12), np.inf),
-            velocity_joints=list(zip(*(column.tolist() for column in columns), strict=True)),
-            slacks=(bounds[rolls, 1] / stiffness).tolist(),
-            catch_up_times=(np.maximum(kv[rolls], 1e-12) / stiffness).tolist(),
-            claimed_groups=groups,
-            groups=groups[rolls].tolist(),
-            has_effort=bool((modes >= EFFORT_MODE).any()),
-            has_integral=bool(integral[0].any()),
+        self.modes = modes
+        self.zeros = np.zeros(len(modes))
+        self.kp, self.kv = kp.copy(), kv.copy()
+        self.servo_stiffness = np.where(is_servo, kp, 0.0)
+        self.lowest, self.highest = bounds[:, 0].copy(), bounds[:, 1].copy()
+        self.integral = (integral[0].copy(), integral[1].copy(), integral[2].copy())
+        self.is_position = is_position
+        self.is_compensated, self.compensation = is_compensated, is_compensated.astype(float)
+        self.effort_share = ((modes == EFFORT_MODE) | (modes == SPRING_MODE)).astype(float)
+        self.all_compensated, self.all_position = bool(is_compensated.all()), bool(is_position.all())
+        self.largest_lag = np.where(is_position, _POSITION_REACH * bounds[:, 1] / np.maximum(kp, 1e-12), np.inf)
+        self.velocity_joints: list[tuple[int, int, int, int, float, float]] = list(
+            zip(*(column.tolist() for column in columns), strict=True)
         )
+        self.slacks: list[float] = (bounds[rolls, 1] / stiffness).tolist()
+        self.catch_up_times: list[float] = (np.maximum(kv[rolls], 1e-12) / stiffness).tolist()
+        self.claimed_groups, self.groups = groups, groups[rolls].tolist()
+        self.has_effort, self.has_integral = bool((modes >= EFFORT_MODE).any()), bool(integral[0].any())
+        self.period, self.lowest_move, self.highest_move = 0.0, np.zeros(0), np.zeros(0)

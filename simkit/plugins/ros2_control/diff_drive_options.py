@@ -129,9 +129,14 @@ _SMALLEST_SIZE = 1e-6  # [m]
 _ROS_1_NAMES = ("left_wheel", "right_wheel")
 
 
-@dataclass(frozen=True, slots=True)
 class DriveOptions:
-    """Parameters of a differential drive that are read once.
+    """Parameters of a differential drive but for the multipliers, which may change as it runs.
+
+    Args:
+        params: the controller's.
+        namespace: of its node.
+        measured: gives the separation and the radius that the model has for a left and a right wheel [m], None where it
+            does not show; ROS 1's controller takes those that the file leaves out from there.
 
     Attributes:
         left, right: joints of the wheels.
@@ -150,70 +155,31 @@ class DriveOptions:
         is_ros_1: whether the parameters are in its spelling.
     """
 
-    left: tuple[str, ...]
-    right: tuple[str, ...]
-    separation: float
-    radius: float
-    linear: RateLimits
-    angular: RateLimits
-    timeout_ns: int
-    open_loop: bool
-    position_feedback: bool
-    window: int
-    odom_frame: str
-    base_frame: str
-    pose_covariance: Vector
-    twist_covariance: Vector
-    publish_rate: float
-    publish_tf: bool
-    stamped: bool
-    publish_limited: bool
-    is_ros_1: bool
+    def __init__(
+        self, params: Params, namespace: str, measured: Callable[[str, str], tuple[float | None, float | None]]
+    ) -> None:
+        self.is_ros_1 = any(params.has(name) for name in _ROS_1_NAMES)
+        self.left, self.right = _wheels(params, self.is_ros_1)
+        params.child("allow_multiple_cmd_vel_publishers")  # every publisher is heard, as with true
+        self.separation, self.radius = _wheel_size(params, self, measured)
+        self.stamped = params.boolean("use_stamped_vel", not self.is_ros_1)
+        odom, base = params.text("odom_frame_id", "odom"), params.text("base_frame_id", "base_link")
+        prefix = "" if self.is_ros_1 else _frame_prefix(params, namespace)
+        self.odom_frame, self.base_frame = prefix + odom, prefix + base
+        self.linear = read_rate_limits(params.block("linear").block("x"))
+        self.angular = read_rate_limits(params.block("angular").block("z"))
+        self.timeout_ns = round(params.number("cmd_vel_timeout", 0.5, minimum=0, maximum=1e9) * 1e3) * 1_000_000
+        self.open_loop = params.boolean("open_loop", False)
+        self.position_feedback = params.boolean("position_feedback", True)
+        self.window = params.integer("velocity_rolling_window_size", 10, minimum=1, maximum=100_000)
+        self.pose_covariance = _covariance(params, "pose_covariance_diagonal")
+        self.twist_covariance = _covariance(params, "twist_covariance_diagonal")
+        self.publish_rate = params.number("publish_rate", 50.0, minimum=0)
+        self.publish_tf = params.boolean("enable_odom_tf", True)
+        self.publish_limited = params.boolean("publish_cmd" if self.is_ros_1 else "publish_limited_velocity", False)
 
     def __deepcopy__(self, memo: dict[int, object]) -> DriveOptions:
         return self
-
-
-def read_drive_options(
-    params: Params, namespace: str, measured: Callable[[str, str], tuple[float | None, float | None]]
-) -> DriveOptions:
-    """Reads everything but the multipliers, which may change as it runs.
-
-    Args:
-        params: the controller's.
-        namespace: of its node.
-        measured: gives the separation and the radius that the model has for a left and a right wheel [m], None where it
-            does not show; ROS 1's controller takes those that the file leaves out from there.
-    """
-    is_ros_1 = any(params.has(name) for name in _ROS_1_NAMES)
-    left, right = _wheels(params, is_ros_1)
-    params.child("allow_multiple_cmd_vel_publishers")  # every publisher is heard, as with true
-    separation, radius = _wheel_size(params, is_ros_1, left, right, measured)
-    stamped = params.boolean("use_stamped_vel", not is_ros_1)
-    odom, base = params.text("odom_frame_id", "odom"), params.text("base_frame_id", "base_link")
-    prefix = "" if is_ros_1 else _frame_prefix(params, namespace)
-    linear, angular = (read_rate_limits(params.block(a).block(b)) for a, b in (("linear", "x"), ("angular", "z")))
-    return DriveOptions(
-        left=left,
-        right=right,
-        separation=separation,
-        radius=radius,
-        linear=linear,
-        angular=angular,
-        timeout_ns=round(params.number("cmd_vel_timeout", 0.5, minimum=0, maximum=1e9) * 1e3) * 1_000_000,
-        open_loop=params.boolean("open_loop", False),
-        position_feedback=params.boolean("position_feedback", True),
-        window=params.integer("velocity_rolling_window_size", 10, minimum=1, maximum=100_000),
-        odom_frame=prefix + odom,
-        base_frame=prefix + base,
-        pose_covariance=_covariance(params, "pose_covariance_diagonal"),
-        twist_covariance=_covariance(params, "twist_covariance_diagonal"),
-        publish_rate=params.number("publish_rate", 50.0, minimum=0),
-        publish_tf=params.boolean("enable_odom_tf", True),
-        stamped=stamped,
-        publish_limited=params.boolean("publish_cmd" if is_ros_1 else "publish_limited_velocity", False),
-        is_ros_1=is_ros_1,
-    )
 
 
 def _wheels(params: Params, is_ros_1: bool) -> tuple[tuple[str, ...], tuple[str, ...]]:
@@ -239,18 +205,14 @@ def _wheels(params: Params, is_ros_1: bool) -> tuple[tuple[str, ...], tuple[str,
 
 
 def _wheel_size(
-    params: Params,
-    is_ros_1: bool,
-    left: tuple[str, ...],
-    right: tuple[str, ...],
-    measured: Callable[[str, str], tuple[float | None, float | None]],
+    params: Params, options: DriveOptions, measured: Callable[[str, str], tuple[float | None, float | None]]
 ) -> tuple[float, float]:
     """Separation and radius of the wheels [m]."""
     keys = ("wheel_separation", "wheel_radius")
     missing = [key for key in keys if not params.has(key)]
     shown: tuple[float | None, float | None] = (None, None)
-    if is_ros_1 and missing and left and right:
-        shown = measured(left[0], right[0])
+    if options.is_ros_1 and missing and options.left and options.right:
+        shown = measured(options.left[0], options.right[0])
         for key, value in zip(keys, shown, strict=True):
             if key in missing and value is not None:
                 message = f"{params.name}: {key} is not given, the model's is taken: {value:g} m"

@@ -81,8 +81,8 @@ class Hardware:
         commands: list[str] = []
         for one in (joint for component in components for joint in component.joints):
             found.joints[one.name] = _hardware_joint(one, scenes[one.name])
-            states += [f"{one.name}/{s.name}" for s in one.states]
-            commands += [f"{one.name}/{c.name}" for c in one.commands]
+            states += [f"{one.name}/{interface}" for interface in one.states]
+            commands += [f"{one.name}/{interface}" for interface in one.commands]
         for sensor in (sensor for component in components for sensor in component.sensors):
             states += [f"{sensor.name}/{name}" for name in sensor.interfaces]
             there = find_sensor(sensor, scene, diagnostics)
@@ -270,15 +270,14 @@ def _hardware_joint(described: JointDescription, joint: SceneJoint) -> HardwareJ
     return HardwareJoint(
         described.name,
         None,
-        tuple(dict.fromkeys(c.name for c in described.commands)),
-        tuple(dict.fromkeys(s.name for s in described.states)),
+        tuple(dict.fromkeys(described.commands)),
         lower=axis.lower,
         upper=axis.upper,
         max_velocity=axis.velocity,  # <param name="max"> of an interface bounds nothing in Gazebo
         max_effort=axis.effort,
         scoped=joint.scoped,
         is_continuous=joint.type in ("revolute", "continuous") and has_no_ends,
-        initial=next((s.initial for s in described.states if s.name == POSITION), math.nan),
+        initial=described.initial,
         leader=described.leader or (axis.mimic.joint if axis.mimic else ""),
         multiplier=axis.mimic.multiplier if axis.mimic else described.multiplier,
         offset=axis.mimic.offset if axis.mimic else described.offset,

@@ -61,11 +61,6 @@ def parse_number(
     return default
 
 
-def parse_bound(text: str, default: float, element: Params, found: Diagnostics) -> float:
-    """A bound of an interface, which may be infinite; empty where there is none."""
-    return default if text.strip().lower() in ("", "inf", "-inf") else parse_number(text, default, element, found)
-
-
 def parse_initial_position(text: str, joint: SceneJoint, element: Params, found: Diagnostics) -> float:
     """A first position [rad or m], within the joint's limits; NaN where there is none."""
     value = parse_number(text, math.nan, element, found) if text else math.nan
@@ -95,39 +90,25 @@ _SIMULATION_PLUGINS: Final = ("GazeboSystem", "GazeboSimSystem", "IgnitionSystem
 
 
 @dataclass(frozen=True, slots=True)
-class InterfaceDescription:
-    """A command or state interface.
-
-    Attributes:
-        name: such as position.
-        minimum, maximum: what a command is kept within; infinite where nothing is said.
-        initial: first value; NaN where nothing is said.
-    """
-
-    name: str
-    minimum: float = -math.inf
-    maximum: float = math.inf
-    initial: float = math.nan
-
-
-@dataclass(frozen=True, slots=True)
 class JointDescription:
     """A joint of the hardware.
 
     Attributes:
-        commands, states: its interfaces, in the order of the file.
+        commands, states: names of its interfaces, in the order of the file.
         pids: its own loops by interface (position, velocity).
         leader, multiplier, offset: what it mimics by the hardware's own words; empty for nothing.
+        initial: first position [rad or m]; NaN where nothing is said.
     """
 
     name: str
-    commands: tuple[InterfaceDescription, ...]
-    states: tuple[InterfaceDescription, ...]
+    commands: tuple[str, ...]
+    states: tuple[str, ...]
     where: Where = NOWHERE
     pids: dict[str, PidGains] = field(default_factory=dict)
     leader: str = ""
     multiplier: float = 1.0
     offset: float = 0.0
+    initial: float = math.nan
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,8 +163,7 @@ def describe_hardware(scene: SceneModel, params: Params) -> list[ComponentDescri
         f"be commanded by position, velocity or effort"
     )
     found.note("SK-CONTROL-005", message, params.where)
-    every = tuple(InterfaceDescription(name) for name in MOTION_INTERFACES)
-    joints = tuple(JointDescription(name, every, every) for name in names)
+    joints = tuple(JointDescription(name, MOTION_INTERFACES, MOTION_INTERFACES) for name in names)
     return [ComponentDescription(scene.name, "system", "simkit", joints)]
 
 
@@ -223,20 +203,16 @@ def _joint(scene: SceneModel, element: Params, found: Diagnostics) -> JointDescr
         found.warning("SK-CONTROL-008", f"{message}; it is left out", element.where)
         return None
     words = _param_texts(element)
-    commands = [_interface(one, joints[name], found) for one in element.all("command_interface")]
-    states = [_interface(one, joints[name], found) for one in element.all("state_interface")]
+    commands, states = element.all("command_interface"), element.all("state_interface")
+    initial = _initial_position([*commands, *states], joints[name], found)
     pids = {}
-    for command in commands:
-        plain = command.name.removesuffix("_pid")
+    for command in (one.attribute("name") for one in commands):
+        plain = command.removesuffix("_pid")
         short = {"position": "pos", "velocity": "vel"}.get(plain, "")
-        if short and (command.name != plain or f"{short}_kp" in words):
+        if short and (command != plain or f"{short}_kp" in words):
             pids[plain] = _gains_of_joint(words, short, element, found)
-    known = [command for command in commands if command.name.removesuffix("_pid") in MOTION_INTERFACES]
-    _report_unknown_interfaces(name, "command", [c.name for c in commands if c not in known], element, found)
-    _report_unknown_interfaces(
-        name, "state", [one.name for one in states if one.name not in MOTION_INTERFACES], element, found
-    )
-    states = [one for one in states if one.name in MOTION_INTERFACES]
+    known_commands = _known_interfaces(name, "command", commands, element, found)
+    known_states = _known_interfaces(name, "state", states, element, found)
     leader = words.get("mimic", "")
     if leader and leader not in joints:
         message = f"joint {name!r} mimics {leader!r}, which model {scene.scoped!r} does not have"
@@ -244,26 +220,31 @@ def _joint(scene: SceneModel, element: Params, found: Diagnostics) -> JointDescr
         leader = ""
     return JointDescription(
         name,
-        tuple(InterfaceDescription(c.name.removesuffix("_pid"), c.minimum, c.maximum, c.initial) for c in known),
-        tuple(states),
+        tuple(one.removesuffix("_pid") for one in known_commands),
+        known_states,
         element.where,
         pids,
         leader,
         parse_number(words.get("multiplier", "1"), 1.0, element, found),
         parse_number(words.get("offset", "0"), 0.0, element, found),
+        initial,
     )
 
 
-def _report_unknown_interfaces(
-    joint: str, what: str, names: Iterable[str], element: Params, found: Diagnostics
-) -> None:
-    """Tells of interfaces that no joint has here."""
-    for name in names:
-        message = (
-            f"joint {joint!r}: there is no {what} interface {name!r} here, there are {', '.join(MOTION_INTERFACES)}"
-        )
+def _known_interfaces(
+    joint: str, what: str, interfaces: Iterable[Params], element: Params, found: Diagnostics
+) -> tuple[str, ...]:
+    """Names of the interfaces that a joint has here; tells of the others."""
+    known = []
+    for name in (one.attribute("name") for one in interfaces):
+        if name in MOTION_INTERFACES or (what == "command" and name.removesuffix("_pid") in MOTION_INTERFACES):
+            known.append(name)
+            continue
+        message = f"joint {joint!r}: there is no {what} interface {name!r} here, there are "
+        message += ", ".join(MOTION_INTERFACES)
         near = did_you_mean(name, MOTION_INTERFACES)
         found.warning("SK-CONTROL-009", f"{message}; it is left out", element.where, near)
+    return tuple(known)
 
 
 def _param_texts(element: Params) -> dict[str, str]:
@@ -271,17 +252,18 @@ def _param_texts(element: Params) -> dict[str, str]:
     return {one.attribute("name"): one.value for one in element.all("param")}
 
 
-def _interface(element: Params, joint: SceneJoint, found: Diagnostics) -> InterfaceDescription:
-    words = _param_texts(element)
-    first = words.get("initial_value", element.attribute("initial_value"))
-    name = element.attribute("name")
-    is_place = name == POSITION and element.name == "state_interface"  # the others' first values count for nothing
-    return InterfaceDescription(
-        name,
-        parse_bound(words.get("min", ""), -math.inf, element, found),
-        parse_bound(words.get("max", ""), math.inf, element, found),
-        parse_initial_position(first, joint, element, found) if is_place else math.nan,
-    )
+def _initial_position(interfaces: Iterable[Params], joint: SceneJoint, found: Diagnostics) -> float:
+    """Return the first position that interfaces say, NaN for none; checks their bounds, which bound nothing here."""
+    initial = []
+    for one in interfaces:
+        words = _param_texts(one)
+        for bound in (words.get("min", ""), words.get("max", "")):
+            if bound.strip().lower() not in ("", "inf", "-inf"):
+                parse_number(bound, 0.0, one, found)
+        if one.name == "state_interface" and one.attribute("name") == POSITION:  # the others' count for nothing
+            first = words.get("initial_value", one.attribute("initial_value"))
+            initial.append(parse_initial_position(first, joint, one, found))
+    return initial[0] if initial else math.nan
 
 
 def _gains_of_joint(words: dict[str, str], short: str, element: Params, found: Diagnostics) -> PidGains:
@@ -355,13 +337,11 @@ def _component_of_transmissions(scene: SceneModel, found: Diagnostics) -> Compon
         scene.name,
         "system",
         "gazebo_ros_control/DefaultRobotHWSim",
-        tuple(_joint_with_all_states(name, names, places[name]) for name, names in wanted.items()),
+        tuple(
+            JointDescription(name, tuple(dict.fromkeys(names)), MOTION_INTERFACES, places[name])
+            for name, names in wanted.items()
+        ),
     )
-
-
-def _joint_with_all_states(name: str, commands: Iterable[str], where: Where) -> JointDescription:
-    written = tuple(InterfaceDescription(one) for one in dict.fromkeys(commands))
-    return JointDescription(name, written, tuple(InterfaceDescription(one) for one in MOTION_INTERFACES), where)
 
 
 def _interfaces_of_ros_1(written: Sequence[str], owner: str, where: Where, found: Diagnostics) -> list[str]:

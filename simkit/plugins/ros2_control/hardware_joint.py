@@ -19,7 +19,7 @@ class HardwareJoint:
     Attributes:
         name: plain name.
         joint: the simulation's handle; None before the load.
-        command_interfaces, state_interfaces: position, velocity, effort.
+        command_interfaces: position, velocity, effort.
         lower, upper: position limits [rad or m]; infinite where there are none.
         max_velocity: [rad/s or m/s]; infinite where there is none.
         max_effort: [N·m or N]; infinite where there is none.
@@ -33,7 +33,6 @@ class HardwareJoint:
     name: str
     joint: Joint | None
     command_interfaces: tuple[str, ...]
-    state_interfaces: tuple[str, ...]
     lower: float = -float("inf")
     upper: float = float("inf")
     max_velocity: float = float("inf")

@@ -16,12 +16,12 @@ both.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from simkit.plugins.ros2_control.actuator_modes import FREE, POSITION_MODE, SPRING_MODE, ActiveModes, ControlLoops, Mask
+from simkit.plugins.ros2_control.actuator_modes import FREE, POSITION_MODE, SPRING_MODE, ActiveModes, ControlLoops
 from simkit.plugins.ros2_control.gravity_efforts import GravityEfforts
 from simkit.plugins.ros2_control.hardware_interfaces import POSITION, VELOCITY, Indices
 from simkit.plugins.ros2_control.velocity_references import advance_references
@@ -39,11 +39,6 @@ if TYPE_CHECKING:
 _LARGEST_CONTROL: Final = 9e9  # controls of 1e10 or more are none for the engine
 
 
-def _no_indices() -> Indices:
-    return np.zeros(0, np.intp)
-
-
-@dataclass(slots=True)
 class JointActuators:
     """The actuators of all joints that can be commanded.
 
@@ -57,29 +52,18 @@ class JointActuators:
         groups: number of the controller that has claimed each joint; 0 for none.
     """
 
-    joints: tuple[HardwareJoint, ...] = ()
-    actuators: tuple[ActuatorRef, ...] = ()
-    pids: Mapping[str, Mapping[str, PidGains]] = field(default_factory=dict)
-    modes: Indices = field(default_factory=_no_indices)
-    targets: Vector = field(default_factory=lambda: np.zeros(0))
-    integrals: Vector = field(default_factory=lambda: np.zeros(0))
-    groups: Indices = field(default_factory=_no_indices)
-    _sim: Simulation = field(init=False, repr=False)
-    _is_loaded: bool = False
-    _model: mujoco.MjModel | None = None
-    _ids: Indices = field(default_factory=_no_indices)
-    _states: Indices = field(default_factory=_no_indices)  # addresses of the actuators' states
-    _qpos: Indices = field(default_factory=_no_indices)
-    _dofs: Indices = field(default_factory=_no_indices)
-    _loops: ControlLoops = field(init=False, repr=False)
-    _leaders: Indices = field(default_factory=_no_indices)
-    _is_leader: Mask = field(default_factory=lambda: np.zeros(0, bool))
-    _mimic_law: Vector = field(default_factory=lambda: np.zeros((2, 0)))  # multiplier and offset (2, joints)
-    _position_limits: Vector = field(default_factory=lambda: np.zeros((2, 0)))  # lower and upper (2, joints)
-    _max_velocities: Vector = field(default_factory=lambda: np.zeros(0))
-    _has_mimics: bool = False
-    _gravity: GravityEfforts = field(init=False, repr=False)
-    _cached: ActiveModes | None = None
+    def __init__(
+        self,
+        joints: Sequence[HardwareJoint] = (),
+        actuators: Sequence[ActuatorRef] = (),
+        pids: Mapping[str, Mapping[str, PidGains]] = MappingProxyType({}),
+    ) -> None:
+        self.joints, self.actuators, self.pids = tuple(joints), tuple(actuators), pids
+        self.modes = self.groups = np.zeros(0, np.intp)
+        self.targets = self.integrals = np.zeros(0)
+        self._is_loaded = False
+        self._model: mujoco.MjModel | None = None
+        self._cached: ActiveModes | None = None
 
     @classmethod
     def prepare(
@@ -100,7 +84,7 @@ class JointActuators:
             )
             for j in joints
         ]
-        return cls(tuple(joints), tuple(actuators), pids)
+        return cls(joints, actuators, pids)
 
     def load(self, sim: Simulation) -> None:
         """Ties them to a simulation; everything with a position interface holds where it is."""
@@ -125,13 +109,14 @@ class JointActuators:
         self._cached = None
         bindings = [sim.engine.names.joint(joint.scoped) for joint in self.joints]
         self._ids = np.array([sim.engine.names.actuator(ref) for ref in self.actuators], np.intp)
+        # addresses of the actuators' states
         self._states = np.array(model.actuator_actadr[self._ids], np.intp)
         self._qpos = np.array([b.qpos[0] for b in bindings], np.intp)
         self._dofs = np.array([b.dofs[0] for b in bindings], np.intp)
         if is_first:
             self._take_limits()
             ids = np.array([b.joint_ids[0] for b in bindings], np.intp)
-            self._loops = ControlLoops.choose(model, ids, self.joints, self.pids)
+            self._loops = ControlLoops(model, ids, self.joints, self.pids)
 
     def _take_limits(self) -> None:
         """Limits and laws of mimics, as arrays."""
@@ -205,7 +190,7 @@ class JointActuators:
         if cached is not None and cached.modes is self.modes and cached.claimed_groups is self.groups:
             return cached
         addresses = self._ids, self._qpos, self._dofs
-        self._cached = ActiveModes.of(self.modes, self.groups, self._loops, addresses, self._max_velocities)
+        self._cached = ActiveModes(self.modes, self.groups, self._loops, addresses, self._max_velocities)
         return self._cached
 
     def _rebind_if_needed(self) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -40,7 +39,6 @@ _ALLOWED_STATES: Final = ({POSITION}, {POSITION, VELOCITY}, {POSITION, VELOCITY,
 _BAD_INTERFACES: Final = "SK-CONTROL-024"
 
 
-@dataclass(slots=True, eq=False)
 class JointGroup:
     """Joints whose positions, velocities and accelerations are arrays (3, n).
 
@@ -55,52 +53,40 @@ class JointGroup:
         compared: shape (3, 1): 1 for what is both commanded and measured.
     """
 
-    joints: tuple[str, ...]
-    commanded_joints: tuple[str, ...]
-    commands: tuple[str, ...]
-    states: tuple[str, ...]
-    places: Indices
-    turning: Vector
-    is_closed_loop: bool
-    compared: Vector
-    span: slice | Indices
-
-    @classmethod
-    def read(
-        cls, params: Params, hardware: Hardware, commands: Sequence[str] = (), states: Sequence[str] = ()
-    ) -> JointGroup:
-        """Read a controller's parameters; problems are recorded there.
+    def __init__(
+        self, params: Params, hardware: Hardware, commands: Sequence[str] = (), states: Sequence[str] = ()
+    ) -> None:
+        """Reads a controller's parameters; problems are recorded there.
 
         Args:
             params: `joints`, `command_joints`, `command_interfaces`, `state_interfaces`, `gains`.
             hardware: what there is.
             commands, states: interfaces where the file names none.
         """
-        joints = tuple(read_names(params, "joints", code=_BAD_INTERFACES))
-        if not joints:
+        self.joints = tuple(read_names(params, "joints", code=_BAD_INTERFACES))
+        if not self.joints:
             params.error(_BAD_INTERFACES, "'joints' parameter is empty.", "joints: [arm_1_joint, arm_2_joint]")
-        commanded, places = _commanded_joints(params, joints)
-        by = _read_interfaces(params, "command_interfaces", commands, _ALLOWED_COMMANDS)
-        measured = _read_interfaces(params, "state_interfaces", states, _ALLOWED_STATES)
-        is_closed = by in ((VELOCITY,), (EFFORT,))
-        if is_closed and VELOCITY not in measured:
+        self.commanded_joints, self.places = _commanded_joints(params, self.joints)
+        self.span = array_index(self.places.tolist())
+        self.commands = by = _read_interfaces(params, "command_interfaces", commands, _ALLOWED_COMMANDS)
+        self.states = measured = _read_interfaces(params, "state_interfaces", states, _ALLOWED_STATES)
+        self.is_closed_loop = by in ((VELOCITY,), (EFFORT,))
+        if self.is_closed_loop and VELOCITY not in measured:
             message = (
                 f"'{by[0]}' command interface can only be used alone if 'velocity' and 'position' state interfaces"
             )
             params.error(_BAD_INTERFACES, f"{message} are present", "state_interfaces: [position, velocity]")
-        found = [hardware.joints.get(name) for name in commanded]
-        ends_not = [f is not None and f.is_continuous for f in found]
-        turning = np.zeros(len(joints), dtype=bool)
-        turning[places] = ends_not
+        found = [hardware.joints.get(name) for name in self.commanded_joints]
+        self.turning: Vector = np.zeros(len(self.joints), dtype=bool)
+        self.turning[self.places] = [f is not None and f.is_continuous for f in found]
         gains = params.block("gains")  # where Humble has it
-        for j, joint in enumerate(joints):
-            block, was = gains.block(joint), bool(turning[j])
+        for j, joint in enumerate(self.joints):
+            block, was = gains.block(joint), bool(self.turning[j])
             was = block.boolean("normalize_error", was) if block.has("normalize_error") else was
-            turning[j] = block.boolean("angle_wraparound", was)
+            self.turning[j] = block.boolean("angle_wraparound", was)
         velocities = VELOCITY in measured and (VELOCITY in by or EFFORT in by)
         accelerations = ACCELERATION in measured and ACCELERATION in by
-        compared = np.array([[1.0], [float(velocities)], [float(accelerations)]])
-        return cls(joints, commanded, by, measured, places, turning, is_closed, compared, array_index(places.tolist()))
+        self.compared: Vector = np.array([[1.0], [float(velocities)], [float(accelerations)]])
 
     def __deepcopy__(self, memo: dict[int, object]) -> JointGroup:
         return self

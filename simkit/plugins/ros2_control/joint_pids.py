@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -14,7 +13,6 @@ _IGNORED_CLAMPS: Final = ("antiwindup", "save_i_term")  # the clamps of the inte
 ANTIWINDUP: Final = ("none", "back_calculation", "conditional_integration")
 
 
-@dataclass(slots=True, eq=False)
 class JointPids:
     """Command = p·e + ∫i·e dt + d·ė, each for its own joint; all arrays have shape (n,).
 
@@ -30,22 +28,8 @@ class JointPids:
         integral: the integral's part now.
     """
 
-    p: Vector
-    i: Vector
-    d: Vector
-    i_low: Vector
-    i_high: Vector
-    low: Vector
-    high: Vector
-    feedforward: Vector
-    tracking: Vector
-    deadband: Vector
-    strategy: tuple[str, ...]
-    integral: Vector
-
-    @classmethod
-    def read(cls, gains: Params, joints: tuple[str, ...]) -> JointPids:
-        """Read `gains: {<joint>: {p: …, i: …, d: …}}`; `i_clamp` bounds both ways."""
+    def __init__(self, gains: Params, joints: tuple[str, ...]) -> None:
+        """Reads `gains: {<joint>: {p: …, i: …, d: …}}`; `i_clamp` bounds both ways."""
         blocks = [gains.block(joint) for joint in joints]
         for block in blocks:
             for name in _IGNORED_CLAMPS:
@@ -56,20 +40,18 @@ class JointPids:
 
         clamp = each("i_clamp", np.inf, 0.0, finite=False)
         clamp = np.where(clamp > 0.0, clamp, np.inf)
-        return cls(
-            p=each("p", 0.0),
-            i=each("i", 0.0),
-            d=each("d", 0.0),
-            i_low=np.maximum(each("i_clamp_min", -np.inf, finite=False), -clamp),
-            i_high=np.minimum(each("i_clamp_max", np.inf, finite=False), clamp),
-            low=each("u_clamp_min", -np.inf, finite=False),
-            high=each("u_clamp_max", np.inf, finite=False),
-            feedforward=each("ff_velocity_scale", 0.0),
-            tracking=each("tracking_time_constant", 0.0, 0.0),
-            deadband=each("error_deadband", 0.0, 0.0),
-            strategy=tuple(b.choice("antiwindup_strategy", ANTIWINDUP, "none") for b in blocks),
-            integral=np.zeros(len(joints)),
-        )
+        self.p = each("p", 0.0)
+        self.i = each("i", 0.0)
+        self.d = each("d", 0.0)
+        self.i_low = np.maximum(each("i_clamp_min", -np.inf, finite=False), -clamp)
+        self.i_high = np.minimum(each("i_clamp_max", np.inf, finite=False), clamp)
+        self.low = each("u_clamp_min", -np.inf, finite=False)
+        self.high = each("u_clamp_max", np.inf, finite=False)
+        self.feedforward = each("ff_velocity_scale", 0.0)
+        self.tracking = each("tracking_time_constant", 0.0, 0.0)
+        self.deadband = each("error_deadband", 0.0, 0.0)
+        self.strategy = tuple(b.choice("antiwindup_strategy", ANTIWINDUP, "none") for b in blocks)
+        self.integral = np.zeros(len(joints))
 
     def update(self, error: Vector, rate: Vector, step: float) -> Vector:
         """The commands for errors wanted − measured and their rates, `step` [s] after the last."""

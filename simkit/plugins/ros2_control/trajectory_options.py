@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -42,7 +41,6 @@ class LiveTolerances:
         return Tolerances.of(path, goal, self._stopped.value, self._goal_time.value)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
 class StopRule:
     """Rule by which joints are brought to rest where a trajectory is aborted.
 
@@ -51,20 +49,17 @@ class StopRule:
         duration: within which all of them come to rest [s], as in ROS 1; 0 for at once.
     """
 
-    decelerations: Vector
-    duration: float
-
-    def __deepcopy__(self, memo: dict[int, object]) -> StopRule:
-        return self
-
-    @classmethod
-    def read(cls, params: Params, joints: tuple[str, ...]) -> StopRule:
-        """Read `constraints` and `stop_trajectory_duration`."""
+    def __init__(self, params: Params, joints: tuple[str, ...]) -> None:
+        """Reads `constraints` and `stop_trajectory_duration`."""
         constraints = params.block("constraints")
         slows_down = constraints.boolean("decelerate_on_cancel", False)
         blocks = [constraints.block(joint) for joint in joints]
         wanted = np.array([block.number("max_deceleration_on_cancel", 0.0, minimum=0.0) for block in blocks])
-        return cls(wanted if slows_down else wanted * 0.0, params.number("stop_trajectory_duration", 0.0, minimum=0.0))
+        self.decelerations = wanted if slows_down else wanted * 0.0
+        self.duration = params.number("stop_trajectory_duration", 0.0, minimum=0.0)
+
+    def __deepcopy__(self, memo: dict[int, object]) -> StopRule:
+        return self
 
     def spline(self, state: Vector, *, has_velocity: bool) -> Spline:
         """The way from a state, shape (3, n), to rest.
@@ -101,7 +96,7 @@ def read_pids(controller: Controller, joints: tuple[str, ...], find: Callable[[]
         find: gives the PIDs as they are at the moment of a change (restored ones are another object).
     """
     params = controller.params
-    pids = JointPids.read(params.block("gains"), joints)
+    pids = JointPids(params.block("gains"), joints)
     feed = params.block("velocity_ff")  # where ROS 1 has it
     for k, joint in enumerate(joints):
         pids.feedforward[k] = feed.number(joint, float(pids.feedforward[k]))

@@ -53,7 +53,7 @@ class PerfectJoints(simkit.WorldPlugin):
         joints = {}
         for name in self.start:
             low, high = self.limits.get(name, (-np.inf, np.inf))
-            joints[name] = HardwareJoint(name, None, KINDS, KINDS, low, high, is_continuous=name in self.continuous)
+            joints[name] = HardwareJoint(name, None, KINDS, low, high, is_continuous=name in self.continuous)
         names = [f"{joint}/{kind}" for joint in joints for kind in KINDS]
         self.hardware = Hardware(joints=joints, states=InterfaceTable(names), commands=InterfaceTable(names))
         self.hardware.states.values[:] = 0.0

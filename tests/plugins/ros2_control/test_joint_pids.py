@@ -13,7 +13,7 @@ from simkit.plugins.ros2_control.joint_pids import JointPids
 
 
 def pid(**gains: Any) -> JointPids:
-    return JointPids.read(Params.from_dict({"a": gains}, "gains", Diagnostics()), ("a",))
+    return JointPids(Params.from_dict({"a": gains}, "gains", Diagnostics()), ("a",))
 
 
 def run(pids: JointPids, errors: list[float], step: float = 0.1) -> list[float]:

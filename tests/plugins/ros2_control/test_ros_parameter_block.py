@@ -8,7 +8,7 @@ import pytest
 
 from simkit.diagnostics import Diagnostics
 from simkit.params import Params
-from simkit.plugins.ros2_control.diff_drive_options import read_drive_options
+from simkit.plugins.ros2_control.diff_drive_options import DriveOptions
 from simkit.plugins.ros2_control.trajectory_options import read_timeout
 from simkit.plugins.ros_parameter_files import ParameterFiles, read_parameter_file
 
@@ -95,5 +95,5 @@ def test_a_value_that_has_no_effect_is_told_of_where_it_stands(tmp_path: Path) -
     assert read_timeout(params, 0.5) == 0.0
     wheels = "left_wheel_names: [l]\nright_wheel_names: [r]\nwheel_separation: 1\nwheel_radius: 0.1\nwheels_per_side: 2"
     params, driven = node(tmp_path, wheels)
-    read_drive_options(params, "", lambda _left, _right: (None, None))
+    DriveOptions(params, "", lambda _left, _right: (None, None))
     assert [(d.code, d.line) for d in (*found, *driven)] == [("SK-CONTROL-023", 3), ("SK-CONTROL-043", 7)]

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
+from pathlib import Path
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 import numpy as np
@@ -17,48 +18,6 @@ from simkit.plugins.gz_python.msgs.message import MESSAGE_CLASSES, PLAIN_DEFAULT
 if TYPE_CHECKING:
     from simkit.msgs import Header, Image, JointState, LaserScan, Odometry, Quaternion, TFMessage
     from simkit.runtime import Simulation
-
-_FIELDS: Final = """
-Boolean std_msgs/msg/Bool data
-Double std_msgs/msg/Float64 data
-Float std_msgs/msg/Float32 data
-Int32 std_msgs/msg/Int32 data
-UInt32 std_msgs/msg/UInt32 data
-Int64 std_msgs/msg/Int64 data
-StringMsg std_msgs/msg/String data
-Empty std_msgs/msg/Empty
-Float_V ros_gz_interfaces/msg/Float32Array data
-Double_V std_msgs/msg/Float64MultiArray data
-Int32_V std_msgs/msg/Int32MultiArray data
-Time builtin_interfaces/msg/Time sec nsec=nanosec
-Clock rosgraph_msgs/msg/Clock sim=clock
-Color std_msgs/msg/ColorRGBA r g b a
-Vector2d geometry_msgs/msg/Vector3 x y
-Vector3d geometry_msgs/msg/Vector3 x y z
-Vector3d geometry_msgs/msg/Point x y z
-Pose geometry_msgs/msg/PoseStamped header .=pose
-Pose geometry_msgs/msg/Pose position orientation
-Twist geometry_msgs/msg/Twist linear angular
-Twist geometry_msgs/msg/TwistStamped header .=twist
-Wrench geometry_msgs/msg/Wrench force torque
-Wrench geometry_msgs/msg/WrenchStamped header .=wrench
-Odometry nav_msgs/msg/Odometry header pose=pose.pose twist=twist.twist
-IMU sensor_msgs/msg/Imu header entity_name<header.frame_id orientation angular_velocity linear_acceleration
-LaserScan sensor_msgs/msg/LaserScan header frame<header.frame_id angle_min angle_max angle_step=angle_increment range_min range_max ranges intensities
-NavSat sensor_msgs/msg/NavSatFix header frame_id<header.frame_id latitude_deg=latitude longitude_deg=longitude altitude
-Magnetometer sensor_msgs/msg/MagneticField header field_tesla=magnetic_field
-FluidPressure sensor_msgs/msg/FluidPressure header pressure=fluid_pressure variance
-Altimeter ros_gz_interfaces/msg/Altimeter header vertical_position vertical_velocity vertical_reference
-BatteryState sensor_msgs/msg/BatteryState header voltage current charge capacity percentage power_supply_status
-Actuators actuator_msgs/msg/Actuators header position velocity normalized
-Entity ros_gz_interfaces/msg/Entity id name type
-EntityWrench ros_gz_interfaces/msg/EntityWrench header entity wrench
-JointWrench ros_gz_interfaces/msg/JointWrench header body_1_name=body_1_name.data body_1_id=body_1_id.data body_2_name=body_2_name.data body_2_id=body_2_id.data body_1_wrench body_2_wrench
-Contact ros_gz_interfaces/msg/Contact collision1 collision2 position=positions normal=normals depth=depths wrench=wrenches
-Contacts ros_gz_interfaces/msg/Contacts header contact=contacts
-"""  # noqa: E501
-"""Message, ROS type, fields: `gz`, `gz=ros` under another name, `gz<ros` only read, `.` the whole message."""
-
 
 RosFields: TypeAlias = dict[str, FieldValue]
 """Fields of a ROS message, for `simkit.msgs.make`."""
@@ -243,9 +202,10 @@ def _image_from(gz: Message, ros: Image) -> None:
 @cache
 def _twins_by_fields() -> dict[str, tuple[RosTwin, ...]]:
     found: dict[str, tuple[RosTwin, ...]] = {}
-    for line in _FIELDS.strip().splitlines():
-        name, ros, *fields = line.split()
-        found[name] = (*found.get(name, ()), _twin_by_fields(name, ros, fields))
+    for line in Path(__file__).with_name("ros_types.txt").read_text(encoding="utf-8").splitlines():
+        if not line.startswith("#"):
+            name, ros, *fields = line.split()
+            found[name] = (*found.get(name, ()), _twin_by_fields(name, ros, fields))
     return found
 
 

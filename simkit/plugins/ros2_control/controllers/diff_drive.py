@@ -23,7 +23,7 @@ from simkit.plugins.drives.odometry import (
 )
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.ros2_control.controller import Controller
-from simkit.plugins.ros2_control.diff_drive_options import DriveOptions, read_drive_options
+from simkit.plugins.ros2_control.diff_drive_options import DriveOptions
 from simkit.pose import Pose, Vector
 from simkit.scene import Cylinder, Sphere
 
@@ -101,7 +101,7 @@ class DiffDriveController(Controller):
 
     def configure(self) -> None:
         before = self.params.diagnostics.error_count
-        options = read_drive_options(self.params, self.plugin.ros.namespace, self._wheel_size_of_model)
+        options = DriveOptions(self.params, self.plugin.ros.namespace, self._wheel_size_of_model)
         self._options = options
         self._period_ns = max(round(_NS / options.publish_rate), 1) if options.publish_rate > 0 else 0
         self._multipliers = self._read_multipliers(options.is_ros_1)

@@ -51,7 +51,7 @@ class GripperActionController(Controller):
         self._warnings = OneTimeWarnings(self)
         self._pids: JointPids | None = None
         if self.interface == "effort":
-            self._pids = JointPids.read(params.block("gains"), (self._joint,))
+            self._pids = JointPids(params.block("gains"), (self._joint,))
             if not (self._pids.p.any() or self._pids.i.any()):
                 message = f"gains of joint {self._joint!r} are all 0: no effort is ever given"
                 hint = f"gains: {{{self._joint}: {{p: 100.0, d: 10.0}}}}"

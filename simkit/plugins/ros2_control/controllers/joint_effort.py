@@ -59,7 +59,7 @@ class _LoopController(Controller):
             if not gains.block(joint).has("p"):
                 message = f"No p gain specified for joint {joint!r}: nothing would move it"
                 self.params.error("SK-PARAM-001", message, "pid: {p: 100.0, i: 0.0, d: 10.0}")
-        self._pids = JointPids.read(gains, joints)
+        self._pids = JointPids(gains, joints)
         self._target = np.full(len(joints), np.nan)
         self._last: Vector | None = None
         self._publisher = None

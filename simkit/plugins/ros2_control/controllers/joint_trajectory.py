@@ -63,7 +63,7 @@ class JointTrajectoryController(Controller):
 
     def configure(self) -> None:
         params = self.params
-        self._group = JointGroup.read(params, self.hardware, self.default_commands, self.default_states)
+        self._group = JointGroup(params, self.hardware, self.default_commands, self.default_states)
         self._warnings = OneTimeWarnings(self)
         self._has_continuous_joints = bool(self._group.turning.any())
         joints = self._group.joints
@@ -84,7 +84,7 @@ class JointTrajectoryController(Controller):
         self._state_ns = round(SECOND / rate) if rate else 0
         self._constraints = LiveTolerances(self, joints)
         self._timeout = read_timeout(params, self._constraints.tolerances().goal_time)
-        self._stop_rule = StopRule.read(params, joints)
+        self._stop_rule = StopRule(params, joints)
         self._pids = self._read_gains()
         self._period_ns = 0
         scaling = params.block("speed_scaling")
