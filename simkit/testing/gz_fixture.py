@@ -10,8 +10,7 @@ from typing import Any, ClassVar, Final
 import simkit
 from simkit.plugins.gz_python import transport
 from simkit.plugins.gz_python.sim.entity_component_manager import EntityComponentManager, manager_of
-from simkit.plugins.gz_python.sim.system_hub import update_paused
-from simkit.plugins.gz_python.sim.update_info import EventManager, UpdateInfo
+from simkit.plugins.gz_python.sim.system_hub import EventManager, UpdateInfo, update_paused
 
 __all__ = ["Server", "ServerConfig", "TestFixture"]
 

@@ -12,10 +12,9 @@ import simkit
 from simkit.diagnostics import Diagnostics
 from simkit.plugins.play_motion.motion import Motion
 from simkit.plugins.play_motion.motion_files import read_motions
-from simkit.plugins.play_motion.motion_planning import Approach, course_from, plan_motion
+from simkit.plugins.play_motion.motion_planning import Approach, active_controllers, course_from, plan_motion
 from simkit.plugins.play_motion.motion_session import empty_world_with, motion_players, play_motions
 from simkit.plugins.play_motion.play_motion_plugin import PlayMotion
-from simkit.plugins.play_motion.trajectory_controllers import active_controllers
 
 FILES = Path(__file__).resolve().parents[2] / "assets" / "tiago" / "motions"
 # points, time of the last one [s], and the last one, as tiago_bringup (humble) has them

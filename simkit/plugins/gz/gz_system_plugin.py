@@ -16,8 +16,7 @@ from simkit.plugins.base import Plugin
 from simkit.plugins.gz_python import import_hook, simulation_context
 from simkit.plugins.gz_python.sdformat import Element
 from simkit.plugins.gz_python.sim.entity_table import WORLD_ENTITY
-from simkit.plugins.gz_python.sim.system_hub import hub_of
-from simkit.plugins.gz_python.sim.update_info import EventManager
+from simkit.plugins.gz_python.sim.system_hub import EventManager, hub_of
 from simkit.plugins.joint_states import JointStatePublisher
 
 if TYPE_CHECKING:

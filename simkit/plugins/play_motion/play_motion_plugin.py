@@ -23,6 +23,7 @@ from simkit.plugins.play_motion.motion_planning import (
     OTHER_ERROR,
     Approach,
     MotionRefused,
+    active_controllers,
     add_leader_joints,
     course_from,
     find_joints,
@@ -31,7 +32,6 @@ from simkit.plugins.play_motion.motion_planning import (
 )
 from simkit.plugins.play_motion.motion_timing import LARGEST_STRETCH
 from simkit.plugins.play_motion.play_motion_services import offer_services
-from simkit.plugins.play_motion.trajectory_controllers import active_controllers
 from simkit.plugins.ros_names import RosNames
 
 if TYPE_CHECKING:

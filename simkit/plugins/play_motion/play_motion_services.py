@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Protocol
 
 from simkit.msgs.message_types import Message
 from simkit.plugins.play_motion.motion import Motion, limit_violations, motion_of_message
-from simkit.plugins.play_motion.motion_planning import MotionRefused, find_joints
-from simkit.plugins.play_motion.trajectory_controllers import active_controllers
+from simkit.plugins.play_motion.motion_planning import MotionRefused, active_controllers, find_joints
 
 if TYPE_CHECKING:
     from simkit.msgs import (

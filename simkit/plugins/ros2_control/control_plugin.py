@@ -17,8 +17,11 @@ from simkit.plugins.ros2_control.hardware import Hardware
 from simkit.plugins.ros2_control.hardware_description import describe_hardware
 from simkit.plugins.ros2_control.hardware_interfaces import POSITION, VELOCITY
 from simkit.plugins.ros2_control.hardware_joint import PidGains, read_pid_gains
-from simkit.plugins.ros2_control.parameter_file_checks import report_high_rates, report_unused_parameters
-from simkit.plugins.ros2_control.parameter_file_namespaces import adapt_to_manager
+from simkit.plugins.ros2_control.manager_parameter_files import (
+    adapt_to_manager,
+    report_high_rates,
+    report_unused_parameters,
+)
 from simkit.plugins.ros2_control.transmissions import transmissions_of
 from simkit.plugins.ros_names import RosNames
 from simkit.plugins.ros_parameter_block import ParameterBlock

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from simkit.plugins.ros2_control.controllers import joint_trajectory_ros1
+from simkit.plugins.ros2_control.controllers import joint_trajectory_kinds
 from simkit.runtime.communication.action_server import GoalStatus
 from tests.plugins.ros2_control.followers import arm, codes, send
 from tests.plugins.ros2_control.perfect_joints import trajectory
@@ -43,7 +43,7 @@ def test_joints_that_are_only_measured_are_followed_by_the_others() -> None:
 
 def test_the_kinds_of_ros_1_need_no_interfaces_and_have_their_topic() -> None:
     values = {"joints": ["a", "b"], "constraints": {}, "command_interfaces": [], "state_interfaces": []}
-    sim, plugin = arm(values, cls=joint_trajectory_ros1.PositionJointTrajectoryController)
+    sim, plugin = arm(values, cls=joint_trajectory_kinds.PositionJointTrajectoryController)
     sim.publish("/arm_controller/command", trajectory(["a", "b"], (1.0, [1.0, 0.0], [0.2, 0.0])))
     sim.run(1.1)
     assert plugin.position("a") == 1.0

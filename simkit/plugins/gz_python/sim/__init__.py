@@ -18,7 +18,7 @@ from simkit.plugins.gz_python.sim.joint import Joint
 from simkit.plugins.gz_python.sim.link import Link
 from simkit.plugins.gz_python.sim.model import Model
 from simkit.plugins.gz_python.sim.sensors_lights_actors import Actor, Light, Sensor
-from simkit.plugins.gz_python.sim.update_info import EventManager, UpdateInfo
+from simkit.plugins.gz_python.sim.system_hub import EventManager, UpdateInfo
 from simkit.plugins.gz_python.sim.world import World, world_entity, world_pose
 
 K_COMPONENT_TYPE_ID_INVALID: Final = 0

@@ -1,4 +1,4 @@
-"""Arms that give way like springs: a trajectory controller over efforts, without the arm's own weight."""
+"""Further kinds of joint trajectory controllers: those of ROS 1, and PAL's, under which arms give way like springs."""
 
 from __future__ import annotations
 
@@ -8,6 +8,37 @@ from simkit.plugins.ros2_control.controllers.joint_trajectory import JointTrajec
 from simkit.plugins.ros2_control.gravity_efforts import GravityEfforts
 from simkit.plugins.ros2_control.hardware_interfaces import EFFORT, POSITION, VELOCITY
 from simkit.plugins.ros2_control.joint_pids import JointPids
+
+
+class PositionJointTrajectoryController(JointTrajectoryController):
+    """ROS 1's controller for joints that are commanded by position."""
+
+    types = ("position_controllers/JointTrajectoryController",)
+    default_commands: ClassVar[tuple[str, ...]] = ("position",)
+    default_states = ("position", "velocity")
+    topics = ("~/command", "~/joint_trajectory")
+    may_end_moving = True
+
+
+class VelocityJointTrajectoryController(PositionJointTrajectoryController):
+    """ROS 1's controller for joints that are commanded by velocity, through PIDs."""
+
+    types = ("velocity_controllers/JointTrajectoryController",)
+    default_commands = ("velocity",)
+
+
+class EffortJointTrajectoryController(PositionJointTrajectoryController):
+    """ROS 1's controller for joints that are commanded by effort, through PIDs."""
+
+    types = ("effort_controllers/JointTrajectoryController",)
+    default_commands = ("effort",)
+
+
+class PositionVelocityJointTrajectoryController(PositionJointTrajectoryController):
+    """ROS 1's controller for joints that are commanded by position and velocity."""
+
+    types = ("pos_vel_controllers/JointTrajectoryController",)
+    default_commands = ("position", "velocity")
 
 
 class ImpedanceController(JointTrajectoryController):
