@@ -25,4 +25,4 @@ def verbosity() -> int:
 
 
 def __getattr__(name: str) -> NoReturn:
-    raise missing_name_error("gz.common", name, __all__, {})
+    raise missing_name_error("gz.common", name, __all__)

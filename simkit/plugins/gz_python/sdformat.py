@@ -179,7 +179,7 @@ class Element:
         return f"<Element {self._params.name!r}>"
 
     def __getattr__(self, name: str) -> NoReturn:
-        raise missing_name_error("Element", name, dir(type(self)), {"get_element": "use find_element, or add_element"})
+        raise missing_name_error("Element", name, dir(type(self)))
 
     # ------------------------------------------------------------------ values by type
 
@@ -335,9 +335,5 @@ class Atmosphere:
         self._pressure = float(value)
 
 
-_DOCUMENT: Final = "Root World Model Link Joint Collision Visual Geometry GeometryType Light Sensor Plugin Material"
-_INSTEAD: Final = dict.fromkeys(_DOCUMENT.split(), "use simkit.describe(file), which tells what a file means")
-
-
 def __getattr__(name: str) -> NoReturn:
-    raise missing_name_error("sdformat", name, globals(), _INSTEAD)
+    raise missing_name_error("sdformat", name, globals())

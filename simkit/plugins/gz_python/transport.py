@@ -28,12 +28,6 @@ __all__ = ["AdvertiseMessageOptions", "AdvertiseServiceOptions", "Node", "Publis
 _NO_SIMULATION: Final = (
     "no simulation is there yet that this Node could belong to; use it in a hook, or after the TestFixture is made"
 )
-_INSTEAD: Final = {
-    "advertise_service": "write a simkit plugin and use self.offer",
-    "service_info": "use service_list, or simkit's own sim.communication.services.names()",
-    "topic_info": "use topic_list, or simkit's own sim.topics()",
-    **dict.fromkeys(("enable_stats", "topic_stats"), "nothing is counted: every message arrives"),
-}
 _SCENE_POSES: Final = ("/pose/info", "/dynamic_pose/info")
 """Topics whose poses have names without those of what they are in: of gz's scene broadcaster."""
 
@@ -249,7 +243,7 @@ class Node:
         return list(self._subscriptions)
 
     def __getattr__(self, name: str) -> NoReturn:
-        raise missing_name_error("Node", name, dir(type(self)), _INSTEAD)
+        raise missing_name_error("Node", name, dir(type(self)))
 
     def __deepcopy__(self, memo: dict[int, object]) -> Node:
         return self
@@ -276,4 +270,4 @@ def _absolute_topic(topic: str) -> str:
 
 
 def __getattr__(name: str) -> NoReturn:
-    raise missing_name_error("gz.transport", name, __all__, {})
+    raise missing_name_error("gz.transport", name, __all__)

@@ -6,7 +6,7 @@ a simulation.
 
 from __future__ import annotations
 
-from typing import Final, NoReturn
+from typing import NoReturn
 
 from simkit.plugins.gz_python.math.angle import Angle
 from simkit.plugins.gz_python.math.axis_aligned_box import AxisAlignedBox
@@ -64,19 +64,6 @@ __all__ += ["clamp", "equal", "fixnan", "greater_or_near_equal", "is_even", "is_
 __all__ += ["less_or_near_equal", "mean", "parse_float", "parse_int", "precision", "round_up_multiple"]
 __all__ += ["round_up_power_of_two", "sgn", "signum", "sort2", "sort3", "variance"]
 
-_INSTEAD: Final = {
-    "Rand": "use random.Random(seed), which two runs with one seed draw the same from",
-    "GaussMarkovProcess": "use random.Random(seed).gauss",
-    "Stopwatch": "use info.sim_time",
-    "DiffDriveOdometry": "use the topic of the DiffDrive plugin",
-    "MecanumDriveOdometry": "use the topic of an OdometryPublisher plugin",
-    "SpeedLimiter": "use the limits of the DiffDrive and VelocityControl plugins",
-    "RotationSpline": "use Quaterniond.squad",
-    "SignalStats": "use mean and variance",
-    "SemanticVersion": "use packaging.version",
-}
-"""What gz-math has, this package has not, and something else does."""
-
 
 def __getattr__(name: str) -> NoReturn:
-    raise missing_name_error("gz.math", name, __all__, _INSTEAD)
+    raise missing_name_error("gz.math", name, __all__)

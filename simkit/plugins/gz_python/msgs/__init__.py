@@ -45,4 +45,4 @@ def contents_of(module: str) -> dict[str, object]:
 def __getattr__(name: str) -> type[Message]:
     if name in MESSAGE_CLASSES:
         return MESSAGE_CLASSES[name]
-    raise missing_name_error("gz.msgs", name, MESSAGE_CLASSES, {})
+    raise missing_name_error("gz.msgs", name, MESSAGE_CLASSES)

@@ -27,16 +27,10 @@ __all__ = ["K_COMPONENT_TYPE_ID_INVALID", "K_NULL_ENTITY", "ComponentState", "En
 __all__ += ["Actor", "Joint", "Light", "Link", "Model", "Sensor", "World", "world_entity", "world_pose"]
 __all__ += ["UpdateInfo", "components"]
 
-_INSTEAD: Final = {
-    "Gui": "simkit has no user interface",
-    "HelperFixture": "use TestFixture, its later name",
-    "get_install_prefix": "there is no Gazebo whose folder it could be",
-}
-
 
 _IN_FIXTURE: Final = ("Server", "ServerConfig", "TestFixture")
 """Names that `gz.sim` has from `simkit.testing.gz_fixture`."""
 
 
 def __getattr__(name: str) -> NoReturn:
-    raise missing_name_error("gz.sim", name, (*__all__, *_IN_FIXTURE), _INSTEAD)
+    raise missing_name_error("gz.sim", name, (*__all__, *_IN_FIXTURE))

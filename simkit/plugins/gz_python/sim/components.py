@@ -179,18 +179,6 @@ _COMMANDS: Final[dict[str, tuple[tuple[str, ...], str, Callable[[Any], Any]]]] =
 }
 """Component -> who takes it, where among the commands it waits, what its data becomes."""
 
-_DESCRIBED: Final = "simkit's own simkit.describe(file)"
-_INSTEAD: Final = {
-    "Geometry": f"use {_DESCRIBED}, or Link.compute_axis_aligned_box for its bounds",
-    "Material": f"use {_DESCRIBED}",
-    "Physics": "use info.dt for the step size",
-    "ExternalWorldWrenchCmd": "use Link.add_world_wrench",
-    "ContactSensorData": "use a subscription to the contact sensor's topic",
-    "DetachableJoint": "use the DetachableJoint plugin",
-    "SlipComplianceCmd": "use the <surface> of the collision",
-    **dict.fromkeys(("Altimeter", "Imu", "Camera", "GpuLidar", "NavSat", "Magnetometer"), "use Sensor and its topic"),
-    **dict.fromkeys(("BatterySoC", "Actuators", "Wind"), "use a topic; register_custom_component keeps data"),
-}
 COMPONENT_NAMES: Final = (*_READERS, *_TAG_READERS, *_COMMANDS)
 """Components of gz-sim that are known here."""
 
@@ -313,6 +301,4 @@ def each_entity(ecm: EntityView, kinds: list[ComponentProxy]) -> Iterator[Compon
 def __getattr__(name: str) -> ComponentProxy:
     if name in COMPONENT_NAMES:
         return ComponentProxy(name)
-    raise missing_name_error(
-        "gz.sim.components", name, COMPONENT_NAMES, _INSTEAD, "register_custom_component makes one to keep data in"
-    )
+    raise missing_name_error("gz.sim.components", name, COMPONENT_NAMES)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING, Any, Final, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from simkit.plugins.gz_python.math.missing_names import missing_name_error
 from simkit.plugins.gz_python.sim import components
@@ -12,21 +12,6 @@ from simkit.plugins.gz_python.sim.entity_view import EntityView
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
-
-_INSTEAD: Final = {
-    "request_remove_entity": "use simkit's own sim.remove(name)",
-    "clone": "use simkit's own sim.spawn(source, name)",
-    "entity_by_components": "use Model.link_by_name, World.model_by_name and their like, or each",
-    "children_by_components": "use Model.links, Link.collisions and their like, or each",
-    "entities_by_components": "use World.models, Model.links and their like, or each",
-    "component_types": "use entity_has_component_type",
-    "state": "use simkit's own sim.snapshot()",
-    "changed_state": "use simkit's own sim.snapshot()",
-    "descendants": "use Model.links, Model.models and their like",
-    "pin_entity": "entities are never taken away by levels",
-    **dict.fromkeys(("each_new", "each_new_data", "each_removed", "each_removed_data"), "use each_data and has_entity"),
-    "component_state": "use component_data: nothing is sent of components, so none is marked as changed",
-}
 
 
 class EntityComponentManager(EntityView):
@@ -109,7 +94,7 @@ class EntityComponentManager(EntityView):
         return [(item.entity, *item.components) for item in self.each(kinds)]
 
     def __getattr__(self, name: str) -> NoReturn:
-        raise missing_name_error("EntityComponentManager", name, dir(type(self)), _INSTEAD)
+        raise missing_name_error("EntityComponentManager", name, dir(type(self)))
 
 
 _managers: weakref.WeakKeyDictionary[Simulation, EntityComponentManager] = weakref.WeakKeyDictionary()

@@ -64,7 +64,7 @@ class EntityHandle:
         return ecm.is_enabled(self._entity, what)
 
     def __getattr__(self, name: str) -> NoReturn:
-        raise missing_name_error(type(self).__name__, name, dir(type(self)), {})
+        raise missing_name_error(type(self).__name__, name, dir(type(self)))
 
     def __eq__(self, other: object) -> bool:
         return type(self) is type(other) and isinstance(other, EntityHandle) and self._entity == other._entity
