@@ -48,11 +48,10 @@ class Param:
     def get_key(self) -> str:
         return self._key
 
-    def get_as_string(self) -> str:
-        return self._text
-
     def get_string(self) -> str:
         return self._text
+
+    get_as_string = get_string
 
     def get_double(self) -> float:
         return float(self._text)
@@ -139,6 +138,8 @@ class Element:
     def has_attribute(self, name: str) -> bool:
         return name in self._params.attributes
 
+    get_attribute_set = has_attribute
+
     def get_attribute(self, name: str | int) -> Param | None:
         """By name or by place."""
         if isinstance(name, int):
@@ -146,9 +147,6 @@ class Element:
         if name not in self._params.attributes:
             return None
         return Param(name, self._params.attribute(name))
-
-    def get_attribute_set(self, name: str) -> bool:
-        return self.has_attribute(name)
 
     def get_attributes(self) -> list[Param]:
         return [Param(name, self._params.attribute(name)) for name in self._params.attributes]
@@ -186,11 +184,9 @@ class Element:
     def _read(self, key: str, default: tuple[T, ...], zero: T, parse: Callable[[Params, str], T]) -> T | tuple[T, bool]:
         found, block, name = False, self._params, key
         if not key:
-            found = bool(block.value)
-            block, name = (
-                Params("", children=(_wrap_element(block),), diagnostics=block.diagnostics),
-                block.name or "value",
-            )
+            found, name = bool(block.value), block.name or "value"
+            own = Params(name, block.value, block.attributes, (), block.where, block.diagnostics)
+            block = Params("", children=(own,), diagnostics=block.diagnostics)
         elif key in block.attributes:
             found = True
             text = Params(key, block.attribute(key), where=block.where, diagnostics=block.diagnostics)
@@ -212,14 +208,12 @@ class Element:
     def get_uint(self, key: str = "", *default: int) -> int | tuple[int, bool]:
         return self._read(key, default, 0, lambda p, name: p.integer(name, minimum=0))
 
-    def get_uint64(self, key: str = "", *default: int) -> int | tuple[int, bool]:
-        return self.get_uint(key, *default)
+    get_uint64 = get_uint
 
     def get_double(self, key: str = "", *default: float) -> float | tuple[float, bool]:
         return self._read(key, default, 0.0, lambda p, name: p.number(name, finite=False))
 
-    def get_float(self, key: str = "", *default: float) -> float | tuple[float, bool]:
-        return self.get_double(key, *default)
+    get_float = get_double
 
     def get_angle(self, key: str = "", *default: Angle) -> Angle | tuple[Angle, bool]:
         """An angle [rad]."""
@@ -260,10 +254,6 @@ class Element:
 
     set_string = set_bool = set_int = set_uint = set_double = set_float = _write
     set_vector3d = set_pose = set_quaterniond = set_angle = set_color = _write
-
-
-def _wrap_element(element: Params) -> Params:
-    return Params(element.name or "value", element.value, element.attributes, (), element.where, element.diagnostics)
 
 
 def _escape_xml(text: str) -> str:

@@ -65,7 +65,8 @@ def active_controllers(sim: Simulation, robot: Model) -> list[TrajectoryControll
     found = []
     plugins = (plugin for plugin in sim.engine.structure.all_plugins() if isinstance(plugin, ControlPlugin))
     for plugin in plugins:
-        if not _is_within(plugin.scoped, robot.scoped) or not hasattr(plugin, "manager"):
+        is_within = f"{plugin.scoped}::".startswith(f"{robot.scoped}::")
+        if not is_within or not hasattr(plugin, "manager"):
             continue
         for name, loaded in plugin.manager.controllers.items():
             controller = loaded.controller
@@ -75,10 +76,6 @@ def active_controllers(sim: Simulation, robot: Model) -> list[TrajectoryControll
             action = plugin.ros.topic(controller.topic("~/follow_joint_trajectory"))
             found.append(TrajectoryController(name, action, tuple(joints)))
     return found
-
-
-def _is_within(scoped: str, robot: str) -> bool:
-    return scoped == robot or scoped.startswith(f"{robot}::")
 
 
 def unclaimed_joints(robot: Model, joints: Sequence[str], controllers: Sequence[TrajectoryController]) -> list[str]:
@@ -172,12 +169,9 @@ def add_leader_joints(robot: Model, motion: Motion) -> Motion:
     """A motion with the joints that lead those which it names: a joint that follows another one moves by that one."""
     for name in motion.joints:
         law = mimic_of(robot, name)
-        if (
-            law is None
-            or leader_name(law) in motion.joints
-            or leader_name(law) not in robot.joints
-            or not law.multiplier
-        ):
+        if law is None or not law.multiplier:
+            continue
+        if leader_name(law) in motion.joints or leader_name(law) not in robot.joints:
             continue
         column = motion.joints.index(name)
         ratio, rows = law.multiplier, motion.positions
@@ -245,13 +239,12 @@ def trajectory_goal(found: Course, motion: Motion, controller: TrajectoryControl
         return [otherwise[k] if c is None else float(values[c]) for k, c in enumerate(columns)]
 
     at_rest = [0.0] * len(columns)
-    points = []
-    for k in range(1, len(found.times)):
-        points.append(
-            {
-                "positions": row(found.positions[k], here),
-                "velocities": row(found.velocities[k], at_rest),
-                "time_from_start": msgs.duration(round(float(found.times[k]) * 1e9)),
-            }
-        )
+    points = [
+        {
+            "positions": row(found.positions[k], here),
+            "velocities": row(found.velocities[k], at_rest),
+            "time_from_start": msgs.duration(round(float(found.times[k]) * 1e9)),
+        }
+        for k in range(1, len(found.times))
+    ]
     return {"trajectory": {"joint_names": list(controller.joints), "points": points}}

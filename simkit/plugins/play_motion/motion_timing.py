@@ -63,13 +63,7 @@ class Course:
         return found
 
 
-def time_course(
-    points: Vector,
-    times: Vector,
-    given: Vector | None,
-    limits: Vector,
-    approach: int = 1,
-) -> Course:
+def time_course(points: Vector, times: Vector, given: Vector | None, limits: Vector, approach: int = 1) -> Course:
     """A course through points, its time stretched where a joint would be faster than it may.
 
     Args:

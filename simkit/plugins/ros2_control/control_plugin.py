@@ -80,7 +80,9 @@ class ControlPlugin(ModelPlugin):
         given = [one.file for one in builder.parameter_files if one.is_for(scene)]
         files = [*self._read_files(params, builder, any_given=bool(given)), *self._adapted_run_files(given, params)]
         self.files = ParameterFiles(files)
-        self._chosen_controllers = [(word, one) for one in params.all("controllers") for word in _split_names(one)]
+        self._chosen_controllers = [
+            (word, one) for one in params.all("controllers") for word in one.value.replace(",", " ").split()
+        ]
         self.hardware.holds_position = self.options.hold_joints
         self.mark_ignored_elements(params)
         self.before_step_rate = self.read_rate(params, builder)
@@ -237,10 +239,6 @@ class ControlPlugin(ModelPlugin):
         manager = self.manager
         super().set_state({**state, "manager": manager})
         manager.set_state(state["manager"])
-
-
-def _split_names(element: Params) -> list[str]:
-    return element.value.replace(",", " ").split()
 
 
 class GzRos2Control(ControlPlugin):

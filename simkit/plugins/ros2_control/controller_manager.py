@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import functools
+import tomllib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Literal
 
 from simkit.diagnostics import Diagnostics, Where, did_you_mean
 from simkit.params import Params
 from simkit.plugins.ros2_control.controller import Controller, ControllerEndpoints
 from simkit.plugins.ros2_control.hardware import Hardware
-from simkit.plugins.ros_parameter_files import Entry, ParameterFiles
+from simkit.plugins.ros_parameter_files import ParameterFiles
 from simkit.registry import discover
 
 if TYPE_CHECKING:
@@ -19,21 +21,11 @@ if TYPE_CHECKING:
 
 GROUP: Final = "simkit.controllers"
 _SECOND: Final = 1_000_000_000
-State = Literal["unconfigured", "inactive", "active"]
-_NODE_PARAMETERS: Final = (
-    "use_sim_time",
-    "type",
-    "update_rate",
-    "is_async",
-    "thread_priority",
-    "params_file",
-    "fallback_controllers",
-    "node_options_args",
-    "qos_overrides",
-    "start_type_description_service",
-    "enforce_command_limits",
-    "service_introspection",
+KNOWN_PARAMETERS: Final[Mapping[str, Sequence[str]]] = tomllib.loads(
+    Path(__file__).with_name("known_parameters.toml").read_text(encoding="utf-8")
 )
+"""Names of parameters that are no controller's own, by whose they are."""
+State = Literal["unconfigured", "inactive", "active"]
 
 
 @functools.cache
@@ -110,9 +102,6 @@ class ControllerManager:
                 found[name] = kind.text
         return found
 
-    def _entry(self, name: str) -> Entry | None:
-        return self.files.of_node(f"{self.namespace}/{name}")
-
     # ------------------------------------------------------------------ life cycle
 
     @property
@@ -125,7 +114,6 @@ class ControllerManager:
         """Makes a controller of the type that the files declare; returns what is wrong, nothing where all is well."""
         if name in self.controllers:
             return f"a controller named '{name}' was already loaded inside the controller manager"
-        entry = self._entry(name)
         kind = self.declared().get(name, "")
         if not kind:
             return f"the 'type' param was not defined for '{name}'"
@@ -134,14 +122,14 @@ class ControllerManager:
             kinds = controller_kinds()
             near = did_you_mean(kind, kinds) or "types: " + ", ".join(kinds)
             return f"controller '{name}' (type '{kind}') is not known; {near}"
-        params = self._parameters(name, entry)
+        params = self._parameters(name)
         controller = cls(name, self.plugin, params, self.hardware)
         controller.endpoints = self._endpoints.setdefault(name, controller.endpoints)
         self.controllers[name] = LoadedController(controller, kind)
         return ""
 
-    def _parameters(self, name: str, entry: Entry | None) -> Params:
-        found = Diagnostics()
+    def _parameters(self, name: str) -> Params:
+        found, entry = Diagnostics(), self.files.of_node(f"{self.namespace}/{name}")
         if entry is None:
             return Params(name, where=self.plugin.where, diagnostics=found)
         made = entry.params(name, found)
@@ -157,7 +145,7 @@ class ControllerManager:
         controller = loaded.controller
         params = controller.params
         before = params.diagnostics.error_count
-        for word in _NODE_PARAMETERS:
+        for word in KNOWN_PARAMETERS["controller"]:
             params.child(word)
         controller.update_rate = params.integer("update_rate", 0, minimum=0)
         controller.configure()

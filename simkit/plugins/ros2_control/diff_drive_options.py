@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -15,9 +14,11 @@ from simkit.pose import Vector
 _INFINITY = math.inf
 
 
-@dataclass(frozen=True, slots=True)
 class RateLimits:
-    """Bounds on a speed, its rate and the rate of that; SI units, infinite where there is none.
+    """Bounds on a speed, its rate and the rate of that, in `linear.x` or `angular.z`; SI units, infinite for none.
+
+    A kind of limit is in force where `has_velocity_limits` and the like is true, or is not there and a bound is (they
+    went out of use); what is not bounded below is bounded as above. NaN is no bound.
 
     Attributes:
         least, most: of the speed.
@@ -27,14 +28,19 @@ class RateLimits:
         least_jerk, most_jerk: of the rate of the rate.
     """
 
-    least: float = -_INFINITY
-    most: float = _INFINITY
-    acceleration: float = _INFINITY
-    deceleration: float = -_INFINITY
-    reverse_acceleration: float = -_INFINITY
-    reverse_deceleration: float = _INFINITY
-    least_jerk: float = -_INFINITY
-    most_jerk: float = _INFINITY
+    def __init__(self, block: Params) -> None:
+        self.least, self.most = _read_bounds(block, "velocity")
+        self.least_jerk, self.most_jerk = _read_bounds(block, "jerk")
+        down, up = _read_bounds(block, "acceleration")
+        deceleration = _read_bound(block, "max_deceleration", None, 0.0)
+        reverse = _read_bound(block, "max_acceleration_reverse", None, 0.0)
+        back = _read_bound(block, "max_deceleration_reverse", 0.0, None)
+        if up == _INFINITY:  # then the others bound nothing either
+            down, deceleration, reverse, back = -_INFINITY, None, None, None
+        self.acceleration = up
+        self.reverse_acceleration = down if reverse is None else reverse
+        self.deceleration = self.reverse_acceleration if deceleration is None else deceleration
+        self.reverse_deceleration = up if back is None else back
 
     def __deepcopy__(self, memo: dict[int, object]) -> RateLimits:
         return self
@@ -64,33 +70,6 @@ class RateLimits:
         elif speed - last < down * period:
             speed = last + down * period
         return min(max(speed, self.least), self.most)
-
-
-def read_rate_limits(block: Params) -> RateLimits:
-    """The limits in `linear.x` or `angular.z`.
-
-    A kind of limit is in force where `has_velocity_limits` and the like is true, or is not there and a bound is (they
-    went out of use); what is not bounded below is bounded as above. NaN is no bound.
-    """
-    least, most = _read_bounds(block, "velocity")
-    least_jerk, most_jerk = _read_bounds(block, "jerk")
-    down, up = _read_bounds(block, "acceleration")
-    deceleration = _read_bound(block, "max_deceleration", None, 0.0)
-    reverse = _read_bound(block, "max_acceleration_reverse", None, 0.0)
-    back = _read_bound(block, "max_deceleration_reverse", 0.0, None)
-    if up == _INFINITY:
-        return RateLimits(least, most, least_jerk=least_jerk, most_jerk=most_jerk)
-    away = down if reverse is None else reverse
-    return RateLimits(
-        least=least,
-        most=most,
-        acceleration=up,
-        deceleration=away if deceleration is None else deceleration,
-        reverse_acceleration=away,
-        reverse_deceleration=up if back is None else back,
-        least_jerk=least_jerk,
-        most_jerk=most_jerk,
-    )
 
 
 def _read_bounds(block: Params, what: str) -> tuple[float, float]:
@@ -166,8 +145,8 @@ class DriveOptions:
         odom, base = params.text("odom_frame_id", "odom"), params.text("base_frame_id", "base_link")
         prefix = "" if self.is_ros_1 else _frame_prefix(params, namespace)
         self.odom_frame, self.base_frame = prefix + odom, prefix + base
-        self.linear = read_rate_limits(params.block("linear").block("x"))
-        self.angular = read_rate_limits(params.block("angular").block("z"))
+        self.linear = RateLimits(params.block("linear").block("x"))
+        self.angular = RateLimits(params.block("angular").block("z"))
         self.timeout_ns = round(params.number("cmd_vel_timeout", 0.5, minimum=0, maximum=1e9) * 1e3) * 1_000_000
         self.open_loop = params.boolean("open_loop", False)
         self.position_feedback = params.boolean("position_feedback", True)

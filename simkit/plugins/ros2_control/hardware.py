@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -209,7 +210,7 @@ class Hardware:
             rows, places = np.array([row for row, _ in found], np.intp), tuple(place for _, place in found)
             if kind.startswith("sensor "):
                 sensor = self.sensors[kind.removeprefix("sensor ")]
-                self._deferred.append((rows, _sensor_reading(sensor, self._sim, places)))
+                self._deferred.append((rows, partial(sensor.read, self._sim, places)))
             elif kind in _MODES:
                 plan = (
                     self._deferred if kind == EFFORT else self._plan
@@ -288,7 +289,3 @@ def _actuator_reading(hardware: Hardware, actuator: str, interface: str) -> Call
     law = hardware.actuators[actuator]
     joints, row = hardware.reading(interface, law.joints), law.actuators.index(actuator)
     return lambda: float(law.actuate(interface, joints())[row])
-
-
-def _sensor_reading(sensor: HardwareSensor, sim: Simulation, interfaces: tuple[str, ...]) -> Callable[[], Vector]:
-    return lambda: sensor.read(sim, interfaces)

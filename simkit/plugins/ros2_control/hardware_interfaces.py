@@ -59,9 +59,6 @@ class InterfaceTable:
         for places, read in now:
             self.values[places] = read()
 
-    def __contains__(self, name: str) -> bool:
-        return name in self._index
-
     def index(self, name: str) -> int:
         """Return the place of a name in `values`. Raises InputError naming the closest."""
         found = self._index.get(name)

@@ -46,6 +46,8 @@ class JointGroup:
         joints: their names, in the order of the arrays.
         commanded_joints: those it commands, by the names that their command interfaces have.
         commands, states: interfaces by which it commands and measures.
+        command_names, state_names: all of them: all joints' first kind, then all joints' second.
+        has_velocity_state, has_effort: whether velocities are measured, and efforts commanded.
         places: of the commanded joints among `joints`.
         span: the same, as the quickest index.
         turning: which turn without end.
@@ -70,6 +72,9 @@ class JointGroup:
         self.span = array_index(self.places.tolist())
         self.commands = by = _read_interfaces(params, "command_interfaces", commands, _ALLOWED_COMMANDS)
         self.states = measured = _read_interfaces(params, "state_interfaces", states, _ALLOWED_STATES)
+        self.command_names = tuple(f"{joint}/{kind}" for kind in by for joint in self.commanded_joints)
+        self.state_names = tuple(f"{joint}/{kind}" for kind in measured for joint in self.joints)
+        self.has_velocity_state, self.has_effort = VELOCITY in measured, EFFORT in by
         self.is_closed_loop = by in ((VELOCITY,), (EFFORT,))
         if self.is_closed_loop and VELOCITY not in measured:
             message = (
@@ -90,26 +95,6 @@ class JointGroup:
 
     def __deepcopy__(self, memo: dict[int, object]) -> JointGroup:
         return self
-
-    @property
-    def command_names(self) -> tuple[str, ...]:
-        """Command interfaces: all joints' first kind, then all joints' second."""
-        return tuple(f"{joint}/{kind}" for kind in self.commands for joint in self.commanded_joints)
-
-    @property
-    def state_names(self) -> tuple[str, ...]:
-        """State interfaces, likewise."""
-        return tuple(f"{joint}/{kind}" for kind in self.states for joint in self.joints)
-
-    @property
-    def has_velocity_state(self) -> bool:
-        """Check whether velocities are measured."""
-        return VELOCITY in self.states
-
-    @property
-    def has_effort(self) -> bool:
-        """Check whether it commands efforts."""
-        return EFFORT in self.commands
 
     def command_of(self, joint: str) -> str:
         """The name that a joint's command interface has; the joint's own where it has none."""

@@ -67,10 +67,6 @@ class JointPids:
         self.integral = np.clip(self.integral + growth * step, self.i_low, self.i_high)
         return command
 
-    def set_gain(self, name: str, joint: int, value: float) -> None:
-        """Changes p, i, d or feedforward of one joint."""
-        getattr(self, name)[joint] = value
-
     def restart(self) -> None:
         """Forgets what was."""
         self.integral = np.zeros_like(self.integral)

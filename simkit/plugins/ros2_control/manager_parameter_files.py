@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from simkit.diagnostics import Diagnostics, Where, did_you_mean
+from simkit.plugins.ros2_control.controller_manager import KNOWN_PARAMETERS, ControllerManager
 from simkit.plugins.ros_parameter_files import Entry, ParameterFile, node_matches
-
-if TYPE_CHECKING:
-    from simkit.plugins.ros2_control.controller_manager import ControllerManager
 
 _ROS_1_LOOPS: Final = "gazebo_ros_control"
 
@@ -47,14 +45,10 @@ def adapt_to_manager(
     nodes = given.nodes
     if not inside:
         nodes = [(p if p.startswith("/**") else f"{namespace}/{p.strip('/')}", entry) for p, entry in nodes]
-    own_nodes = [
-        (namespace or "/", _controllers_with_type(entry)) for p, entry in nodes if p.rpartition("/")[2] == manager
-    ]
-    return replace(given, nodes=[*nodes, *own_nodes])
-
-
-def _controllers_with_type(entry: Entry) -> Entry:
-    return Entry(entry.where, below=dict(_declared_controllers(entry, only_type=False)))
+    for entry in [entry for p, entry in nodes if p.rpartition("/")[2] == manager]:
+        below = dict(_declared_controllers(entry, only_type=False))
+        nodes = [*nodes, (namespace or "/", Entry(entry.where, below=below))]
+    return replace(given, nodes=nodes)
 
 
 def _declared_controllers(entry: Entry, *, only_type: bool) -> Iterator[tuple[str, Entry]]:
@@ -87,33 +81,6 @@ def _report_ros_1_gains(own: Entry, given: ParameterFile, diagnostics: Diagnosti
         diagnostics.warning("SK-CONTROL-011", message, below[_ROS_1_LOOPS].where, hint)
 
 
-_MANAGER_PARAMETERS: Final = (
-    "update_rate",
-    "use_sim_time",
-    "robot_description",
-    "hardware_components_initial_state",
-    "hardware_synchronization",
-    "defaults",
-    "diagnostics",
-    "overruns",
-    "handle_exceptions",
-    "shutdown_on_initial_state_failure",
-    "enforce_command_limits",
-    "thread_priority",
-    "lock_memory",
-    "cpu_affinity",
-    "qos_overrides",
-    "start_type_description_service",
-    "service_introspection",
-)
-_DECLARATION_PARAMETERS: Final = (
-    "type",
-    "params_file",
-    "fallback_controllers",
-    "is_async",
-    "thread_priority",
-    "update_rate",
-)
 _CONTROLLER_PARAMETERS: Final = ("joint", "joints", "joint_name", "left_wheel", "left_wheel_names", "sensor_name")
 
 
@@ -166,15 +133,15 @@ def _report_in_manager(
     """One name among the manager's own parameters, in ROS 2's layout."""
     if name in declared:
         for word, one in (entry.below or {}).items():
-            if word not in _DECLARATION_PARAMETERS:
+            if word not in KNOWN_PARAMETERS["declaration"]:
                 message = f"{word!r} beside the type of {name!r} is not used: a controller has a node of its own"
                 found.warning("SK-CONTROL-011", message, one.where, f"{name}: {{ros__parameters: {{{word}: ...}}}}")
-    elif name in _MANAGER_PARAMETERS:
+    elif name in KNOWN_PARAMETERS["manager"]:
         return
     elif entry.form in ("block", "nothing") or name in nodes:
         _report_no_type(name, entry, found)
     else:
-        near = did_you_mean(name, _MANAGER_PARAMETERS)
+        near = did_you_mean(name, KNOWN_PARAMETERS["manager"])
         found.warning("SK-CONTROL-011", f"controller manager: <{name}> is not used", entry.where, near)
 
 

@@ -105,7 +105,7 @@ def read_pids(controller: Controller, joints: tuple[str, ...], find: Callable[[]
             def take(value: float, attribute: str = attribute, k: int = k) -> None:
                 now = find()
                 if now is not None:
-                    now.set_gain(attribute, k, value)
+                    getattr(now, attribute)[k] = value
 
             controller.declare(f"gains.{joint}.{name}", float(getattr(pids, attribute)[k]), on_change=take)
     return pids

@@ -255,12 +255,7 @@ class Quaterniond(Components):
 
     @staticmethod
     def squad(
-        t: float,
-        first: Quaterniond,
-        a: Quaterniond,
-        b: Quaterniond,
-        second: Quaterniond,
-        shortest_path: bool = False,
+        t: float, first: Quaterniond, a: Quaterniond, b: Quaterniond, second: Quaterniond, shortest_path: bool = False
     ) -> Quaterniond:
         """Along a spline through the two rotations with the control rotations a and b."""
         ends = Quaterniond.slerp(t, first, second, shortest_path)

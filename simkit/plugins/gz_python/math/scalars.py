@@ -37,9 +37,7 @@ def sgn(value: float) -> int:
     return (value > 0) - (value < 0)
 
 
-def signum(value: float) -> int:
-    """-1, 0 or 1."""
-    return sgn(value)
+signum = sgn
 
 
 def mean(values: Sequence[float]) -> float:

@@ -191,11 +191,7 @@ class SphericalCoordinates(Value):
         if Coordinates.SPHERICAL in (from_type, to_type):
             raise ValueError("a velocity has no spherical coordinates; use ECEF, GLOBAL or LOCAL")
         place = self._place()
-        axes = {
-            Coordinates.ECEF: np.eye(3),
-            Coordinates.GLOBAL: self._level(place),
-            Coordinates.LOCAL: place.axes,
-        }
+        axes = {Coordinates.ECEF: np.eye(3), Coordinates.GLOBAL: self._level(place), Coordinates.LOCAL: place.axes}
         turned = axes[Coordinates(to_type)].T @ axes[Coordinates(from_type)]
         return Vector3d(*(turned @ np.array(components_of(velocity, 3))).tolist())
 

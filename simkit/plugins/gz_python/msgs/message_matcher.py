@@ -40,12 +40,7 @@ class MessageMatcher:
     """
 
     def __init__(
-        self,
-        kind: type[Message],
-        text: str,
-        field: str = "",
-        tolerance: float = TOLERANCE,
-        is_positive: bool = True,
+        self, kind: type[Message], text: str, field: str = "", tolerance: float = TOLERANCE, is_positive: bool = True
     ) -> None:
         self._tolerance, self._is_positive = tolerance, is_positive
         self._path: tuple[str, ...] = tuple(field.split(".")) if field else ()

@@ -72,8 +72,9 @@ _TAGS: Final = ("World", "Model", "Link", "Joint", "Visual", "Collision", "Senso
 _Reader = Callable[[EntityView, EntityRecord], object]
 
 
-def _kind_reader(kind: str, read: _Reader) -> _Reader:
-    return lambda ecm, record: read(ecm, record) if record.kind == kind else None
+def _kind_reader(kinds: str, read: _Reader) -> _Reader:
+    """Make a reader of entities of some kinds, of which there are several with spaces between."""
+    return lambda ecm, record: read(ecm, record) if record.kind in kinds.split() else None
 
 
 _HANDLES: Final = {"model": _Model, "link": _Link, "joint": _Joint, "sensor": _Sensor, "world": _World}
@@ -82,10 +83,6 @@ _HANDLES: Final = {"model": _Model, "link": _Link, "joint": _Joint, "sensor": _S
 def _handle_reader(kind: str, method: Callable[[Any, EntityView], object]) -> _Reader:
     """Make a reader that calls a method of the handle."""
     return _kind_reader(kind, lambda ecm, record: method(_HANDLES[kind](record.entity), ecm))
-
-
-def _reader_for_kinds(kinds: tuple[str, ...], read: _Reader) -> _Reader:
-    return lambda ecm, record: read(ecm, record) if record.kind in kinds else None
 
 
 def _local_pose(ecm: EntityView, record: EntityRecord) -> _Pose3d | None:
@@ -114,10 +111,8 @@ def _inertial(ecm: EntityView, record: EntityRecord) -> _Inertiald | None:
 _READERS: Final[dict[str, _Reader]] = {
     "Name": lambda _, record: record.name,
     "ParentEntity": lambda _, record: record.parent or None,
-    "Pose": _reader_for_kinds(
-        ("model", "link", "joint", "visual", "collision", "sensor", "light", "actor"), _local_pose
-    ),
-    "WorldPose": _reader_for_kinds(("model", "link", "sensor"), lambda ecm, record: world_pose(record.entity, ecm)),
+    "Pose": _kind_reader("model link joint visual collision sensor light actor", _local_pose),
+    "WorldPose": _kind_reader("model link sensor", lambda ecm, record: world_pose(record.entity, ecm)),
     "Static": _kind_reader("model", lambda _, record: record.scene.static),
     "SelfCollide": _kind_reader("model", lambda _, record: record.scene.self_collide),
     "SourceFilePath": _handle_reader("model", _Model.source_file_path),

@@ -24,11 +24,11 @@ from simkit.plugins.drives.odometry import (
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.ros2_control.controller import Controller
 from simkit.plugins.ros2_control.diff_drive_options import DriveOptions
-from simkit.pose import Pose, Vector
+from simkit.pose import Pose
 from simkit.scene import Cylinder, Sphere
 
 if TYPE_CHECKING:
-    from simkit.msgs import Odometry, Twist, TwistStamped
+    from simkit.msgs import Twist, TwistStamped
     from simkit.runtime.communication.parameter_server import Parameter
 
 
@@ -250,8 +250,8 @@ class DiffDriveController(Controller):
             return
         pose, frames = self._odometry.reckoning.pose, (options.odom_frame, options.base_frame)
         if has_odom:
-            told = frames, pose, self._odometry.twist, options.pose_covariance, options.twist_covariance
-            self._odom.publish_later(partial(_odometry_message, now_ns, *told))
+            told = *frames, pose, self._odometry.twist, options.pose_covariance, options.twist_covariance
+            self._odom.publish_later(partial(odometry_message, now_ns, *told))
         if self._tf is not None and has_tf:
             self._tf.publish_later(partial(transforms, now_ns, (*frames, pose)))
 
@@ -282,13 +282,6 @@ class DiffDriveController(Controller):
         shapes = [c.geometry for c in self.sim.link(scenes[0].child_link).scene.collisions]
         radii = [shape.radius for shape in shapes if isinstance(shape, (Cylinder, Sphere))]
         return float(np.linalg.norm(apart)), float(max(radii)) if radii else None
-
-
-def _odometry_message(
-    time_ns: int, frames: tuple[str, str], pose: Pose, twist: BodyTwist, *covariances: Vector
-) -> Odometry:
-    message: Odometry = odometry_message(time_ns, *frames, pose, twist, *covariances)
-    return message
 
 
 def _twist_stamped(time_ns: int, frame: str, ahead: float, turn: float) -> TwistStamped:
