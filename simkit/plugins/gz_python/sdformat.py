@@ -6,16 +6,13 @@
 from __future__ import annotations
 
 import enum
+import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Final, NoReturn, TypeVar
 
 from simkit.params import Params
-from simkit.plugins.gz_python.math.angle import Angle
-from simkit.plugins.gz_python.math.color import Color, Temperature
+from simkit.plugins.gz_python.math import Angle, Color, Pose3d, Quaterniond, Temperature, Vector2d, Vector2i, Vector3d
 from simkit.plugins.gz_python.math.missing_names import missing_name_error
-from simkit.plugins.gz_python.math.pose import Pose3d
-from simkit.plugins.gz_python.math.quaternion import Quaterniond
-from simkit.plugins.gz_python.math.vectors import Vector2d, Vector2i, Vector3d
 
 if TYPE_CHECKING:
     from simkit.scene.model import Axis as SceneAxis
@@ -260,42 +257,25 @@ def _escape_xml(text: str) -> str:
     return text.replace("&", "&amp;").replace("<", "&lt;").replace("'", "&apos;")
 
 
+def _axis_reader(name: str, default: float) -> Callable[[JointAxis], float]:
+    """Make a method that reads a property of an axis, the default where there is no axis."""
+    return lambda self: default if self._axis is None else float(getattr(self._axis, name))
+
+
 class JointAxis:
     """One degree of freedom of a joint; limits are infinite where there are none."""
 
     def __init__(self, axis: SceneAxis | None = None) -> None:
         self._axis = axis
 
-    def _of(self, name: str, default: float) -> float:
-        return default if self._axis is None else float(getattr(self._axis, name))
-
     def xyz(self) -> Vector3d:
         """Unit axis in the joint frame; z where nothing says it."""
         return Vector3d(0, 0, 1) if self._axis is None else Vector3d(*self._axis.xyz_joint)
 
-    def lower(self) -> float:
-        return self._of("lower", -1e16)
-
-    def upper(self) -> float:
-        return self._of("upper", 1e16)
-
-    def effort(self) -> float:
-        return self._of("effort", float("inf"))
-
-    def max_velocity(self) -> float:
-        return self._of("velocity", float("inf"))
-
-    def damping(self) -> float:
-        return self._of("damping", 0.0)
-
-    def friction(self) -> float:
-        return self._of("friction", 0.0)
-
-    def spring_reference(self) -> float:
-        return self._of("spring_ref", 0.0)
-
-    def spring_stiffness(self) -> float:
-        return self._of("stiffness", 0.0)
+    lower, upper = _axis_reader("lower", -1e16), _axis_reader("upper", 1e16)
+    effort, max_velocity = _axis_reader("effort", math.inf), _axis_reader("velocity", math.inf)
+    damping, friction = _axis_reader("damping", 0.0), _axis_reader("friction", 0.0)
+    spring_reference, spring_stiffness = _axis_reader("spring_ref", 0.0), _axis_reader("stiffness", 0.0)
 
 
 class Atmosphere:

@@ -16,6 +16,7 @@ from simkit.plugins.gz_python import simulation_context
 from simkit.plugins.gz_python.math.missing_names import missing_name_error
 from simkit.plugins.gz_python.msgs.message import MESSAGE_CLASSES, Message
 from simkit.plugins.gz_python.msgs.ros_conversion import call_service, from_ros, to_ros, twins_of
+from simkit.plugins.shared_by_copies import SharedByCopies
 
 if TYPE_CHECKING:
     from simkit.plugins.base import Plugin
@@ -75,7 +76,7 @@ class SubscribeOptions(_Options):
     """Options of a subscription."""
 
 
-class Publisher:
+class Publisher(SharedByCopies):
     """Publishes messages of one class on one topic."""
 
     def __init__(self, topic: str, kind: type[Message], options: _Options | None = None) -> None:
@@ -115,9 +116,6 @@ class Publisher:
     def __bool__(self) -> bool:
         return True
 
-    def __deepcopy__(self, memo: dict[int, object]) -> Publisher:
-        return self
-
 
 class _Subscription:
     """Subscription of a node to a topic.
@@ -146,7 +144,7 @@ class _Subscription:
             self.listener = sim.communication.bus.listen(self.topic, types, called)
 
 
-class Node:
+class Node(SharedByCopies):
     """An end of the simulation's topics and services."""
 
     def __init__(self, *_: object) -> None:
@@ -244,9 +242,6 @@ class Node:
 
     def __getattr__(self, name: str) -> NoReturn:
         raise missing_name_error("Node", name, dir(type(self)))
-
-    def __deepcopy__(self, memo: dict[int, object]) -> Node:
-        return self
 
 
 def _call_as_owner(sim: Simulation, owner: Plugin | None, topic: str, callback: Handler) -> Handler:

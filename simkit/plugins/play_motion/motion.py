@@ -11,6 +11,7 @@ import numpy as np
 
 from simkit import msgs
 from simkit.diagnostics import NOWHERE, Where
+from simkit.plugins.shared_by_copies import SharedByCopies
 from simkit.pose import Vector
 
 if TYPE_CHECKING:
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class Motion:
+class Motion(SharedByCopies):
     """A motion that a robot knows by name.
 
     Attributes:
@@ -45,9 +46,6 @@ class Motion:
     def duration(self) -> float:
         """Time of its last point as the file has it, without the approach [s]."""
         return self.times[-1]
-
-    def __deepcopy__(self, memo: dict[int, object]) -> Motion:
-        return self
 
     def as_message(self) -> dict[str, object]:
         """The fields of a `play_motion2_msgs/msg/Motion`."""

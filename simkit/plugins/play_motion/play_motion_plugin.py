@@ -225,17 +225,14 @@ class PlayMotion(ModelPlugin):
         motion = add_leader_joints(self.robot, motion)
         needed = [controller for controller in controllers if set(controller.joints) & set(motion.joints)]
         names = tuple(controller.name for controller in needed)
+        is_accepted = False
         try:
             self._check_idle(goal, names)
             find_joints(self.robot, motion.joints, controllers)
-        except MotionRefused as refused:
-            self._refuse(goal, refused, rejects=True)
-            return
-        try:
-            checked = not goal.request.skip_planning
+            is_accepted, checked = True, not goal.request.skip_planning
             found = plan_motion(self.sim, self.robot, motion, controllers, self._approach, looks_around=checked)
         except MotionRefused as refused:
-            self._refuse(goal, refused, rejects=False)
+            self._refuse(goal, refused, rejects=not is_accepted)
             return
         until = self.sim.time_ns + round((2.0 * found.duration + 1.0) * 1e9)
         run = _RunningMotion(goal, motion.key, names, until)

@@ -12,6 +12,7 @@ from simkit.msgs.message_types import Message
 from simkit.params import Params
 from simkit.plugins.live_parameters import declare_at
 from simkit.plugins.ros2_control.hardware_interfaces import InterfaceSelection
+from simkit.plugins.shared_by_copies import SharedByCopies
 
 if TYPE_CHECKING:
     from simkit.plugins.base import Plugin
@@ -29,7 +30,7 @@ Relay = Callable[..., Any]
 Handle = TypeVar("Handle")
 
 
-class ControllerEndpoints:
+class ControllerEndpoints(SharedByCopies):
     """Topics, services and actions that the controllers of one name have opened.
 
     They stay open with the controller's name: one that is unloaded and loaded again, or configured again, finds them
@@ -59,14 +60,11 @@ class ControllerEndpoints:
         """Remove all handlers."""
         self.handlers = {}
 
-    def __deepcopy__(self, memo: dict[int, object]) -> ControllerEndpoints:
-        return self
-
 
 T = TypeVar("T", bound="bool | int | float | str | tuple[float, ...]")
 
 
-class Controller(abc.ABC):
+class Controller(SharedByCopies, abc.ABC):
     """Base of all controllers.
 
     The controller manager makes it, then calls `configure` once, `activate` and `deactivate` as it is switched, and
@@ -261,16 +259,13 @@ class Controller(abc.ABC):
                     message = f"{message}, snapshots and reset leave it as it is: {error}"
                     self.sim.engine.reports.warning("SK-PLUGIN-006", message, self.params.where)
 
-    def __deepcopy__(self, memo: dict[int, object]) -> Controller:
-        return self
-
 
 _OWN_ATTRIBUTES = frozenset(
     ("name", "plugin", "params", "hardware", "states", "commands", "log", "endpoints", "_uncopied")
 )
 
 
-class OneTimeWarnings:
+class OneTimeWarnings(SharedByCopies):
     """Reports of a controller that are made once each; a handle, without state that a reset forgets."""
 
     def __init__(self, controller: Controller) -> None:
@@ -286,6 +281,3 @@ class OneTimeWarnings:
         controller.sim.engine.reports.warning(
             code, f"controller {controller.name!r}: {message}", controller.params.where, hint
         )
-
-    def __deepcopy__(self, memo: dict[int, object]) -> OneTimeWarnings:
-        return self

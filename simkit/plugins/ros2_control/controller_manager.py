@@ -14,6 +14,7 @@ from simkit.params import Params
 from simkit.plugins.ros2_control.controller import Controller, ControllerEndpoints
 from simkit.plugins.ros2_control.hardware import Hardware
 from simkit.plugins.ros_parameter_files import ParameterFiles
+from simkit.plugins.shared_by_copies import SharedByCopies
 from simkit.registry import discover
 
 if TYPE_CHECKING:
@@ -56,7 +57,7 @@ class LoadedController:
     last: int = 0
 
 
-class ControllerManager:
+class ControllerManager(SharedByCopies):
     """Runs the controllers of one robot.
 
     Args:
@@ -348,6 +349,3 @@ class ControllerManager:
             loaded.controller.set_state(own)
             self.controllers[name] = loaded
         self.hardware.set_state(hardware)
-
-    def __deepcopy__(self, memo: dict[int, object]) -> ControllerManager:
-        return self

@@ -9,12 +9,13 @@ import numpy as np
 
 from simkit.params import Params
 from simkit.plugins.ros_parameter_block import read_numbers
+from simkit.plugins.shared_by_copies import SharedByCopies
 from simkit.pose import Vector
 
 _INFINITY = math.inf
 
 
-class RateLimits:
+class RateLimits(SharedByCopies):
     """Bounds on a speed, its rate and the rate of that, in `linear.x` or `angular.z`; SI units, infinite for none.
 
     A kind of limit is in force where `has_velocity_limits` and the like is true, or is not there and a bound is (they
@@ -41,9 +42,6 @@ class RateLimits:
         self.reverse_acceleration = down if reverse is None else reverse
         self.deceleration = self.reverse_acceleration if deceleration is None else deceleration
         self.reverse_deceleration = up if back is None else back
-
-    def __deepcopy__(self, memo: dict[int, object]) -> RateLimits:
-        return self
 
     def limit(self, wanted: float, last: float, before_last: float, period: float) -> float:
         """The speed to command now: bounded in jerk, then in acceleration, then in speed.
@@ -108,7 +106,7 @@ _SMALLEST_SIZE = 1e-6  # [m]
 _ROS_1_NAMES = ("left_wheel", "right_wheel")
 
 
-class DriveOptions:
+class DriveOptions(SharedByCopies):
     """Parameters of a differential drive but for the multipliers, which may change as it runs.
 
     Args:
@@ -156,9 +154,6 @@ class DriveOptions:
         self.publish_rate = params.number("publish_rate", 50.0, minimum=0)
         self.publish_tf = params.boolean("enable_odom_tf", True)
         self.publish_limited = params.boolean("publish_cmd" if self.is_ros_1 else "publish_limited_velocity", False)
-
-    def __deepcopy__(self, memo: dict[int, object]) -> DriveOptions:
-        return self
 
 
 def _wheels(params: Params, is_ros_1: bool) -> tuple[tuple[str, ...], tuple[str, ...]]:

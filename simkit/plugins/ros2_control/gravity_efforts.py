@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING
 import mujoco
 import numpy as np
 
+from simkit.plugins.shared_by_copies import SharedByCopies
 from simkit.pose import Vector
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
 
 
-class GravityEfforts:
+class GravityEfforts(SharedByCopies):
     """Efforts that keep some one-axis joints from accelerating, all joints of the robot at rest or in motion as it is.
 
     Gravity on everything that the joint carries by joints of its own model, and what the motion itself pulls; nothing
@@ -28,9 +29,6 @@ class GravityEfforts:
     def __init__(self, sim: Simulation, joints: Sequence[str]) -> None:
         self._sim, self._joints = sim, tuple(joints)
         self._model: mujoco.MjModel | None = None
-
-    def __deepcopy__(self, memo: dict[int, object]) -> GravityEfforts:
-        return self
 
     def efforts(self) -> Vector:
         """Return the efforts [N·m or N], shape (n,)."""

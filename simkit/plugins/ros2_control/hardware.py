@@ -17,6 +17,7 @@ from simkit.plugins.ros2_control.hardware_joint import HardwareJoint, PidGains
 from simkit.plugins.ros2_control.hardware_sensors import HardwareSensor, find_sensor
 from simkit.plugins.ros2_control.joint_actuators import JointActuators
 from simkit.plugins.ros2_control.transmissions import TransmissionLaw, transmission_laws
+from simkit.plugins.shared_by_copies import SharedByCopies
 from simkit.pose import Vector
 
 if TYPE_CHECKING:
@@ -33,7 +34,7 @@ _MODES = {POSITION: POSITION_MODE, VELOCITY: VELOCITY_MODE, EFFORT: EFFORT_MODE}
 
 
 @dataclass(slots=True)
-class Hardware:
+class Hardware(SharedByCopies):
     """Joints and sensors of one robot.
 
     Attributes:
@@ -260,9 +261,6 @@ class Hardware:
         self._model = None
         self.actuated.modes, self.actuated.targets, self.actuated.integrals = (one.copy() for one in drives)
         self._group_joints()
-
-    def __deepcopy__(self, memo: dict[int, object]) -> Hardware:
-        return self
 
 
 def _hardware_joint(described: JointDescription, joint: SceneJoint) -> HardwareJoint:

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
+from simkit.plugins.shared_by_copies import SharedByCopies
 from simkit.pose import Vector
 
 Indices = npt.NDArray[np.intp]
@@ -72,7 +73,7 @@ class InterfaceTable:
         return InterfaceSelection(self, names)
 
 
-class InterfaceSelection:
+class InterfaceSelection(SharedByCopies):
     """Some interfaces of a table, in the order in which a controller has them."""
 
     def __init__(self, table: InterfaceTable, names: Sequence[str]) -> None:
@@ -85,9 +86,6 @@ class InterfaceSelection:
 
     def __len__(self) -> int:
         return len(self.names)
-
-    def __deepcopy__(self, memo: dict[int, object]) -> InterfaceSelection:
-        return self
 
     @property
     def values(self) -> Vector:

@@ -25,6 +25,7 @@ from simkit.plugins.ros2_control.actuator_modes import FREE, POSITION_MODE, SPRI
 from simkit.plugins.ros2_control.gravity_efforts import GravityEfforts
 from simkit.plugins.ros2_control.hardware_interfaces import POSITION, VELOCITY, Indices
 from simkit.plugins.ros2_control.velocity_references import advance_references
+from simkit.plugins.shared_by_copies import SharedByCopies
 from simkit.pose import Vector
 from simkit.runtime.engine.physics_step import CONTROL
 
@@ -39,7 +40,7 @@ if TYPE_CHECKING:
 _LARGEST_CONTROL: Final = 9e9  # controls of 1e10 or more are none for the engine
 
 
-class JointActuators:
+class JointActuators(SharedByCopies):
     """The actuators of all joints that can be commanded.
 
     Attributes:
@@ -97,9 +98,6 @@ class JointActuators:
         idle = [POSITION_MODE if POSITION in joint.command_interfaces else FREE for joint in self.joints]
         self.modes = np.full(count, -1)
         self.switch(np.array(idle, np.intp))
-
-    def __deepcopy__(self, memo: dict[int, object]) -> JointActuators:
-        return self
 
     def _bind(self) -> None:
         """Finds itself in the engine's model, another one after every change of structure."""

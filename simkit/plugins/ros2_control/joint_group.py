@@ -14,6 +14,7 @@ from simkit.plugins.ros2_control.hardware_interfaces import EFFORT, POSITION, VE
 from simkit.plugins.ros2_control.joint_pids import JointPids
 from simkit.plugins.ros2_control.trajectory import Setpoint
 from simkit.plugins.ros_parameter_block import read_names
+from simkit.plugins.shared_by_copies import SharedByCopies
 from simkit.pose import Vector
 
 if TYPE_CHECKING:
@@ -39,7 +40,7 @@ _ALLOWED_STATES: Final = ({POSITION}, {POSITION, VELOCITY}, {POSITION, VELOCITY,
 _BAD_INTERFACES: Final = "SK-CONTROL-024"
 
 
-class JointGroup:
+class JointGroup(SharedByCopies):
     """Joints whose positions, velocities and accelerations are arrays (3, n).
 
     Attributes:
@@ -92,9 +93,6 @@ class JointGroup:
         velocities = VELOCITY in measured and (VELOCITY in by or EFFORT in by)
         accelerations = ACCELERATION in measured and ACCELERATION in by
         self.compared: Vector = np.array([[1.0], [float(velocities)], [float(accelerations)]])
-
-    def __deepcopy__(self, memo: dict[int, object]) -> JointGroup:
-        return self
 
     def command_of(self, joint: str) -> str:
         """The name that a joint's command interface has; the joint's own where it has none."""
@@ -177,7 +175,7 @@ _MULTI_DOF_POINT: Final = "trajectory_msgs/msg/MultiDOFJointTrajectoryPoint"
 _FEEDBACK: Final = "control_msgs/action/FollowJointTrajectory_Feedback"
 
 
-class TrajectoryMessages:
+class TrajectoryMessages(SharedByCopies):
     """Makes them for one group of joints."""
 
     STATE: Final = "control_msgs/msg/JointTrajectoryControllerState"
@@ -189,9 +187,6 @@ class TrajectoryMessages:
         self._multi_dof_point_type: type[MultiDOFJointTrajectoryPoint] = msgs.type_of(_MULTI_DOF_POINT)
         self._feedback_type: type[FollowJointTrajectory_Feedback] = msgs.type_of(_FEEDBACK)
         self._state_type: type[JointTrajectoryControllerState] = msgs.type_of(self.STATE)
-
-    def __deepcopy__(self, memo: dict[int, object]) -> TrajectoryMessages:
-        return self
 
     def feedback(self, now: int, desired: Vector, state: Vector, errors: Vector) -> FollowJointTrajectory_Feedback:
         """Make the feedback of a goal from arrays (3, n)."""

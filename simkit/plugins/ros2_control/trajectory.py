@@ -15,6 +15,7 @@ from typing import Final, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from simkit.plugins.shared_by_copies import SharedByCopies
 from simkit.pose import Vector
 
 SECOND: Final = 1_000_000_000
@@ -52,7 +53,7 @@ class Setpoint(NamedTuple):
     efforts: Vector | None = None
 
 
-class Spline:
+class Spline(SharedByCopies):
     """Targets of all joints at every time.
 
     Attributes:
@@ -74,9 +75,6 @@ class Spline:
         self._ahead: dict[int, Vector] = {}
         self._efforts: tuple[tuple[Vector, Vector], ...] = ()
         self._setpoints: tuple[Vector, ...] = ()  # of a spline that does not interpolate
-
-    def __deepcopy__(self, memo: dict[int, object]) -> Spline:
-        return self
 
     @property
     def end(self) -> int:

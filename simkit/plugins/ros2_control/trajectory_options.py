@@ -11,6 +11,7 @@ from simkit.params import Params
 from simkit.plugins.ros2_control.joint_pids import JointPids
 from simkit.plugins.ros2_control.trajectory import Spline
 from simkit.plugins.ros2_control.trajectory_goals import Tolerances
+from simkit.plugins.shared_by_copies import SharedByCopies
 from simkit.pose import Vector
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 _GAINS: Final = {"p": "p", "i": "i", "d": "d", "ff_velocity_scale": "feedforward"}
 
 
-class LiveTolerances:
+class LiveTolerances(SharedByCopies):
     """The `constraints` of a controller's joints, as they are at the moment; a handle on its parameters."""
 
     def __init__(self, controller: Controller, joints: tuple[str, ...]) -> None:
@@ -32,16 +33,13 @@ class LiveTolerances:
         self._path = [live(f"{joint}.trajectory", 0.0, "off its way at most [rad or m]") for joint in joints]
         self._goal = [live(f"{joint}.goal", 0.0, "off its goal at most [rad or m]") for joint in joints]
 
-    def __deepcopy__(self, memo: dict[int, object]) -> LiveTolerances:
-        return self
-
     def tolerances(self) -> Tolerances:
         """Those of a goal that has none of its own."""
         path, goal = [p.value for p in self._path], [p.value for p in self._goal]
         return Tolerances.of(path, goal, self._stopped.value, self._goal_time.value)
 
 
-class StopRule:
+class StopRule(SharedByCopies):
     """Rule by which joints are brought to rest where a trajectory is aborted.
 
     Attributes:
@@ -57,9 +55,6 @@ class StopRule:
         wanted = np.array([block.number("max_deceleration_on_cancel", 0.0, minimum=0.0) for block in blocks])
         self.decelerations = wanted if slows_down else wanted * 0.0
         self.duration = params.number("stop_trajectory_duration", 0.0, minimum=0.0)
-
-    def __deepcopy__(self, memo: dict[int, object]) -> StopRule:
-        return self
 
     def spline(self, state: Vector, *, has_velocity: bool) -> Spline:
         """The way from a state, shape (3, n), to rest.

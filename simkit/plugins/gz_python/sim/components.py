@@ -19,6 +19,7 @@ from simkit.plugins.gz_python.sim.model import Model as _Model
 from simkit.plugins.gz_python.sim.sensors_lights_actors import Sensor as _Sensor
 from simkit.plugins.gz_python.sim.world import World as _World
 from simkit.plugins.gz_python.sim.world import world_pose
+from simkit.plugins.shared_by_copies import SharedByCopies
 
 
 class ComponentState(IntEnum):
@@ -29,7 +30,7 @@ class ComponentState(IntEnum):
     OneTimeChange = 2
 
 
-class ComponentProxy:
+class ComponentProxy(SharedByCopies):
     """Stands for a kind of component.
 
     Attributes:
@@ -47,9 +48,6 @@ class ComponentProxy:
 
     def __hash__(self) -> int:
         return hash(self.name)
-
-    def __deepcopy__(self, memo: dict[int, object]) -> ComponentProxy:
-        return self
 
     def __repr__(self) -> str:
         return f"<gz.sim.components.{self.name}>"

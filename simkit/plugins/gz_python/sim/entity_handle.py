@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, ClassVar, NoReturn, TypeVar
+from typing import ClassVar, NoReturn, TypeVar
 
 from simkit.plugins.gz_python.math.missing_names import missing_name_error
-from simkit.plugins.gz_python.sim.entity_table import K_NULL_ENTITY, EntityRecord, Handle
+from simkit.plugins.gz_python.sim.entity_table import K_NULL_ENTITY, EntityRecord, Handle, SceneObject
 from simkit.plugins.gz_python.sim.entity_view import EntityView
 
 E = TypeVar("E", bound="EntityHandle")
@@ -46,7 +46,7 @@ class EntityHandle:
     def _handle(self, ecm: EntityView) -> Handle:
         return ecm.handle(self._entity, self.KIND)
 
-    def _scene(self, ecm: EntityView) -> Any:
+    def _scene(self, ecm: EntityView) -> SceneObject:
         """What the file says of it; None where it is not there."""
         record = self._record(ecm)
         return record.scene if record is not None else None

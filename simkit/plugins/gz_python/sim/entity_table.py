@@ -22,6 +22,8 @@ FIRST_ENTITY: Final = 4
 
 # simkit's handle of a model, link, joint, light, sensor, ...: of the class that is simulated under a kind.
 Handle = Any
+# The scene's dataclass of the kind: a SceneModel, SceneLink, SceneJoint, ...
+SceneObject = Any
 
 
 @dataclass(slots=True)
@@ -39,7 +41,7 @@ class EntityRecord:
     entity: int
     kind: str
     name: str
-    scene: Any  # the scene's dataclass of the kind
+    scene: SceneObject
     parent: int
     children: list[int] = field(default_factory=list)
     handle: Handle = None
@@ -79,7 +81,7 @@ class EntityTable:
             self._add("light", light, WORLD_ENTITY)
         self.records.update((record.entity, record) for record in own)
 
-    def _add(self, kind: str, scene: Any, parent: int) -> int:
+    def _add(self, kind: str, scene: SceneObject, parent: int) -> int:
         key = (kind, id(scene))
         if key not in self.numbers:
             self.numbers[key] = (self.next, scene)

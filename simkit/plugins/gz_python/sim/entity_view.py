@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 from simkit.plugins.gz_python.sim.entity_table import EntityRecord, EntityTable, Handle
 from simkit.plugins.gz_python.sim.physics_commands import PhysicsCommands
+from simkit.plugins.shared_by_copies import SharedByCopies
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation, WorldStructure
 
 
-class EntityView:
+class EntityView(SharedByCopies):
     """Entities of a simulation by number; without a simulation it holds only entities and data made by hand.
 
     Args:
@@ -133,6 +134,3 @@ class EntityView:
         self.commands, self.checks = state["commands"].copy(), dict(state["checks"])
         self.values, self.custom = copy.deepcopy(state["values"]), copy.deepcopy(state["custom"])
         self._structure = None
-
-    def __deepcopy__(self, memo: dict[int, object]) -> EntityView:
-        return self

@@ -10,12 +10,9 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from simkit.plugins.gz_python.math.axis_aligned_box import AxisAlignedBox
-from simkit.plugins.gz_python.math.inertia import Inertiald, MassMatrix3d
-from simkit.plugins.gz_python.math.matrices import Matrix3d
-from simkit.plugins.gz_python.math.pose import Pose3d
+from simkit.plugins.gz_python.math import AxisAlignedBox, Inertiald, MassMatrix3d, Matrix3d, Pose3d, Vector3d
 from simkit.plugins.gz_python.math.simkit_conversion import cross_product, gz_pose, gz_vector, three_numbers
-from simkit.plugins.gz_python.math.vectors import Vector3d, VectorLike
+from simkit.plugins.gz_python.math.vectors import VectorLike
 from simkit.plugins.gz_python.sim.entity_handle import child_methods
 from simkit.plugins.gz_python.sim.entity_view import EntityView
 from simkit.plugins.gz_python.sim.model import PartOfModel

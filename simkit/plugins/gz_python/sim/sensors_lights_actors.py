@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from datetime import timedelta
 from typing import Any, TypeVar
 
-from simkit.plugins.gz_python.math.angle import Angle
-from simkit.plugins.gz_python.math.color import Color
-from simkit.plugins.gz_python.math.pose import Pose3d
+from simkit.plugins.gz_python.math import Angle, Color, Pose3d, Vector3d
 from simkit.plugins.gz_python.math.simkit_conversion import PoseLike, gz_pose, gz_vector, simkit_pose
-from simkit.plugins.gz_python.math.vectors import Vector3d, VectorLike
+from simkit.plugins.gz_python.math.vectors import VectorLike
 from simkit.plugins.gz_python.sim.entity_handle import EntityHandle
 from simkit.plugins.gz_python.sim.entity_view import EntityView
 
@@ -115,29 +114,23 @@ class Light(EntityHandle):
 
     def type(self, ecm: EntityView) -> str | None:
         """point, directional or spot."""
-        kind: str | None = self._read(ecm, "type")
-        return kind
+        return self._read(ecm, "type", str)
 
     def diffuse_color(self, ecm: EntityView) -> Color | None:
-        colour = self._read(ecm, "diffuse")
-        return Color(*colour) if colour is not None else None
+        return self._read(ecm, "diffuse", lambda rgba: Color(*rgba))
 
     def specular_color(self, ecm: EntityView) -> Color | None:
-        colour = self._read(ecm, "specular")
-        return Color(*colour) if colour is not None else None
+        return self._read(ecm, "specular", lambda rgba: Color(*rgba))
 
     def cast_shadows(self, ecm: EntityView) -> bool | None:
-        casts: bool | None = self._read(ecm, "cast_shadows")
-        return casts
+        return self._read(ecm, "cast_shadows", bool)
 
     def intensity(self, ecm: EntityView) -> float | None:
-        intensity: float | None = self._read(ecm, "intensity")
-        return intensity
+        return self._read(ecm, "intensity", float)
 
     def direction(self, ecm: EntityView) -> Vector3d | None:
         """A unit vector in the light's own frame."""
-        direction = self._read(ecm, "direction")
-        return gz_vector(direction) if direction is not None else None
+        return self._read(ecm, "direction", gz_vector)
 
     def attenuation_range(self, ecm: EntityView) -> float | None:
         """[m]"""
@@ -155,12 +148,10 @@ class Light(EntityHandle):
         return self._part(ecm, "attenuation", 3)
 
     def spot_inner_angle(self, ecm: EntityView) -> Angle | None:
-        angle = self._part(ecm, "spot", 0)
-        return Angle(angle) if angle is not None else None
+        return self._read(ecm, "spot", lambda spot: Angle(spot[0]))
 
     def spot_outer_angle(self, ecm: EntityView) -> Angle | None:
-        angle = self._part(ecm, "spot", 1)
-        return Angle(angle) if angle is not None else None
+        return self._read(ecm, "spot", lambda spot: Angle(spot[1]))
 
     def spot_falloff(self, ecm: EntityView) -> float | None:
         return self._part(ecm, "spot", 2)
@@ -214,14 +205,13 @@ class Light(EntityHandle):
 
     # ------------------------------------------------------------------ inside
 
-    def _read(self, ecm: EntityView, name: str) -> Any:
+    def _read(self, ecm: EntityView, name: str, convert: Callable[[Any], T]) -> T | None:
         """Return a property as it is now, or as in the file where the light is not simulated."""
         scene, light = self._scene(ecm), self._handle(ecm)
-        return getattr(light.scene if light is not None else scene, name) if scene is not None else None
+        return convert(getattr(light.scene if light is not None else scene, name)) if scene is not None else None
 
     def _part(self, ecm: EntityView, name: str, index: int) -> float | None:
-        values = self._read(ecm, name)
-        return float(values[index]) if values is not None else None
+        return self._read(ecm, name, lambda values: float(values[index]))
 
     def _change(self, ecm: EntityView, **fields: object) -> None:
         light = self._handle(ecm)
@@ -229,7 +219,7 @@ class Light(EntityHandle):
             light.change(replace(light.scene, **fields))
 
     def _change_part(self, ecm: EntityView, name: str, index: int, value: float) -> None:
-        values = self._read(ecm, name)
+        values = self._read(ecm, name, tuple)
         if values is not None:
             changed = tuple(float(value) if i == index else v for i, v in enumerate(values))
             self._change(ecm, **{name: changed})

@@ -6,6 +6,7 @@ from datetime import timedelta
 from typing import TYPE_CHECKING, Any, Protocol
 
 from simkit.plugins.gz_python.sim.entity_component_manager import manager_of
+from simkit.plugins.shared_by_copies import SharedByCopies
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation, WorldStructure
@@ -83,7 +84,7 @@ def systems_of(sim: Simulation) -> list[SystemPlugin]:
     return [p for p in plugins if getattr(p, "is_gz_system", False) and not sim.engine.faults.is_disabled(p)]
 
 
-class SystemHub:
+class SystemHub(SharedByCopies):
     """State that the systems of one simulation share.
 
     Attributes:
@@ -121,9 +122,6 @@ class SystemHub:
         """Puts the commands of all systems into effect."""
         if not self.ecm.commands.is_empty:
             self.ecm.commands.carry_out(self._sim, self.ecm.handle)
-
-    def __deepcopy__(self, memo: dict[int, object]) -> SystemHub:
-        return self
 
 
 def hub_of(sim: Simulation) -> SystemHub:

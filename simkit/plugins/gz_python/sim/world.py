@@ -5,11 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from simkit.plugins.gz_python.math.angle import Angle
-from simkit.plugins.gz_python.math.pose import Pose3d
+from simkit.plugins.gz_python.math import Angle, Pose3d, SphericalCoordinates, Vector3d
 from simkit.plugins.gz_python.math.simkit_conversion import gz_pose, gz_vector
-from simkit.plugins.gz_python.math.spherical_coordinates import SphericalCoordinates, Surface
-from simkit.plugins.gz_python.math.vectors import Vector3d
+from simkit.plugins.gz_python.math.spherical_coordinates import Surface
 from simkit.plugins.gz_python.sdformat import Atmosphere
 from simkit.plugins.gz_python.sim.entity_handle import EntityHandle, child_methods
 from simkit.plugins.gz_python.sim.entity_table import K_NULL_ENTITY, WORLD_ENTITY

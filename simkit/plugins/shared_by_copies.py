@@ -1,0 +1,16 @@
+"""Objects that a deep copy, such as a snapshot's, shares instead of copying."""
+
+from __future__ import annotations
+
+from typing import TypeVar
+
+T = TypeVar("T")
+
+
+class SharedByCopies:
+    """Base of handles of a simulation and of values that never change: a deep copy keeps the object itself."""
+
+    __slots__ = ()
+
+    def __deepcopy__(self: T, memo: dict[int, object]) -> T:
+        return self
