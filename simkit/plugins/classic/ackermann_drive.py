@@ -17,8 +17,7 @@ from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.drives.drive_outputs import DriveOutputOptions, DriveOutputs
 from simkit.plugins.drives.odometry import COMMAND_TYPES, TrueMotion, command_of
-from simkit.plugins.drives.steering import find_drive_joint, steering_angles
-from simkit.plugins.drives.wheel_joints import find_wheels
+from simkit.plugins.drives.wheel_joints import find_drive_joint, find_wheels, steering_angles
 from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.joints.joint_axis import JointAxis
 from simkit.plugins.joints.pid import Pid

@@ -24,8 +24,7 @@ from simkit.plugins.drives.odometry import (
     rolling_twist,
     wheel_angles,
 )
-from simkit.plugins.drives.steering import find_drive_joint
-from simkit.plugins.drives.wheel_joints import find_wheels
+from simkit.plugins.drives.wheel_joints import find_drive_joint, find_wheels
 from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, boolean, choice, integer, number, text

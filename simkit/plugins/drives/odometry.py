@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import abc
 import copy
 import functools
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -23,6 +25,12 @@ COMMAND_TYPES = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
 UNKNOWN = 1e12  # variance of what a planar base does not measure, as Gazebo writes it
 MEAN_STEPS = 10  # of the mean of a twist, as Gazebo's
 LONGEST = 1000  # steps that angles are kept of
+
+Angles = tuple[float, ...]
+"""Of joints [rad]."""
+
+Motion = tuple[float, float, float]
+"""How far ahead [m], to the left [m] and round [rad] a base has gone, in its own axes."""
 
 
 @dataclass(slots=True)
@@ -77,77 +85,114 @@ def rolling_twist(wheels: Sequence[Joint], radius: float, separation: float) -> 
     return BodyTwist(((left + right) / 2, 0.0, 0.0), (0.0, 0.0, (right - left) / separation))
 
 
-class WheelOdometry:
-    """Odometry of two wheels from their angles at the end of every step, as gz-math's `DiffDriveOdometry` has it.
+class TravelOdometry(abc.ABC):
+    """Odometry from what the joints of a base say at the end of every step.
 
-    At a step angles are only noted; what they say is worked out when it is asked for. The way is a chain of arcs of at
-    most ten steps each, the twist the mean over the last ten steps (or as many as there were).
+    Angles are only noted at a step; what they say is worked out when it is asked for. The twist is the mean over the
+    last ten steps, or as many as there were, as Gazebo has it for most bases.
+
+    Attributes:
+        stride: how many steps are taken for one arc.
+        mean_steps: how many steps the twist is the mean over.
+        reckoning: where the base was on the plane at the last `reckon`; it begins at zero.
+        twist: over the last steps before that, in the base's axes.
+    """
+
+    stride = MEAN_STEPS
+    mean_steps = MEAN_STEPS
+
+    def __init__(self, step: float) -> None:
+        self._step = step
+        self.reckoning, self.twist = DeadReckoning(), BodyTwist()
+        self._at: Angles | None = None  # angles that the way is reckoned up to
+        self._noted: list[Angles] = []  # one a step
+        self._recent: list[Angles] = []  # the last ones that the way is reckoned of
+
+    @abc.abstractmethod
+    def motion(self, before: Angles, after: Angles) -> Motion:
+        """What a change of angles [rad] says; it is additive along an arc."""
+
+    def note(self, angles: Angles) -> None:
+        """Before every step."""
+        if len(self._noted) >= LONGEST:
+            self._roll(angles)
+        self._noted.append(angles)
+
+    def reckon(self, angles: Angles) -> None:
+        """After a step: brings `reckoning` and `twist` up to it."""
+        self._roll(angles)
+        elapsed = len(self._recent) * self._step
+        ahead, left, turn = (total / elapsed for total in self._total_motion(angles))
+        self.twist = BodyTwist((ahead, left, 0.0), (0.0, 0.0, turn))
+
+    def _total_motion(self, angles: Angles) -> Motion:
+        """How far it went in the last steps, up to these angles."""
+        ahead = left = turn = 0.0
+        for before, after in pairwise([*self._recent, angles]):
+            more = self.motion(before, after)
+            ahead, left, turn = ahead + more[0], left + more[1], turn + more[2]
+        return ahead, left, turn
+
+    def _roll(self, angles: Angles) -> None:
+        """Along all that was noted, and on to these angles."""
+        noted = self._noted
+        last = self._at if self._at is not None else (noted or [angles])[0]
+        for point in (*noted[self.stride :: self.stride], angles):
+            self.reckoning.go(*self.motion(last, point))
+            last = point
+        self._at = angles
+        self._recent = [*self._recent, *noted][-self.mean_steps :] or [angles]
+        self._noted = []
+
+
+class WheelOdometry(TravelOdometry):
+    """Odometry from the angles of the left and the right wheel, as gz-math's `DiffDriveOdometry` has it.
 
     Args:
         radius, separation: of the wheels [m].
         step: from one noting to the next [s].
 
     Attributes:
-        reckoning: where the point between the wheels was at the last `reckon`; it begins at zero.
-        twist: over the last ten steps before that, in the body's axes.
         noter: notes for it what is still to be noted, where somebody does that for many (see `DriveFleet`).
     """
 
     noter: Callable[[], None] | None = None
 
     def __init__(self, radius: float, separation: float, step: float) -> None:
-        self._radius, self._separation, self._step = radius, separation, step
-        self.reckoning, self.twist = DeadReckoning(), BodyTwist()
-        self._at: tuple[float, float] | None = None  # angles that the way is reckoned up to
-        self._noted: list[tuple[float, float]] = []  # angles of the left and the right wheel [rad], one a step
-        self._recent: list[tuple[float, float]] = []  # the last ten that the way is reckoned of
+        super().__init__(step)
+        self._radius, self._separation = radius, separation
 
-    def note(self, angles: tuple[float, float]) -> None:
-        """Before every step: angles of the left and the right wheel [rad]."""
+    def motion(self, before: Angles, after: Angles) -> Motion:
+        """Along the arc that both wheels roll."""
+        left, right = ((new - old) * self._radius for new, old in zip(after, before, strict=True))
+        return (left + right) / 2, 0.0, (right - left) / self._separation
+
+    def note(self, angles: Angles) -> None:
+        """Before every step."""
         self.catch_up()
-        self._note(angles)
+        super().note(angles)
 
-    def _note(self, angles: tuple[float, float]) -> None:
-        if len(self._noted) >= LONGEST:
-            self._roll(angles)
-        self._noted.append(angles)
+    def _total_motion(self, angles: Angles) -> Motion:
+        return self.motion(self._recent[0], angles)
 
-    def reckon(self, angles: tuple[float, float]) -> None:
-        """After a step: brings `reckoning` and `twist` up to it."""
-        self._roll(angles)
-        (left, right), count = self._recent[0], len(self._recent)
-        left, right = ((new - old) * self._radius for new, old in zip(angles, (left, right), strict=True))
-        elapsed = count * self._step
-        ahead, turn = (left + right) / 2 / elapsed, (right - left) / self._separation / elapsed
-        self.twist = BodyTwist((ahead, 0.0, 0.0), (0.0, 0.0, turn))
-
-    def _roll(self, angles: tuple[float, float]) -> None:
-        """Along all that was noted, and on to these angles."""
+    def _roll(self, angles: Angles) -> None:
         self.catch_up()
-        noted = self._noted
-        last = self._at if self._at is not None else (noted or [angles])[0]
-        for point in (*noted[MEAN_STEPS::MEAN_STEPS], angles):
-            left, right = ((new - old) * self._radius for new, old in zip(point, last, strict=True))
-            self.reckoning.advance(left, right, self._separation)
-            last = point
-        self._at = angles
-        self._recent = [*self._recent, *noted][-MEAN_STEPS:] or [angles]
-        self._noted = []
+        super()._roll(angles)
 
     def catch_up(self) -> None:
         """Has noted what others have seen for it."""
         if self.noter is not None:
             self.noter()
 
-    def note_all(self, angles: Sequence[tuple[float, float]]) -> None:
+    def note_all(self, angles: Sequence[Angles]) -> None:
         """Those of several steps."""
         if len(self._noted) + len(angles) <= LONGEST:
             self._noted += angles
             return
         for one in angles:
-            self._note(one)
+            super().note(one)
 
-    def take(self, at: tuple[float, float], recent: Sequence[tuple[float, float]], twist: tuple[float, float]) -> None:
+    def take(self, at: Angles, recent: Sequence[Angles], twist: tuple[float, float]) -> None:
         """What others have reckoned for it: up to which angles, those of the steps before, speed ahead and turning."""
         self._at, self._recent = at, list(recent)
         self.twist = BodyTwist((twist[0], 0.0, 0.0), (0.0, 0.0, twist[1]))
@@ -165,6 +210,12 @@ def wheel_angles(left: Joint, right: Joint) -> tuple[float, float]:
     """Of two joints with one axis [rad]: cheaper than their positions, for every step."""
     qpos = left._physics.data.qpos
     return qpos.item(left._one_qpos), qpos.item(right._one_qpos)
+
+
+def joint_angles(joints: Sequence[Joint]) -> Angles:
+    """The same of more joints."""
+    qpos: Vector = joints[0]._physics.data.qpos
+    return tuple(qpos.item(joint._one_qpos) for joint in joints)
 
 
 def command_of(message: Any) -> tuple[float, float] | None:

@@ -1,18 +1,13 @@
-"""Find the joints that a drive turns as wheels."""
+"""Find the joints that a drive turns as wheels or steers, and the angles of steered wheels."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
 
 from simkit.params import Params
 from simkit.plugins.find_entities import find_axis_joint
 from simkit.scene import SceneJoint, SceneModel
-
-if TYPE_CHECKING:
-    from simkit.compiler import SpecBuilder
-    from simkit.compiler.name_map import ActuatorRef
 
 _CONTINUOUS_TYPES = 1e6  # [rad]; files write 1e16 and the like for a wheel that turns for ever
 
@@ -45,14 +40,26 @@ def find_wheels(scene: SceneModel, sides: Mapping[str, Sequence[str]], params: P
     return found
 
 
-def add_wheel_servos(
-    builder: SpecBuilder, wheels: Mapping[str, Sequence[SceneJoint]], owner: str
-) -> list[list[ActuatorRef]]:
-    """A velocity servo, as strong as its joint, for each wheel of each side."""
-    return [
-        [builder.add_velocity_servo(joint.scoped, max_effort=joint.axes[0].effort, owner=owner) for joint in joints]
-        for joints in wheels.values()
-    ]
+def find_drive_joint(scene: SceneModel, name: str, what: str, params: Params) -> SceneJoint | None:
+    """A joint that is to be steered or turned; None after an error."""
+    joint = find_axis_joint(scene, name, params)
+    if joint is not None and joint.type == "prismatic":
+        message = f"joint {name!r} is prismatic, it does not turn; a {what}'s is revolute or continuous"
+        params.error("SK-PLUGIN-051", message)
+        return None
+    return joint
+
+
+def steering_angles(slope: float, base: float, width: float) -> tuple[float, float]:
+    """Angles of the left and right steered wheel, so that all wheels turn round one point [rad].
+
+    Args:
+        slope: tangent of the angle of a wheel in the middle; left is positive.
+        base: between the axles [m].
+        width: between the steered wheels' pivots [m].
+    """
+    half = width / 2 * slope
+    return math.atan2(base * slope, base - half), math.atan2(base * slope, base + half)
 
 
 def _report_position_limits(joint: SceneJoint, params: Params) -> None:

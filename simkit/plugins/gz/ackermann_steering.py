@@ -3,36 +3,59 @@
 from __future__ import annotations
 
 import math
-from functools import partial
 from typing import TYPE_CHECKING
 
 from simkit.params import Params
-from simkit.plugins.base import NEVER, ModelPlugin
+from simkit.plugins.base import NEVER
 from simkit.plugins.drives.odometry import (
     COMMAND_TYPES,
     ODOMETRY,
     TRANSFORMS,
-    command_of,
-    odometry_message,
-    transforms,
+    Angles,
+    Motion,
+    TravelOdometry,
+    joint_angles,
 )
-from simkit.plugins.drives.speed_limits import SpeedLimitOptions, limit_each, speed_limits
-from simkit.plugins.drives.steering import AckermannOdometry, find_drive_joint, joint_angles, steering_angles
-from simkit.plugins.drives.wheel_joints import add_wheel_servos, find_wheels
+from simkit.plugins.drives.speed_limits import SpeedLimitOptions, speed_limits
+from simkit.plugins.drives.twist_drive import TwistDrive
+from simkit.plugins.drives.wheel_joints import find_drive_joint, steering_angles
 from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.find_entities import read_topic
-from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import OptionsOf, boolean, integer, number, text, texts
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.compiler.name_map import ActuatorRef
-    from simkit.msgs import Actuators, Float32, Float64, Twist, TwistStamped
+    from simkit.msgs import Actuators, Float32, Float64
     from simkit.runtime import Model
     from simkit.scene import SceneModel
 
 _STRAIGHT = 1e-3  # rate of turning [rad/s] below which gz drives straight on
 _SIDES = ("left", "right")
+
+
+class AckermannOdometry(TravelOdometry):
+    """Of the mean of two wheels' turns and of two wheels' steering, in the middle of the unsteered axle.
+
+    Values noted are angles of the left and right wheel and of the left and right steering. The twist is that of the
+    last step, as Gazebo's.
+
+    Args:
+        radius: of the wheels [m].
+        base: between the axles [m].
+        step: from one noting to the next [s].
+    """
+
+    stride = mean_steps = 1
+
+    def __init__(self, radius: float, base: float, step: float) -> None:
+        super().__init__(step)
+        self._radius, self._base = radius, base
+
+    def motion(self, before: Angles, after: Angles) -> Motion:
+        """Along the arc that the steering says."""
+        ahead = self._radius * ((after[0] - before[0]) + (after[1] - before[1])) / 2
+        return ahead, 0.0, ahead * math.tan((after[2] + after[3]) / 2) / self._base
 
 
 class AckermannSteeringOptions(SpeedLimitOptions):
@@ -62,7 +85,7 @@ class AckermannSteeringOptions(SpeedLimitOptions):
     tf_topic: str = text()
 
 
-class AckermannSteering(ModelPlugin):
+class AckermannSteering(TwistDrive):
     """Steers two front wheels and drives wheels behind them (or all) from `/model/<model>/cmd_vel`.
 
     With `<steering_only>` it steers alone, by an angle on `/model/<model>/steer_angle`, or with `<use_actuator_msg>` by
@@ -79,7 +102,6 @@ class AckermannSteering(ModelPlugin):
     )
     options = OptionsOf(AckermannSteeringOptions)
     filenames = ("gz-sim-ackermann-steering-system",)
-    drives = True
     names = ("gz::sim::systems::AckermannSteering",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
@@ -87,19 +109,17 @@ class AckermannSteering(ModelPlugin):
         self._base = self.options.wheel_base
         self._separation = self.options.wheel_separation
         self._limit = self.options.steering_limit
-        self._limits = speed_limits(self.options)
+        self._limiters = speed_limits(self.options)
         self._canonical = scene.canonical_link
         self._steering = [self._prepare_steering(f"{side}_steering_joint", scene, params, builder) for side in _SIDES]
-        self._width = self._radius = 1.0
-        self._driven: list[list[str]] = [[], []]
-        self._motors: list[list[ActuatorRef]] = [[], []]
         self.after_step_rate = NEVER
         if not self._only:
             self._width = self.options.kingpin_width
             self._radius = self.options.wheel_radius
             # gz publishes at every step where the frequency is zero
             self.after_step_rate = self.options.odom_publish_frequency
-            self._prepare_wheels(scene, params, builder)
+            named = {"left wheel": self.options.left_joint, "right wheel": self.options.right_joint}
+            self.add_wheels(scene, builder, named)
 
     def _prepare_steering(
         self, element: str, scene: SceneModel, params: Params, builder: SpecBuilder
@@ -115,34 +135,20 @@ class AckermannSteering(ModelPlugin):
             for j in joints
         ]
 
-    def _prepare_wheels(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        named = {"left wheel": self.options.left_joint, "right wheel": self.options.right_joint}
-        wheels = find_wheels(scene, named, params)
-        self._driven = [[joint.scoped for joint in joints] for joints in wheels.values()]
-        self._motors = add_wheel_servos(builder, wheels, self.name)
-
     def load(self, parent: Model, params: Params) -> None:
-        self.once = OneTimeWarnings(self)
+        self.start()
         what = "speed of the steering per error of its angle [1/s]"
         self._gain = self.declare("steer_p_gain", 1.0, minimum=0.0, maximum=1e6, description=what)
         self._read_rest_of_gains(params)
-        self._target: tuple[float, float] = (0.0, 0.0)  # speed ahead, and rate of turning or angle
-        self._last: tuple[float, float] = (0.0, 0.0)
-        self._before_last: tuple[float, float] = (0.0, 0.0)
         self._rims = [0.0, 0.0]
         self._turners = [self.sim.joint(joints[0][0]) for joints in self._steering]
         self._turns = [0.0, 0.0]
         self._listen(parent.name, params)
         if self._only:
             return
-        self._wheels = [self.sim.joint(joints[0]) for joints in self._driven]
+        self._wheels = [self.sim.joint(joints[0]) for joints in self._joint_names]
         self._odometry = AckermannOdometry(self._radius, self._base, self.period)
-        link = self._canonical.rsplit("::", 1)[-1]
-        self._frame = params.text("frame_id", f"{parent.name}/odom")
-        self._child = params.text("child_frame_id", f"{parent.name}/{link}")
-        topic = read_topic(params, "odom_topic", f"/model/{parent.name}/odometry")
-        self._odom = self.advertise(topic, ODOMETRY)
-        self._tf = self.advertise(read_topic(params, "tf_topic", f"/model/{parent.name}/tf"), TRANSFORMS)
+        self.open_odometry(parent, params)
 
     def _read_rest_of_gains(self, params: Params) -> None:
         """Of gz's controller, which begins anew at every step: i and d are further proportional parts."""
@@ -162,20 +168,13 @@ class AckermannSteering(ModelPlugin):
             topic = f"/model/{model}{read_topic(params, 'sub_topic', '')}"
         topic = read_topic(params, "topic", topic)
         if not self._only:
-            self.listen(topic, COMMAND_TYPES, self._on_command)
+            self.listen(topic, COMMAND_TYPES, self.on_twist)
         elif by_message:
             self.listen(topic, "actuator_msgs/msg/Actuators", self._on_actuators)
         else:
             self.listen(topic, ("std_msgs/msg/Float64", "std_msgs/msg/Float32"), self._on_angle)
 
     # ------------------------------------------------------------------ commands
-
-    def _on_command(self, message: Twist | TwistStamped) -> None:
-        command = command_of(message)
-        if command is None:
-            self.once.not_finite()
-        else:
-            self._target = command
 
     def _on_angle(self, message: Float64 | Float32) -> None:
         self._steer(float(message.data))
@@ -189,7 +188,7 @@ class AckermannSteering(ModelPlugin):
 
     def _steer(self, angle: float) -> None:
         if math.isfinite(angle):
-            self._target = (0.0, angle)
+            self.aim((0.0, angle))
         else:
             self.once.not_finite()
 
@@ -197,15 +196,15 @@ class AckermannSteering(ModelPlugin):
         """Takes the limited command one step further, and turns wheels and steering."""
         if not self._only:
             self._odometry.note(joint_angles((*self._wheels, *self._turners)))
-        forward, turn = limit_each(self._limits, self._target, self._last, self._before_last, self.period)
-        if self._only:
+        forward, turn = self.next_speeds()
+        if self._only:  # then the second is the angle
             turn = max(-self._limit, min(self._limit, turn))
+            self._last = (forward, turn)
             angles = steering_angles(math.tan(turn), self._base, self._separation)
         else:
             slope = self._slope_of(forward, turn)
             angles = steering_angles(slope, self._base, self._width)
             self._drive(forward, slope)
-        self._before_last, self._last = self._last, (forward, turn)
         for side, (joint, angle) in enumerate(zip(self._turners, angles, strict=True)):
             speed = self._correction(joint_angles((joint,))[0] - angle)
             if speed != self._turns[side]:
@@ -231,7 +230,7 @@ class AckermannSteering(ModelPlugin):
             rim = forward * part
             if rim != self._rims[side]:
                 self._rims[side] = rim
-                for motor in self._motors[side]:
+                for motor in self._servos[side]:
                     self.sim.engine.set_control(motor, rim / self._radius)
 
     def _correction(self, error: float) -> float:
@@ -250,10 +249,5 @@ class AckermannSteering(ModelPlugin):
         """Odometry and its transform."""
         if self._only:
             return
-        now, odometry = self.sim.time_ns, self._odometry
-        odometry.reckon(joint_angles((*self._wheels, *self._turners)))
-        pose = odometry.pose
-        if self._odom.wanted:
-            self._odom.publish_later(partial(odometry_message, now, self._frame, self._child, pose, odometry.twist))
-        if self._tf.wanted:
-            self._tf.publish_later(partial(transforms, now, (self._frame, self._child, pose)))
+        self._odometry.reckon(joint_angles((*self._wheels, *self._turners)))
+        self.publish_odometry(self._odometry.reckoning.pose, self._odometry.twist)

@@ -5,32 +5,25 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
-from simkit.plugins.base import ModelPlugin
 from simkit.plugins.drives.odometry import (
-    COMMAND_TYPES,
     LONGEST,
     MEAN_STEPS,
     ODOMETRY,
-    TRANSFORMS,
     TrueMotion,
     WheelOdometry,
-    command_of,
     message_types,
     odometry_message,
-    transforms,
     wheel_angles,
 )
 from simkit.plugins.drives.odometry_noise import NoisyOdometry, OdometryNoiseOptions, odometry_noise
-from simkit.plugins.drives.speed_limits import SpeedLimitOptions, limit_each, speed_limits
-from simkit.plugins.drives.wheel_joints import add_wheel_servos, find_wheels
-from simkit.plugins.find_entities import read_topic
-from simkit.plugins.one_time_warnings import OneTimeWarnings
+from simkit.plugins.drives.speed_limits import SpeedLimitOptions, speed_limits
+from simkit.plugins.drives.twist_drive import Speeds, TwistDrive
 from simkit.plugins.options import OptionsOf, block, boolean, number, text, texts
 from simkit.pose import Vector
 
@@ -38,7 +31,7 @@ _NS = 1_000_000_000
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
-    from simkit.msgs import Bool, Odometry, TFMessage, Twist, TwistStamped
+    from simkit.msgs import Bool, Odometry, TFMessage
     from simkit.runtime import Model
     from simkit.scene import SceneModel
 
@@ -58,7 +51,7 @@ class DiffDriveOptions(SpeedLimitOptions):
     publish_ground_truth: bool = boolean()
 
 
-class DiffDrive(ModelPlugin):
+class DiffDrive(TwistDrive):
     """Drives the wheels from `/model/<model>/cmd_vel`; odometry by the wheels' turns on `/model/<model>/odometry`.
 
     Odometry is that of the first pair of wheels. It starts at zero, in the point between them; its twist is the mean
@@ -69,32 +62,22 @@ class DiffDrive(ModelPlugin):
 
     options = OptionsOf(DiffDriveOptions)
     filenames = ("gz-sim-diff-drive-system",)
-    drives = True
     names = ("gz::sim::systems::DiffDrive",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         self._separation = self.options.wheel_separation
         self._radius = self.options.wheel_radius
-        self._limits = speed_limits(self.options)
+        self._limiters = speed_limits(self.options)
         self._canonical = scene.canonical_link
         # gz publishes at every step where the frequency is zero
         self.after_step_rate = self.options.odom_publish_frequency
         sides = {"left wheel": self.options.left_joint, "right wheel": self.options.right_joint}
-        wheels = find_wheels(scene, sides, params)
-        self._sides = [[joint.scoped for joint in joints] for joints in wheels.values()]
-        self._servos = add_wheel_servos(builder, wheels, self.name)
+        self.add_wheels(scene, builder, sides)
 
     def load(self, parent: Model, params: Params) -> None:
-        self.once = OneTimeWarnings(self)
-        model = parent.name
-        link = self._canonical.rsplit("::", 1)[-1]
-        self._frame = params.text("frame_id", f"{model}/odom")
-        self._child = params.text("child_frame_id", f"{model}/{link}")
-        self._pair = (self.sim.joint(self._sides[0][0]), self.sim.joint(self._sides[1][0]))
+        self.start()
+        self._pair = (self.sim.joint(self._joint_names[0][0]), self.sim.joint(self._joint_names[1][0]))
         self._true = TrueMotion(parent, self.sim.link(self._canonical))
-        self._target = (0.0, 0.0)
-        self._last, self._before_last = (0.0, 0.0), (0.0, 0.0)
-        self._settled = True
         self._enabled = True
         self._odometry = WheelOdometry(self._radius, self._separation, self.period)
         noise = odometry_noise(self.options.odometry_noise)
@@ -103,31 +86,26 @@ class DiffDrive(ModelPlugin):
             stream = self.random("odometry_noise", 2)
             self._erring = NoisyOdometry(noise, self._radius, self._separation, stream, wheel_angles(*self._pair))
         self._last_ns = self.sim.time_ns
-        self.listen(read_topic(params, "topic", f"/model/{model}/cmd_vel"), COMMAND_TYPES, self._on_command)
-        self.listen(valid_topic(f"/model/{model}/enable"), "std_msgs/msg/Bool", self._on_enable)
-        self._odom = self.advertise(read_topic(params, "odom_topic", f"/model/{model}/odometry"), ODOMETRY)
-        self._tf = self.advertise(read_topic(params, "tf_topic", f"/model/{model}/tf"), TRANSFORMS)
-        truth = self.options.publish_ground_truth
-        self._truth = self.advertise(valid_topic(f"/model/{model}/ground_truth/odom"), ODOMETRY) if truth else None
+        self.open_topics(parent, params)
+        self.listen(valid_topic(f"/model/{parent.name}/enable"), "std_msgs/msg/Bool", self._on_enable)
+        truth = valid_topic(f"/model/{parent.name}/ground_truth/odom")
+        self._truth = self.advertise(truth, ODOMETRY) if self.options.publish_ground_truth else None
 
     # ------------------------------------------------------------------ commands
 
     def speed_bounds(self, _: str) -> tuple[tuple[float, float], tuple[float, float]]:
         """Least and greatest speed ahead [m/s] and rate of turning [rad/s] that commands are held to."""
-        linear, angular = self._limits
+        linear, angular = self._limiters
         return linear.velocity, angular.velocity
 
-    def _on_command(self, message: Twist | TwistStamped) -> None:
-        command = command_of(message)
-        if command is None:
-            self.once.not_finite()
-        elif self._enabled:
-            self._target, self._settled = command, False
+    def aim(self, speeds: Speeds) -> None:
+        if self._enabled:
+            super().aim(speeds)
 
     def _on_enable(self, message: Bool) -> None:
         self._enabled = bool(message.data)
         if not self._enabled:
-            self._target, self._settled = (0.0, 0.0), False
+            super().aim((0.0, 0.0))
 
     def before_step(self) -> None:
         """Notes the wheels' angles, and takes the limited speeds one step towards the command."""
@@ -146,13 +124,9 @@ class DiffDrive(ModelPlugin):
         return fleet_of(drives).after_step
 
     def _command(self) -> None:
-        linear, angular = limit_each(self._limits, self._target, self._last, self._before_last, self.period)
-        self._settled = (linear, angular) == self._last == self._before_last
-        self._before_last, self._last = self._last, (linear, angular)
+        linear, angular = self.next_speeds()
         half = angular * self._separation / 2
-        for servos, speed in zip(self._servos, (linear - half, linear + half), strict=True):
-            for servo in servos:
-                self.sim.engine.set_control(servo, speed / self._radius)
+        self.turn_wheels((linear - half, linear + half))
 
     # ------------------------------------------------------------------ readings
 
@@ -161,17 +135,13 @@ class DiffDrive(ModelPlugin):
         now, erring, odometry = self.sim.time_ns, self._erring, self._odometry
         angles = wheel_angles(*self._pair)
         odometry.reckon(angles)
-        pose = odometry.reckoning.pose
-        told: tuple[Any, ...] = (odometry.twist,)
-        if erring is not None:
+        if erring is None:
+            self.publish_odometry(odometry.reckoning.pose, odometry.twist)
+        else:
             elapsed, self._last_ns = (now - self._last_ns) * 1e-9, now
             erring.advance(*angles, elapsed)
             covariances = erring.messages_covariance() if erring.noise.wheel_variance else ()
-            pose, told = erring.reckoning.pose, (erring.twist, *covariances)
-        if self._odom.wanted:
-            self._odom.publish_later(partial(odometry_message, now, self._frame, self._child, pose, *told))
-        if self._tf.wanted:
-            self._tf.publish_later(partial(transforms, now, (self._frame, self._child, pose)))
+            self.publish_odometry(erring.reckoning.pose, erring.twist, *covariances)
         if self._truth is not None and self._truth.wanted:
             self._truth.publish(odometry_message(now, "world", self._child, *self._true.state()))
 

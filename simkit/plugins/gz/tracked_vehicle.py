@@ -10,21 +10,14 @@ from typing import TYPE_CHECKING
 
 from simkit import msgs
 from simkit.params import Params
-from simkit.plugins.base import NEVER, ModelPlugin
-from simkit.plugins.drives.odometry import (
-    COMMAND_TYPES,
-    ODOMETRY,
-    TRANSFORMS,
-    command_of,
-    odometry_message,
-    transforms,
-)
-from simkit.plugins.drives.speed_limits import LimiterOptions, limit_each, speed_limiter
+from simkit.plugins.base import NEVER
+from simkit.plugins.drives.odometry import COMMAND_TYPES, ODOMETRY, TRANSFORMS, odometry_message, transforms
+from simkit.plugins.drives.speed_limits import LimiterOptions, speed_limiter
 from simkit.plugins.drives.tracks import TrackOdometry
+from simkit.plugins.drives.twist_drive import Speeds, TwistDrive
 from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.find_entities import find_link, find_named_link, read_topic
 from simkit.plugins.gz.track_controller import CENTRE, SPEED
-from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, OptionsOf, block, blocks, boolean, number, text
 from simkit.plugins.publish_on_demand import publish_while_subscribed, set_after_step_rate
 
@@ -74,7 +67,7 @@ class TrackedVehicleOptions(Options):
     tf_topic: str = text()
 
 
-class TrackedVehicle(ModelPlugin):
+class TrackedVehicle(TwistDrive):
     """Drives tracks, each with a `TrackController` of its own, from `/model/<model>/cmd_vel`.
 
     A track turns the vehicle by skidding, so for a rate of turning it runs faster than a wheel would: by one over
@@ -101,11 +94,10 @@ class TrackedVehicle(ModelPlugin):
     options = OptionsOf(TrackedVehicleOptions)
     filenames = ("gz-sim-tracked-vehicle-system",)
     names = ("gz::sim::systems::TrackedVehicle",)
-    drives = True
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         own = params.has("body_link")
-        self._body = find_named_link(scene, "body_link", params) if own else scene.canonical_link
+        self._canonical = find_named_link(scene, "body_link", params) if own else scene.canonical_link
         self._sides = [
             self._read_side("left_track", self.options.left_track, scene),
             self._read_side("right_track", self.options.right_track, scene),
@@ -134,37 +126,25 @@ class TrackedVehicle(ModelPlugin):
         return tracks
 
     def load(self, parent: Model, params: Params) -> None:
-        self.once = OneTimeWarnings(self)
+        self.start()
         self.after_step_rate = NEVER
-        model = parent.name
-        link = self._body.rsplit("::", 1)[-1]
-        self._frame = params.text("frame_id", f"{model}/odom")
-        self._child = params.text("child_frame_id", f"{model}/{link}")
-        self._target, self._is_new = (0.0, 0.0), False
-        self._last, self._before_last = (0.0, 0.0), (0.0, 0.0)
+        self._is_new = False
         self._odometry = TrackOdometry(self._separation, self.sim.time_ns)
         self._tracks = [
             [(self.advertise(t.velocity_topic, SPEED), self.advertise(t.centre_topic, CENTRE[0])) for t in side]
             for side in self._sides
         ]
-        own = f"/model/{model}"
-        self.listen(read_topic(params, "topic", f"{own}/cmd_vel"), COMMAND_TYPES, self._on_command)
-        efficiency = read_topic(params, "steering_efficiency_topic", f"{own}/steering_efficiency")
+        self.open_topics(parent, params)
+        efficiency = read_topic(params, "steering_efficiency_topic", f"/model/{parent.name}/steering_efficiency")
         self.listen(efficiency, SPEED, self._on_efficiency)
-        self._odom = self.advertise(read_topic(params, "odom_topic", f"{own}/odometry"), ODOMETRY)
-        self._tf = self.advertise(read_topic(params, "tf_topic", f"{own}/tf"), TRANSFORMS)
-        for publisher, method in ((self._odom, "publish_odometry"), (self._tf, "publish_transform")):
+        for publisher, method in ((self._odom, "publish_pose"), (self._tf, "publish_transform")):
             publish_while_subscribed(self, publisher, self._odometry_rate, method)
 
     # ------------------------------------------------------------------ commands
 
-    def _on_command(self, message: msgs.Twist | msgs.TwistStamped) -> None:
-        command = command_of(message)
-        if command is None:
-            self.once.not_finite()
-        else:
-            self._target = command
-            self._begin()
+    def aim(self, speeds: Speeds) -> None:
+        super().aim(speeds)
+        self._begin()
 
     def _on_efficiency(self, message: msgs.Float64) -> None:
         efficiency = float(message.data)
@@ -180,14 +160,12 @@ class TrackedVehicle(ModelPlugin):
 
     def after_step(self) -> None:
         """Takes the limited speeds one step towards the command, and tells the tracks, for the next step."""
-        speeds = limit_each(self._limiters, self._target, self._last, self._before_last, self.period)
-        changes = any(abs(now - last) > _STILL for now, last in zip(speeds, self._last, strict=True))
+        ahead, turning = self.next_speeds()
+        changes = any(abs(now - last) > _STILL for now, last in zip(self._last, self._before_last, strict=True))
         tells, self._is_new = self._is_new or changes, False
-        rests = speeds == self._last == self._before_last
-        self._before_last, self._last = self._last, (speeds[0], speeds[1])
         if tells:
-            self._tell(*self._last)
-        elif rests:
+            self._tell(ahead, turning)
+        elif self._settled:
             self.after_step_rate = NEVER
             self.sim.engine.reschedule()
 
@@ -206,14 +184,14 @@ class TrackedVehicle(ModelPlugin):
         """The point of the world that it turns round [m]; infinitely far where it drives straight."""
         if abs(turning) < _STRAIGHT:
             return math.inf, math.inf, math.inf
-        pose = self.sim.link(self._body).pose
+        pose = self.sim.link(self._canonical).pose
         radius = 0.0 if abs(ahead) < _STRAIGHT else ahead / turning
         x, y, z = (pose.position + pose.matrix[:, 1] * radius).tolist()
         return x, y, z
 
     # ------------------------------------------------------------------ readings
 
-    def publish_odometry(self) -> None:
+    def publish_pose(self) -> None:
         """Odometry of the speeds that the tracks were told."""
         now = self.sim.time_ns
         pose, twist = self._odometry.at(now)

@@ -1,0 +1,110 @@
+"""Base of gz's drives that follow a twist and tell odometry by their wheels."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from functools import partial
+from typing import TYPE_CHECKING, cast
+
+from simkit.params import Params
+from simkit.plugins.base import ModelPlugin
+from simkit.plugins.drives.odometry import COMMAND_TYPES, ODOMETRY, TRANSFORMS, BodyTwist, odometry_message, transforms
+from simkit.plugins.drives.speed_limits import SpeedLimiter, limit_each
+from simkit.plugins.drives.wheel_joints import find_wheels
+from simkit.plugins.find_entities import read_topic
+from simkit.plugins.one_time_warnings import OneTimeWarnings
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.msgs import Twist, TwistStamped
+    from simkit.pose import Pose, Vector
+    from simkit.runtime import Model
+    from simkit.scene import SceneJoint, SceneModel
+
+Speeds = tuple[float, ...]
+"""Speed ahead [m/s], perhaps to the left [m/s], and rate of turning [rad/s]."""
+
+
+class TwistDrive(ModelPlugin):
+    """Takes the speeds of the last twist, within limits, and publishes odometry and its transform."""
+
+    drives = True
+    _limiters: Sequence[SpeedLimiter]  # of each speed
+    _canonical: str  # scoped name of the link whose frame the odometry tells
+    _radius: float  # of the wheels [m]
+
+    def add_wheels(
+        self, scene: SceneModel, builder: SpecBuilder, named: Mapping[str, Sequence[str]]
+    ) -> list[SceneJoint]:
+        """Finds the wheels' joints by what they are (`left wheel`), and gives each a servo as strong as its joint."""
+        wheels = find_wheels(scene, named, self.params)
+        self._joint_names = [[joint.scoped for joint in joints] for joints in wheels.values()]
+        self._servos = [
+            [builder.add_velocity_servo(j.scoped, max_effort=j.axes[0].effort, owner=self.name) for j in joints]
+            for joints in wheels.values()
+        ]
+        return [joint for joints in wheels.values() for joint in joints]
+
+    def start(self) -> None:
+        """Begins at rest; to be called first in `load`."""
+        self.once = OneTimeWarnings(self)
+        self._target: Speeds = (0.0,) * len(self._limiters)
+        self._last = self._before_last = self._target
+        self._settled = True  # the speeds are what was asked for
+
+    def open_topics(self, parent: Model, params: Params) -> None:
+        """Opens the topics of commands, odometry and its transform."""
+        model = parent.name
+        self.listen(read_topic(params, "topic", f"/model/{model}/cmd_vel"), COMMAND_TYPES, self.on_twist)
+        self.open_odometry(parent, params)
+
+    def open_odometry(self, parent: Model, params: Params) -> None:
+        """Opens the topics of odometry and its transform."""
+        model, link = parent.name, self._canonical.rsplit("::", 1)[-1]
+        self._frame = params.text("frame_id", f"{model}/odom")
+        self._child = params.text("child_frame_id", f"{model}/{link}")
+        self._odom = self.advertise(read_topic(params, "odom_topic", f"/model/{model}/odometry"), ODOMETRY)
+        self._tf = self.advertise(read_topic(params, "tf_topic", f"/model/{model}/tf"), TRANSFORMS)
+
+    # ------------------------------------------------------------------ commands
+
+    def on_twist(self, message: Twist | TwistStamped) -> None:
+        """Takes the speeds of a `Twist` or `TwistStamped`."""
+        speeds = self.speeds_of(cast("Twist", getattr(message, "twist", message)))
+        if all(map(math.isfinite, speeds)):
+            self.aim(speeds)
+        else:
+            self.once.not_finite()
+
+    def speeds_of(self, twist: Twist) -> Speeds:
+        """The speeds in a twist, one for each limiter."""
+        return float(twist.linear.x), float(twist.angular.z)
+
+    def aim(self, speeds: Speeds) -> None:
+        """Goes for other speeds from the next step on."""
+        self._target, self._settled = speeds, False
+
+    def next_speeds(self) -> Speeds:
+        """Takes the limited speeds one step towards the command."""
+        speeds = limit_each(self._limiters, self._target, self._last, self._before_last, self.period)
+        self._settled = speeds == self._last == self._before_last
+        self._before_last, self._last = self._last, speeds
+        return speeds
+
+    def turn_wheels(self, rims: Sequence[float]) -> None:
+        """Turns the wheels of each side with these speeds of their rims [m/s]."""
+        for servos, rim in zip(self._servos, rims, strict=True):
+            for servo in servos:
+                self.sim.engine.set_control(servo, rim / self._radius)
+
+    # ------------------------------------------------------------------ readings
+
+    def publish_odometry(self, pose: Pose, twist: BodyTwist, *covariances: Vector) -> None:
+        """Publishes where the base is, with its transform, to whoever listens."""
+        now = self.sim.time_ns
+        if self._odom.wanted:
+            message = partial(odometry_message, now, self._frame, self._child, pose, twist, *covariances)
+            self._odom.publish_later(message)
+        if self._tf.wanted:
+            self._tf.publish_later(partial(transforms, now, (self._frame, self._child, pose)))
