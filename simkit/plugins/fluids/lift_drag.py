@@ -1,15 +1,25 @@
-"""Lift and drag of a wing: `gz::sim::systems::LiftDrag` and Gazebo Classic's `libLiftDragPlugin.so`."""
+"""Lift, drag and pitching moment of a wing: `gz::sim::systems::LiftDrag` and Gazebo Classic's `libLiftDragPlugin.so`.
+
+The coefficients are straight lines over the angle of attack, with another slope beyond the stall:
+
+    c(α) = slope · α                                   for |α| <= stall
+    c(α) = ±slope · stall + slope_stall · (α ∓ stall)  beyond; lift and moment never change sign there
+
+each times cos²(sweep), the part of the stream that the leading edge feels. Lift and moment also grow with the angle of
+a control surface. Force = c · q · area with the dynamic pressure q = ½ρv² of the stream across the span.
+"""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.find_entities import find_axis_joint, find_named_link
-from simkit.plugins.fluids.aerofoil import AerofoilOptions, MomentAerofoilOptions, Triple, read_aerofoil
 from simkit.plugins.fluids.link_forces import moving_data
-from simkit.plugins.options import OptionsOf
+from simkit.plugins.options import Options, OptionsOf, boolean, number, text, vector3
 from simkit.runtime.engine.physics_step import CONTROL
 
 if TYPE_CHECKING:
@@ -18,6 +28,215 @@ if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.runtime import Model
     from simkit.scene import SceneModel
+
+Triple = tuple[float, float, float]
+SLOWEST: Final = 0.01
+"""[m/s]; a slower stream does nothing."""
+_ZERO: Final[Triple] = (0.0, 0.0, 0.0)
+_STRAIGHT: Final = 1e-9  # sine of the angle below which a stream comes straight along a body of revolution
+
+
+@dataclass(frozen=True, slots=True)
+class CoefficientLine:
+    """A coefficient over the angle of attack.
+
+    Attributes:
+        slope: [1/rad] up to the stall.
+        beyond: [1/rad] from there on.
+    """
+
+    slope: float
+    beyond: float
+
+    def at(self, alpha: float, stall: float) -> float:
+        """The coefficient at an angle of attack [rad]."""
+        if alpha > stall:
+            return self.slope * stall + self.beyond * (alpha - stall)
+        if alpha < -stall:
+            return -self.slope * stall + self.beyond * (alpha + stall)
+        return self.slope * alpha
+
+    def one_sided(self, alpha: float, stall: float) -> float:
+        """The same, which beyond the stall falls to zero and no further."""
+        found = self.at(alpha, stall)
+        if alpha > stall:
+            return max(0.0, found)
+        return min(0.0, found) if alpha < -stall else found
+
+
+@dataclass(frozen=True, slots=True)
+class Aerofoil:
+    """A wing. Directions and points in the link's frame.
+
+    Attributes:
+        lift, drag, moment: coefficients.
+        stall: angle of attack at which it stalls [rad].
+        zero: added to every angle of attack [rad].
+        density: of the air or water [kg/m³].
+        area: [m²].
+        centre: of pressure [m].
+        forward, upward: unit vectors; the stream comes from the first, lift goes along the second.
+        is_radial: a body of revolution about `forward`: up is where the stream comes from.
+        is_reversible: works in a stream from behind, too.
+        lift_by_joint, moment_by_joint: by how much the coefficients grow with a control surface's angle [1/rad].
+    """
+
+    lift: CoefficientLine
+    drag: CoefficientLine
+    moment: CoefficientLine
+    stall: float
+    zero: float
+    density: float
+    area: float
+    centre: Triple
+    forward: Triple
+    upward: Triple
+    is_radial: bool
+    is_reversible: bool
+    lift_by_joint: float
+    moment_by_joint: float
+
+    def load(self, velocity: Triple, angle: float = 0.0) -> tuple[Triple, Triple]:
+        """Force at the centre of pressure [N] and moment [N·m], link frame.
+
+        Args:
+            velocity: of the centre of pressure through the air [m/s], link frame.
+            angle: of the control surface [rad].
+        """
+        speed = math.sqrt(_dot(velocity, velocity))
+        if speed <= SLOWEST or not (self.is_reversible or _dot(self.forward, velocity) > 0.0):
+            return _ZERO, _ZERO
+        up = self._up(velocity, speed)
+        span = unit(_cross(self.forward, up))
+        across = _dot(velocity, span)
+        plane = tuple(v - across * s for v, s in zip(velocity, span, strict=True))
+        in_plane = math.sqrt(_dot(plane, plane))
+        if in_plane < 1e-12 * speed:
+            return _ZERO, _ZERO
+        lift_way = unit(_cross(span, plane))
+        alpha = self._angle_of_attack(lift_way, up)
+        facing = 1.0 - (across / speed) ** 2
+        lift = self.lift.one_sided(alpha, self.stall) * facing + self.lift_by_joint * angle
+        drag = abs(self.drag.at(alpha, self.stall) * facing)
+        moment = self.moment.one_sided(alpha, self.stall) * facing + self.moment_by_joint * angle
+        pressed = 0.5 * self.density * in_plane * in_plane * self.area
+        along = drag * pressed / in_plane
+        force = tuple(lift * pressed * way - along * p for way, p in zip(lift_way, plane, strict=True))
+        return (force[0], force[1], force[2]), _scaled(span, moment * pressed)
+
+    def _up(self, velocity: Triple, speed: float) -> Triple:
+        if not self.is_radial:
+            return self.upward
+        aside = _cross(self.forward, velocity)
+        if _dot(aside, aside) < (_STRAIGHT * speed) ** 2:
+            return _any_across(self.forward)  # straight from ahead: the angle of attack is zero about any axis
+        return unit(_cross(self.forward, aside))
+
+    def _angle_of_attack(self, lift_way: Triple, up: Triple) -> float:
+        """Within ±90°: a stream from behind counts as one from ahead."""
+        aside = _cross(up, lift_way)
+        angle = math.atan2(math.sqrt(_dot(aside, aside)), _dot(up, lift_way))
+        alpha = self.zero + (angle if _dot(lift_way, self.forward) >= 0.0 else -angle)
+        return math.remainder(alpha, math.pi) if abs(alpha) > math.pi / 2 else alpha
+
+
+_MOST = 1e9
+
+
+class AerofoilOptions(Options):
+    """A wing's options."""
+
+    link_name: str = text(None, required=True)
+    forward: tuple[float, float, float] = vector3((1.0, 0.0, 0.0))
+    upward: tuple[float, float, float] = vector3((0.0, 0.0, 1.0))
+    radial_symmetry: bool = boolean()
+    cma: float = number(0.0, minimum=-_MOST, maximum=_MOST)
+    cma_stall: float = number(0.0, minimum=-_MOST, maximum=_MOST)
+    cla: float = number(1.0, minimum=-_MOST, maximum=_MOST)
+    cla_stall: float = number(0.0, minimum=-_MOST, maximum=_MOST)
+    cda: float = number(0.01, minimum=-_MOST, maximum=_MOST)
+    cda_stall: float = number(1.0, minimum=-_MOST, maximum=_MOST)
+    alpha_stall: float = number(math.pi / 2, "rad", minimum=0)
+    a0: float = number(0.0, "rad", minimum=-_MOST, maximum=_MOST)
+    air_density: float = number(1.2041, "kg/m³", minimum=0, maximum=_MOST)
+    area: float = number(1.0, "m²", minimum=0, maximum=_MOST)
+    cp: tuple[float, float, float] = vector3(unit="m")
+    control_joint_rad_to_cl: float = number(4.0, minimum=-_MOST, maximum=_MOST)
+    control_joint_name: str = text()
+
+
+class MomentAerofoilOptions(AerofoilOptions):
+    """The same of a wing that makes a pitching moment."""
+
+    reversible: bool = boolean()
+    cm_delta: float = number(0.0, minimum=-_MOST, maximum=_MOST)
+
+
+def read_aerofoil(options: AerofoilOptions) -> Aerofoil:
+    """A plugin's aerofoil; what is wrong is reported."""
+    params, with_moment = options.params, options if isinstance(options, MomentAerofoilOptions) else None
+    forward = _direction(params, "forward", options.forward, AerofoilOptions.forward)
+    upward = _direction(params, "upward", options.upward, AerofoilOptions.upward)
+    is_radial = options.radial_symmetry
+    across = _cross(forward, upward)
+    if not is_radial and _dot(across, across) < 1e-12:
+        params.error("SK-PLUGIN-110", "<forward> and <upward> point along one line; lift has no direction")
+        upward = _any_across(forward)
+    moment = CoefficientLine(options.cma, options.cma_stall)
+    if not with_moment and (moment.slope or moment.beyond):
+        message = "<cma> and <cma_stall> have no effect: Gazebo Classic's wing makes no pitching moment"
+        params.diagnostics.warning("SK-PLUGIN-111", message, params.where)
+    return Aerofoil(
+        lift=CoefficientLine(options.cla, options.cla_stall),
+        drag=CoefficientLine(options.cda, options.cda_stall),
+        moment=moment if with_moment else CoefficientLine(0.0, 0.0),
+        stall=options.alpha_stall,
+        zero=options.a0,
+        density=options.air_density,
+        area=options.area,
+        centre=options.cp,
+        forward=forward,
+        upward=upward,
+        is_radial=is_radial,
+        is_reversible=with_moment.reversible if with_moment else True,
+        lift_by_joint=options.control_joint_rad_to_cl,
+        moment_by_joint=with_moment.cm_delta if with_moment else 0.0,
+    )
+
+
+def _direction(params: Params, name: str, found: Triple, default: Any) -> Triple:
+    if not any(found):
+        params.error("SK-PARAM-002", f"found <{name}>0 0 0</{name}>, allowed is a direction")
+        fallback: Triple = default.default
+        return fallback
+    return unit(found)
+
+
+def unit(v: Triple) -> Triple:
+    """A vector of length 1; zero stays zero."""
+    largest = max(abs(v[0]), abs(v[1]), abs(v[2]))
+    if largest == 0.0:
+        return _ZERO
+    scaled = (v[0] / largest, v[1] / largest, v[2] / largest)
+    length = math.sqrt(_dot(scaled, scaled))
+    return scaled[0] / length, scaled[1] / length, scaled[2] / length
+
+
+def _any_across(v: Triple) -> Triple:
+    axis = min(range(3), key=lambda i: abs(v[i]))
+    return unit(_cross(v, (float(axis == 0), float(axis == 1), float(axis == 2))))
+
+
+def _dot(a: tuple[float, ...], b: tuple[float, ...]) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def _cross(a: tuple[float, ...], b: tuple[float, ...]) -> Triple:
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+def _scaled(v: Triple, by: float) -> Triple:
+    return v[0] * by, v[1] * by, v[2] * by
 
 
 class LiftDragBase(ModelPlugin):

@@ -1,4 +1,4 @@
-"""gz's Sensors system: its colours count for what cameras see."""
+"""gz's systems for sensors: Sensors, whose colours cameras see, and Magnetometer; simkit does the rest by itself."""
 
 from __future__ import annotations
 
@@ -117,3 +117,33 @@ def _colour(params: Params, name: str) -> Colour | None:
         return None
     red, green, blue, alpha = (min(1.0, max(0.0, number)) for number in (*numbers, 1.0)[:4])
     return red, green, blue, alpha
+
+
+class MagnetometerSystemOptions(Options):
+    """Options of `MagnetometerSystem`."""
+
+    use_units_gauss: bool = boolean(True)
+    use_earth_frame_ned: bool = boolean(True)
+
+
+class MagnetometerSystem(Plugin):
+    """Stands for gz's Magnetometer system.
+
+    `<use_units_gauss>` and `<use_earth_frame_ned>`, which Gazebo takes for true where a file does not say, are about
+    the Earth's field; here they count where they are written (and in a world with `<gazebo_quirks>`).
+    """
+
+    options = OptionsOf(MagnetometerSystemOptions)
+    parent_kind = "any"
+    filenames = ("gz-sim-magnetometer-system",)
+    names = ("gz::sim::systems::Magnetometer",)
+
+    def prepare(self, scene: object, params: Params, builder: SpecBuilder) -> None:
+        given = [name for name in self.options.fields() if params.has(name)]
+        _ = self.options.use_units_gauss, self.options.use_earth_frame_ned
+        if not given:
+            message = "plugin 'Magnetometer' is not needed: simkit does what it stands for by itself"
+            params.diagnostics.note("SK-PLUGIN-005", message, self.where)
+
+    def load(self, parent: object, params: Params) -> None:
+        """Nothing to do."""

@@ -11,7 +11,7 @@ from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.joints.joint_axis import JointAxis, find_joints
 from simkit.plugins.joints.kinematic_trees import KinematicTrees
-from simkit.plugins.joints.pid import FIELDS, Pid, PidOptions
+from simkit.plugins.joints.pid import FIELDS, Pid, PidOptions, declare_pid
 from simkit.plugins.joints.velocity_servo import VelocityServo
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import OptionsOf, boolean, integer, text, texts
@@ -160,6 +160,15 @@ class JointCommander(ControlledJoints, ModelPlugin):
             self._target = target
         else:
             self.once.left_out("finite", f"the command {target} is left out; allowed is a finite number")
+
+    def declare_controller(self, first: Pid) -> None:
+        """Takes up a controller whose numbers, unless the file has others, are those of `first`."""
+
+        def present() -> Pid:
+            assert self._pid is not None
+            return self._pid
+
+        self._pid = declare_pid(self, first, present)
 
     def controllers(self) -> list[tuple[JointAxis, Pid]]:
         return [] if self._pid is None else [(axis, self._pid) for axis in self.axes]

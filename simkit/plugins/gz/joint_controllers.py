@@ -1,13 +1,14 @@
-"""gz's position control of joints: `gz::sim::systems::JointPositionController`."""
+"""gz's control of joints: `gz::sim::systems::JointController` and `gz::sim::systems::JointPositionController`."""
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from simkit.params import Params
 from simkit.plugins.endpoints import listens
-from simkit.plugins.joints.joint_commands import GAINS, JointCommander, JointCommandOptions
-from simkit.plugins.joints.pid import Pid, declare_pid
+from simkit.plugins.joints.joint_commands import ACTUATORS, DOUBLE, GAINS, JointCommander, JointCommandOptions
+from simkit.plugins.joints.pid import Pid
 from simkit.plugins.options import OptionsOf, boolean, integer, number
 
 if TYPE_CHECKING:
@@ -15,6 +16,59 @@ if TYPE_CHECKING:
     from simkit.runtime import Model
     from simkit.runtime.communication.parameter_server import Parameter
     from simkit.scene import SceneModel
+
+_ACTUATORS = listens("/actuators", ACTUATORS, named_by=("topic", "sub_topic"))
+
+
+class JointControllerOptions(JointCommandOptions):
+    """Options of `JointController`."""
+
+    initial_velocity: float = number(0.0, "rad/s or m/s")
+    use_force_commands: bool = boolean()
+    disable_braking: bool = boolean()
+
+
+class JointController(JointCommander):
+    """Turns one or more joints, about their first axis, at a commanded velocity [rad/s or m/s].
+
+    By velocity: the efforts, within their limits, that bring the joints to it within one step. With
+    `<use_force_commands>`: a PID on the velocity of the first joint gives the effort of all; `<disable_braking>` leaves
+    out what would slow them down. Commands come on `/model/<model>/joint/<joint>/cmd_vel`, on `<sub_topic>` below the
+    model or on `<topic>`, or as one of many actuators (`<use_actuator_msg>`, `<actuator_number>`). The numbers of the
+    PID are live parameters.
+    """
+
+    endpoints = (
+        listens("/model/{model}/joint/{joint_name}/cmd_vel", DOUBLE, named_by=("topic", "sub_topic")),
+        _ACTUATORS,
+    )
+    options = OptionsOf(JointControllerOptions)
+    filenames = ("gz-sim-joint-controller-system",)
+    names = ("gz::sim::systems::JointController",)
+    actuator_field = "velocity"
+    target_element = "initial_velocity"
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        super().prepare(scene, params, builder)
+        self.own_topic = f"joint/{self._first}/cmd_vel"
+
+    def load(self, parent: Model, params: Params) -> None:
+        super().load(parent, params)
+        self._by_velocity = not self.options.use_force_commands
+        self._coasts = self.options.disable_braking
+        if self._by_velocity:
+            self.say_gains_are_unused(params, (*GAINS, "disable_braking"), "without <use_force_commands>")
+        else:
+            self.declare_controller(Pid(1.0, 0.0, 0.0, 1.0, -1.0, 1000.0, -1000.0))
+
+    def command(self) -> None:
+        if self._by_velocity:
+            self.turn(self._target)
+            return
+        error = self.axes[0].velocity - self._target
+        if self._coasts and (self._target == 0.0 or math.copysign(1.0, self._target) * error > 0.0):
+            return
+        self.push(error)
 
 
 class JointPositionControllerOptions(JointCommandOptions):
@@ -38,12 +92,8 @@ class JointPositionController(JointCommander):
     """
 
     endpoints = (
-        listens(
-            "/model/{model}/joint/{joint_name}/{joint_index}/cmd_pos",
-            "std_msgs/msg/Float64",
-            named_by=("topic", "sub_topic"),
-        ),
-        listens("/actuators", "actuator_msgs/msg/Actuators", named_by=("topic", "sub_topic")),
+        listens("/model/{model}/joint/{joint_name}/{joint_index}/cmd_pos", DOUBLE, named_by=("topic", "sub_topic")),
+        _ACTUATORS,
     )
     options = OptionsOf(JointPositionControllerOptions)
     filenames = ("gz-sim-joint-position-controller-system",)
@@ -61,17 +111,13 @@ class JointPositionController(JointCommander):
         self._by_velocity = self.options.use_velocity_commands
         self._fastest: Parameter[float] | None = None
         if not self._by_velocity:
-            self._pid = declare_pid(self, Pid(1.0, 0.1, 0.01, 1.0, -1.0, 1000.0, -1000.0), self._present_pid)
+            self.declare_controller(Pid(1.0, 0.1, 0.01, 1.0, -1.0, 1000.0, -1000.0))
             return
         if params.has("cmd_max"):
             says = "largest velocity [rad/s or m/s]"
             self._fastest = self.declare("cmd_max", 1000.0, minimum=0.0, description=says)
         unused = tuple(name for name in GAINS if name != "cmd_max")
         self.say_gains_are_unused(params, unused, "with <use_velocity_commands>")
-
-    def _present_pid(self) -> Pid:
-        assert self._pid is not None
-        return self._pid
 
     def command(self) -> None:
         error = self.axes[0].position - self._target
