@@ -56,6 +56,12 @@ class Options:
             if option.options is not None:
                 yield from option.options.element_names()
 
+    def read_all(self) -> None:
+        """Reads every field now but live parameters, so that problems are reported with the others of the file."""
+        for name, option in self.fields().items():
+            if not option.is_live:
+                getattr(self, name)
+
     def __deepcopy__(self, memo: dict[int, object]) -> Options:
         return self
 

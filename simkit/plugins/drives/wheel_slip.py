@@ -110,6 +110,7 @@ class WheelSlipBase(ModelPlugin):
                 continue
             taken.add(wheel.contact.link)
             self.wheels.append(wheel)
+        self.options.read_all()
 
     def load(self, parent: Model, params: Params) -> None:
         self.compliances = [
@@ -239,18 +240,13 @@ class GazeboRosWheelSlip(_ClassicWheelSlip):
     options = OptionsOf(RosWheelSlipOptions)
     filenames = ("libgazebo_ros_wheel_slip.so",)
 
-    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        super().prepare(scene, params, builder)
-        self._tolerance = self.options.wheel_spin_tolerance
-        self._rate = self.options.publisher_update_rate
-
     def load(self, parent: Model, params: Params) -> None:
         super().load(parent, params)
         for side, name in enumerate((LATERAL, LONGITUDINAL)):
             what = f"{'lateral' if side == 0 else 'longitudinal'} slip compliance of every wheel; negative leaves them"
             self.declare(name, _UNSET, description=what, on_change=partial(self._on_all, side))
         self._out = self.advertise("wheel_slip", _SLIP)
-        publish_while_subscribed(self, self._out, max(0.0, self._rate), "tell")
+        publish_while_subscribed(self, self._out, max(0.0, self.options.publisher_update_rate), "tell")
 
     def _on_all(self, side: int, value: float) -> None:
         if value >= 0.0:
@@ -262,7 +258,7 @@ class GazeboRosWheelSlip(_ClassicWheelSlip):
         slips: list[tuple[float, float]] = []
         for wheel, ahead, sideways, rim in self.measured():
             names.append(wheel.name)
-            is_still = abs(rim) < self._tolerance
+            is_still = abs(rim) < self.options.wheel_spin_tolerance
             slips.append((0.0, 0.0) if is_still else (math.atan2(sideways, ahead), (rim - ahead) / rim))
         lateral, longitudinal = (np.array(column) for column in zip(*slips, strict=True))
         self._out.publish(msgs.type_of(_SLIP)(names, lateral, longitudinal))

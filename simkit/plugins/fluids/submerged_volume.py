@@ -47,12 +47,6 @@ class Solid(ABC):
             Its volume [m³], and its volume times its centre [m⁴].
         """
 
-    def below(self, normal: Vector, height: float) -> tuple[float, Vector]:
-        """The part with normal · x <= height, as from `cut`; normal and the volume times its centre of shape (3,)."""
-        x, y, z = normal.tolist()
-        volume, *moment = self.cut(x, y, z, float(height))
-        return volume, np.array(moment)
-
 
 class EllipsoidSolid(Solid):
     """An ellipsoid about the origin."""

@@ -69,9 +69,7 @@ class Elevator(ModelPlugin):
     drives = True
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        self._update_rate = self.options.update_rate
-        self._state_rate = self.options.state_publish_rate
-        self._wait_ns = round(self.options.open_door_wait_duration * 1e9)
+        self.options.read_all()
         floor, door = self.options.floor_link_prefix, self.options.door_joint_prefix
         cabin = self.options.cabin_joint
         lift = find_axis_joint(scene, cabin, params.child("cabin_joint") or params)
@@ -113,7 +111,7 @@ class Elevator(ModelPlugin):
         self.listen(read_topic(params, "cmd_topic", f"{own}/cmd"), INT, self._on_command)
         for k, name in enumerate(self._joint_names[1:]):
             self.subscribe(valid_topic(f"{own}/{name}/lidar"), partial(self._on_scan, k))
-        rates = [rate for rate in (self._update_rate, self._state_rate) if rate > 0]
+        rates = [rate for rate in (self.options.update_rate, self.options.state_publish_rate) if rate > 0]
         publish_while_subscribed(self, self._state, min(rates, default=0.0), "tell_floor")
 
     @property
@@ -190,7 +188,7 @@ class Elevator(ModelPlugin):
         elif phase == "opening":
             self._send(1 + self._at, self._open[self._at])
         elif phase == "waiting":
-            self._until_ns, self._was_blocked = self.sim.time_ns + self._wait_ns, False
+            self._open_door()
         elif phase == "closing":
             self._send(1 + self._at, 0.0)
             kept, self._kept = self._kept, []
@@ -213,13 +211,18 @@ class Elevator(ModelPlugin):
         """Whether the door has been open long enough, since the doorway was last blocked."""
         is_blocked, now = self._blocked[self._at], self.sim.time_ns
         if self._was_blocked and not is_blocked:
-            self._until_ns = now + self._wait_ns
+            self._open_door()
         self._was_blocked = is_blocked
         return not is_blocked and now >= self._until_ns
+
+    def _open_door(self) -> None:
+        """Waits from now on for the whole time that a door stays open."""
+        self._until_ns = self.sim.time_ns + round(self.options.open_door_wait_duration * 1e9)
+        self._was_blocked = False
 
     def _has_come(self, axis: JointAxis, target: float, within: float) -> bool:
         return abs(axis.position - target) <= within and abs(axis.velocity) <= _AT_REST
 
     def _set_pace(self) -> None:
         """Looks only while it is under way."""
-        set_after_step_rate(self, NEVER if self._phase == "idle" else self._update_rate)
+        set_after_step_rate(self, NEVER if self._phase == "idle" else self.options.update_rate)

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from itertools import chain
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
+import numpy.typing as npt
 
 from simkit.diagnostics import did_you_mean
 from simkit.params import Params
@@ -21,8 +22,7 @@ from simkit.runtime.engine.physics_step import STALE
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
-    from simkit.plugins.actors.script import Floats
-    from simkit.runtime import Link, Model, Simulation
+    from simkit.runtime import Link, Model
     from simkit.scene import SceneModel
 
 _RATE: Final = 50.0  # [Hz]
@@ -56,30 +56,28 @@ class FollowActor(ModelPlugin):
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         self._target = read_required_name(params, "target")
-        self._velocity = self.options.velocity
-        self._least = self.options.min_distance
-        self._most = self.options.max_distance
-        self._seconds = self.options.animation_x_vel
-        self._animation = self.options.animation
+        options = self.options
+        options.read_all()
         cast = scene.moved_by
         if not isinstance(cast, AnimatedActor):
             message = f"plugin {self.name!r} is for an actor, {scene.scoped!r} is a model"
             params.error("SK-PLUGIN-134", message, "put it into an <actor>")
             return
         known = sorted(name for name in cast.rig.clips if name) if isinstance(cast.rig, SkinRig) else []
-        if known and self._animation and self._animation not in known:
-            what = f"actor {scene.scoped!r} has no animation {self._animation!r}"
+        if known and options.animation and options.animation not in known:
+            what = f"actor {scene.scoped!r} has no animation {options.animation!r}"
             message = f"plugin {self.name!r}: {what}; the first plays"
-            hint = did_you_mean(self._animation, known) or f"animations: {', '.join(known)}"
+            hint = did_you_mean(options.animation, known) or f"animations: {', '.join(known)}"
             params.diagnostics.warning("SK-ACTOR-003", message, self.where, hint)
-        if self._most < self._least:
-            message = f"plugin {self.name!r}: <max_distance> {self._most:g} is below <min_distance> {self._least:g}"
+        least, most = options.min_distance, options.max_distance
+        if most < least:
+            message = f"plugin {self.name!r}: <max_distance> {most:g} is below <min_distance> {least:g}"
             params.diagnostics.warning("SK-PLUGIN-135", f"{message}; it never walks", self.where)
 
     def load(self, parent: Model, params: Params) -> None:
         scene: SceneModel = parent.scene
         assert isinstance(scene.moved_by, AnimatedActor)
-        self._gait = Gait(scene.moved_by, self._animation, self._velocity, self._seconds)
+        self._gait = Gait(scene.moved_by, self.options.animation, self.options.velocity, self.options.animation_x_vel)
         self._links = [link.scoped for link in scene.links]
         pose = scene.pose_world
         self._x, self._y, self._z = pose.position.tolist()
@@ -88,7 +86,7 @@ class FollowActor(ModelPlugin):
         # from an instant on it goes that way, for so many metres at most
         self._since_ns, self._way, self._left = self.sim.time_ns, (0.0, 0.0), 0.0
         self._is_following = True
-        self._places, self._shown = _ActorBodies(), (math.nan, 0.0, 0.0, False)
+        self._shown = (math.nan, 0.0, 0.0, False)
         self.before_step_rate = None  # at once, then on the grid
         if self._find() is None:
             models = sorted(self.sim.contents.handles.tables["model"])
@@ -112,7 +110,7 @@ class FollowActor(ModelPlugin):
 
     def _gone(self) -> float:
         """Metres since the last decision."""
-        return min(self._left, self._velocity * (self.sim.time_ns - self._since_ns) * 1e-9)
+        return min(self._left, self.options.velocity * (self.sim.time_ns - self._since_ns) * 1e-9)
 
     def _aim(self) -> None:
         target = self._find()
@@ -121,15 +119,15 @@ class FollowActor(ModelPlugin):
         x, y, _ = target.pose.position.tolist()
         x, y = x - self._x, y - self._y
         far = math.hypot(x, y)
-        if far <= self._least:
+        if far <= self.options.min_distance:
             return
-        is_within = far <= self._most
+        is_within = far <= self.options.max_distance
         if is_within != self._is_following:
             self._is_following = is_within
             told = "is near enough, it walks" if is_within else "is too far, it stands"
             self.log.info("%s: %s %s", self.name, self._target, told)
         if is_within:
-            self._way, self._left = (x / far, y / far), far - self._least
+            self._way, self._left = (x / far, y / far), far - self.options.min_distance
             self._yaw = math.atan2(y, x)
 
     def _find(self) -> Model | Link | None:
@@ -150,7 +148,7 @@ class FollowActor(ModelPlugin):
         gone = self._gone()
         x, y, behind = self._x + gone * self._way[0], self._y + gone * self._way[1], self._behind + gone
         goes, sim = self._left > gone, self.sim
-        data, places = sim.mj_data, self._places.find(sim, self._links)
+        data, places = sim.mj_data, sim.engine.names.shared(f"actor {id(self)}", self._find_bodies)
         shown = x, y, self._yaw, goes
         if shown == self._shown and data.mocap_pos[places[0]].tolist() == [x, y, self._z]:
             return
@@ -159,19 +157,6 @@ class FollowActor(ModelPlugin):
         data.mocap_pos[places], data.mocap_quat[places] = poses[:, :3], poses[:, 3:]
         sim.engine.physics.changed(STALE)
 
-
-class _ActorBodies:
-    """Where an actor's links are among the engine's movable bodies; a handle, without state of its own."""
-
-    def __init__(self) -> None:
-        self._known: tuple[object, Any] = (None, None)
-
-    def __deepcopy__(self, memo: dict[int, object]) -> _ActorBodies:
-        return self
-
-    def find(self, sim: Simulation, links: list[str]) -> Floats:
-        if self._known[0] is not sim.engine.structure:
-            names = sim.engine.names
-            self._known = sim.engine.structure, np.array([names.link(link).mocap for link in links], dtype=np.intp)
-        found: Floats = self._known[1]
-        return found
+    def _find_bodies(self) -> npt.NDArray[np.intp]:
+        """Where the actor's links are among the engine's movable bodies."""
+        return np.array([self.sim.engine.names.link(link).mocap for link in self._links], dtype=np.intp)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 import mujoco
@@ -69,7 +70,7 @@ class LinearBattery(Battery):
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         self.battery = read_required_name(params, "battery_name")
-        self.cell = self._read_cell(params, self.options.voltage)
+        self.cell = self._read_cell(params)
         self._joints = tuple(joint.scoped for joint in scene.all_joints() if joint.axes or joint.type == "ball")
         self.is_drained = self.options.start_draining
         recharges = self.options.enable_recharge
@@ -80,25 +81,23 @@ class LinearBattery(Battery):
         if self.percent == 1.0 and builder.world.gazebo_quirks:
             self.cell.remember()
 
-    def _read_cell(self, params: Params, voltage: float) -> Cell:
-        capacity = self.options.capacity
-        charge = self.options.initial_charge
+    def _read_cell(self, params: Params) -> Cell:
+        options = self.options
+        voltage, capacity, charge = options.voltage, options.capacity, options.initial_charge
         kept = max(0.0, min(capacity, charge))
         if kept != charge:
             allowed = f"is not from 0 to {capacity:g}"
             self._warn(params, f"<initial_charge> {charge:g} {allowed}, {kept:g} is used", "initial_charge")
-        tau = self.options.smooth_current_tau
+        tau = options.smooth_current_tau
         if tau <= 0.0:
             what = f"<smooth_current_tau> {tau:g} is not above 0, 1 is used, as in Gazebo"
             self._warn(params, what, "smooth_current_tau")
             tau = 1.0
-        constant = self.options.open_circuit_voltage_constant_coef
-        linear = self.options.open_circuit_voltage_linear_coef
+        constant, linear = options.open_circuit_voltage_constant_coef, options.open_circuit_voltage_linear_coef
         if capacity and abs(constant + linear * (1.0 - kept / capacity)) < 1e-3:
             hint = "give <open_circuit_voltage_constant_coef>: the voltage of the full battery"
             self._warn(params, "the open-circuit voltage is 0, so that nothing can be drawn", hint=hint)
-        resistance = self.options.resistance
-        return Cell(constant, linear, capacity or 1.0, resistance, tau, voltage, kept)
+        return Cell(constant, linear, capacity or 1.0, options.resistance, tau, voltage, kept)
 
     def _warn(self, params: Params, what: str, element: str = "", hint: str = "") -> None:
         where = params.block(element).where if element else self.where
@@ -116,9 +115,9 @@ class LinearBattery(Battery):
         _ = self.options.recharge_by_topic
         self._supply(parent.scene)
         for topic in self.options.power_draining_topic:
-            self.subscribe(valid_topic(topic), self._on_drain, keep=1)
+            self.subscribe(valid_topic(topic), partial(self._set_drained, True), keep=1)
         for topic in self.options.stop_power_draining_topic:
-            self.subscribe(valid_topic(topic), self._on_stop, keep=1)
+            self.subscribe(valid_topic(topic), partial(self._set_drained, False), keep=1)
 
     def _supply(self, scene: SceneModel) -> None:
         """Has the model's rendered sensors rest while the battery is empty, where the Sensors system asks for it."""
@@ -132,27 +131,20 @@ class LinearBattery(Battery):
 
     def _offer_recharge(self, base: str, *, by_topic: bool) -> None:
         # what comes with the request does not count, as in gz: the name says what is to be
-        for word, does in (("start", self._on_charge), ("stop", self._on_uncharge)):
-            name = valid_topic(f"{base}/recharge/{word}")
+        for word, charger in (("start", self._charger), ("stop", None)):
+            name, does = valid_topic(f"{base}/recharge/{word}"), partial(self._set_charger, charger)
             self.offer(name, SET_BOOL, does)
             if by_topic:
                 self.listen(name, BOOL, does)
 
     # ------------------------------------------------------------------ commands
 
-    def _on_charge(self, _: object) -> dict[str, object]:
-        self.charger = self._charger
+    def _set_charger(self, charger: float | None, _: object) -> dict[str, object]:
+        self.charger = charger
         return {"success": True}
 
-    def _on_uncharge(self, _: object) -> dict[str, object]:
-        self.charger = None
-        return {"success": True}
-
-    def _on_drain(self, _: object) -> None:
-        self.is_drained = True
-
-    def _on_stop(self, _: object) -> None:
-        self.is_drained = False
+    def _set_drained(self, is_drained: bool, _: object) -> None:
+        self.is_drained = is_drained
 
     # ------------------------------------------------------------------ steps
 

@@ -6,13 +6,13 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-import numpy as np
-
 from simkit import msgs
 from simkit.errors import SimkitError
 from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import NEVER, WorldPlugin
+from simkit.plugins.drives.entity_poses import PoseNumbers, pose_numbers
+from simkit.plugins.drives.odometry import TRANSFORMS, transforms
 from simkit.plugins.endpoints import publishes
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, OptionsOf, boolean, number, text, texts
@@ -20,11 +20,9 @@ from simkit.save_path import SAVE_PATH_VARIABLE, allowed_folder
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
-    from simkit.pose import Vector
     from simkit.recording.bags.recorder import Recorder
     from simkit.runtime import Simulation
 
-TRANSFORMS: Final = "tf2_msgs/msg/TFMessage"
 STRING: Final = "std_msgs/msg/String"
 FILE: Final = "state.mcap"
 _IS_PATTERN: Final = re.compile(r"[*?\[\]().]")
@@ -131,7 +129,7 @@ class LogRecord(WorldPlugin):
         self._sdf = self.advertise(valid_topic(f"/{self._path.name}/sdf"), STRING)
         self._state = self.advertise(valid_topic(f"/world/{parent.world.name}/changed_state"), TRANSFORMS)
         self.sim.communication.bus.aside.update((self._sdf.topic, self._state.topic))
-        self._places: dict[str, tuple[float, ...]] = {}
+        self._places: dict[str, PoseNumbers] = {}
 
     # ------------------------------------------------------------------ running
 
@@ -171,24 +169,14 @@ class LogRecord(WorldPlugin):
     def _tell_state(self) -> None:
         """The poses of the links that moved since the last time, in the world."""
         sim, moved = self.sim, []
-        header = msgs.header(sim.time_ns, sim.world.name)
-        for scoped, place in self._present():
-            if self._places.get(scoped) == place:
-                continue
-            self._places[scoped] = place
-            x, y, z, qw, qx, qy, qz = place
-            turn = {"translation": {"x": x, "y": y, "z": z}, "rotation": {"x": qx, "y": qy, "z": qz, "w": qw}}
-            moved.append({"header": header, "child_frame_id": scoped, "transform": turn})
-        if moved:
-            self._state.publish(msgs.make(TRANSFORMS, transforms=moved))
-
-    def _present(self) -> list[tuple[str, tuple[float, ...]]]:
-        found = []
-        for scoped, link in self.sim.contents.handles.tables["link"].items():
+        for scoped, link in sim.contents.handles.tables["link"].items():
             pose = link.pose
-            both: Vector = np.concatenate((pose.position, pose.quaternion))
-            found.append((scoped, tuple(both.tolist())))
-        return found
+            place = pose_numbers(pose)
+            if self._places.get(scoped) != place:
+                self._places[scoped] = place
+                moved.append((sim.world.name, scoped, pose))
+        if moved:
+            self._state.publish(transforms(sim.time_ns, *moved))
 
     def close(self) -> None:
         if self._log.recorder is not None:

@@ -77,30 +77,27 @@ class PosePublisher(ModelPlugin):
     names = ("gz::sim::systems::PosePublisher",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        nested = self.options.publish_nested_model_pose
         self._wants = {
             "link": self.options.publish_link_pose,
             "visual": self.options.publish_visual_pose,
             "collision": self.options.publish_collision_pose,
             "sensor": self.options.publish_sensor_pose,
-            "nested": nested,
+            "nested": self.options.publish_nested_model_pose,
             "model": self.options.publish_model_pose,
         }
-        self._is_vector = self.options.use_pose_vector_msg
-        self._type = self.options.pose_type
-        self._has_static = self.options.static_publisher
+        is_vector, kind = self.options.use_pose_vector_msg, self.options.pose_type
+        self._type = TRANSFORMS if is_vector else kind
         self._rate = max(0.0, self.options.update_frequency)
         self._static_rate = self._rate
-        if self._has_static:
+        if self.options.static_publisher:
             self._static_rate = max(0.0, self.options.static_update_frequency)
         path = "".join(f"/model/{name}" for name in scene.scoped.split("::"))
         self._topic = valid_topic(self.options.topic or f"{path}/pose")
         self.after_step_rate = _common_rate(self._rate, self._static_rate)
 
     def load(self, parent: Model, params: Params) -> None:
-        kind = TRANSFORMS if self._is_vector else self._type
-        self._out = self.advertise(self._topic, kind)
-        self._static = self.advertise(f"{self._topic}_static", kind) if self._has_static else None
+        self._out = self.advertise(self._topic, self._type)
+        self._static = self.advertise(f"{self._topic}_static", self._type) if self.options.static_publisher else None
         self._jointed = links_moved_by_joints(parent.scene.all_joints())
         parts = [*self._of_model(parent.scene)]
         self._resting = [part for part in parts if not part.moves]
@@ -125,7 +122,7 @@ class PosePublisher(ModelPlugin):
     def _publish(self, out: Publisher, which: str, parts: list[PosedEntity]) -> None:
         poses = self.sim.engine.names.shared(f"{which} poses {id(self)}", partial(EntityPoses, self.sim, parts))
         taken, time_ns = poses.take(), self.sim.time_ns
-        if self._is_vector:
+        if self._type == TRANSFORMS:
             out.publish_later(partial(transforms_message, time_ns, taken))
             return
         for index in range(len(parts)):

@@ -18,7 +18,7 @@ from simkit.runtime.contact.collision_contacts import Bools, collision_table, fi
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
-    from simkit.runtime import Model, Publisher
+    from simkit.runtime import Model
     from simkit.scene import SceneCollision, SceneModel
 
 BOOL: Final = "std_msgs/msg/Bool"
@@ -41,16 +41,10 @@ class TouchTimer(ModelPlugin):
     reads_contacts: ClassVar[bool] = True
     message_type: ClassVar[str] = BOOL
     is_exclusive: ClassVar[bool] = False  # whether touching anything else is a break
-    _target: str
-    _duration: int  # [ns]
-    _links: frozenset[str]
-    _world: str
-    _is_enabled: bool
-    _touched: Publisher
 
     def _read_common(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         self._target = read_required_name(params, "target")
-        self._duration = round(self.options.time * 1e9)
+        self._duration = round(self.options.time * 1e9)  # [ns]
         self._topic = valid_topic(self.options.namespace)
         if self._topic == "/" and params.has("namespace"):
             params.error("SK-PARAM-002", "found a <namespace> without a letter or digit, allowed is a topic's name")

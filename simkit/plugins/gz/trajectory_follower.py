@@ -85,19 +85,14 @@ class TrajectoryFollower(ModelPlugin):
         self._scoped = find_named_link(scene, "link_name", params)
         start = next((one.pose_world for one in scene.all_links() if one.scoped == self._scoped), scene.pose_world)
         self._points = _waypoints(params, start, self.name)
-        self._loops = self.options.loop
-        self._force = self.options.force
-        self._torque = self.options.torque
-        self._near = self.options.range_tolerance
-        self._ahead = math.radians(self.options.bearing_tolerance)
-        self._stops_turning = self.options.zero_vel_on_bearing_reached
+        self.options.read_all()
 
     def load(self, parent: Model, params: Params) -> None:
         self.once = OneTimeWarnings(self)
         self._is_paused, self._is_held = False, False
         self._way = list(self._points)
         self._link = self.sim.link(self._scoped)
-        if self._stops_turning and not self._link.is_free:
+        if self.options.zero_vel_on_bearing_reached and not self._link.is_free:
             message = "joints or the world hold the link: <zero_vel_on_bearing_reached> has no effect"
             self.once.warn("SK-PLUGIN-131", "held", message, "name the link that carries the model")
         self._set_pace()
@@ -115,21 +110,21 @@ class TrajectoryFollower(ModelPlugin):
     def before_step(self) -> None:
         if not self._way or self._is_paused:
             return
-        pose = self._link.pose
+        pose, options = self._link.pose, self.options
         (x, y), (goal_x, goal_y) = pose.position[:2].tolist(), self._way[0]
         way = goal_x - x, goal_y - y, 0.0  # heights are left out
-        if math.hypot(*way) <= self._near:
+        if math.hypot(*way) <= options.range_tolerance:
             self._go_on()
             return
         ahead, aside, _ = pose.inverse().rotate(way).tolist()
         bearing = math.atan2(aside, ahead)
-        if abs(bearing) > self._ahead:
+        if abs(bearing) > math.radians(options.bearing_tolerance):
             self._is_held = False
-            torque = math.copysign(1.0, bearing) * self._torque
+            torque = math.copysign(1.0, bearing) * options.torque
             self._link.apply_wrench((0.0, 0.0, 0.0), pose.rotate((0.0, 0.0, torque)))
             return
-        self._link.apply_wrench(pose.rotate((self._force, 0.0, 0.0)))
-        if self._stops_turning and self._link.is_free:
+        self._link.apply_wrench(pose.rotate((options.force, 0.0, 0.0)))
+        if options.zero_vel_on_bearing_reached and self._link.is_free:
             # from straight ahead on, until the bearing leaves the tolerance
             self._is_held = self._is_held or abs(bearing) <= _STRAIGHT
             if self._is_held:
@@ -139,7 +134,7 @@ class TrajectoryFollower(ModelPlugin):
         """To the next waypoint; the last one stays."""
         if len(self._way) > 1:
             reached, *rest = self._way
-            self._way = [*rest, reached] if self._loops else rest
+            self._way = [*rest, reached] if self.options.loop else rest
 
 
 def _waypoints(params: Params, start: Pose, name: str) -> list[Point]:

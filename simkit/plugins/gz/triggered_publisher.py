@@ -73,14 +73,6 @@ class TriggeredPublisherMatchOptions(Options):
     tol: str = text("1e-08", element="@tol")
 
 
-class TriggeredPublisherInputOptions(Options):
-    """The `<input>` block."""
-
-    type_: str = text(element="@type")
-    topic: str = text(element="@topic")
-    match: tuple[TriggeredPublisherMatchOptions, ...] = blocks(TriggeredPublisherMatchOptions)
-
-
 class TriggeredPublisherOptions(Options):
     """Options of `TriggeredPublisher`."""
 

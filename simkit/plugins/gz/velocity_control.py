@@ -14,7 +14,7 @@ from simkit.plugins.drives.kinematic_motion import KinematicMotion, KinematicMov
 from simkit.plugins.drives.odometry import COMMAND_TYPES
 from simkit.plugins.find_entities import find_link
 from simkit.plugins.one_time_warnings import OneTimeWarnings
-from simkit.plugins.options import Options, OptionsOf, text, texts
+from simkit.plugins.options import Options, OptionsOf, text, texts, vector3
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -30,6 +30,8 @@ class VelocityControlOptions(Options):
 
     topic: str = text()
     link_name: tuple[str, ...] = texts()
+    initial_linear: Triple = vector3()
+    initial_angular: Triple = vector3()
 
 
 class VelocityControl(ModelPlugin):
@@ -47,12 +49,7 @@ class VelocityControl(ModelPlugin):
     drives = True
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        zero = (0.0, 0.0, 0.0)
-        self._first = (
-            _float_triple(params.vector3("initial_linear", zero)),
-            _float_triple(params.vector3("initial_angular", zero)),
-        )
-        self._topic = self.options.topic
+        self.options.read_all()
         found = [(element.value, find_link(scene, element.value, params)) for element in params.all("link_name")]
         self._link_names = {name: link.scoped for name, link in found if link is not None}
         self._links = {link.scoped: link.pose_world for link in scene.all_links()}
@@ -60,7 +57,7 @@ class VelocityControl(ModelPlugin):
 
     def load(self, parent: Model, params: Params) -> None:
         self.once = OneTimeWarnings(self)
-        self._target: Motion = self._first
+        self._target: Motion = self.options.initial_linear, self.options.initial_angular
         self._link_targets: dict[str, Motion] = {}
         self._mover = KinematicMover(self.sim)
         trees = _links_by_tree(self.sim, list(self._links))
@@ -72,7 +69,7 @@ class VelocityControl(ModelPlugin):
         for name in [name for name, part in self._parts.items() if not part] + ([] if self._whole else [""]):
             self._report_fixed(name)
         own = f"/model/{parent.name}"
-        self.listen(valid_topic(self._topic or f"{own}/cmd_vel"), COMMAND_TYPES, self._on_command)
+        self.listen(valid_topic(self.options.topic or f"{own}/cmd_vel"), COMMAND_TYPES, self._on_command)
         for name in self._link_names:
             self.listen(valid_topic(f"{own}/link/{name}/cmd_vel"), COMMAND_TYPES, partial(self._on_link_command, name))
 
@@ -137,11 +134,6 @@ class VelocityControl(ModelPlugin):
             gone = {link for name in commanded for link in self._parts[name].links}
             self._rests[commanded] = self._held([link for link in self._links if link not in gone])
         return self._rests[commanded]
-
-
-def _float_triple(vector: Iterable[float]) -> Triple:
-    x, y, z = map(float, vector)
-    return x, y, z
 
 
 def _links_by_tree(sim: Simulation, links: list[str]) -> dict[str, list[str]]:

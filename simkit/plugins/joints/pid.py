@@ -22,7 +22,7 @@ FIELDS: Final[Mapping[str, str]] = {
     "cmd_min": "command_min",
     "cmd_offset": "offset",
 }
-"""Element of gz's joint systems -> attribute of `Pid`."""
+"""Element of gz's joint systems -> attribute of `Pid`, in its order."""
 
 _EFFORT: Final = "N·m or N"
 
@@ -80,21 +80,12 @@ class Pid:
     integral: float = 0.0
     last: float = 0.0
     command: float = 0.0
-    swings: DivergenceDetector = field(default_factory=lambda: DivergenceDetector())
+    swings: DivergenceDetector = field(init=False, default_factory=lambda: DivergenceDetector())
 
     @classmethod
     def of(cls, numbers: Mapping[str, float]) -> Pid:
         """Of the numbers by the names of their elements: `p_gain` and so on."""
-        return cls(
-            p=numbers["p_gain"],
-            i=numbers["i_gain"],
-            d=numbers["d_gain"],
-            i_max=numbers["i_max"],
-            i_min=numbers["i_min"],
-            command_max=numbers["cmd_max"],
-            command_min=numbers["cmd_min"],
-            offset=numbers["cmd_offset"],
-        )
+        return cls(*(numbers[name] for name in FIELDS))
 
     def update(self, error: float, step: float) -> float:
         """The output for an error now, `step` [s] after the last."""
