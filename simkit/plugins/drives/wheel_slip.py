@@ -104,9 +104,8 @@ class WheelSlipBase(ModelPlugin):
             if wheel is None:
                 continue
             if wheel.contact.link in taken:
-                options.params.error(
-                    "SK-PLUGIN-092", f"link {wheel.name!r} has a <wheel> already; there is one for each"
-                )
+                message = f"link {wheel.name!r} has a <wheel> already; there is one for each"
+                options.params.error("SK-PLUGIN-092", message)
                 continue
             taken.add(wheel.contact.link)
             self.wheels.append(wheel)
@@ -141,8 +140,7 @@ def _read_wheel(scene: SceneModel, options: WheelOptions) -> Wheel | None:
     name = options.link_name
     if not name:
         block.error("SK-PARAM-001", "<wheel> has no link_name; it is the link of the wheel")
-        return None
-    link = find_link(scene, name, block)
+    link = find_link(scene, name, block) if name else None
     if link is None:
         return None
     joint = _wheel_joint(scene, link, block)

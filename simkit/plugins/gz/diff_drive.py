@@ -200,15 +200,9 @@ class DriveFleet:
             way, odom, tf = odometry.reckoning, drive._odom, drive._tf
             told = now, drive._frame, drive._child, way.x, way.y, way.yaw
             if odom.wanted:
-                if odom.is_live:
-                    odom.publish(planar_odometry(*told, *twist))
-                else:
-                    odom.publish_later(partial(planar_odometry, *told, *twist))
+                odom.publish_later(partial(planar_odometry, *told, *twist))
             if tf.wanted:
-                if tf.is_live:
-                    tf.publish(planar_transform(*told))
-                else:
-                    tf.publish_later(partial(planar_transform, *told))
+                tf.publish_later(partial(planar_transform, *told))
             if drive._truth is not None and drive._truth.wanted:
                 drive._truth.publish(odometry_message(now, "world", drive._child, *drive._true.state()))
             if physics.tick != tick:  # who was called went back to another state

@@ -199,10 +199,8 @@ class Elevator(ModelPlugin):
 
     def _send(self, joint: int, position: float) -> None:
         mover = self._movers[joint]
-        if (
-            not any(does == "takes" for *_, does in self.sim.communication.bus.endpoints(mover.topic))
-            and not mover.wanted
-        ):
+        ends = self.sim.communication.bus.endpoints(mover.topic)
+        if not mover.wanted and not any(does == "takes" for *_, does in ends):
             hint = f"give the model a JointPositionController for joint {self._joint_names[joint]!r}"
             self.once.warn("SK-PLUGIN-132", mover.topic, f"nobody takes positions on {mover.topic}", hint)
         mover.publish(msgs.make(DOUBLE, data=position))

@@ -236,15 +236,12 @@ class JointTrajectoryController(ControlledJoints, ModelPlugin):
                 for field, values in _read_targets(point):
                     if place < len(values):
                         setattr(axis, field, values[place])
-            self._publish_progress((index + 1) / len(self._points))
+            if self._progress.wanted:
+                self._progress.publish(msgs.type_of(PROGRESS)((index + 1) / len(self._points)))
         for axis in self._axes.values():
             if axis.path is not None:
                 state = axis.path.at(since)
                 axis.position, axis.velocity = state.position, state.velocity
-
-    def _publish_progress(self, progress: float) -> None:
-        if self._progress.wanted:
-            self._progress.publish(msgs.type_of(PROGRESS)(progress))
 
     def before_step(self) -> None:
         now = self.sim.time_ns

@@ -78,11 +78,11 @@ class PosePublisher(ModelPlugin):
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         self._wants = {
+            "nested": self.options.publish_nested_model_pose,
             "link": self.options.publish_link_pose,
             "visual": self.options.publish_visual_pose,
             "collision": self.options.publish_collision_pose,
             "sensor": self.options.publish_sensor_pose,
-            "nested": self.options.publish_nested_model_pose,
             "model": self.options.publish_model_pose,
         }
         is_vector, kind = self.options.use_pose_vector_msg, self.options.pose_type

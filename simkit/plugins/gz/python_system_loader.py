@@ -72,9 +72,7 @@ class PythonSystemLoader(GzSystem):
                 params.error("SK-PLUGIN-081", message, "def get_system(): return MySystem()")
                 return
             self._import(params, folder, folders)
-        elif any(
-            point.value.split(":")[0].strip() == self._module_name for point in entry_points(group=ENTRY_POINT_GROUP)
-        ):
+        elif self._module_name in {p.value.split(":")[0].strip() for p in entry_points(group=ENTRY_POINT_GROUP)}:
             self._import(params, None, folders)
         else:
             searched = ", ".join(map(str, folders)) or "no folder, since none is allowed"

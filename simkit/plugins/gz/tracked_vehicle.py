@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -173,15 +172,6 @@ class TrackController(ModelPlugin):
         self._odometry.publish_later(partial(odometry_message, self.sim.time_ns, "", "", pose, twist))
 
 
-@dataclass(frozen=True, slots=True)
-class _Track:
-    """A track's link and the topics that its controller listens to."""
-
-    link: str
-    velocity_topic: str
-    centre_topic: str
-
-
 class TrackOptions(Options):
     """A `<left_track>` or `<right_track>` block."""
 
@@ -252,7 +242,8 @@ class TrackedVehicle(TwistDrive):
         if self.options.debug:
             params.diagnostics.note("SK-PLUGIN-100", "<debug> of a tracked vehicle draws nothing here", params.where)
 
-    def _read_side(self, element: str, found: Sequence[TrackOptions], scene: SceneModel) -> list[_Track]:
+    def _read_side(self, element: str, found: Sequence[TrackOptions], scene: SceneModel) -> list[tuple[str, str]]:
+        """The topics of speed and centre that the controllers of one side's tracks listen to."""
         if not found:
             self.params.text(element, required=True)
         tracks = []
@@ -264,7 +255,7 @@ class TrackedVehicle(TwistDrive):
             prefix = f"/model/{scene.name}/link/{name}"
             velocity = read_topic(one, "velocity_topic", f"{prefix}/track_cmd_vel")
             centre = read_topic(one, "center_of_rotation_topic", f"{prefix}/track_cmd_center_of_rotation")
-            tracks.append(_Track(name, velocity, centre))
+            tracks.append((velocity, centre))
         return tracks
 
     def load(self, parent: Model, params: Params) -> None:
@@ -273,7 +264,7 @@ class TrackedVehicle(TwistDrive):
         self._is_new = False
         self._odometry = TrackOdometry(self._separation, self.sim.time_ns)
         self._tracks = [
-            [(self.advertise(t.velocity_topic, SPEED), self.advertise(t.centre_topic, CENTRE[0])) for t in side]
+            [(self.advertise(speed, SPEED), self.advertise(centre, CENTRE[0])) for speed, centre in side]
             for side in self._sides
         ]
         self.open_topics(parent, params)

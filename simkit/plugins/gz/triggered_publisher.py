@@ -166,10 +166,8 @@ class TriggeredPublisher(WorldPlugin):
     def _read_request(self, element: Params) -> _Request | None:
         name, text = element.attribute("name"), element.attribute("reqMsg")
         element.attribute("timeout")  # [ms]; a service answers at once
-        kind, answer = (
-            self._kind(element, "reqType", SERVICE_REQUEST_TYPES),
-            self._kind(element, "repType", MESSAGE_CLASSES),
-        )
+        kind = self._kind(element, "reqType", SERVICE_REQUEST_TYPES)
+        answer = self._kind(element, "repType", MESSAGE_CLASSES)
         if not name:
             element.error("SK-PARAM-001", "<service> needs a name=: the service's")
         if kind is None or answer is None or not name:

@@ -59,19 +59,16 @@ def trajectory_faults(names: list[str], points: list[TrajectoryPoint]) -> str:
     """What makes a trajectory unusable: numbers that are none, times that go back; empty for nothing."""
     before = 0
     for i, point in enumerate(points):
-        if not all(abs(v) < float("inf") for v in _numbers_of_point(point)):
+        fields = point.positions, point.velocities, point.accelerations, point.efforts
+        if not all(abs(value) < float("inf") for values in fields for value in values):
             return f"point {i} has a number that is not finite"
         if point.time < before:
             return f"point {i} is at {point.time / SECOND:g} s, the one before it at {before / SECOND:g} s"
         before = point.time
-        most = max(len(point.positions), len(point.velocities), len(point.accelerations), len(point.efforts))
+        most = max(map(len, fields))
         if most > len(names):
             return f"point {i} has {most} numbers for {len(names)} joint names"
     return ""
-
-
-def _numbers_of_point(point: TrajectoryPoint) -> tuple[float, ...]:
-    return (*point.positions, *point.velocities, *point.accelerations, *point.efforts)
 
 
 def active_point(times: list[int], now: int) -> int:
