@@ -109,7 +109,7 @@ def test_a_load_imports_neither_the_kinds_that_it_does_not_use_nor_the_message_t
     imported = set(done.stdout.split())
     assert "simkit.plugins.world.clock_publisher" in imported
     unwanted = {
-        "simkit.plugins.gz.thermal",
+        "simkit.plugins.gz.visual_properties",
         "simkit.sensors.rays.lidar",
         "rosbags",
         "scipy",

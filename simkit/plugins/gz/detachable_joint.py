@@ -80,12 +80,9 @@ class DetachableJoint(ModelPlugin):
         if not self._quiet and not self._told_missing:
             what = f"link {self._child_link!r} of model {name!r}" if inner else f"model {name!r}"
             self._told_missing = True
-            params.diagnostics.warning(
-                "SK-JOINT-013",
-                f"plugin {self.name!r}: there is no {what} to attach; it is waited for",
-                self.where,
-                "<suppress_child_warning> says that this is meant",
-            )
+            message = f"plugin {self.name!r}: there is no {what} to attach; it is waited for"
+            hint = "<suppress_child_warning> says that this is meant"
+            params.diagnostics.warning("SK-JOINT-013", message, self.where, hint)
         return ""
 
     _told_missing = False
@@ -95,9 +92,8 @@ class DetachableJoint(ModelPlugin):
         old = self.options.topic
         detach = read_topic(params, "detach_topic" if params.has("detach_topic") else "topic", f"{own}/detach")
         if old and valid_topic(old) != detach:
-            params.diagnostics.warning(
-                "SK-PARAM-004", f"<topic> is {old!r} and <detach_topic> is {detach!r}: the latter counts", self.where
-            )
+            message = f"<topic> is {old!r} and <detach_topic> is {detach!r}: the latter counts"
+            params.diagnostics.warning("SK-PARAM-004", message, self.where)
         state = read_topic(params, "output_topic", f"/model/{self._child_model}/detachable_joint/state")
         self.listen(detach, EMPTY, self._on_detach)
         self.listen(read_topic(params, "attach_topic", f"{own}/attach"), EMPTY, self._on_attach)

@@ -186,12 +186,8 @@ class TriggeredPublisher(WorldPlugin):
         if name in listed and package in ("gz.msgs", "ignition.msgs"):
             return message_class(name)
         hint = did_you_mean(name, listed) or f"allowed are {', '.join(sorted(listed))} of gz.msgs"
-        element.diagnostics.error(
-            "SK-PLUGIN-120",
-            f'<{element.name} {attribute}="{written}">: no message of that type can come or go here',
-            element.where,
-            hint,
-        )
+        message = f'<{element.name} {attribute}="{written}">: no message of that type can come or go here'
+        element.error("SK-PLUGIN-120", message, hint)
         return None
 
     # ------------------------------------------------------------------ what comes

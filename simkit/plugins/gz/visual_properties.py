@@ -1,23 +1,24 @@
-"""gz's temperatures: `gz::sim::systems::Thermal` on what is warm, `gz::sim::systems::ThermalSensor` on what sees it."""
+"""gz's properties of visuals that cameras tell: labels by `gz::sim::systems::Label`, temperatures by
+`gz::sim::systems::Thermal`, and `gz::sim::systems::ThermalSensor` on what sees those.
+"""
 
 from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from simkit.compiler.meshes.companion_files import read_pixels
 from simkit.compiler.meshes.mesh_part import MeshFileError
 from simkit.params import Params
 from simkit.plugins.base import Plugin, SensorPlugin
-from simkit.plugins.options import Options, OptionsOf, number, text
-from simkit.runtime.handles.visual_properties import HeatSignature, Temperature
+from simkit.plugins.options import Options, OptionsOf, integer, number, text
+from simkit.runtime.handles.visual_properties import MAX_LABEL, HeatSignature, Temperature
 from simkit.scene import Atmosphere, SceneModel, SceneVisual
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
-    from simkit.runtime import Simulation
-    from simkit.scene import SceneModel, SceneVisual
+    from simkit.runtime import Model, Simulation, Visual
     from simkit.sensors.base import Sensor
 
 _WITHOUT_EFFECT = "SK-SENSOR-141"
@@ -162,3 +163,35 @@ class ThermalSensor(SensorPlugin):
         message = f"found <resolution> {found:g}, allowed is a number above 0: the default is used, as in Gazebo"
         params.diagnostics.warning(_WITHOUT_EFFECT, message, params.block("resolution").where)
         return None
+
+
+class LabelOptions(Options):
+    """Options of `Label`."""
+
+    label: int = integer(minimum=0, maximum=MAX_LABEL, required=True)
+
+
+class Label(Plugin):
+    """Gives its model, or its one visual, the number that segmentation and bounding box cameras tell.
+
+    A visual's own counts more than its model's, a nested model's more than the outer one's. Of two on one element the
+    later counts.
+    """
+
+    options = OptionsOf(LabelOptions)
+    parent_kind = ("model", "visual")
+    lets_sleep = True
+    gives_labels: ClassVar[bool] = True
+    filenames = ("gz-sim-label-system",)
+    names = ("gz::sim::systems::Label",)
+
+    def prepare(self, scene: SceneModel | SceneVisual, params: Params, builder: SpecBuilder) -> None:
+        self._label = self.options.label
+        self._is_lost = self.scoped != scene.scoped
+        if self._is_lost:
+            message = f"plugin {self.name!r} labels a model or a visual, it hangs on {self.scoped!r}; it has no effect"
+            params.diagnostics.warning("SK-PLUGIN-007", message, self.where, "move it into the <model> or a <visual>")
+
+    def load(self, parent: Model | Visual, params: Params) -> None:
+        if not self._is_lost:
+            self.sim.contents.labels[parent.scoped] = self._label

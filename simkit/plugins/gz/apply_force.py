@@ -1,4 +1,4 @@
-"""gz's forces on links: `gz::sim::systems::ApplyLinkWrench`."""
+"""gz's forces: `gz::sim::systems::ApplyLinkWrench` on links and `gz::sim::systems::ApplyJointForce` on joints."""
 
 from __future__ import annotations
 
@@ -9,18 +9,24 @@ from typing import TYPE_CHECKING, Final, TypeVar
 
 import numpy as np
 
+from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
-from simkit.plugins.base import NEVER, WorldPlugin
+from simkit.plugins.base import NEVER, ModelPlugin, WorldPlugin
+from simkit.plugins.endpoints import listens
 from simkit.plugins.find_entities import read_required_name, read_topic
+from simkit.plugins.joints.joint_axis import JointAxis, find_joints
+from simkit.plugins.joints.joint_commands import DOUBLE
 from simkit.plugins.one_time_warnings import OneTimeWarnings
-from simkit.plugins.options import Options, OptionsOf, blocks, boolean, choice, text, vector3
+from simkit.plugins.options import Options, OptionsOf, blocks, boolean, choice, text, texts, vector3
 from simkit.plugins.publish_on_demand import set_before_step_rate
 from simkit.plugins.world.service_entities import RequestRefused, entity_of
 from simkit.pose import Vector
 
 if TYPE_CHECKING:
-    from simkit.msgs import Entity, EntityWrench, Vector3
-    from simkit.runtime import Link, Simulation
+    from simkit.compiler import SpecBuilder
+    from simkit.msgs import Entity, EntityWrench, Float64, Vector3
+    from simkit.runtime import Link, Model, Simulation
+    from simkit.scene import SceneModel
 
 ENTITY: Final = "ros_gz_interfaces/msg/Entity"
 ENTITY_WRENCH: Final = "ros_gz_interfaces/msg/EntityWrench"
@@ -85,18 +91,15 @@ class ApplyLinkWrench(WorldPlugin):
         element = options.params
         name = read_required_name(element, "entity_name")
         force, torque = options.force, options.torque
-        kind = options.entity_type if element.has("entity_type") else ""
-        if not name or kind not in _TYPES:
-            if kind not in _TYPES and not element.has("entity_type"):
-                element.error("SK-PARAM-001", "<persistent> needs <entity_type>: model or link")
+        is_typed, kind = element.has("entity_type"), options.entity_type
+        if not is_typed:
+            element.error("SK-PARAM-001", "<persistent> needs <entity_type>: model or link")
+        if not name or not is_typed:
             return None
         wrench = _Wrench(name, _TYPES[kind], force, torque)
         if self._target(name, wrench.type) is None:
-            element.diagnostics.warning(
-                "SK-JOINT-013",
-                f"plugin {self.name!r}: there is no {kind} {name!r} to push; it is waited for",
-                self.where,
-            )
+            message = f"plugin {self.name!r}: there is no {kind} {name!r} to push; it is waited for"
+            element.diagnostics.warning("SK-JOINT-013", message, self.where)
         return wrench
 
     def _target(self, name: str, kind: int) -> Link | None:
@@ -207,3 +210,55 @@ def _find_entity(table: Mapping[str, T], name: str) -> T | None:
     if name in table:
         return table[name]
     return next((handle for scoped, handle in table.items() if scoped.endswith("::" + name)), None)
+
+
+class ApplyJointForceOptions(Options):
+    """Options of `ApplyJointForce`."""
+
+    joint_name: tuple[str, ...] = texts(required=True)
+
+
+class ApplyJointForce(ModelPlugin):
+    """Pushes a joint about its first axis with the effort [N·m or N] of the last message, at every step.
+
+    Commands come on `/model/<model>/joint/<joint>/cmd_force`. The effort adds to what plugins before it in the file
+    have set for the step; what comes after it and sets an effort of its own takes its place, as in gz.
+    """
+
+    endpoints = (listens("/model/{model}/joint/{joint_name}/cmd_force", DOUBLE),)
+    options = OptionsOf(ApplyJointForceOptions)
+    filenames = ("gz-sim-apply-joint-force-system",)
+    names = ("gz::sim::systems::ApplyJointForce",)
+    drives = True
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        names = params.all("joint_name")
+        for extra in names[1:]:
+            message = f"plugin {self.name!r} takes one <joint_name>; {extra.value!r} is not used"
+            params.diagnostics.warning("SK-PLUGIN-044", message, extra.where, "a plugin for each joint")
+        found = find_joints(scene, params, most=1)
+        self._scoped = found[0].scoped if found else ""
+        self._written = names[0].value if names else ""
+
+    def load(self, parent: Model, params: Params) -> None:
+        self.once = OneTimeWarnings(self)
+        self._axis = JointAxis(self.sim.joint(self._scoped)) if self._scoped else None
+        self._effort = 0.0
+        self.listen(valid_topic(f"/model/{parent.name}/joint/{self._written}/cmd_force"), DOUBLE, self._on_command)
+
+    def _on_command(self, message: Float64) -> None:
+        effort = float(message.data)
+        if math.isfinite(effort):
+            self._effort = effort
+        else:
+            self.once.left_out("finite", f"the command {effort} is left out; allowed is a finite number")
+
+    def explain_divergence(self, name: str) -> str:
+        """What this plugin may have to do with the physics leaving the numbers; empty for nothing."""
+        if not self._effort or self._axis is None or not self._axis.is_meant(name):
+            return ""
+        return f"plugin {self.name!r} ({self.where}) pushes joint {self._axis.joint.scoped!r} with {self._effort:g}"
+
+    def before_step(self) -> None:
+        if self._effort and self._axis is not None:
+            self._axis.add(self._effort)
