@@ -33,8 +33,7 @@ def grade(
 ) -> int:
     """Runs an exercise with plugins that were handed in, and says what each got and why."""
     from simkit.testing.scenarios.exercise import read_exercise
-    from simkit.testing.scenarios.grading import grade_all
-    from simkit.testing.scenarios.grading_report import grade_json, grade_text, junit_cases
+    from simkit.testing.scenarios.grading import grade_all, grade_json, grade_text, junit_cases
 
     check_writable(junit)
     asked = read_exercise(exercise)

@@ -13,7 +13,7 @@ import stat
 import struct
 import zipfile
 import zlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path, PurePosixPath
 from typing import IO, Final
 
@@ -109,13 +109,7 @@ class Bundle:
         Raises:
             InputError: SK-BUNDLE-001 it is damaged.
         """
-        digest, size = hashlib.sha256(), 0
-        with self._opened(COMMANDS) as file:
-            while line := self._line(file):
-                digest.update(line)
-                size += len(line)
-                yield self._entry(line)
-        self._compare(COMMANDS, size, digest.hexdigest())
+        yield from map(self._entry, self._pieces(COMMANDS, lines=True))
 
     def extract(self, folder: Path, *, with_code: bool = False) -> None:
         """Writes its files below a folder, which has to be there and empty.
@@ -131,13 +125,8 @@ class Bundle:
                 continue
             target = folder.joinpath(*PurePosixPath(name).parts)
             target.parent.mkdir(parents=True, exist_ok=True)
-            digest, size = hashlib.sha256(), 0
-            with self._opened(name) as source, target.open("xb") as file:
-                while piece := self._piece(source, 1 << 20):
-                    digest.update(piece)
-                    size += len(piece)
-                    file.write(piece)
-            self._compare(name, size, digest.hexdigest())
+            with target.open("xb") as file:
+                file.writelines(self._pieces(name))
 
     # ------------------------------------------------------------------ what is looked at before
 
@@ -170,12 +159,13 @@ class Bundle:
         if there != said.files.keys():
             other = sorted(there ^ said.files.keys())[0]
             raise self._broken(f"{other!r:.80} is in the archive or in {PAGE}, and not in both")
-        named = {
-            "world": {said.world},
+        named: dict[str, Iterable[str]] = {
+            "world": [said.world],
             "spawn": {one.file for one in said.spawn},
-            "params": {f for _, f in said.params},
+            "params": {file for _, file in said.params},
+            "models": said.models.values(),
+            "code": said.code,
         }
-        named |= {"models": set(said.models.values()), "code": set(said.code)}
         for folder, files in named.items():
             for file in files:
                 if file not in there or not file.startswith(f"{folder}/"):
@@ -193,22 +183,25 @@ class Bundle:
         except (zipfile.BadZipFile, KeyError, OSError, NotImplementedError, RuntimeError, ValueError) as error:
             raise self._broken(str(error)) from None
 
-    def _piece(self, file: IO[bytes], size: int) -> bytes:
-        try:
-            return file.read(size)
-        except (zipfile.BadZipFile, zlib.error, EOFError, OSError, ValueError) as error:
-            raise self._broken(str(error)) from None
+    def _pieces(self, name: str, *, lines: bool = False) -> Iterator[bytes]:
+        """A file piece by piece, or line by line; at its end it is compared with what the manifest says of it."""
+        digest, size = hashlib.sha256(), 0
+        with self._opened(name) as file:
+            while piece := self._piece(file.readline, _MOST_LINE) if lines else self._piece(file.read, 1 << 20):
+                digest.update(piece)
+                size += len(piece)
+                yield piece
+        self._compare(name, size, digest.hexdigest())
 
-    def _line(self, file: IO[bytes]) -> bytes:
+    def _piece(self, read: Callable[[int], bytes], size: int) -> bytes:
         try:
-            line = file.readline(_MOST_LINE)
+            return read(size)
         except (zipfile.BadZipFile, zlib.error, EOFError, OSError, ValueError) as error:
             raise self._broken(str(error)) from None
-        return line
 
     def _whole(self, name: str, most: int) -> bytes:
         with self._opened(name) as file:
-            data = self._piece(file, most + 1)
+            data = self._piece(file.read, most + 1)
         if len(data) > most:
             raise self._too_large(f"has a {name} of more than {most >> 20} MiB")
         return data
@@ -273,10 +266,9 @@ def _check_index(path: Path) -> None:
             size = file.seek(0, os.SEEK_END)
             file.seek(max(0, size - (1 << 16) - _END.size))
             tail = file.read()
-    except OSError as error:
-        raise InputError(f"{BROKEN} cannot read {path}: {error.strerror or error}", BROKEN) from None
-    except ValueError as error:  # a name that no file can have
-        raise InputError(f"{BROKEN} cannot read {path}: {error}", BROKEN) from None
+    except (OSError, ValueError) as error:  # a ValueError is of a name that no file can have
+        why = getattr(error, "strerror", None) or error
+        raise InputError(f"{BROKEN} cannot read {path}: {why}", BROKEN) from None
     at = tail.rfind(b"PK\5\6")
     if at < 0 or len(tail) - at < _END.size:
         raise InputError(f"{BROKEN} {path} is no bundle of simkit (no ZIP archive, or one that breaks off)", BROKEN)

@@ -9,21 +9,19 @@ from collections import defaultdict
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 from simkit.errors import InputError, PluginError, SimkitError
 from simkit.recording.bags.reader import open_bag_to_read
 from simkit.recording.bags.recorder import Recorder
+from simkit.runtime import Simulation
 from simkit.runtime.engine.snapshot import state_hash
 from simkit.testing.bundles.archive import Bundle, open_bundle
+from simkit.testing.bundles.bundle_recorder import MessageWindow, StateHashes, WindowMessage, topic_digests
+from simkit.testing.bundles.bundle_staging import load_packed_world, packed_run_spec
 from simkit.testing.bundles.journal_player import JournalPlayer
 from simkit.testing.bundles.manifest import BAG, Failure, Manifest, failure_from_error
-from simkit.testing.bundles.message_window import MessageWindow, StateHashes, WindowMessage, topic_digests
-from simkit.testing.bundles.packed_world import load_packed_world, packed_run_spec
 from simkit.testing.run_record.fingerprint import fingerprint, fingerprint_differences
-
-if TYPE_CHECKING:
-    from simkit.runtime import Simulation
 
 CODE: Final = "SK-BUNDLE-005"
 _CODE_POSITION: Final = re.compile(r"\([^()\s]*:\d+\)")

@@ -17,7 +17,14 @@ from typing import TYPE_CHECKING, Final
 from simkit.errors import InputError
 from simkit.run_spec import JsonObject, RunSpec
 from simkit.testing.bundles.archive import MAX_BYTES, name_fault
-from simkit.testing.bundles.bundle_recorder import WINDOW_SECONDS, BundleRecorder, recorder_of
+from simkit.testing.bundles.bundle_recorder import (
+    WINDOW_SECONDS,
+    BundleRecorder,
+    WindowMessage,
+    recorder_of,
+    topic_digests,
+    write_bag,
+)
 from simkit.testing.bundles.bundle_staging import UNPACKED, WorldStager, copy_plugin_modules
 from simkit.testing.bundles.manifest import (
     BAG,
@@ -29,7 +36,6 @@ from simkit.testing.bundles.manifest import (
     failure_from_error,
     strip_folders,
 )
-from simkit.testing.bundles.message_window import WindowMessage, topic_digests, write_bag
 from simkit.testing.run_record.fingerprint import fingerprint
 from simkit.writers.atomic_output import check_file, remove_abandoned, unfinished_folder
 

@@ -5,30 +5,21 @@ The state is compared with that after the last step. So it does not matter by wh
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import mujoco
 import numpy as np
 import numpy.typing as npt
 
 from simkit.errors import MessageError
+from simkit.runtime import Simulation
 from simkit.runtime.engine.physics_step import STALE
 from simkit.testing.bundles.journal_values import decode_array, encode_value
 from simkit.testing.run_record.record import Array
 
-if TYPE_CHECKING:
-    from simkit.runtime import Simulation
-
 _STATE_PARTS: Final = (
-    "QPOS",
-    "QVEL",
-    "ACT",
-    "CTRL",
-    "QFRC_APPLIED",
-    "XFRC_APPLIED",
-    "EQ_ACTIVE",
-    "MOCAP_POS",
-    "MOCAP_QUAT",
+    *("QPOS", "QVEL", "ACT", "CTRL", "QFRC_APPLIED", "XFRC_APPLIED"),
+    *("EQ_ACTIVE", "MOCAP_POS", "MOCAP_QUAT"),
 )
 _SIGNATURE: Final = sum(int(getattr(mujoco.mjtState, f"mjSTATE_{part}")) for part in _STATE_PARTS)
 
@@ -66,16 +57,17 @@ class DirectChanges:
         words: dict[str, object] = {}
         now = state_vector(sim)
         if now.tobytes() != self._state.tobytes():
-            places = np.flatnonzero(now.view(np.int64) != self._state.view(np.int64))
-            words["state"] = {"size": now.size, "at": encode_value(places), "values": encode_value(now[places])}
+            words["state"] = _encode_places(now, np.flatnonzero(now.view(np.int64) != self._state.view(np.int64)))
         if self._edition != sim.engine.physics.edition:
             fields = _changed_fields(self._fields, _changeable_fields(sim))
             if fields:
                 words["fields"] = fields
-        if not words:
-            return None
-        words["one_shot"] = bool(sim.engine.physics.one_shot)
-        return words
+        return words | {"one_shot": bool(sim.engine.physics.one_shot)} if words else None
+
+
+def _encode_places(values: Array, places: Array) -> dict[str, object]:
+    """Some of the values of an array, with their places."""
+    return {"size": values.size, "at": encode_value(places), "values": encode_value(values[places])}
 
 
 def state_vector(sim: Simulation) -> Numbers:
@@ -137,7 +129,7 @@ def _changed_fields(before: dict[str, Array], now: dict[str, Array]) -> dict[str
         flat = values.reshape(-1)
         places = np.arange(flat.size) if old is None else np.flatnonzero(old.reshape(-1) != flat)
         if places.size:
-            found[name] = {"size": flat.size, "at": encode_value(places), "values": encode_value(flat[places])}
+            found[name] = _encode_places(flat, places)
     return found
 
 

@@ -7,7 +7,7 @@ import math
 import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass, field
-from typing import TYPE_CHECKING, Any, Final, cast
+from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
 
 from simkit.errors import InputError, SimkitError
 from simkit.run_spec import JsonMapping, JsonObject, LoadOptions, PluginErrorPolicy, RunSpec
@@ -15,6 +15,7 @@ from simkit.run_spec import JsonMapping, JsonObject, LoadOptions, PluginErrorPol
 if TYPE_CHECKING:
     from simkit.testing.conditions import CheckResult
 
+_Value = TypeVar("_Value")
 FORMAT: Final = 1
 PAGE: Final = "bundle.json"
 COMMANDS: Final = "commands.jsonl"
@@ -180,22 +181,20 @@ class _ManifestReader:
     def __init__(self, words: Mapping[str, object], at: str = "") -> None:
         self._words, self._at = words, at
 
-    def _value(self, name: str, kind: Any, allowed: str) -> Any:
+    def _value(self, name: str, kind: type[_Value], allowed: str) -> _Value:
         value = self._words.get(name)
         if not isinstance(value, kind) or (isinstance(value, bool) and kind is not bool):
             raise _InvalidValue(f"{self._at}{name}: found {value!r:.60}, allowed is {allowed}")
         return value
 
     def text(self, name: str) -> str:
-        found: str = self._value(name, str, "a text")
-        return found
+        return self._value(name, str, "a text")
 
     def flag(self, name: str) -> bool:
-        found: bool = self._value(name, bool, "true or false")
-        return found
+        return self._value(name, bool, "true or false")
 
     def count(self, name: str) -> int:
-        found: int = self._value(name, int, "a whole number from 0 on")
+        found = self._value(name, int, "a whole number from 0 on")
         if not 0 <= found < 1 << 62:
             raise _InvalidValue(f"{self._at}{name}: found {found!r:.60}, allowed is a whole number from 0 on")
         return found
@@ -203,32 +202,33 @@ class _ManifestReader:
     def time(self, name: str) -> float:
         if self._words.get(name) is None:
             return math.inf
-        found = float(self._value(name, (int, float), "a number of seconds"))
+        kind = int if isinstance(self._words[name], int) else float
+        found = float(self._value(name, kind, "a number of seconds"))
         if not found >= 0:
             raise _InvalidValue(f"{self._at}{name}: found {found}, allowed is a number of seconds")
         return found
 
-    def either(self, name: str, take: Callable[[str], object]) -> Any:
+    def either(self, name: str, take: Callable[[str], _Value]) -> _Value | None:
         return None if self._words.get(name) is None else take(name)
 
     def listed(self, name: str) -> list[Any]:
-        found: list[object] = self._value(name, list, "a list")
-        return found
+        return self._value(name, list, "a list")
+
+    def mapping(self, name: str) -> JsonObject:
+        return self._value(name, dict, "a mapping")
+
+    def _require_all(self, name: str, values: Iterable[object], kind: type, allowed: str) -> None:
+        if not all(isinstance(one, kind) for one in values):
+            raise _InvalidValue(f"{self._at}{name}: allowed is {allowed}")
 
     def texts(self, name: str) -> tuple[str, ...]:
         found = self.listed(name)
-        if not all(isinstance(one, str) for one in found):
-            raise _InvalidValue(f"{self._at}{name}: allowed is a list of texts")
+        self._require_all(name, found, str, "a list of texts")
         return tuple(found)
-
-    def mapping(self, name: str) -> JsonObject:
-        found: dict[str, object] = self._value(name, dict, "a mapping")
-        return found
 
     def of_texts(self, name: str) -> dict[str, str]:
         found = self.mapping(name)
-        if not all(isinstance(one, str) for one in found.values()):
-            raise _InvalidValue(f"{self._at}{name}: allowed is a mapping of texts")
+        self._require_all(name, found.values(), str, "a mapping of texts")
         return found
 
     def reader(self, name: str) -> _ManifestReader:
@@ -236,14 +236,12 @@ class _ManifestReader:
 
     def readers(self, name: str) -> list[_ManifestReader]:
         found = self.listed(name)
-        if not all(isinstance(one, dict) for one in found):
-            raise _InvalidValue(f"{self._at}{name}: allowed is a list of mappings")
+        self._require_all(name, found, dict, "a list of mappings")
         return [_ManifestReader(one, f"{self._at}{name}[{number}].") for number, one in enumerate(found)]
 
     def each(self, name: str) -> dict[str, _ManifestReader]:
         found = self.mapping(name)
-        if not all(isinstance(one, dict) for one in found.values()):
-            raise _InvalidValue(f"{self._at}{name}: allowed is a mapping of mappings")
+        self._require_all(name, found.values(), dict, "a mapping of mappings")
         return {key: _ManifestReader(one, f"{self._at}{name}.{key:.60}.") for key, one in found.items()}
 
 
@@ -279,10 +277,8 @@ def _parse_manifest(said: _ManifestReader) -> Manifest:
 
 
 def _parse_end(said: _ManifestReader) -> RunEnd:
-    failure = None
-    if said.either("failure", said.mapping) is not None:
-        one = said.reader("failure")
-        failure = Failure(one.text("kind"), one.text("code"), one.text("text"))
+    one = said.either("failure", said.reader)
+    failure = None if one is None else Failure(one.text("kind"), one.text("code"), one.text("text"))
     return RunEnd(said.count("steps"), said.count("tick"), said.count("time_ns"), said.text("state"), failure)
 
 
@@ -292,9 +288,8 @@ def _parse_spawned(said: _ManifestReader) -> PackedModel:
         numbers = all(isinstance(v, (int, float)) and not isinstance(v, bool) for v in place)
         if not numbers or len(place) not in (3, 4, 6):
             raise _InvalidValue(f"place: found {place!r:.60}, allowed are 3, 4 or 6 numbers")
-    return PackedModel(
-        said.text("file"), None if place is None else tuple(map(float, place)), said.either("name", said.text)
-    )
+    numbers_of_place = None if place is None else tuple(map(float, place))
+    return PackedModel(said.text("file"), numbers_of_place, said.either("name", said.text))
 
 
 def _parse_pair(one: object) -> tuple[str, str]:

@@ -8,11 +8,12 @@ import time
 from contextlib import ExitStack, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 from simkit import msgs
 from simkit.errors import InputError, SimkitError
 from simkit.run_spec import RunSpec
+from simkit.runtime import Simulation
 from simkit.runtime.engine.snapshot import state_hash
 from simkit.testing.certify.outcome import RunOutcome
 from simkit.testing.certify.plugin_calls import PluginCallRecorder, TickHashes, plugin_attributes, record_plugin_calls
@@ -22,9 +23,6 @@ from simkit.testing.certify.variations import Variation
 from simkit.testing.run_record.fingerprint import fingerprint
 from simkit.testing.scenarios.scenario_file import read_scenario
 from simkit.testing.scenarios.scenario_run import ScenarioCommands, open_scenario, run_scenario
-
-if TYPE_CHECKING:
-    from simkit.runtime import Simulation
 
 _SLICE: Final = 0.25  # [s] of simulated time between two looks at what was kept
 _DETOUR: Final = 0.5  # [s] of it

@@ -3,30 +3,14 @@
 from __future__ import annotations
 
 import ast
+import tomllib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-_CALLS: Final[dict[str, str]] = {
-    **dict.fromkeys(
-        (
-            *("time.time", "time.time_ns", "time.perf_counter", "time.perf_counter_ns", "time.monotonic"),
-            *("time.monotonic_ns", "time.process_time", "datetime.now", "datetime.datetime.now", "datetime.utcnow"),
-            *("datetime.today", "datetime.datetime.today", "date.today", "datetime.date.today"),
-        ),
-        "reads the wall clock; self.sim.time is the simulation's",
-    ),
-    **dict.fromkeys(
-        ("os.urandom", "secrets.token_bytes", "secrets.randbelow", "uuid.uuid4", "uuid.uuid1"),
-        "is random in every process; self.random(channel) belongs to the seed",
-    ),
-    **dict.fromkeys(("os.getpid", "id", "hash"), "is another number in every process"),
-    **dict.fromkeys(("os.listdir", "os.scandir", "glob.glob"), "is in no order; sort it"),
-    **dict.fromkeys(("os.getcwd", "Path.cwd", "Path.home", "os.getenv"), "depends on where the program was started"),
-    **dict.fromkeys(("open", "os.path.getsize", "os.path.getmtime"), "a file stays as it is from run to run"),
-    **dict.fromkeys(("threading.Thread", "Thread"), "runs beside the simulation, at no fixed tick"),
-}
+_CALL_HINTS: Final = tomllib.loads(Path(__file__).with_name("call_hints.toml").read_text(encoding="utf-8"))
+_CALLS: Final[dict[str, str]] = {name: hint for hint, names in _CALL_HINTS.items() for name in names}
 _RANDOM: Final = ("random.", "np.random.", "numpy.random.")
 _SEEDED: Final = ("Random", "default_rng", "RandomState", "Generator", "SeedSequence", "PCG64")
 _NOT_KEPT: Final = "no snapshot and no reset brings it back; keep it in an attribute of self"

@@ -4,25 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from zlib import crc32
 
+import mujoco
 import numpy as np
 import numpy.typing as npt
 
 from simkit.run_spec import JsonObject
+from simkit.runtime import Simulation
 from simkit.runtime.engine import grouped_hooks
+from simkit.runtime.engine.engine_state import EngineState
 from simkit.runtime.engine.held_state import applied_forces
 from simkit.runtime.engine.plugin_faults import PluginFaults
 from simkit.testing.certify.outcome import PluginCall
 from simkit.testing.certify.topic_hashes import plugin_title
 from simkit.testing.certify.value_hash import short_value_text, value_hash
-
-if TYPE_CHECKING:
-    import mujoco
-
-    from simkit.runtime import Simulation
-    from simkit.runtime.engine.engine_state import EngineState
 
 
 class PluginCallRecorder:

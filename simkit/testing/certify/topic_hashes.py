@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -12,13 +12,11 @@ from simkit import msgs
 from simkit.msgs import Message
 from simkit.recording.bags.recorder import matches_topic
 from simkit.recording.message_taps import TopicTaps
+from simkit.runtime import Simulation
 from simkit.runtime.communication.topic_bus import NO_MESSAGE, LazyMessage
 from simkit.testing.certify.outcome import TopicOutcome
 from simkit.testing.certify.value_hash import short_hash
 from simkit.testing.certify.variations import Listening
-
-if TYPE_CHECKING:
-    from simkit.runtime import Simulation
 
 UNKNOWN = -1
 

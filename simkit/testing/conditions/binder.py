@@ -11,42 +11,29 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from simkit.diagnostics import did_you_mean
-from simkit.testing.conditions.bound_expression import BoundNode, Function, as_vector, is_scalar
-from simkit.testing.conditions.list_functions import LIST_FUNCTIONS
-from simkit.testing.conditions.number_functions import NUMBER_FUNCTIONS, NUMBER_OPERATORS, VECTOR_OPERATORS
-from simkit.testing.conditions.syntax_tree import (
-    Arithmetic,
-    Attribute,
-    Call,
-    Comparison,
-    Expression,
-    Index,
-    Junction,
-    Name,
-    Node,
-    Not,
-    Number,
-    Numbers,
-    Sign,
-    Span,
-    Text,
-    UndecidedValue,
-    expression_error,
+from simkit.testing.conditions import syntax_tree as syntax
+from simkit.testing.conditions.bound_expression import (
+    BoundNode,
+    Function,
+    as_vector,
+    attribute_of,
+    is_scalar,
+    listed_attributes,
 )
-from simkit.testing.conditions.value_fields import attribute_of, listed_attributes
+from simkit.testing.conditions.math_functions import (
+    LIST_FUNCTIONS,
+    NUMBER_FUNCTIONS,
+    NUMBER_OPERATORS,
+    VECTOR_OPERATORS,
+)
 from simkit.testing.conditions.value_types import NUMBER, NUMBERS, TEXT, TRUTH, VECTOR, ValueType, is_vector_like
-from simkit.testing.conditions.world_functions import CONTACT_FUNCTIONS, WORLD_FUNCTIONS
+from simkit.testing.conditions.world_functions import WORLD_FUNCTIONS
 
 if TYPE_CHECKING:
     from simkit.testing.conditions.world_view import WorldView
 
 
-FUNCTIONS: Final[dict[str, Function]] = {
-    **WORLD_FUNCTIONS,
-    **CONTACT_FUNCTIONS,
-    **LIST_FUNCTIONS,
-    **NUMBER_FUNCTIONS,
-}
+FUNCTIONS: Final[dict[str, Function]] = {**WORLD_FUNCTIONS, **LIST_FUNCTIONS, **NUMBER_FUNCTIONS}
 
 
 _COMPARISON_OPERATORS: Final[dict[str, Callable[[Any, Any], bool]]] = {
@@ -59,61 +46,14 @@ _COMPARISON_OPERATORS: Final[dict[str, Callable[[Any, Any], bool]]] = {
 }
 
 
-def bind_comparison(binder: Binder, node: Comparison, operands: tuple[BoundNode, ...]) -> BoundNode:
-    """What says whether a comparison holds.
-
-    Raises:
-        InputError: SK-COND-004 two of the operands cannot be compared.
-    """
-    for sign, (left, right) in zip(node.signs, pairwise(operands), strict=True):
-        _check_comparable(binder, sign, left, right)
-    signs, gets = [_COMPARISON_OPERATORS[sign] for sign in node.signs], [part.get for part in operands]
-    if len(signs) == 1:
-        holds, a, b = signs[0], gets[0], gets[1]
-        return BoundNode(node, TRUTH, lambda: holds(a(), b()), operands)
-
-    def value() -> bool:
-        left = gets[0]()
-        for holds, get in zip(signs, gets[1:], strict=True):
-            right = get()
-            if not holds(left, right):
-                return False
-            left = right
-        return True
-
-    return BoundNode(node, TRUTH, value, operands)
-
-
-def _check_comparable(binder: Binder, sign: str, left: BoundNode, right: BoundNode) -> None:
-    is_equality = sign in ("==", "!=")
-    for part in (left, right):
-        if is_vector_like(part.kind):
-            message = f"{part.node.span.text(binder.source)} is {part.kind}, which cannot be compared"
-            hint = "norm(…), min(…) or one of its parts (.x, [0]) can; distance(a, b) says how far two are apart"
-            raise binder.fault("SK-COND-004", message, part.node.span, hint)
-        if not is_scalar(part.kind):
-            raise binder.not_a_number(part)
-    if left.kind is not right.kind:
-        message = f"{left.kind} is compared with {right.kind}"
-        raise binder.fault("SK-COND-004", message, right.node.span)
-    if not is_equality and left.kind is not NUMBER:
-        message = f"{sign} compares numbers, and {left.node.span.text(binder.source)} is {left.kind}"
-        raise binder.fault("SK-COND-004", message, left.node.span, "write == or !=")
-
-
 _CONSTANTS: Final[dict[str, tuple[ValueType, Any]]] = {
-    "pi": (NUMBER, math.pi),
-    "inf": (NUMBER, math.inf),
-    "nan": (NUMBER, math.nan),
-    "true": (TRUTH, True),
-    "false": (TRUTH, False),
-    "True": (TRUTH, True),
-    "False": (TRUTH, False),
+    **{name: (NUMBER, value) for name, value in (("pi", math.pi), ("inf", math.inf), ("nan", math.nan))},
+    **{name: (TRUTH, name.lower() == "true") for name in ("true", "false", "True", "False")},
 }
 _TIME_NAMES: Final = ("time", "tick")
 
 
-def bind(expression: Expression, view: WorldView) -> BoundNode:
+def bind(expression: syntax.Expression, view: WorldView) -> BoundNode:
     """An expression in a world.
 
     Raises:
@@ -133,32 +73,32 @@ class Binder:
 
     def __init__(self, source: str, view: WorldView) -> None:
         self.source, self.view = source, view
-        self._kinds: dict[type[Node], Callable[[Any], BoundNode]] = {
-            Number: lambda node: BoundNode(node, NUMBER, lambda: node.value),
-            Text: lambda node: BoundNode(node, TEXT, lambda: node.value),
-            Numbers: self._numbers,
-            Name: self._name,
-            Sign: self._sign,
-            Not: self._not,
-            Arithmetic: self._arithmetic,
-            Comparison: self._comparison,
-            Junction: self._junction,
-            Attribute: self._attribute,
-            Index: self._index,
-            Call: self._call,
+        self._kinds: dict[type[syntax.Node], Callable[[Any], BoundNode]] = {
+            syntax.Number: lambda node: BoundNode(node, NUMBER, lambda: node.value),
+            syntax.Text: lambda node: BoundNode(node, TEXT, lambda: node.value),
+            syntax.Numbers: self._numbers,
+            syntax.Name: self._name,
+            syntax.Sign: self._sign,
+            syntax.Not: self._not,
+            syntax.Arithmetic: self._arithmetic,
+            syntax.Comparison: self._comparison,
+            syntax.Junction: self._junction,
+            syntax.Attribute: self._attribute,
+            syntax.Index: self._index,
+            syntax.Call: self._call,
         }
 
-    def part(self, node: Node) -> BoundNode:
+    def part(self, node: syntax.Node) -> BoundNode:
         """A node as a part of the world."""
         return self._kinds[type(node)](node)
 
-    def fault(self, code: str, message: str, span: Span, hint: str = "") -> Exception:
+    def fault(self, code: str, message: str, span: syntax.Span, hint: str = "") -> Exception:
         """What is wrong at a place."""
-        return expression_error(code, message, self.source, span, hint)
+        return syntax.expression_error(code, message, self.source, span, hint)
 
     # ------------------------------------------------------------------ words
 
-    def _name(self, node: Name) -> BoundNode:
+    def _name(self, node: syntax.Name) -> BoundNode:
         if node.name in _CONSTANTS:
             kind, value = _CONSTANTS[node.name]
             return BoundNode(node, kind, lambda: value)
@@ -175,14 +115,17 @@ class Binder:
             near = f"names of models and topics stand in quotes: '{node.name}'"
         raise self.fault("SK-COND-002", f"{node.name!r} stands for no value", node.span, near)
 
-    def _call(self, node: Call) -> BoundNode:
+    def _call(self, node: syntax.Call) -> BoundNode:
         function = FUNCTIONS.get(node.name)
         if function is None:
             near = did_you_mean(node.name, FUNCTIONS)
             if node.name in (*_TIME_NAMES, *_CONSTANTS):
                 near = f"write {node.name} alone"
             raise self.fault(
-                "SK-COND-002", f"there is no function {node.name!r}", node.name_span, near or _listed_functions()
+                "SK-COND-002",
+                f"there is no function {node.name!r}",
+                node.name_span,
+                near or f"there is {', '.join(FUNCTIONS)}",
             )
         count = len(node.arguments)
         if not function.least <= count <= function.most:
@@ -192,7 +135,7 @@ class Binder:
 
     # ------------------------------------------------------------------ truth
 
-    def truth(self, node: Node) -> BoundNode:
+    def truth(self, node: syntax.Node) -> BoundNode:
         """A part that is true or false.
 
         Raises:
@@ -204,24 +147,24 @@ class Binder:
             raise self.fault("SK-COND-004", message, node.span, "compare it: < <= > >= == !=")
         return part
 
-    def _not(self, node: Not) -> BoundNode:
+    def _not(self, node: syntax.Not) -> BoundNode:
         operand = self.truth(node.operand)
         get = operand.get
         return BoundNode(node, TRUTH, lambda: not get(), (operand,))
 
-    def _junction(self, node: Junction) -> BoundNode:
+    def _junction(self, node: syntax.Junction) -> BoundNode:
         operands = tuple(self.truth(operand) for operand in node.operands)
         gets = tuple(operand.get for operand in operands)
         decisive: bool = node.word == "or"
 
         def value() -> bool:
-            unknown: UndecidedValue | None = None
+            unknown: syntax.UndecidedValue | None = None
             for get in gets:
                 try:
                     holds: bool = get()
                     if holds is decisive:
                         return holds
-                except UndecidedValue as reason:  # one that decides may still come
+                except syntax.UndecidedValue as reason:  # one that decides may still come
                     unknown = unknown or reason
             if unknown is not None:
                 raise unknown
@@ -229,13 +172,44 @@ class Binder:
 
         return BoundNode(node, TRUTH, value, operands)
 
-    def _comparison(self, node: Comparison) -> BoundNode:
+    def _comparison(self, node: syntax.Comparison) -> BoundNode:
+        """What says whether a comparison holds."""
         operands = tuple(self.part(operand) for operand in node.operands)
-        return bind_comparison(self, node, operands)
+        for sign, (left, right) in zip(node.signs, pairwise(operands), strict=True):
+            self._check_comparable(sign, left, right)
+        signs, gets = [_COMPARISON_OPERATORS[sign] for sign in node.signs], [part.get for part in operands]
+        if len(signs) == 1:
+            holds, a, b = signs[0], gets[0], gets[1]
+            return BoundNode(node, TRUTH, lambda: holds(a(), b()), operands)
+
+        def value() -> bool:
+            left = gets[0]()
+            for holds, get in zip(signs, gets[1:], strict=True):
+                right = get()
+                if not holds(left, right):
+                    return False
+                left = right
+            return True
+
+        return BoundNode(node, TRUTH, value, operands)
+
+    def _check_comparable(self, sign: str, left: BoundNode, right: BoundNode) -> None:
+        for part in (left, right):
+            if is_vector_like(part.kind):
+                hint = "norm(…), min(…) or one of its parts (.x, [0]) can; distance(a, b) says how far two are apart"
+                raise self._of_wrong_kind(part, "which cannot be compared", hint)
+            if not is_scalar(part.kind):
+                raise self.not_a_number(part)
+        if left.kind is not right.kind:
+            message = f"{left.kind} is compared with {right.kind}"
+            raise self.fault("SK-COND-004", message, right.node.span)
+        if sign not in ("==", "!=") and left.kind is not NUMBER:
+            message = f"{sign} compares numbers, and {left.node.span.text(self.source)} is {left.kind}"
+            raise self.fault("SK-COND-004", message, left.node.span, "write == or !=")
 
     # ------------------------------------------------------------------ numbers
 
-    def number(self, node: Node) -> BoundNode:
+    def number(self, node: syntax.Node) -> BoundNode:
         """A part that is a number.
 
         Raises:
@@ -248,16 +222,19 @@ class Binder:
 
     def not_a_number(self, part: BoundNode) -> Exception:
         """Says that a part is no number, and how one is made of it."""
-        message = f"{part.node.span.text(self.source)} is {part.kind}, where a number is wanted"
-        return self.fault("SK-COND-004", message, part.node.span, number_hint(part.kind))
+        return self._of_wrong_kind(part, "where a number is wanted", number_hint(part.kind))
 
-    def _numbers(self, node: Numbers) -> BoundNode:
+    def _of_wrong_kind(self, part: BoundNode, why: str, hint: str) -> Exception:
+        message = f"{part.node.span.text(self.source)} is {part.kind}, {why}"
+        return self.fault("SK-COND-004", message, part.node.span, hint)
+
+    def _numbers(self, node: syntax.Numbers) -> BoundNode:
         items = tuple(self.number(item) for item in node.items)
         gets = tuple(item.get for item in items)
         kind = VECTOR if len(items) == 3 else ValueType(NUMBERS.name, item=NUMBER, length=len(items))
         return BoundNode(node, kind, lambda: np.array([get() for get in gets]), items)
 
-    def _sign(self, node: Sign) -> BoundNode:
+    def _sign(self, node: syntax.Sign) -> BoundNode:
         operand = self.part(node.operand)
         get = operand.get
         if is_vector_like(operand.kind):
@@ -267,7 +244,7 @@ class Binder:
             raise self.not_a_number(operand)
         return BoundNode(node, NUMBER, (lambda: -get()) if node.sign == "-" else get, (operand,), operand.feed)
 
-    def _arithmetic(self, node: Arithmetic) -> BoundNode:
+    def _arithmetic(self, node: syntax.Arithmetic) -> BoundNode:
         left, right = self.part(node.left), self.part(node.right)
         if left.kind is NUMBER and right.kind is NUMBER:
             act, a, b = NUMBER_OPERATORS[node.sign], left.get, right.get
@@ -277,7 +254,7 @@ class Binder:
                 raise self.not_a_number(part)
         return self._vectors(node, left, right)
 
-    def _vectors(self, node: Arithmetic, left: BoundNode, right: BoundNode) -> BoundNode:
+    def _vectors(self, node: syntax.Arithmetic, left: BoundNode, right: BoundNode) -> BoundNode:
         both = is_vector_like(left.kind) and is_vector_like(right.kind)
         allowed = ("+", "-") if both else ("*", "/") if left.kind is not NUMBER else ("*",)
         if node.sign not in allowed:
@@ -293,7 +270,7 @@ class Binder:
         def value() -> Any:
             x, y = a(), b()
             if both and len(x) != len(y):
-                raise UndecidedValue(f"{source} has lists of {len(x)} and of {len(y)} numbers")
+                raise syntax.UndecidedValue(f"{source} has lists of {len(x)} and of {len(y)} numbers")
             return act(x, y)
 
         kind = next(part.kind for part in (left, right) if is_vector_like(part.kind))
@@ -301,8 +278,8 @@ class Binder:
 
     # ------------------------------------------------------------------ parts of values
 
-    def _attribute(self, node: Attribute) -> BoundNode:
-        if isinstance(node.of, Name) and node.of.name not in (*_CONSTANTS, *_TIME_NAMES, *FUNCTIONS):
+    def _attribute(self, node: syntax.Attribute) -> BoundNode:
+        if isinstance(node.of, syntax.Name) and node.of.name not in (*_CONSTANTS, *_TIME_NAMES, *FUNCTIONS):
             name = f"{node.of.name}.{node.name}"
             hint = f"pose('{node.of.name}').{node.name} is a part of a pose; names stand in quotes"
             raise self.fault("SK-COND-002", f"{name!r} stands for no value", node.span, hint)
@@ -311,23 +288,20 @@ class Binder:
         if found is None:
             allowed = listed_attributes(of.kind)
             message = f"{of.node.span.text(self.source)} is {of.kind}, which has no {node.name!r}"
-            hint = did_you_mean(node.name, allowed)
-            if not hint:
-                hint = f"it has {', '.join(allowed)}" if allowed else "it has no parts"
+            hint = did_you_mean(node.name, allowed) or _parts_hint(of.kind) or "it has no parts"
             raise self.fault("SK-COND-007", message, node.name_span, hint)
         kind, get = found
         return BoundNode(node, kind, get, (of,), of.feed)
 
-    def _index(self, node: Index) -> BoundNode:
+    def _index(self, node: syntax.Index) -> BoundNode:
         of, index = self.part(node.of), self.number(node.index)
         item, length = of.kind.item, of.kind.length
         if item is None:
             message = f"{of.node.span.text(self.source)} is {of.kind}, which has no numbered items"
-            allowed = listed_attributes(of.kind)
-            hint = f"it has {', '.join(allowed)}" if allowed else ""
-            raise self.fault("SK-COND-007", message, node.index.span, hint)
+            raise self.fault("SK-COND-007", message, node.index.span, _parts_hint(of.kind))
         get, at = of.get, index.get
-        fixed = at() if isinstance(node.index, Number) or _is_minus(node.index) else None
+        is_negated = isinstance(node.index, syntax.Sign) and isinstance(node.index.operand, syntax.Number)
+        fixed = at() if isinstance(node.index, syntax.Number) or is_negated else None
         if fixed is not None and not float(fixed).is_integer():
             raise self.fault("SK-COND-004", "items are numbered from 0 by whole numbers", node.index.span)
         if fixed is not None and length is not None and not -length <= fixed < length:
@@ -338,11 +312,16 @@ class Binder:
         def value() -> Any:
             items, place = get(), at()
             if not (-len(items) <= place < len(items)) or place != int(place):
-                raise UndecidedValue(f"{source} is not there: {len(items)} items have come")
+                raise syntax.UndecidedValue(f"{source} is not there: {len(items)} items have come")
             found = items[int(place)]
             return float(found) if is_number else bool(found) if item is TRUTH else found
 
         return BoundNode(node, item, value, (of, index), of.feed if fixed is not None else None)
+
+
+def _parts_hint(kind: ValueType) -> str:
+    allowed = listed_attributes(kind)
+    return f"it has {', '.join(allowed)}" if allowed else ""
 
 
 def number_hint(kind: ValueType) -> str:
@@ -351,11 +330,3 @@ def number_hint(kind: ValueType) -> str:
         return "min(…), max(…), mean(…), norm(…) or [0] make a number of it"
     attributes = listed_attributes(kind)
     return f"it has .{', .'.join(attributes)}" if attributes else ""
-
-
-def _is_minus(node: Node) -> bool:
-    return isinstance(node, Sign) and isinstance(node.operand, Number)
-
-
-def _listed_functions() -> str:
-    return f"there is {', '.join(FUNCTIONS)}"

@@ -2,31 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from operator import attrgetter, itemgetter
 from typing import TYPE_CHECKING, Any, Final, Protocol
 
 import numpy as np
 
+from simkit.errors import InputError
 from simkit.msgs import Message
-from simkit.pose import Pose, Vector
-from simkit.testing.conditions.syntax_tree import (
-    Arithmetic,
-    Call,
-    Comparison,
-    Junction,
-    Name,
-    Node,
-    Not,
-    Number,
-    Sign,
-    Span,
-    Text,
-    UndecidedValue,
-)
+from simkit.pose import Pose, Vector, rpy_from_quat
+from simkit.testing.conditions import syntax_tree as syntax
+from simkit.testing.conditions import value_types as kinds
+from simkit.testing.conditions.syntax_tree import REMOVED_CODE, UndecidedValue
 from simkit.testing.conditions.value_types import NUMBER, POSE, SCAN, TEXT, TRUTH, ValueType, is_vector_like
 
 if TYPE_CHECKING:
+    from simkit.runtime import Joint
     from simkit.testing.conditions.world_view import LatestMessage, WorldView
 
 
@@ -50,7 +42,7 @@ class BoundNode:
         tell: more about its value, in words.
     """
 
-    node: Node
+    node: syntax.Node
     kind: ValueType
     get: ValueGetter
     below: tuple[BoundNode, ...] = ()
@@ -94,15 +86,15 @@ def findings(source: str, part: BoundNode, *, wanted: bool = True) -> list[str]:
 
 def _collect_findings(source: str, part: BoundNode, wanted: bool, told: dict[str, None]) -> None:
     node = part.node
-    if isinstance(node, Not):
+    if isinstance(node, syntax.Not):
         _collect_findings(source, part.below[0], not wanted, told)
-    elif isinstance(node, Junction):
+    elif isinstance(node, syntax.Junction):
         # of what has to hold all together only what does not is of interest; else all of it
         is_all = (node.word == "and") == wanted
         for operand in part.below:
             if not is_all or _current_value(operand) is not wanted:
                 _collect_findings(source, operand, wanted, told)
-    elif isinstance(node, Comparison):
+    elif isinstance(node, syntax.Comparison):
         for operand in part.below:
             if not _is_literal(operand.node):
                 _finding_text(source, operand, told)
@@ -114,24 +106,26 @@ def _finding_text(source: str, part: BoundNode, told: dict[str, None]) -> None:
     text = part.node.span.text(source)
     try:
         told[f"{text} was {value_text(part.get())}{part.tell() if part.tell is not None else ''}"] = None
-    except UndecidedValue as reason:
+    except syntax.UndecidedValue as reason:
         told[f"{text} is not known: {reason}"] = None
 
 
 def _current_value(part: BoundNode) -> Any:
     try:
         return part.get()
-    except UndecidedValue:
+    except syntax.UndecidedValue:
         return None
 
 
-def _is_literal(node: Node) -> bool:
+def _is_literal(node: syntax.Node) -> bool:
     """Whether it stands there as it is."""
-    if isinstance(node, Sign):
+    if isinstance(node, syntax.Sign):
         return _is_literal(node.operand)
-    if isinstance(node, Arithmetic):
+    if isinstance(node, syntax.Arithmetic):
         return _is_literal(node.left) and _is_literal(node.right)
-    return isinstance(node, (Number, Text)) or (isinstance(node, Name) and node.name not in ("time", "tick"))
+    return isinstance(node, (syntax.Number, syntax.Text)) or (
+        isinstance(node, syntax.Name) and node.name not in ("time", "tick")
+    )
 
 
 def is_scalar(kind: ValueType) -> bool:
@@ -150,23 +144,23 @@ class ExpressionBinder(Protocol):
     source: str
     view: WorldView
 
-    def part(self, node: Node) -> BoundNode:
+    def part(self, node: syntax.Node) -> BoundNode:
         """Bind a node."""
 
-    def number(self, node: Node) -> BoundNode:
+    def number(self, node: syntax.Node) -> BoundNode:
         """Bind a node that has to be a number."""
 
-    def truth(self, node: Node) -> BoundNode:
+    def truth(self, node: syntax.Node) -> BoundNode:
         """Bind a node that has to be true or false."""
 
-    def fault(self, code: str, message: str, span: Span, hint: str = "") -> Exception:
+    def fault(self, code: str, message: str, span: syntax.Span, hint: str = "") -> Exception:
         """Return an error that points at a part of the expression."""
 
     def not_a_number(self, part: BoundNode) -> Exception:
         """Return the error of a node that should be a number."""
 
 
-BindFunction = Callable[[ExpressionBinder, Call], BoundNode]
+BindFunction = Callable[[ExpressionBinder, syntax.Call], BoundNode]
 UNLIMITED_ARGUMENTS: Final = 100
 """Arguments of a function that takes any number of them."""
 
@@ -187,17 +181,17 @@ class Function:
     make: BindFunction
 
 
-def quoted_argument(binder: ExpressionBinder, call: Call, place: int, what: str) -> Text:
+def quoted_argument(binder: ExpressionBinder, call: syntax.Call, place: int, what: str) -> syntax.Text:
     """An argument that is a name in quotes.
 
     Raises:
         InputError: SK-COND-004 it is something else.
     """
     node = call.arguments[place]
-    if isinstance(node, Text):
+    if isinstance(node, syntax.Text):
         return node
     source = node.span.text(binder.source)
-    hint = f"names stand in quotes: {call.name}('{source}')" if isinstance(node, Name) else ""
+    hint = f"names stand in quotes: {call.name}('{source}')" if isinstance(node, syntax.Name) else ""
     message = f"{call.name} wants {what} in quotes, and is given {source}"
     raise binder.fault("SK-COND-004", message, node.span, hint)
 
@@ -246,3 +240,102 @@ def as_numbers(part: BoundNode) -> ValueGetter | None:
 
         return met
     return as_vector(part) if is_vector_like(part.kind) else None
+
+
+AttributeGetter = tuple[kinds.ValueType, ValueGetter]
+_ReadField = tuple[kinds.ValueType, Callable[[Any], Any]]
+
+_AXES = ("x", "y", "z")
+_ANGLES = ("roll", "pitch", "yaw")
+_JOINT_ATTRIBUTES = ("position", "velocity", "effort", "lower", "upper")
+
+
+def _numbered(names: Sequence[str], numbers: Callable[[Any], Any]) -> dict[str, _ReadField]:
+    """Numbers of a value by their names.
+
+    Args:
+        names: in the order of the numbers.
+        numbers: gives them of the value.
+    """
+    return {name: (kinds.NUMBER, _number_at(at, numbers)) for at, name in enumerate(names)}
+
+
+def _number_at(at: int, numbers: Callable[[Any], Any]) -> Callable[[Any], float]:
+    return lambda value: float(numbers(value)[at])
+
+
+_AXIS_FIELDS = _numbered(_AXES, lambda vector: vector)
+_VALUE_FIELDS: Final[dict[kinds.ValueType, dict[str, _ReadField]]] = {
+    kinds.POSE: {
+        "position": (kinds.VECTOR, attrgetter("position")),
+        "orientation": (kinds.ORIENTATION, attrgetter("quaternion")),
+        **_numbered(_AXES, attrgetter("position")),
+        **_numbered(_ANGLES, lambda pose: rpy_from_quat(pose.quaternion)),
+    },
+    kinds.ORIENTATION: {**_numbered("wxyz", lambda quaternion: quaternion), **_numbered(_ANGLES, rpy_from_quat)},
+    kinds.TWIST: {"linear": (kinds.VECTOR, itemgetter(0)), "angular": (kinds.VECTOR, itemgetter(1))},
+}
+
+
+def listed_attributes(kind: kinds.ValueType) -> list[str]:
+    """What parts a value of a kind has."""
+    if kind.message:
+        angles = _ANGLES if kinds.is_orientation_like(kind) or kinds.is_pose_like(kind) else ()
+        return [*kinds.fields_of(kind.message), *(_AXES if kinds.is_pose_like(kind) else ()), *angles]
+    return [*_JOINT_ATTRIBUTES] if kind is kinds.JOINT else [*_fields_of_value(kind)]
+
+
+def _fields_of_value(kind: kinds.ValueType) -> dict[str, _ReadField]:
+    return _AXIS_FIELDS if kind.has_axes else _VALUE_FIELDS.get(kind, {})
+
+
+def attribute_of(part: BoundNode, name: str) -> AttributeGetter | None:
+    """A part of a value, and its kind; None where it has no such part."""
+    kind, get = part.kind, part.get
+    if kind is kinds.JOINT:
+        return _joint_attribute(get(), name)
+    if kind.message:
+        fields = kinds.fields_of(kind.message)
+        if name in fields:
+            return _message_attribute(get, *fields[name])
+        if kinds.is_pose_like(kind):
+            kind, get = kinds.POSE, as_pose(part)
+        elif kinds.is_orientation_like(kind):
+            kind, get = kinds.ORIENTATION, lambda: _quaternion(part.get())
+    found = _fields_of_value(kind).get(name)
+    if found is None:
+        return None
+    of, read = found
+    return of, lambda: read(get())
+
+
+def _joint_attribute(joint: Joint, name: str) -> AttributeGetter | None:
+    """Of the handle of a joint: a number for each degree of freedom, which is one number for most."""
+    if name not in _JOINT_ATTRIBUTES:
+        return None
+    read = attrgetter(name)
+
+    def value() -> Any:
+        try:
+            return read(joint)
+        except InputError as error:
+            if error.code != REMOVED_CODE:
+                raise
+            raise UndecidedValue(f"{joint.scoped} was removed") from None
+
+    if joint.dof == 1:
+        return kinds.NUMBER, lambda: float(value())
+    return kinds.ValueType(kinds.NUMBERS.name, item=kinds.NUMBER), value
+
+
+def _message_attribute(get: ValueGetter, attribute: str, kind: kinds.ValueType) -> AttributeGetter:
+    read = attrgetter(attribute)
+    if kind is kinds.NUMBER:
+        return kind, lambda: float(read(get()))
+    if kind is kinds.TRUTH:
+        return kind, lambda: bool(read(get()))
+    return kind, lambda: read(get())
+
+
+def _quaternion(message: Message) -> tuple[float, float, float, float]:
+    return message.w, message.x, message.y, message.z

@@ -6,10 +6,12 @@ import math
 import operator
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
+from simkit.run_spec import Check
+from simkit.runtime import Simulation
 from simkit.runtime.communication.topic_bus import absolute_name
 from simkit.testing.conditions.binder import bind
 from simkit.testing.conditions.bound_expression import BoundNode, findings, value_text
@@ -17,20 +19,13 @@ from simkit.testing.conditions.contact_query import ContactQuery
 from simkit.testing.conditions.parser import parse
 from simkit.testing.conditions.syntax_tree import Comparison, Span, UndecidedValue, expression_error
 from simkit.testing.conditions.value_types import TRUTH
-from simkit.testing.conditions.world_view import AbsentTopic
+from simkit.testing.conditions.world_view import AbsentTopic, WorldView
 
-if TYPE_CHECKING:
-    from simkit.run_spec import Check
-    from simkit.runtime import Simulation
-    from simkit.testing.conditions.world_view import WorldView
-
-
-ENDING_TEXTS: Final = {
-    "duration": "",
-    "until": "",
-    "timeout": "",
+_EARLY_ENDS: Final = {
+    **dict.fromkeys(("duration", "until", "timeout"), ""),
     "wall_timeout": "the run was given up after its wall time",
 }
+"""How a run ends -> in words, where it did not come to its end."""
 """How a run ends -> in words, where it did not come to its end."""
 
 
@@ -49,11 +44,6 @@ class CheckResult:
     passed: bool
     message: str
     time: float
-
-
-def early_end_text(reason: str) -> str:
-    """Why a run did not come to its end; empty where it did."""
-    return ENDING_TEXTS.get(reason, f"the run ended with {reason}")
 
 
 def time_text(time: float) -> str:
@@ -103,14 +93,15 @@ class Condition:
             Undecided: that is not known.
         """
         part = self._part
-        if part is None or not isinstance(part.node, Comparison) or part.node.signs[0] not in _ORDER_OPERATORS:
+        node = None if part is None else part.node
+        if part is None or not isinstance(node, Comparison) or len(part.below) > 2:
             return self.holds(), math.nan, ""
-        if len(part.below) > 2:
+        holds = _ORDER_OPERATORS.get(node.signs[0])
+        if holds is None:
             return self.holds(), math.nan, ""
         left, right = part.below
         a, b = left.get(), right.get()
-        text = left.node.span.text(self.source)
-        return _ORDER_OPERATORS[part.node.signs[0]](a, b), abs(a - b), f"{text} was {value_text(a)}"
+        return holds(a, b), abs(a - b), f"{left.node.span.text(self.source)} was {value_text(a)}"
 
     def findings(self, *, wanted: bool = True) -> str:
         """The values that make it hold or not."""
@@ -164,7 +155,7 @@ class RunningCheck(ABC):
     def result(self, reason: str) -> CheckResult:
         """What became of it, at the end of the run."""
         if self._result is None:
-            self._result = self._at_end(early_end_text(reason))
+            self._result = self._at_end(_EARLY_ENDS.get(reason, f"the run ended with {reason}"))
         return self._result
 
     @abstractmethod
@@ -177,13 +168,18 @@ class RunningCheck(ABC):
         return self._result
 
 
-class ReachedCheck(RunningCheck):
-    """Must hold once."""
+class ConditionCheck(RunningCheck):
+    """A check of a condition."""
 
     def __init__(self, check: Check, view: WorldView) -> None:
         super().__init__(check, view)
         self._condition = Condition(check.expression, view)
-        self._nearest, self._nearest_text, self._nearest_time = math.inf, "", 0.0
+
+
+class ReachedCheck(ConditionCheck):
+    """Must hold once."""
+
+    _nearest, _nearest_text, _nearest_time = math.inf, "", 0.0
 
     @property
     def is_reached(self) -> bool:
@@ -212,20 +208,15 @@ class ReachedCheck(RunningCheck):
         return f"{found}; nearest, at {time_text(self._nearest_time)}, {self._nearest_text}"
 
     def _at_end(self, cut: str) -> CheckResult:
-        end = f"was not reached by {time_text(self._sim.time)}"
-        if cut:
-            end += f", where {cut}"
+        end = f"was not reached by {time_text(self._sim.time)}" + (f", where {cut}" if cut else "")
         return self._decide(False, f"{end}: {self._how_far()}")
 
 
-class AlwaysCheck(RunningCheck):
+class AlwaysCheck(ConditionCheck):
     """Must hold at every step, as soon as its values are known."""
 
-    def __init__(self, check: Check, view: WorldView) -> None:
-        super().__init__(check, view)
-        self._condition = Condition(check.expression, view)
-        self._since: float | None = None
-        self._last = 0.0
+    _since: float | None = None
+    _last = 0.0
 
     def look(self, time: float) -> None:
         if time < self.check.after - 1e-9:
@@ -255,12 +246,8 @@ class AlwaysCheck(RunningCheck):
         return self._decide(True, f"held from {time_text(self._since)} to {now}: {found}")
 
 
-class FinalCheck(RunningCheck):
+class FinalCheck(ConditionCheck):
     """Must hold at the end."""
-
-    def __init__(self, check: Check, view: WorldView) -> None:
-        super().__init__(check, view)
-        self._condition = Condition(check.expression, view)
 
     def _at_end(self, cut: str) -> CheckResult:
         now = time_text(self._sim.time)

@@ -8,15 +8,8 @@ from typing import TYPE_CHECKING, Final, Literal
 
 from simkit.errors import InputError
 from simkit.run_spec import Check
-from simkit.testing.conditions.checks import (
-    AlwaysCheck,
-    CheckResult,
-    ReachedCheck,
-    RunningCheck,
-    SeparationCheck,
-    TopicRateCheck,
-)
-from simkit.testing.conditions.checks import FinalCheck as AtEnd
+from simkit.testing.conditions import checks as check_kinds
+from simkit.testing.conditions.checks import CheckResult, ReachedCheck, RunningCheck
 from simkit.testing.conditions.world_view import WorldView
 
 if TYPE_CHECKING:
@@ -26,10 +19,10 @@ __all__ = ["CheckResult", "Watch"]
 
 _CHECK_CLASSES: Final[dict[str, type[RunningCheck]]] = {
     "goal": ReachedCheck,
-    "always": AlwaysCheck,
-    "final": AtEnd,
-    "apart": SeparationCheck,
-    "rate": TopicRateCheck,
+    "always": check_kinds.AlwaysCheck,
+    "final": check_kinds.FinalCheck,
+    "apart": check_kinds.SeparationCheck,
+    "rate": check_kinds.TopicRateCheck,
 }
 
 
@@ -97,7 +90,7 @@ class Watch:
 
     def __enter__(self) -> Watch:
         self._view.open()
-        self._running = [entry for entry in self._entries if not isinstance(entry, (AtEnd, TopicRateCheck))]
+        self._running = [entry for entry in self._entries if entry.check.kind not in ("final", "rate")]
         self.look()
         if self._running and not self.ended:
             self._is_active = True

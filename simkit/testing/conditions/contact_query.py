@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any, Final
 import mujoco
 import numpy as np
 
+from simkit.runtime import Simulation
 from simkit.runtime.contact.collision_contacts import Bools, collision_table
 
 if TYPE_CHECKING:
     from simkit.compiler import Compiled
-    from simkit.runtime import Simulation
 
 _MAX_SLOPE: Final = math.cos(math.radians(45.0))
 _MANY_CONTACTS: Final = 32  # contacts

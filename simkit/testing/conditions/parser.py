@@ -6,27 +6,13 @@ No part of Python reads or runs an expression.
 from __future__ import annotations
 
 import re
+import tomllib
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Final, Literal
 
-from simkit.testing.conditions.syntax_tree import (
-    Arithmetic,
-    Attribute,
-    Call,
-    Comparison,
-    Expression,
-    Index,
-    Junction,
-    Name,
-    Node,
-    Not,
-    Number,
-    Numbers,
-    Sign,
-    Span,
-    Text,
-    expression_error,
-)
+from simkit.testing.conditions import syntax_tree as syntax
 
 TokenKind = Literal["number", "name", "text", "sign", "end"]
 
@@ -40,24 +26,8 @@ _TOKEN = re.compile(
     r"|(?P<text>'[^'\n]*'|\"[^\"\n]*\")"
     r"|(?P<sign>\*\*|<=|>=|==|!=|[-+*/%<>(),.\[\]])"
 )
-_SUGGESTED_OPERATORS = {
-    "=": "two values are compared by ==",
-    "&&": "write: and",
-    "||": "write: or",
-    "&": "write: and",
-    "|": "write: or",
-    "!": "write: not",
-    "^": "a power is written **",
-    "//": "floor(a / b) is the whole part of a quotient",
-    ";": "join conditions by: and",
-    "{": "there are no lists or tables",
-    "\u2264": "write <=",
-    "\u2265": "write >=",
-    "\u2260": "write !=",
-    "\u201c": "texts stand in plain quotes: 'tb3'",
-    "\u2018": "texts stand in plain quotes: 'tb3'",
-    "\u2019": "texts stand in plain quotes: 'tb3'",
-}
+_OPERATORS_FILE: Final = Path(__file__).with_name("suggested_operators.toml")
+_SUGGESTED_OPERATORS: Final[dict[str, str]] = tomllib.loads(_OPERATORS_FILE.read_text(encoding="utf-8"))
 _UNITS = {"s", "ms", "m", "mm", "cm", "km", "deg", "rad", "Hz", "hz", "kg", "N", "min", "h"}
 
 
@@ -67,7 +37,7 @@ class Token:
 
     kind: TokenKind
     text: str
-    span: Span
+    span: syntax.Span
 
 
 def tokenize(source: str) -> list[Token]:
@@ -77,13 +47,9 @@ def tokenize(source: str) -> list[Token]:
         InputError: SK-COND-001 it has a sign that means nothing; SK-COND-008 it is too long.
     """
     if len(source) > MAX_LENGTH:
-        raise expression_error(
-            "SK-COND-008",
-            f"an expression of {len(source)} characters; allowed are {MAX_LENGTH}",
-            source,
-            Span(MAX_LENGTH, MAX_LENGTH + 1),
-            "make several checks of it",
-        )
+        message = f"an expression of {len(source)} characters; allowed are {MAX_LENGTH}"
+        span = syntax.Span(MAX_LENGTH, MAX_LENGTH + 1)
+        raise syntax.expression_error("SK-COND-008", message, source, span, "make several checks of it")
     found: list[Token] = []
     at = 0
     while at < len(source):
@@ -91,11 +57,11 @@ def tokenize(source: str) -> list[Token]:
         if match is None or match.lastgroup is None:
             raise _invalid_character(source, at)
         if match.lastgroup != "space":
-            token = Token(match.lastgroup, match.group(), Span(at, match.end()))  # type: ignore[arg-type]
+            token = Token(match.lastgroup, match.group(), syntax.Span(at, match.end()))  # type: ignore[arg-type]
             _check_separation(source, found[-1] if found else None, token)
             found.append(token)
         at = match.end()
-    found.append(Token("end", "", Span(len(source), len(source) + 1)))
+    found.append(Token("end", "", syntax.Span(len(source), len(source) + 1)))
     return found
 
 
@@ -103,28 +69,29 @@ def _check_separation(source: str, before: Token | None, token: Token) -> None:
     """A number and a name that touch are a unit, or a name that begins with a digit."""
     if before is None or before.kind != "number" or token.kind != "name" or before.span.end != token.span.start:
         return
-    span = Span(before.span.start, token.span.end)
+    span = before.span.to(token.span)
+    what, hint = "is neither a number nor a name", ""
     if token.text in _UNITS:
-        hint = f"numbers are in SI units (m, s, rad) and stand alone: {before.text}"
+        what, hint = "has a unit", f"numbers are in SI units (m, s, rad) and stand alone: {before.text}"
         if token.text == "deg":
             hint = f"angles are in rad: rad({before.text}) makes some of degrees"
-        raise expression_error("SK-COND-001", f"{span.text(source)!r} has a unit", source, span, hint)
-    raise expression_error("SK-COND-001", f"{span.text(source)!r} is neither a number nor a name", source, span)
+    raise _syntax_error(f"{span.text(source)!r} {what}", source, span, hint)
+
+
+def _syntax_error(message: str, source: str, span: syntax.Span, hint: str = "") -> Exception:
+    return syntax.expression_error("SK-COND-001", message, source, span, hint)
 
 
 def _invalid_character(source: str, at: int) -> Exception:
     sign = source[at]
     if sign in "'\"":
-        return expression_error(
-            "SK-COND-001", "a text that has no end", source, Span(at, len(source)), f"close it with {sign}"
-        )
+        return _syntax_error("a text that has no end", source, syntax.Span(at, len(source)), f"close it with {sign}")
     pair = source[at : at + 2]
     if pair in _SUGGESTED_OPERATORS:
-        return expression_error(
-            "SK-COND-001", f"{pair} means nothing here", source, Span(at, at + 2), _SUGGESTED_OPERATORS[pair]
-        )
+        span = syntax.Span(at, at + 2)
+        return _syntax_error(f"{pair} means nothing here", source, span, _SUGGESTED_OPERATORS[pair])
     what = f"{sign!r} means nothing here" if sign.isprintable() else f"a sign that cannot be read (U+{ord(sign):04X})"
-    return expression_error("SK-COND-001", what, source, Span(at, at + 1), _SUGGESTED_OPERATORS.get(sign, ""))
+    return _syntax_error(what, source, syntax.Span(at, at + 1), _SUGGESTED_OPERATORS.get(sign, ""))
 
 
 MAX_DEPTH: Final = 100
@@ -142,18 +109,21 @@ _BINDING = {
     **dict.fromkeys(".[(", _POSTFIX),
 }
 _PYTHON_KEYWORDS = {"if", "else", "for", "in", "is", "lambda", "import"}
+_VALUE_KINDS = ("name", "number", "text")
 
 
-def parse(source: str) -> Expression:
+def parse(source: str) -> syntax.Expression:
     """Reads an expression; what it names is looked up when it is bound to a world.
 
     Raises:
         InputError: SK-COND-001 it cannot be read; SK-COND-008 it is too long or too deep. The message shows the place.
     """
-    return Expression(source, _Parser(source).whole())
+    return syntax.Expression(source, _Parser(source).whole())
 
 
 class _Parser:
+    """Reads tokens; a text in quotes keeps them in its token, so that the text of a sign or a word is no other's."""
+
     def __init__(self, source: str) -> None:
         self._source = source
         self._tokens = tokenize(source)
@@ -169,128 +139,114 @@ class _Parser:
         self._at += 1
         return token
 
-    def whole(self) -> Node:
+    def whole(self) -> syntax.Node:
         if len(self._tokens) == 1:
-            raise expression_error("SK-COND-001", "an expression is empty", self._source, self._next.span)
+            raise _syntax_error("an expression is empty", self._source, self._next.span)
         root = self._expression(0)
-        after = self._next
-        if after.kind != "end":
-            raise self._unexpected(after)
+        if self._next.kind != "end":
+            raise self._unexpected(self._next)
         return root
 
     # ------------------------------------------------------------------ by binding power
 
-    def _expression(self, least: int) -> Node:
+    def _expression(self, least: int) -> syntax.Node:
         """What binds more tightly than `least`."""
         self._open += 1
         if self._open > MAX_DEPTH:
             raise self._too_deep(self._next.span)
         left = self._prefix()
-        while True:
-            token = self._next
-            binding = _BINDING.get(token.text, 0) if token.kind in ("sign", "name") else 0
-            if binding <= least:
-                break
-            left = self._infix(left, token, binding)
+        while (binding := _BINDING.get(self._next.text, 0)) > least:
+            left = self._infix(left, self._next, binding)
         self._open -= 1
         return left
 
-    def _prefix(self) -> Node:
+    def _prefix(self) -> syntax.Node:
         token = self._take()
         if token.kind == "number":
-            return Number(token.span, 1, float(token.text))
+            return syntax.Number(token.span, 1, float(token.text))
         if token.kind == "text":
-            return Text(token.span, 1, token.text[1:-1])
+            return syntax.Text(token.span, 1, token.text[1:-1])
         if token.text == "not":
             operand = self._expression(_NOT)
-            return Not(self._from(token.span, operand), self._level(operand), operand)
+            return syntax.Not(token.span.to(operand.span), self._level(operand), operand)
         if token.text in ("-", "+"):
             operand = self._expression(_SIGN)
-            return Sign(self._from(token.span, operand), self._level(operand), token.text, operand)
+            return syntax.Sign(token.span.to(operand.span), self._level(operand), token.text, operand)
         if token.text == "(":
             return self._bracketed(token)
         if token.kind == "name" and token.text not in ("and", "or") and token.text not in _PYTHON_KEYWORDS:
-            return Name(token.span, 1, token.text)
+            return syntax.Name(token.span, 1, token.text)
         raise self._unexpected(token)
 
-    def _bracketed(self, opened: Token) -> Node:
+    def _bracketed(self, opened: Token) -> syntax.Node:
         """What stands in brackets: one part of an expression, or the numbers of a list with commas between."""
         items = [self._expression(0)]
-        while self._next.kind == "sign" and self._next.text == ",":
+        while self._next.text == ",":
             self._take()
             items.append(self._expression(0))
-        span = Span(opened.span.start, self._expect(")", opened).span.end)
-        return replace(items[0], span=span) if len(items) == 1 else Numbers(span, self._level(*items), tuple(items))
+        span = opened.span.to(self._expect(")", opened).span)
+        if len(items) == 1:
+            return replace(items[0], span=span)
+        return syntax.Numbers(span, self._level(*items), tuple(items))
 
-    def _infix(self, left: Node, token: Token, binding: int) -> Node:
+    def _infix(self, left: syntax.Node, token: Token, binding: int) -> syntax.Node:
         if token.text in ("and", "or"):
-            return self._junction(left, token.text, binding)
+            _, operands = self._chain(left, (token.text,), binding)
+            return syntax.Junction(left.span.to(operands[-1].span), self._level(*operands), token.text, operands)
         if token.text in _COMPARISONS:
-            return self._comparison(left)
+            signs, operands = self._chain(left, _COMPARISONS, binding)
+            return syntax.Comparison(left.span.to(operands[-1].span), self._level(*operands), signs, operands)
         self._take()
         if token.text == ".":
             return self._attribute(left)
         if token.text == "[":
             index = self._expression(0)
             end = self._expect("]", token)
-            return Index(Span(left.span.start, end.span.end), self._level(left, index), left, index)
+            return syntax.Index(left.span.to(end.span), self._level(left, index), left, index)
         if token.text == "(":
             return self._call(left, token)
         # a power binds to the right, and its exponent may have a sign
         right = self._expression(_SIGN - 1 if token.text == "**" else binding)
-        span = Span(left.span.start, right.span.end)
-        return Arithmetic(span, self._level(left, right), token.text, token.span, left, right)
+        span = left.span.to(right.span)
+        return syntax.Arithmetic(span, self._level(left, right), token.text, token.span, left, right)
 
-    def _junction(self, left: Node, word: str, binding: int) -> Node:
-        operands = [left]
-        while self._next.text == word and self._next.kind == "name":
-            self._take()
+    def _chain(
+        self, left: syntax.Node, words: Sequence[str], binding: int
+    ) -> tuple[tuple[str, ...], tuple[syntax.Node, ...]]:
+        """Operators of one kind that follow each other, and their operands, of which the first is read already."""
+        taken, operands = [], [left]
+        while self._next.text in words:
+            taken.append(self._take().text)
             operands.append(self._expression(binding))
-        span = Span(left.span.start, operands[-1].span.end)
-        return Junction(span, self._level(*operands), word, tuple(operands))
+        return tuple(taken), tuple(operands)
 
-    def _comparison(self, left: Node) -> Node:
-        signs, operands = [], [left]
-        while self._next.kind == "sign" and self._next.text in _COMPARISONS:
-            signs.append(self._take().text)
-            operands.append(self._expression(_COMPARE))
-        span = Span(left.span.start, operands[-1].span.end)
-        return Comparison(span, self._level(*operands), tuple(signs), tuple(operands))
-
-    def _attribute(self, left: Node) -> Node:
+    def _attribute(self, left: syntax.Node) -> syntax.Node:
         name = self._take()
         if name.kind != "name":
-            raise expression_error(
-                "SK-COND-001", "the name of a part is missing after the dot", self._source, name.span
-            )
-        return Attribute(Span(left.span.start, name.span.end), self._level(left), left, name.text, name.span)
+            raise _syntax_error("the name of a part is missing after the dot", self._source, name.span)
+        return syntax.Attribute(left.span.to(name.span), self._level(left), left, name.text, name.span)
 
-    def _call(self, left: Node, bracket: Token) -> Node:
-        if not isinstance(left, Name):
-            message = "only functions are called, by their name"
-            raise expression_error(
-                "SK-COND-001", message, self._source, left.span, "parts of values are read: pose('tb3').x"
-            )
-        arguments: list[Node] = []
-        while self._next.text != ")" or self._next.kind != "sign":
+    def _call(self, left: syntax.Node, bracket: Token) -> syntax.Node:
+        if not isinstance(left, syntax.Name):
+            hint = "parts of values are read: pose('tb3').x"
+            raise _syntax_error("only functions are called, by their name", self._source, left.span, hint)
+        arguments: list[syntax.Node] = []
+        while self._next.text != ")":
             arguments.append(self._expression(0))
-            if self._next.kind == "sign" and self._next.text == ",":
-                self._take()
-            elif self._next.kind != "sign" or self._next.text != ")":
+            if self._next.text != ",":
                 break
+            self._take()
         end = self._expect(")", bracket)
-        span = Span(left.span.start, end.span.end)
-        return Call(span, self._level(*arguments), left.name, left.span, tuple(arguments))
+        return syntax.Call(left.span.to(end.span), self._level(*arguments), left.name, left.span, tuple(arguments))
 
     # ------------------------------------------------------------------ what is wrong
 
     def _expect(self, sign: str, opened: Token) -> Token:
         token = self._next
-        if token.kind == "sign" and token.text == sign:
+        if token.text == sign:
             return self._take()
         if token.kind == "end":
-            message = f"{sign} is missing: this {opened.text} is never closed"
-            raise expression_error("SK-COND-001", message, self._source, opened.span)
+            raise _syntax_error(f"{sign} is missing: this {opened.text} is never closed", self._source, opened.span)
         raise self._unexpected(token, sign)
 
     def _unexpected(self, token: Token, wanted: str = "") -> Exception:
@@ -300,7 +256,7 @@ class _Parser:
             message = f"it ends after {before.text!r}, where a value is missing" if before else "it is empty"
         elif token.text in _PYTHON_KEYWORDS:
             message, hint = f"{token.text!r} is no word of this language", "this is no Python: see docs/conditions.md"
-        elif token.kind in ("name", "number", "text") and before and before.kind in ("name", "number", "text"):
+        elif token.kind in _VALUE_KINDS and before and before.kind in _VALUE_KINDS:
             message = f"{token.text} stands right after {before.text}"
             hint = "join conditions by: and, or; values by + - * / %"
             if before.kind == "name" and before.text not in ("and", "or", "not"):
@@ -309,18 +265,14 @@ class _Parser:
             message = f"{token.text!r} is not expected here"
         if wanted and token.kind != "end":
             message += f"; {wanted} is missing before it"
-        return expression_error("SK-COND-001", message, self._source, token.span, hint)
+        return _syntax_error(message, self._source, token.span, hint)
 
-    def _too_deep(self, span: Span) -> Exception:
+    def _too_deep(self, span: syntax.Span) -> Exception:
         message = f"an expression of more than {MAX_DEPTH} levels within each other"
-        return expression_error("SK-COND-008", message, self._source, span, "make several checks of it")
+        return syntax.expression_error("SK-COND-008", message, self._source, span, "make several checks of it")
 
-    def _level(self, *below: Node) -> int:
+    def _level(self, *below: syntax.Node) -> int:
         depth = 1 + max((node.depth for node in below), default=0)
         if depth > MAX_DEPTH:
             raise self._too_deep(below[0].span)
         return depth
-
-    @staticmethod
-    def _from(span: Span, node: Node) -> Span:
-        return Span(span.start, node.span.end)

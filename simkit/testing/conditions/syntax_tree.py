@@ -24,6 +24,10 @@ class Span:
         """What stands there."""
         return source[self.start : self.end]
 
+    def to(self, last: Span) -> Span:
+        """Return the part from the start of this one to the end of a later one."""
+        return Span(self.start, last.end)
+
 
 class UndecidedValue(Exception):
     """A value that is not known now: no message has come yet, an index is out of range, a model was removed."""

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Final
 
-from simkit.pose import quat_conjugate, quat_rotate
+from simkit.pose import Vector, quat_conjugate, quat_rotate
+from simkit.testing.conditions import value_types as kinds
 from simkit.testing.conditions.bound_expression import (
+    BindFunction,
     BoundNode,
     ExpressionBinder,
     Function,
@@ -17,23 +20,8 @@ from simkit.testing.conditions.bound_expression import (
 )
 from simkit.testing.conditions.contact_query import ContactQuery
 from simkit.testing.conditions.syntax_tree import Call, Node, Text, UndecidedValue
-from simkit.testing.conditions.value_types import (
-    JOINT,
-    NUMBER,
-    POSE,
-    SCAN,
-    TEXT,
-    TRUTH,
-    TWIST,
-    VECTOR,
-    is_pose_like,
-    is_vector_like,
-    message_type,
-)
 
 if TYPE_CHECKING:
-    from simkit.pose import Vector
-    from simkit.testing.conditions.contact_query import ContactQuery
     from simkit.testing.conditions.world_view import Entity
 
 
@@ -46,37 +34,33 @@ def entity_argument(binder: ExpressionBinder, call: Call, place: int) -> Entity:
     return binder.view.thing(node.value, binder.source, node.span)
 
 
-def _pose(binder: ExpressionBinder, call: Call) -> BoundNode:
-    one = entity_argument(binder, call, 0)
-    if len(call.arguments) == 1:
-        return BoundNode(call, POSE, one.pose)
-    frame = entity_argument(binder, call, 1)
-    return BoundNode(call, POSE, lambda: frame.pose().inverse() @ one.pose())
+def _seen_from(
+    kind: kinds.ValueType, in_world: Callable[[Entity], object], seen: Callable[[Entity, Entity], object]
+) -> BindFunction:
+    """A function of a model or a link: its value in the world, or as it is seen from a second one."""
+
+    def make(binder: ExpressionBinder, call: Call) -> BoundNode:
+        one = entity_argument(binder, call, 0)
+        if len(call.arguments) == 1:
+            return BoundNode(call, kind, lambda: in_world(one))
+        frame = entity_argument(binder, call, 1)
+        return BoundNode(call, kind, lambda: seen(frame, one))
+
+    return make
 
 
 def _in_axes(frame: Entity, vector: Vector) -> Vector:
     return quat_rotate(quat_conjugate(frame.pose().quaternion), vector)
 
 
-def _twist(binder: ExpressionBinder, call: Call) -> BoundNode:
-    one = entity_argument(binder, call, 0)
-    if len(call.arguments) == 1:
-        return BoundNode(call, TWIST, one.twist)
-    frame = entity_argument(binder, call, 1)
-
-    def value() -> tuple[Vector, Vector]:
-        linear, angular = one.twist()
-        return _in_axes(frame, linear), _in_axes(frame, angular)
-
-    return BoundNode(call, TWIST, value)
+def _twist_in(frame: Entity, one: Entity) -> tuple[Vector, Vector]:
+    linear, angular = one.twist()
+    return _in_axes(frame, linear), _in_axes(frame, angular)
 
 
-def _velocity(binder: ExpressionBinder, call: Call) -> BoundNode:
-    one = entity_argument(binder, call, 0)
-    if len(call.arguments) == 1:
-        return BoundNode(call, VECTOR, lambda: one.twist()[0])
-    frame = entity_argument(binder, call, 1)
-    return BoundNode(call, VECTOR, lambda: _in_axes(frame, one.twist()[0]))
+_pose = _seen_from(kinds.POSE, lambda one: one.pose(), lambda frame, one: frame.pose().inverse() @ one.pose())
+_twist = _seen_from(kinds.TWIST, lambda one: one.twist(), _twist_in)
+_velocity = _seen_from(kinds.VECTOR, lambda one: one.twist()[0], lambda frame, one: _in_axes(frame, one.twist()[0]))
 
 
 def _joint(binder: ExpressionBinder, call: Call) -> BoundNode:
@@ -84,13 +68,13 @@ def _joint(binder: ExpressionBinder, call: Call) -> BoundNode:
     joint = binder.view.joint(node.value, binder.source, node.span)
     entities, name = binder.view.sim.contents.handles, joint.scoped
     # another may come in the place of one that was removed
-    return BoundNode(call, JOINT, lambda: entities.tables["joint"].get(name, joint))
+    return BoundNode(call, kinds.JOINT, lambda: entities.tables["joint"].get(name, joint))
 
 
 def _exists(binder: ExpressionBinder, call: Call) -> BoundNode:
     name = quoted_argument(binder, call, 0, _ENTITY_ARGUMENT).value
     entities = binder.view.sim.contents.handles
-    return BoundNode(call, TRUTH, lambda: any(name in entities.tables[kind] for kind in ("model", "link")))
+    return BoundNode(call, kinds.TRUTH, lambda: any(name in entities.tables[kind] for kind in ("model", "link")))
 
 
 # ------------------------------------------------------------------ distances
@@ -112,27 +96,22 @@ def _distance(binder: ExpressionBinder, call: Call) -> BoundNode:
         gap = a - b
         return math.sqrt(float(gap.dot(gap)))
 
-    return BoundNode(call, NUMBER, value, tuple(parts))
+    return BoundNode(call, kinds.NUMBER, value, tuple(parts))
 
 
 def _point_argument(binder: ExpressionBinder, node: Node, part: BoundNode) -> ValueGetter:
     """What gives the point that an argument means."""
-    if part.kind is TEXT and isinstance(node, Text):
+    if part.kind is kinds.TEXT and isinstance(node, Text):
         named = binder.view.thing(node.value, binder.source, node.span)
         return lambda: named.pose().position
-    if is_pose_like(part.kind):
+    if kinds.is_pose_like(part.kind):
         pose = as_pose(part)
         return lambda: pose().position
-    if part.kind is NUMBER or not _has_vector(part):
+    if part.kind is kinds.NUMBER or not kinds.is_vector_like(part.kind):
         text = node.span.text(binder.source)
         hint = "distance takes poses, vectors, and names of models and links in quotes"
         raise binder.fault("SK-COND-004", f"{text} is {part.kind}, which is no place", node.span, hint)
     return as_vector(part)
-
-
-def _has_vector(part: BoundNode) -> bool:
-
-    return is_vector_like(part.kind)
 
 
 # ------------------------------------------------------------------ topics
@@ -147,20 +126,20 @@ def _topic_argument(binder: ExpressionBinder, call: Call) -> tuple[str, str, Tex
 def _topic(binder: ExpressionBinder, call: Call) -> BoundNode:
     topic, type_name, _ = _topic_argument(binder, call)
     feed = binder.view.feed(topic)
-    return BoundNode(call, message_type(type_name), feed.latest, feed=feed)
+    return BoundNode(call, kinds.message_type(type_name), feed.latest, feed=feed)
 
 
 def _scan(binder: ExpressionBinder, call: Call) -> BoundNode:
     _, type_name, node = _topic_argument(binder, call)
-    if type_name != SCAN:
-        text = f"{node.value!r} carries {type_name}, and scan reads {SCAN}"
+    if type_name != kinds.SCAN:
+        text = f"{node.value!r} carries {type_name}, and scan reads {kinds.SCAN}"
         raise binder.fault("SK-COND-004", text, node.span, f"topic('{node.value}') reads any message")
     return _topic(binder, call)
 
 
 def _count(binder: ExpressionBinder, call: Call) -> BoundNode:
     tally = binder.view.tally(_topic_argument(binder, call)[0])
-    return BoundNode(call, NUMBER, lambda: float(tally.count))
+    return BoundNode(call, kinds.NUMBER, lambda: float(tally.count))
 
 
 def _rate(binder: ExpressionBinder, call: Call) -> BoundNode:
@@ -173,7 +152,7 @@ def _rate(binder: ExpressionBinder, call: Call) -> BoundNode:
             raise UndecidedValue(f"fewer than two messages have come on {topic}")
         return rate
 
-    return BoundNode(call, NUMBER, value)
+    return BoundNode(call, kinds.NUMBER, value)
 
 
 def _age(binder: ExpressionBinder, call: Call) -> BoundNode:
@@ -185,7 +164,32 @@ def _age(binder: ExpressionBinder, call: Call) -> BoundNode:
             raise UndecidedValue(f"no message has come on {topic}")
         return (sim.time_ns - tally.last) / 1e9
 
-    return BoundNode(call, NUMBER, value)
+    return BoundNode(call, kinds.NUMBER, value)
+
+
+def _contact_query(binder: ExpressionBinder, call: Call) -> ContactQuery:
+    nodes = [quoted_argument(binder, call, place, _ENTITY_ARGUMENT) for place in range(len(call.arguments))]
+    names = [binder.view.scoped(node.value, binder.source, node.span) for node in nodes]
+    return ContactQuery(binder.view.sim, *names)
+
+
+def _contact(binder: ExpressionBinder, call: Call) -> BoundNode:
+    touching = _contact_query(binder, call)
+
+    def tell() -> str:
+        found = touching.describe()
+        return f" ({found})" if found else ""
+
+    return BoundNode(call, kinds.TRUTH, lambda: bool(touching.now()), tell=tell)
+
+
+def _contacts(binder: ExpressionBinder, call: Call) -> BoundNode:
+    touching = _contact_query(binder, call)
+    return BoundNode(call, kinds.NUMBER, lambda: float(len(touching.now())))
+
+
+def _contact_force(binder: ExpressionBinder, call: Call) -> BoundNode:
+    return BoundNode(call, kinds.NUMBER, _contact_query(binder, call).force)
 
 
 WORLD_FUNCTIONS: Final[dict[str, Function]] = {
@@ -200,38 +204,6 @@ WORLD_FUNCTIONS: Final[dict[str, Function]] = {
     "count": Function("count('/topic')", 1, 1, _count),
     "rate": Function("rate('/topic')", 1, 1, _rate),
     "age": Function("age('/topic')", 1, 1, _age),
-}
-
-
-def _contact_query(binder: ExpressionBinder, call: Call) -> ContactQuery:
-
-    nodes = [
-        quoted_argument(binder, call, place, "the name of a model or a link") for place in range(len(call.arguments))
-    ]
-    names = [binder.view.scoped(node.value, binder.source, node.span) for node in nodes]
-    return ContactQuery(binder.view.sim, *names)
-
-
-def _contact(binder: ExpressionBinder, call: Call) -> BoundNode:
-    touching = _contact_query(binder, call)
-
-    def tell() -> str:
-        found = touching.describe()
-        return f" ({found})" if found else ""
-
-    return BoundNode(call, TRUTH, lambda: bool(touching.now()), tell=tell)
-
-
-def _contacts(binder: ExpressionBinder, call: Call) -> BoundNode:
-    touching = _contact_query(binder, call)
-    return BoundNode(call, NUMBER, lambda: float(len(touching.now())))
-
-
-def _contact_force(binder: ExpressionBinder, call: Call) -> BoundNode:
-    return BoundNode(call, NUMBER, _contact_query(binder, call).force)
-
-
-CONTACT_FUNCTIONS: Final[dict[str, Function]] = {
     "contact": Function("contact('model or link'[, 'another'])", 1, 2, _contact),
     "contacts": Function("contacts('model or link'[, 'another'])", 1, 2, _contacts),
     "contact_force": Function("contact_force('model or link'[, 'another'])", 1, 2, _contact_force),

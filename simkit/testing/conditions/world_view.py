@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
+from simkit.pose import Pose, Vector
+from simkit.runtime import Joint, Simulation, Subscription
 from simkit.runtime.communication.topic_bus import absolute_name
 from simkit.runtime.contact.collision_contacts import collision_table
 from simkit.testing.conditions.syntax_tree import REMOVED_CODE, Span, UndecidedValue, expression_error
 
-if TYPE_CHECKING:
-    from simkit.pose import Pose, Vector
-    from simkit.runtime import Joint, Simulation, Subscription
 
-
-class LatestMessage:
-    """The newest message of a topic; it is made only when somebody looks.
+class _TopicListener(ABC):
+    """Listens to a topic between `open` and `close`.
 
     Args:
         sim: the simulation.
@@ -27,19 +26,29 @@ class LatestMessage:
     """
 
     def __init__(self, sim: Simulation, topic: str) -> None:
-        self.topic = topic
-        self._sim = sim
+        self.topic, self._sim = topic, sim
         self._subscription: Subscription | None = None
+
+    @abstractmethod
+    def _subscribe(self) -> Subscription:
+        """Begin to listen."""
 
     def open(self) -> None:
         """Listens from now on."""
         if self._subscription is None:
-            self._subscription = self._sim.communication.bus.subscribe(self.topic, keep=1)
+            self._subscription = self._subscribe()
 
     def close(self) -> None:
-        """Listens no more; what came last stays."""
+        """Listens no more; what came so far stays."""
         if self._subscription is not None:
             self._subscription.close()
+
+
+class LatestMessage(_TopicListener):
+    """The newest message of a topic; it is made only when somebody looks."""
+
+    def _subscribe(self) -> Subscription:
+        return self._sim.communication.bus.subscribe(self.topic, keep=1)
 
     def latest(self) -> object:
         """The newest message.
@@ -53,33 +62,18 @@ class LatestMessage:
         return message
 
 
-class MessageCounter:
+class MessageCounter(_TopicListener):
     """How many messages come on a topic, and when; the messages are not looked at.
-
-    Args:
-        sim: the simulation.
-        topic: absolute.
 
     Attributes:
         count: messages since it was opened, or since time went back.
         first, last: simulated times [ns] of the first and the newest of them.
     """
 
-    def __init__(self, sim: Simulation, topic: str) -> None:
-        self.topic = topic
-        self.count = self.first = self.last = 0
-        self._sim = sim
-        self._tap: Subscription | None = None
+    count = first = last = 0
 
-    def open(self) -> None:
-        """Counts from now on."""
-        if self._tap is None:
-            self._tap = self._sim.communication.bus.tap(self.topic, self._take, takes_later=True)
-
-    def close(self) -> None:
-        """Counts no more."""
-        if self._tap is not None:
-            self._tap.close()
+    def _subscribe(self) -> Subscription:
+        return self._sim.communication.bus.tap(self.topic, self._take, takes_later=True)
 
     def rate(self) -> float | None:
         """Messages per simulated second from the first to the newest [Hz]; None before two at different times."""
@@ -238,38 +232,36 @@ class WorldView:
         if self.absent == "wait":
             self.feed(topic), self.tally(topic)  # whatever it will be asked for, nothing is missed
             raise AbsentTopic(topic, near)
-        raise expression_error(
-            "SK-COND-006", f"there is no topic {topic!r}", source, span, near or _require_present(topics)
-        )
+        message = f"there is no topic {topic!r}"
+        raise expression_error("SK-COND-006", message, source, span, near or _require_present(topics))
 
     def feed(self, topic: str) -> LatestMessage:
         """The newest message of a topic."""
-        if topic not in self._feeds:
-            feed = self._feeds[topic] = LatestMessage(self.sim, topic)
-            if self._is_open:
-                feed.open()
-        return self._feeds[topic]
+        feed = self._feeds.setdefault(topic, LatestMessage(self.sim, topic))
+        if self._is_open:
+            feed.open()
+        return feed
 
     def tally(self, topic: str) -> MessageCounter:
         """The count of a topic's messages."""
-        if topic not in self._tallies:
-            tally = self._tallies[topic] = MessageCounter(self.sim, topic)
-            if self._is_open:
-                tally.open()
-        return self._tallies[topic]
+        tally = self._tallies.setdefault(topic, MessageCounter(self.sim, topic))
+        if self._is_open:
+            tally.open()
+        return tally
 
     def open(self) -> None:
         """Begins to listen."""
         self._is_open = True
-        ends: list[LatestMessage | MessageCounter] = [*self._feeds.values(), *self._tallies.values()]
-        for end in ends:
-            end.open()
+        for listener in self._listeners():
+            listener.open()
 
     def close(self) -> None:
         """Listens no more."""
-        ends: list[LatestMessage | MessageCounter] = [*self._feeds.values(), *self._tallies.values()]
-        for end in ends:
-            end.close()
+        for listener in self._listeners():
+            listener.close()
+
+    def _listeners(self) -> list[_TopicListener]:
+        return [*self._feeds.values(), *self._tallies.values()]
 
 
 def _list_names(names: Iterable[str]) -> str:

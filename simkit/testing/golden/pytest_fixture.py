@@ -18,11 +18,11 @@ import pytest
 from simkit.errors import InputError
 from simkit.run_spec import JsonMapping, JsonObject, LoadOptions, RunSpec, Tolerance
 from simkit.testing.golden.cause import explain
-from simkit.testing.golden.compare.difference import Explanation, Verdict
+from simkit.testing.golden.compare.difference import Verdict
 from simkit.testing.golden.compare.runs import compare
 from simkit.testing.golden.report import text_report, write_html
 from simkit.testing.run_record.record import RunRecord
-from simkit.testing.scenarios.scenario_file import read_scenario
+from simkit.testing.scenarios.scenario_file import TOLERANCE_MODES, absolute_topic, read_scenario
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
@@ -33,11 +33,6 @@ _LONGEST: Final = 80  # letters of a folder's name
 _LINES: Final = 24  # of a report that a failure shows
 _BUDGET: Final = 20.0  # [s] of wall time for finding the cause
 _FILES: Final = (".yaml", ".yml", ".py")
-_WORDS: Final[Mapping[str, Mapping[str, bool]]] = {
-    "exact": {"exact": True},
-    "ignore": {"ignore": True},
-    "statistics": {"statistics": True},
-}
 _NUMBERS: Final = ("absolute", "relative", "share", "image", "ssim")  # of a tolerance
 _SCENARIO_ARGUMENTS: Final = ("overrides", "spawn", "plugins")  # of `simkit.load`, which a scenario has fields for
 
@@ -122,17 +117,9 @@ class SensorRegression:
         from simkit.testing.run_record.run_recorder import run_record
 
         scenario, sim = self._scenario(what)
-        given = {
-            "duration": duration,
-            "seed": seed,
-            "topics": _topic_patterns(topics),
-            "skip": _topic_patterns(skip),
-            **options,
-        }
-        scenario = _with_arguments(
-            scenario, {key: value for key, value in given.items() if value is not None}, sim is not None
-        )
-        scenario = _with_tolerances(scenario, tolerances)
+        said = {"duration": duration, "seed": seed, "topics": _topic_patterns(topics), "skip": _topic_patterns(skip)}
+        given = {key: value for key, value in {**said, **options}.items() if value is not None}
+        scenario = _with_tolerances(_with_arguments(scenario, given, sim is not None), tolerances)
         if sim is not None or scenario.plugins:
             scenario = replace(scenario, test=self._place.short_test)
         place = self._place_for(name)
@@ -227,13 +214,16 @@ class SensorRegression:
 
     def _judged(self, place: Path, record: RunRecord, elapsed: float, *, again: bool) -> Verdict:
         """Compares a run with its golden one, or makes it the golden one."""
-        from simkit.testing.golden.check import refuse_failed
+        from simkit.testing.golden.check import make_golden, refuse_failed
         from simkit.testing.golden.store import is_golden, read_golden, write_golden
 
         writes = self._place.reason is not None
         if writes:
             refuse_failed(record, place)
-            _refuse_failed_checks(record, place)
+            for result in record.checks:
+                if not result.passed:
+                    said = f"{place}: a check does not hold, and the run is not made golden: {result.check.title}"
+                    raise InputError(f"SK-GOLDEN-007 {said}: {result.message}", "SK-GOLDEN-007")
         if writes and not is_golden(place):
             write_golden(place, record, reason=self._place.reason or "")
             self._place.done.append(f"written: {_short_path(place)}")
@@ -241,24 +231,23 @@ class SensorRegression:
         golden = read_golden(place)
         verdict = Verdict(place.name, golden, record, compare(golden, record), None, record.checks, elapsed)
         if writes:
-            self._rewrite(place, verdict)
+            if verdict.comparison.passed:
+                self._place.done.append(f"as it was: {_short_path(place)}")
+            else:
+                make_golden(place, verdict, self._place.reason or "", other_renderer=self._place.other_renderer)
+                self._place.done.append(f"changed: {_short_path(place)}: {verdict.comparison.differences[0].words}")
         elif not verdict.passed:
             self._fail(place, verdict, again=again)
         return verdict
 
-    def _rewrite(self, place: Path, verdict: Verdict) -> None:
-        from simkit.testing.golden.check import make_golden
-
-        if verdict.comparison.passed:
-            self._place.done.append(f"as it was: {_short_path(place)}")
-            return
-        make_golden(place, verdict, self._place.reason or "", other_renderer=self._place.other_renderer)
-        self._place.done.append(f"changed: {_short_path(place)}: {verdict.comparison.differences[0].words}")
-
     def _fail(self, place: Path, verdict: Verdict, *, again: bool) -> None:
 
         if not verdict.comparison.passed:
-            verdict.explanation = _explain(verdict, again=again)
+            both = verdict.golden, verdict.run, verdict.comparison
+            if again:
+                verdict.explanation = explain(*both, budget_s=_BUDGET)
+            else:  # what only the test can do again is not tried again
+                verdict.explanation = explain(*both, rerun=None)
         lines = text_report(verdict, 100, most=8, mark="")
         if len(lines) > _LINES:
             lines = [*lines[:_LINES], f"  … and {len(lines) - _LINES} lines more"]
@@ -285,26 +274,6 @@ def safe_name(text: str) -> str:
     return f"{plain[:_LONGEST]}-{hashlib.sha256(text.encode('utf-8', 'surrogatepass')).hexdigest()[:8]}"
 
 
-def _explain(verdict: Verdict, *, again: bool) -> Explanation:
-    """Where differences come from; what only the test can do again is not tried again."""
-
-    golden, run, comparison = verdict.golden, verdict.run, verdict.comparison
-    if again:
-        return explain(golden, run, comparison, budget_s=_BUDGET)
-    return explain(golden, run, comparison, rerun=None)
-
-
-def _refuse_failed_checks(record: RunRecord, place: Path) -> None:
-    """A run in which a check of its scenario does not hold is no example."""
-    for result in record.checks:
-        if not result.passed:
-            raise InputError(
-                f"SK-GOLDEN-007 {place}: a check does not hold, and the run is not made golden: "
-                f"{result.check.title}: {result.message}",
-                "SK-GOLDEN-007",
-            )
-
-
 def _with_arguments(scenario: RunSpec, given: JsonObject, is_open: bool) -> RunSpec:
     """A scenario with arguments over its own."""
     own = {key: given.pop(key) for key in ("duration", "seed", "topics", "skip", *_SCENARIO_ARGUMENTS) if key in given}
@@ -324,11 +293,7 @@ def _topic_patterns(patterns: str | Sequence[str] | None) -> tuple[str, ...] | N
     """Patterns of topics, with their leading slashes."""
     if patterns is None:
         return None
-    return tuple(map(_absolute_topic, (patterns,) if isinstance(patterns, str) else patterns))
-
-
-def _absolute_topic(pattern: str) -> str:
-    return pattern if pattern.startswith(("/", "*")) else f"/{pattern}"
+    return tuple(map(absolute_topic, (patterns,) if isinstance(patterns, str) else patterns))
 
 
 def _with_tolerances(scenario: RunSpec, given: Mapping[str, object] | Sequence[Tolerance]) -> RunSpec:
@@ -347,17 +312,17 @@ def _parse_tolerances(given: JsonMapping | Sequence[Tolerance]) -> tuple[Toleran
     for pattern, value in given.items():
         said: JsonMapping
         if isinstance(value, Tolerance):
-            found.append(replace(value, pattern=_absolute_topic(pattern)))
+            found.append(replace(value, pattern=absolute_topic(pattern)))
             continue
-        if isinstance(value, str) and value in _WORDS:
-            said = _WORDS[value]
+        if isinstance(value, str) and value in TOLERANCE_MODES:
+            said = {value: True}
         elif isinstance(value, Mapping) and all(map(_is_valid_tolerance, value, value.values())):
             said = value
         elif _is_valid_tolerance("absolute", value):
             said = {"absolute": float(value)}
         else:
             raise _tolerance_error(pattern, value)
-        found.append(Tolerance(_absolute_topic(pattern), **said))
+        found.append(Tolerance(absolute_topic(pattern), **said))
     return tuple(found)
 
 
@@ -365,14 +330,14 @@ def _is_valid_tolerance(name: object, value: object) -> bool:
     """Whether a field of a tolerance may have a value."""
     if name in _NUMBERS:
         return isinstance(value, (int, float)) and not isinstance(value, bool) and value >= 0
-    return name in _WORDS and isinstance(value, bool)
+    return name in TOLERANCE_MODES and isinstance(value, bool)
 
 
 def _tolerance_error(pattern: str, value: object) -> InputError:
     names = ", ".join(name for name in Tolerance.__dataclass_fields__ if name not in ("pattern", "where"))
     return InputError(
         f"SK-GOLDEN-021 sensor_regression: tolerances[{pattern!r}]: found {value!r:.80}, allowed is a number of at "
-        f"least 0, one of {', '.join(_WORDS)}, or a mapping of {names}",
+        f"least 0, one of {', '.join(TOLERANCE_MODES)}, or a mapping of {names}",
         "SK-GOLDEN-021",
     )
 

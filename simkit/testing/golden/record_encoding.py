@@ -1,21 +1,174 @@
-"""A record as what stands in `golden.json` and a block of data; and back."""
+"""A scenario and its record as what stands in `golden.json` and a block of data; and back."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import replace
-from typing import Final
+import hashlib
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, fields, replace
+from pathlib import Path
+from typing import Any, Final, cast
 
 import numpy as np
 
-from simkit.run_spec import JsonMapping, JsonObject, RunSpec
+from simkit.run_spec import Check, JsonMapping, JsonObject, LoadOptions, RunSpec, Tolerance
 from simkit.testing.golden.array_packing import Packer, PackingError, Unpacker
 from simkit.testing.golden.compare.tolerances import storage_step
-from simkit.testing.golden.scenario_encoding import is_long_text
-from simkit.testing.run_record.compiled_model import ModelFields
 from simkit.testing.run_record.noise_statistics import NoiseStatistics
 from simkit.testing.run_record.record import Array, Column, Pictures, RunRecord, States, Stream
 from simkit.testing.run_record.run_recorder import ENVIRONMENT_VARIABLES
+from simkit.testing.run_record.state_recorder import ModelFields
+
+_PATH_OPTIONS: Final = ("resource_paths", "plugin_paths", "params_files")
+_LONG_TEXT: Final = 2000
+_PLAIN: Final = (
+    "duration", "seed", "name", "overrides", "topics", "skip", "state", "model", "picture", "until", "timeout",
+    "wall_timeout", "test", "play_topics", "bits",
+)  # fmt: skip
+
+
+def encode_scenario(scenario: RunSpec, folder: Path) -> dict[str, object]:
+    """A scenario as JSON holds it.
+
+    Args:
+        scenario: what is written.
+        folder: that files are named relative to; so that it does not matter where a checkout lies.
+    """
+
+    def place(path: Any) -> str:
+        return relative_path(Path(scenario.folder, path), folder)
+
+    found: dict[str, object] = {"world": relative_world(scenario, folder)}
+    if is_long_text(scenario.world):
+        text = scenario.world.encode("utf-8", "surrogatepass")
+        found["world"] = {"sha256": hashlib.sha256(text).hexdigest(), "bytes": len(text)}
+    defaults = RunSpec("")
+    for name in _PLAIN:
+        value = getattr(scenario, name)
+        if value != getattr(defaults, name):
+            found[name] = list(value) if isinstance(value, tuple) else value
+    if scenario.spawn:
+        found["spawn"] = [_move_spawn(str(text), lambda p: place(p) if Path(scenario.folder, p).exists() else p)
+                          for text in scenario.spawn]  # fmt: skip
+    if scenario.commands:
+        found["commands"] = [{k: _plain_value(v) for k, v in one.items() if k != "where"} for one in scenario.commands]
+    if scenario.play:
+        found["play"] = place(scenario.play)
+    if scenario.tolerances:
+        found["tolerances"] = [_non_default_fields(one, Tolerance("")) for one in scenario.tolerances]
+    if scenario.checks:
+        found["checks"] = [_non_default_fields(one, Check("goal")) | {"kind": one.kind} for one in scenario.checks]
+    if scenario.plugins:
+        found["plugins"] = [_class_name(one) for one in scenario.plugins]
+    options = {name: _move_option(name, value, place) for name, value in sorted(scenario.options.items())}
+    if options:
+        found["options"] = options
+    if scenario.file is not None:
+        found["file"] = relative_path(scenario.file, folder)
+    return found
+
+
+def decode_scenario(plain: JsonMapping, folder: Path) -> RunSpec:
+    """The scenario that plain data stands for; of plugins that were made in Python it has the names of their classes.
+
+    Args:
+        plain: as `encode_scenario` gives it; a world that is a long text is not in it, and is empty.
+        folder: of the golden run.
+
+    Raises:
+        ValueError, TypeError, KeyError: it is none.
+    """
+
+    def place(text: object) -> str:
+        return str(folder / str(text))
+
+    given: JsonObject = {name: plain[name] for name in _PLAIN if name in plain}
+    for name in ("overrides", "topics", "skip", "play_topics"):
+        given[name] = tuple(map(str, given.get(name, ())))
+    for name in ("duration", "seed", "picture"):
+        if not isinstance(given.get(name, 0), (int, float)):
+            raise TypeError(f"{name} is no number")
+    given["spawn"] = tuple(
+        _move_spawn(str(text), lambda p: place(p) if Path(place(p)).exists() else p) for text in plain.get("spawn", ())
+    )
+    given["play"] = str(plain.get("play", ""))
+    given["commands"] = tuple({**one, "where": "commands"} for one in plain.get("commands", ()))
+    given["tolerances"] = tuple(Tolerance(**_known_fields(one, Tolerance)) for one in plain.get("tolerances", ()))
+    checks = (_known_fields(one, Check) for one in plain.get("checks", ()))
+    given["checks"] = tuple(Check(**{**one, "models": tuple(one.get("models", ()))}) for one in checks)
+    options = {name: _move_option(name, value, place) for name, value in dict(plain.get("options", {})).items()}
+    given["plugins"] = tuple(map(str, plain.get("plugins", ())))
+    file = Path(place(plain["file"])) if plain.get("file") else None
+    world = "" if isinstance(plain["world"], Mapping) else str(plain["world"])
+    return RunSpec(world, options=cast(LoadOptions, options), folder=folder, file=file, **given)
+
+
+def is_long_text(world: str) -> bool:
+    """Whether a world is XML too long to be read beside the rest."""
+    return "<" in world and len(world) > _LONG_TEXT
+
+
+def relative_world(scenario: RunSpec, folder: Path) -> str:
+    """The world's name: a file relative to `folder`; a bare name or XML text as it is."""
+    if "<" in scenario.world:
+        return scenario.world
+    return scenario.world if scenario.beside is None else relative_path(scenario.beside, folder)
+
+
+def relative_path(path: Path, folder: Path) -> str:
+    """A path as seen from a folder, with slashes; the whole one where they are on different drives."""
+    try:
+        return Path(os.path.relpath(path.resolve(), folder.resolve())).as_posix()
+    except ValueError:
+        return path.resolve().as_posix()
+
+
+def _move_spawn(text: str, place: Callable[[str], str]) -> str:
+    """`MODEL:x,y,yaw[:name]` with another place of the model."""
+    model, colon, rest = text.partition(":")
+    return place(model) + colon + rest
+
+
+def _move_option(name: str, value: Any, place: Callable[[object], str]) -> object:
+    """An option of a scenario as plain data, with other places of its files."""
+    if name in _PATH_OPTIONS:
+        several = [value] if isinstance(value, (str, os.PathLike)) else list(value)
+        return [_move_params_file(str(one), place) for one in several]
+    if name == "package_paths":
+        return {key: place(one) for key, one in dict(value).items()}
+    return _plain_value(value)
+
+
+def _move_params_file(text: str, place: Callable[[object], str]) -> str:
+    """`[MODEL=]FILE` with another place of the file."""
+    model, equals, file = text.rpartition("=")
+    return f"{model}{equals}{place(file)}"
+
+
+def _plain_value(value: Any) -> object:
+    if isinstance(value, Mapping):
+        return {str(key): _plain_value(one) for key, one in value.items()}
+    if isinstance(value, (list, tuple)) or hasattr(value, "tolist"):
+        return [_plain_value(one) for one in value] if not hasattr(value, "tolist") else value.tolist()
+    return value if isinstance(value, (bool, int, float, str)) or value is None else str(value)
+
+
+def _non_default_fields(value: Any, default: Any) -> dict[str, object]:
+    """The fields that are other than the default's, without places."""
+    usual = asdict(default)
+    return {name: _plain_value(one) for name, one in asdict(value).items() if name != "where" and one != usual[name]}
+
+
+def _known_fields(plain: Mapping[str, object], kind: type) -> JsonObject:
+    names = {field.name for field in fields(kind)}
+    return {str(name): value for name, value in plain.items() if name in names}
+
+
+def _class_name(plugin: object) -> str:
+    one = plugin[1] if isinstance(plugin, tuple) and len(plugin) == 2 else plugin
+    kind = one if isinstance(one, type) or hasattr(one, "__file__") else type(one)
+    return str(getattr(kind, "__qualname__", getattr(kind, "__name__", kind)))
+
 
 _MAX_FIELDS: Final = 400_000  # numbers of the compiled model; of a larger one its fields are not kept
 _DEPTH_STEP: Final = 2.0**-10  # [m] that depths of small pictures are rounded to
@@ -114,8 +267,10 @@ def _pack_stream(packer: Packer, stream: Stream, scenario: RunSpec) -> dict[str,
 
 
 def _unpack_stream(unpacker: Unpacker, topic: str, said: JsonMapping) -> Stream:
-    stream = Stream(topic, str(said["type"]), _times(unpacker.array(said["times"])))
-    count = len(stream.times_ns)
+    times = unpacker.array(said["times"])
+    if times.ndim != 1 or times.dtype != np.int64:
+        raise PackingError("times of another type")
+    stream, count = Stream(topic, str(said["type"]), times), len(times)
     for path, one in said["columns"].items():
         lengths = unpacker.array(one["lengths"]) if "lengths" in one else None
         column = Column(unpacker.array(one["values"]), lengths, float(one["step"]))
@@ -126,7 +281,10 @@ def _unpack_stream(unpacker: Unpacker, topic: str, said: JsonMapping) -> Stream:
             raise PackingError(f"{topic}.{path} has {rows} messages of {count}")
         stream.columns[str(path)] = column
     stream.words = {str(path): _unpack_words(unpacker, one, count) for path, one in said["words"].items()}
-    stream.statistics = {str(p): _unpack_statistics(unpacker, one) for p, one in said["statistics"].items()}
+    stream.statistics = {
+        str(path): NoiseStatistics(int(one["count"]), *(unpacker.array(one[name]) for name in _STATISTICS))
+        for path, one in said["statistics"].items()
+    }
     stream.chunks, stream.digest = [str(chunk) for chunk in said["chunks"]], str(said["digest"])
     if "pictures" in said:
         stream.pictures = _unpack_pictures(unpacker, said["pictures"], count)
@@ -135,8 +293,7 @@ def _unpack_stream(unpacker: Unpacker, topic: str, said: JsonMapping) -> Stream:
 
 def _unpack_pictures(unpacker: Unpacker, said: JsonMapping, count: int) -> Pictures:
     small, tiles = unpacker.array(said["small"]), unpacker.array(said["tiles"])
-    kept = None if said["kept"] is None else unpacker.array(said["kept"])
-    hashes = None if said["hashes"] is None else unpacker.array(said["hashes"])
+    kept, hashes = (None if said[name] is None else unpacker.array(said[name]) for name in ("kept", "hashes"))
     wanted = count if kept is None else len(kept)
     if small.ndim != 4 or tiles.ndim != 3 or len(small) != wanted or len(tiles) != wanted:
         raise PackingError("pictures of another shape")
@@ -144,12 +301,6 @@ def _unpack_pictures(unpacker: Unpacker, said: JsonMapping, count: int) -> Pictu
         raise PackingError("pictures of messages that there are not")
     height, width = (int(one) for one in said["shape"])
     return Pictures(small, (height, width), str(said["encoding"]), tiles, kept, hashes)
-
-
-def _times(times: Array) -> Array:
-    if times.ndim != 1 or times.dtype != np.int64:
-        raise PackingError("times of another type")
-    return times
 
 
 def _pack_words(packer: Packer, texts: list[str]) -> dict[str, object]:
@@ -168,10 +319,6 @@ def _unpack_words(unpacker: Unpacker, said: JsonMapping, count: int) -> list[str
 def _pack_statistics(packer: Packer, statistics: NoiseStatistics) -> dict[str, object]:
     found: dict[str, object] = {"count": int(statistics.count)}
     return found | {name: packer.add(np.asarray(getattr(statistics, name), np.float64)) for name in _STATISTICS}
-
-
-def _unpack_statistics(unpacker: Unpacker, said: JsonMapping) -> NoiseStatistics:
-    return NoiseStatistics(int(said["count"]), *(unpacker.array(said[name]) for name in _STATISTICS))
 
 
 # ---------------------------------------------------------------------- states and model

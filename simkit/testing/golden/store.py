@@ -18,8 +18,7 @@ from typing import Final
 from simkit.errors import InputError
 from simkit.run_spec import JsonMapping, JsonObject
 from simkit.testing.golden.array_packing import PackingError
-from simkit.testing.golden.record_encoding import decode_record, encode_record
-from simkit.testing.golden.scenario_encoding import decode_scenario, encode_scenario
+from simkit.testing.golden.record_encoding import decode_record, decode_scenario, encode_record, encode_scenario
 from simkit.testing.run_record.record import RunRecord
 
 FORMAT: Final = 1

@@ -4,20 +4,74 @@ statistics.
 
 from __future__ import annotations
 
+import zlib
 from typing import TYPE_CHECKING, Any, Final, Literal, Protocol
 from zlib import crc32
 
 import numpy as np
+import numpy.typing as npt
 
 from simkit.msgs import Message
+from simkit.run_spec import RunSpec
 from simkit.testing.run_record.message_columns import MessageRows, join_arrays, message_fields
 from simkit.testing.run_record.noise_statistics import noise_statistics
-from simkit.testing.run_record.pictures import shrink, tile_hashes
 from simkit.testing.run_record.record import Array, Pictures, Stream
 
 if TYPE_CHECKING:
-    from simkit.run_spec import RunSpec
     from simkit.runtime import Simulation
+
+
+TILE: Final = 32
+"""Length of a tile's side [px]."""
+
+
+def tile_hashes(image: Array, tile: int = TILE) -> npt.NDArray[np.uint32]:
+    """A hash of each tile of a picture, shape (rows, columns); the last ones may be smaller.
+
+    Args:
+        image: shape (height, width) or (height, width, channels), of any type.
+        tile: length of a tile's side [px].
+    """
+
+    rows, columns = -(-image.shape[0] // tile), -(-image.shape[1] // tile)
+    found = np.empty((rows, columns), np.uint32)
+    for row in range(rows):
+        for column in range(columns):
+            part = image[row * tile : (row + 1) * tile, column * tile : (column + 1) * tile]
+            found[row, column] = zlib.crc32(np.ascontiguousarray(part).tobytes())
+    return found
+
+
+def shrink(image: Array, longest: int) -> Array:
+    """A small picture: the mean of the pixels under each of its own, of its type.
+
+    Of depths the mean is of those that are finite; where there are none, the first of them (infinite or not a number).
+
+    Args:
+        image: shape (height, width) or (height, width, channels), uint8, uint16 or float32.
+        longest: of its sides [px]; a picture that is smaller stays.
+    """
+    height, width = image.shape[:2]
+    factor = longest / max(height, width, 1)
+    if factor >= 1.0:
+        return image
+    rows = np.arange(max(1, round(height * factor))) * height // max(1, round(height * factor))
+    columns = np.arange(max(1, round(width * factor))) * width // max(1, round(width * factor))
+    if np.issubdtype(image.dtype, np.integer):
+        total = _block_sum(image.astype(np.int64), rows, columns)
+        count = np.outer(np.diff([*rows, height]), np.diff([*columns, width]))
+        count = count.reshape(count.shape + (1,) * (image.ndim - 2))
+        return np.asarray(((2 * total + count) // (2 * count)).astype(image.dtype))
+    finite = np.isfinite(image)
+    total = _block_sum(np.where(finite, image, 0).astype(np.float64), rows, columns)
+    hits = _block_sum(finite.astype(np.int64), rows, columns)
+    first = image[np.ix_(rows, columns)]
+    return np.asarray(np.where(hits > 0, total / np.maximum(hits, 1), first).astype(image.dtype))
+
+
+def _block_sum(values: Array, rows: Array, columns: Array) -> Array:
+    """The sum over blocks that begin at these rows and columns."""
+    return np.asarray(np.add.reduceat(np.add.reduceat(values, rows, axis=0), columns, axis=1))
 
 
 _IMAGE: Final = "sensor_msgs/msg/Image"
@@ -30,21 +84,12 @@ _BINARY_FIELDS: Final = {
 _POINTS_KEPT: Final = 64  # of a cloud's message that are kept
 _PICTURES_KEPT: Final = 32  # of a run that are kept, at most
 _CHANNELS: Final = {
-    "mono8": ("uint8", 1),
-    "8UC1": ("uint8", 1),
-    "rgb8": ("uint8", 3),
-    "bgr8": ("uint8", 3),
-    "8UC3": ("uint8", 3),
-    "rgba8": ("uint8", 4),
-    "bgra8": ("uint8", 4),
-    "mono16": ("uint16", 1),
-    "16UC1": ("uint16", 1),
+    **dict.fromkeys(("mono8", "8UC1", "bayer_rggb8", "bayer_bggr8", "bayer_gbrg8", "bayer_grbg8"), ("uint8", 1)),
+    **dict.fromkeys(("rgb8", "bgr8", "8UC3"), ("uint8", 3)),
+    **dict.fromkeys(("rgba8", "bgra8"), ("uint8", 4)),
+    **dict.fromkeys(("mono16", "16UC1"), ("uint16", 1)),
     "32FC1": ("float32", 1),
     "32FC3": ("float32", 3),
-    "bayer_rggb8": ("uint8", 1),
-    "bayer_bggr8": ("uint8", 1),
-    "bayer_gbrg8": ("uint8", 1),
-    "bayer_grbg8": ("uint8", 1),
 }
 _CLOUD_TYPES: Final = {
     1: "int8", 2: "uint8", 3: "int16", 4: "uint16", 5: "int32", 6: "uint32", 7: "float32", 8: "float64"

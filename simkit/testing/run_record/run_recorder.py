@@ -19,20 +19,18 @@ from simkit.errors import PluginError, SimulationDiverged, SubscriberError
 from simkit.msgs import Message
 from simkit.recording.bags.recorder import matches_topic
 from simkit.recording.message_taps import MessageQueue, TopicTaps
-from simkit.testing.run_record.compiled_model import fields_of_model
+from simkit.run_spec import RunSpec
 from simkit.testing.run_record.fingerprint import fingerprint
-from simkit.testing.run_record.message_recorder import message_recorder_for
+from simkit.testing.run_record.message_recorder import MessageRecorder, message_recorder_for
 from simkit.testing.run_record.record import RunRecord, Stream
 from simkit.testing.run_record.source_files import source_hashes
-from simkit.testing.run_record.state_recorder import StateRecorder
+from simkit.testing.run_record.state_recorder import StateRecorder, fields_of_model
 from simkit.testing.run_record.world_values import values_of_simulation
 from simkit.testing.scenarios.scenario_run import open_scenario, run_scenario
 
 if TYPE_CHECKING:
-    from simkit.run_spec import RunSpec
     from simkit.runtime import Simulation
     from simkit.testing.conditions.checks import CheckResult
-    from simkit.testing.run_record.message_recorder import MessageRecorder
 
 
 _CONTACTS: Final = "ros_gz_interfaces/msg/Contacts"

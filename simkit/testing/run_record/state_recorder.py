@@ -1,24 +1,21 @@
-"""One byte a tick that tells whether the physics is where it was, and whole states now and then."""
+"""Record the physics of a run by names: the fields of its compiled model, a mark for each tick, and whole states."""
 
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any, Final
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any, Final
 from zlib import crc32
 
+import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from simkit.runtime import Simulation
 from simkit.runtime.engine.held_state import applied_forces
+from simkit.runtime.engine.physics_step import Physics
 from simkit.runtime.engine.snapshot import state_hash
-from simkit.testing.run_record.record import States
-
-if TYPE_CHECKING:
-    import mujoco
-
-    from simkit.runtime import Simulation
-    from simkit.runtime.engine.physics_step import Physics
+from simkit.testing.run_record.record import Array, States
 
 _STATES_KEPT: Final = 64  # states of a run, where the world is small
 _MAX_VALUES: Final = 6000  # of all of them together
@@ -145,11 +142,9 @@ class StateQuantities:
     """Names of what a compiled model's state is made of, in the order of the engine."""
 
     def __init__(self, model: mujoco.MjModel) -> None:
-        import mujoco
-
-        self.bodies = [_name(model, mujoco.mjtObj.mjOBJ_BODY, i) for i in range(model.nbody)]
-        joints = [_name(model, mujoco.mjtObj.mjOBJ_JOINT, i) for i in range(model.njnt)]
-        self.controls = [_name(model, mujoco.mjtObj.mjOBJ_ACTUATOR, i) for i in range(model.nu)]
+        self.bodies = _names(model, mujoco.mjtObj.mjOBJ_BODY, model.nbody)
+        joints = _names(model, mujoco.mjtObj.mjOBJ_JOINT, model.njnt)
+        self.controls = _names(model, mujoco.mjtObj.mjOBJ_ACTUATOR, model.nu)
         self.positions = [""] * model.nq
         self.velocities = [""] * model.nv
         free, ball = int(mujoco.mjtJoint.mjJNT_FREE), int(mujoco.mjtJoint.mjJNT_BALL)
@@ -197,12 +192,6 @@ _FREE_VELOCITY: Final = (*(f"velocity {part}" for part in "xyz"), *(f"angular ve
 _WRENCH: Final = (*(f"push {part}" for part in "xyz"), *(f"torque {part}" for part in "xyz"))
 
 
-def _name(model: mujoco.MjModel, kind: mujoco.mjtObj, number: int) -> str:
-    import mujoco
-
-    return mujoco.mj_id2name(model, kind, number) or f"#{number}"
-
-
 def _sort_by_name(names: list[str]) -> npt.NDArray[np.intp]:
     """Puts them in the order of their names."""
     return np.array(sorted(range(len(names)), key=names.__getitem__), dtype=np.intp)
@@ -216,3 +205,109 @@ def _state_table(states: list[dict[str, float]], names: list[str]) -> npt.NDArra
     """A row for each state; not a number where it has no such quantity (a model that was not there)."""
     values = [[state.get(name, np.nan) for name in names] for state in states]
     return np.array(values, dtype=np.float64).reshape(len(states), len(names))
+
+
+_KINDS: Final = {
+    "body": ("nbody", "BODY"),
+    "jnt": ("njnt", "JOINT"),
+    "geom": ("ngeom", "GEOM"),
+    "site": ("nsite", "SITE"),
+    "cam": ("ncam", "CAMERA"),
+    "light": ("nlight", "LIGHT"),
+    "mat": ("nmat", "MATERIAL"),
+    "hfield": ("nhfield", "HFIELD"),
+    "eq": ("neq", "EQUALITY"),
+    "tendon": ("ntendon", "TENDON"),
+    "actuator": ("nu", "ACTUATOR"),
+    "sensor": ("nsensor", "SENSOR"),
+    "pair": ("npair", "PAIR"),
+    "dof": ("nv", ""),
+}
+_NAMES: Final = {"jnt": "joint", "cam": "camera", "mat": "material", "eq": "equality", "hfield": "heightmap"}
+_NUMBERING: Final = ("adr", "num", "id", "simple", "sameframe", "plugin", "signature", "priority_")
+"""Endings of fields that say where something stands in the model's lists, which the order of a file decides."""
+_BINARY_FIELDS: Final = {"mesh": ("vert", "face"), "hfield": ("data",), "tex": ("data",)}
+
+
+class ModelFields(Mapping[str, Array]):
+    """Fields of named parts, as `geom robot::wheel::collision size`.
+
+    Args:
+        tables: part -> names and, by field, an array with a row for each.
+    """
+
+    def __init__(self, tables: Mapping[str, tuple[list[str], Mapping[str, Array]]]) -> None:
+        self.tables = tables
+        self._rows = {kind: {name: row for row, name in enumerate(names)} for kind, (names, _) in tables.items()}
+
+    def __getitem__(self, key: str) -> Array:
+        kind, _, rest = key.partition(" ")
+        name, _, field = rest.rpartition(" ")
+        table = self.tables[kind]
+        return np.asarray(table[1][field][self._rows[kind][name]])
+
+    def __iter__(self) -> Iterator[str]:
+        for kind, (names, table) in self.tables.items():
+            for name in names:
+                yield from (f"{kind} {name} {field}" for field in table)
+
+    def __len__(self) -> int:
+        return sum(len(names) * len(table) for names, table in self.tables.values())
+
+
+def fields_of_model(sim: Simulation) -> ModelFields:
+    """The fields of a simulation's compiled model."""
+    model = sim.engine.physics.model
+    tables: dict[str, tuple[list[str], dict[str, Array]]] = {"option": (["engine"], _options(model.opt))}
+    members = [name for name in dir(model) if not name.startswith("_")]
+    for kind, (count, obj) in _KINDS.items():
+        size = int(getattr(model, count))
+        if not size:
+            continue
+        names = (
+            StateQuantities(model).velocities
+            if kind == "dof"
+            else _names(model, getattr(mujoco.mjtObj, f"mjOBJ_{obj}"), size)
+        )
+        order = _sort_by_name(names)
+        table = {}
+        for member in members:
+            field = member.removeprefix(kind + "_")
+            if member == field or field.endswith(_NUMBERING):
+                continue
+            array = getattr(model, member)
+            if isinstance(array, np.ndarray) and array.ndim and len(array) == size:
+                table[field] = array[order].copy()
+        tables[_NAMES.get(kind, kind)] = ([names[i] for i in order], table)
+    _add_meshes(model, tables)
+    return ModelFields(tables)
+
+
+def _options(options: object) -> dict[str, Array]:
+    found = {}
+    for name in dir(options):
+        value = None if name.startswith("_") else getattr(options, name)
+        if isinstance(value, (int, float, np.ndarray)) and not isinstance(value, bool):
+            found[name] = np.array([value], dtype=np.float64)
+    return found
+
+
+def _names(model: mujoco.MjModel, kind: mujoco.mjtObj, size: int) -> list[str]:
+    return [mujoco.mj_id2name(model, kind, i) or f"#{i}" for i in range(size)]
+
+
+def _add_meshes(model: mujoco.MjModel, tables: dict[str, tuple[list[str], dict[str, Array]]]) -> None:
+    """Meshes by how many vertices and faces they have, and a hash of those."""
+    if not model.nmesh:
+        return
+    names = _names(model, mujoco.mjtObj.mjOBJ_MESH, model.nmesh)
+    order = _sort_by_name(names)
+    rows = []
+    for i in order.tolist():
+        start, count = int(model.mesh_vertadr[i]), int(model.mesh_vertnum[i])
+        face, faces = int(model.mesh_faceadr[i]), int(model.mesh_facenum[i])
+        digest = hashlib.sha256(model.mesh_vert[start : start + count].tobytes())
+        digest.update(model.mesh_face[face : face + faces].tobytes())
+        rows.append((count, faces, int.from_bytes(digest.digest()[:6], "big")))
+    table = {name: np.array([row[i] for row in rows]) for i, name in enumerate(("vertices", "faces", "content"))}
+    tables["mesh"] = ([names[i] for i in order], table)

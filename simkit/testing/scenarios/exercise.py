@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Final
@@ -10,7 +9,7 @@ from typing import Final
 from simkit.diagnostics import Diagnostics
 from simkit.run_spec import JsonMapping, RunSpec
 from simkit.testing.scenarios.scenario_file import is_scalar_text, parse_scenario, yaml_value_text
-from simkit.testing.scenarios.yaml_document import Document, resolve_spawn_file, short_repr
+from simkit.testing.scenarios.yaml_document import Document, ValueReader, resolve_spawn_file
 from simkit.yaml_reader import finite_number
 
 _KEYS: Final = ("title", "text", "hand_in", "robot", "parameters", "pass", "runs")
@@ -67,19 +66,18 @@ def read_exercise(path: str | Path) -> Exercise:
     if document.values is None:
         diagnostics.raise_if_errors()
     scenario = parse_scenario(document, also=("exercise",))
-    exercise = _ExerciseReader(document).exercise(scenario)
+    block = document.values.get("exercise") if isinstance(document.values, dict) else None
+    if block is None:
+        hint = "exercise: {title: ..., hand_in: my_plugin.py, robot: ...}"
+        document.error("SK-SCEN-004", "an exercise needs a block 'exercise'", hint=hint)
+    said = {} if block is None else document.only(block, _KEYS, "an exercise", "exercise")
+    exercise = _ExerciseReader(document, said, ("exercise",)).exercise(scenario)
     diagnostics.raise_if_errors()
     return exercise
 
 
-class _ExerciseReader:
-    def __init__(self, document: Document) -> None:
-        self._document = document
-        block = document.values.get("exercise") if isinstance(document.values, dict) else None
-        if block is None:
-            hint = "exercise: {title: ..., hand_in: my_plugin.py, robot: ...}"
-            document.error("SK-SCEN-004", "an exercise needs a block 'exercise'", hint=hint)
-        self._said = {} if block is None else document.only(block, _KEYS, "an exercise", "exercise")
+class _ExerciseReader(ValueReader):
+    """Reads the values of an exercise, or of one of its runs."""
 
     def exercise(self, scenario: RunSpec) -> Exercise:
         if not scenario.checks and not scenario.until:
@@ -87,80 +85,71 @@ class _ExerciseReader:
             self._document.error("SK-SCEN-006", "an exercise in which nothing must hold is always passed", hint=hint)
         if scenario.wall_timeout is None:
             scenario = replace(scenario, wall_timeout=_WALL_TIMEOUT)
-        parameters = self._mapping(self._said.get("parameters", {}), "exercise", "parameters")
+        parameters = self._parameters()
         runs = self._runs(scenario, parameters)
+        title, text, hand_in, robot = (self._stripped(key) for key in ("title", "text", "hand_in", "robot"))
         file = self._document.path
-        title = self._text("title") or scenario.title
-        return Exercise(
-            title, self._text("text"), self._text("hand_in"), self._text("robot"), self._pass_mark(), runs, file
-        )
+        return Exercise(title or scenario.title, text, hand_in, robot, self._pass_mark(), runs, file)
 
-    def _runs(self, scenario: RunSpec, parameters: Mapping[str, object]) -> tuple[ExerciseRun, ...]:
+    def _runs(self, scenario: RunSpec, parameters: JsonMapping) -> tuple[ExerciseRun, ...]:
         listed = self._said.get("runs", [{}])
         if not isinstance(listed, list) or not listed:
-            self._wrong(listed, "a list of runs", "exercise", "runs")
+            self._wrong(listed, "a list of runs", "runs")
             return ()
-        return tuple(self._run(one, number, scenario, parameters) for number, one in enumerate(listed))
+        found = []
+        for number, one in enumerate(listed):
+            at = (*self._at, "runs", number)
+            said = self._document.only(one, _RUN_KEYS, "a run", *at)
+            found.append(_ExerciseReader(self._document, said, at).run(number, scenario, parameters))
+        return tuple(found)
 
-    def _run(self, value: object, number: int, scenario: RunSpec, parameters: Mapping[str, object]) -> ExerciseRun:
-        keys = ("exercise", "runs", number)
-        said = self._document.only(value, _RUN_KEYS, "a run", *keys)
-        seed = said.get("seed", scenario.seed)
-        if not isinstance(seed, int) or isinstance(seed, bool) or seed < 0:
-            self._wrong(seed, "a whole number of at least 0", *keys, "seed")
-            seed = 0
-        wanted = said.get("duration", scenario.duration)
-        duration = finite_number(wanted)
-        if duration is None or not duration > 0:
-            self._wrong(wanted, "a number above 0", *keys, "duration")
-            duration = scenario.duration
-        spawn = self._texts(said.get("spawn", []), *keys, "spawn")
+    def run(self, number: int, scenario: RunSpec, parameters: JsonMapping) -> ExerciseRun:
+        wanted = self._said.get("duration", scenario.duration)
+        duration = self._number_of(wanted, None, ("duration",), above=0.0)
+        folder = self._document.path.parent
+        spawn = (resolve_spawn_file(folder, one) for one in self._texts_of(self._said.get("spawn", []), "spawn"))
         changed = replace(
             scenario,
-            seed=seed,
-            duration=duration,
-            overrides=(*scenario.overrides, *self._overrides(said.get("set", {}), *keys, "set")),
-            spawn=(*scenario.spawn, *(resolve_spawn_file(self._document.path.parent, one) for one in spawn)),
+            seed=self._whole("seed", scenario.seed, 0),
+            duration=scenario.duration if duration is None else duration,
+            overrides=(*scenario.overrides, *self._overrides()),
+            spawn=(*scenario.spawn, *spawn),
         )
-        own = self._mapping(said.get("parameters", {}), *keys, "parameters")
-        name = said.get("name", f"run {number + 1}")
+        name = self._said.get("name", f"run {number + 1}")
         if not isinstance(name, str):
-            self._wrong(name, "a text", *keys, "name")
-            name = ""
-        return ExerciseRun(name, changed, {**parameters, **own})
+            self._wrong(name, "a text", "name")
+        return ExerciseRun(str(name), changed, {**parameters, **self._parameters()})
 
     # ------------------------------------------------------------------ plain values
 
-    def _wrong(self, value: object, allowed: str, *keys: object) -> None:
-        label = ".".join(map(str, keys))
-        self._document.error("SK-SCEN-003", f"{label}: found {short_repr(value)}, allowed is {allowed}", *keys)
-
-    def _text(self, key: str) -> str:
+    def _stripped(self, key: str) -> str:
         value = self._said.get(key, "")
         if isinstance(value, str):
             return value.strip()
-        self._wrong(value, "a text", "exercise", key)
+        self._wrong(value, "a text", key)
         return ""
 
-    def _texts(self, value: object, *keys: object) -> tuple[str, ...]:
+    def _texts_of(self, value: object, key: str) -> tuple[str, ...]:
         listed = [value] if isinstance(value, str) else value
         if isinstance(listed, list) and all(isinstance(one, str) for one in listed):
             return tuple(listed)
-        self._wrong(value, "a text, or a list of them", *keys)
+        self._wrong(value, "a text, or a list of them", key)
         return ()
 
-    def _mapping(self, value: object, *keys: object) -> JsonMapping:
+    def _parameters(self) -> JsonMapping:
+        value = self._said.get("parameters", {})
         if isinstance(value, dict) and all(isinstance(one, str) for one in value):
             return value
-        self._wrong(value, "a mapping", *keys)
+        self._wrong(value, "a mapping", "parameters")
         return {}
 
-    def _overrides(self, value: object, *keys: object) -> tuple[str, ...]:
+    def _overrides(self) -> tuple[str, ...]:
+        value = self._said.get("set", {})
         if not isinstance(value, dict):
-            return self._texts(value, *keys)
+            return self._texts_of(value, "set")
         for path, one in value.items():
             if not is_scalar_text(one):
-                self._wrong(one, "a number, a text, true or false, or a list of them", *keys, path)
+                self._wrong(one, "a number, a text, true or false, or a list of them", "set", path)
         return tuple(f"{path}={yaml_value_text(one)}" for path, one in value.items())
 
     def _pass_mark(self) -> float:
@@ -168,5 +157,5 @@ class _ExerciseReader:
         mark = finite_number(value)
         if mark is not None and 0.0 <= mark <= 1.0:
             return mark
-        self._wrong(value, "a part of the points, 0 to 1", "exercise", "pass")
+        self._wrong(value, "a part of the points, 0 to 1", "pass")
         return 1.0

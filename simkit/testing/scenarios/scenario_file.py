@@ -43,11 +43,7 @@ _CHECK_KEYS: Final[dict[CheckKind, tuple[str, ...]]] = {
     "rate": ("name", "topic", "rate", "tolerance", "points", "hint"),
 }
 _TOLERANCE_KEYS: Final = tuple(f.name for f in fields(Tolerance) if f.name not in ("pattern", "where"))
-_TOLERANCE_WORDS: Final[dict[str, JsonObject]] = {
-    "exact": {"exact": True},
-    "ignore": {"ignore": True},
-    "statistics": {"statistics": True},
-}
+TOLERANCE_MODES: Final = ("exact", "ignore", "statistics")
 
 
 def is_scenario_file(source: str | Path) -> bool:
@@ -222,16 +218,17 @@ class ScenarioReader(ValueReader):
         for pattern, value in self._mapping("tolerances").items():
             keys = ("tolerances", pattern)
             where = str(self._document.where(*keys))
-            if isinstance(value, str) and value in _TOLERANCE_WORDS:
-                found.append(Tolerance(_absolute_topic(pattern), **_TOLERANCE_WORDS[value], where=where))
+            if isinstance(value, str) and value in TOLERANCE_MODES:
+                mode: JsonObject = {value: True}
+                found.append(Tolerance(absolute_topic(pattern), **mode, where=where))
             elif isinstance(value, (int, float)) and not isinstance(value, bool):
                 limit = self._number_of(value, None, keys, least=0.0)
-                found.append(Tolerance(_absolute_topic(pattern), absolute=limit, where=where))
+                found.append(Tolerance(absolute_topic(pattern), absolute=limit, where=where))
             elif isinstance(value, dict):
                 found.append(self._tolerance(pattern, value, where))
             else:
-                words = ", ".join(_TOLERANCE_WORDS)
-                self._wrong(value, f"a number, one of {words}, or a mapping of {', '.join(_TOLERANCE_KEYS)}", *keys)
+                words, names = ", ".join(TOLERANCE_MODES), ", ".join(_TOLERANCE_KEYS)
+                self._wrong(value, f"a number, one of {words}, or a mapping of {names}", *keys)
         return found
 
     def _tolerance(self, pattern: str, value: Mapping[str, object], where: str) -> Tolerance:
@@ -239,7 +236,7 @@ class ScenarioReader(ValueReader):
         said = self._document.only(value, _TOLERANCE_KEYS, "a tolerance", *keys)
         found: JsonObject = {}
         for key, one in said.items():
-            if key in ("statistics", "ignore", "exact"):
+            if key in TOLERANCE_MODES:
                 if isinstance(one, bool):
                     found[key] = one
                 else:
@@ -248,14 +245,14 @@ class ScenarioReader(ValueReader):
                 found[key] = self._number_of(one, None, (*keys, key), least=-1.0 if key == "ssim" else 0.0)
                 if key in ("share", "ssim") and (found[key] or 0.0) > 1.0:
                     self._wrong(one, "a number of at most 1", *keys, key)
-        modes = [key for key in _TOLERANCE_WORDS if found.get(key)]
+        modes = [key for key in TOLERANCE_MODES if found.get(key)]
         if len(modes) > 1:
             self._document.error("SK-SCEN-003", f"a tolerance is one of {', '.join(modes)}, not all of them", *keys)
-        return Tolerance(_absolute_topic(pattern), where=where, **found)
+        return Tolerance(absolute_topic(pattern), where=where, **found)
 
     def _statistics(self) -> list[Tolerance]:
         where = str(self._document.where("statistics"))
-        return [Tolerance(_absolute_topic(one), statistics=True, where=where) for one in self._texts("statistics")]
+        return [Tolerance(absolute_topic(one), statistics=True, where=where) for one in self._texts("statistics")]
 
     # ------------------------------------------------------------------ what must hold
 
@@ -290,7 +287,7 @@ class ScenarioReader(ValueReader):
             by=number_of(said.get("by"), None, (*keys, "by"), least=0.0),
             after=number_of(said.get("after", 0.0), 0.0, (*keys, "after"), least=0.0) or 0.0,
             models=self._models(said["models"], (*keys, "models")) if kind == "apart" else (),
-            topic=_absolute_topic(self._text_of(said["topic"], (*keys, "topic"))) if kind == "rate" else "",
+            topic=absolute_topic(self._text_of(said["topic"], (*keys, "topic"))) if kind == "rate" else "",
             rate=None if wanted == "own" else number_of(wanted, None, (*keys, "rate"), above=0.0),
             tolerance=number_of(said.get("tolerance", 0.05), 0.05, (*keys, "tolerance"), least=0.0) or 0.0,
             points=number_of(said.get("points", 1.0), 1.0, (*keys, "points"), least=0.0) or 0.0,
@@ -327,7 +324,7 @@ class ScenarioReader(ValueReader):
         return ()
 
 
-def _absolute_topic(topic: str) -> str:
+def absolute_topic(topic: str) -> str:
     """A topic or a pattern of topics with its leading slash."""
     return topic if topic.startswith(("/", "*")) or not topic else "/" + topic
 

@@ -124,15 +124,16 @@ class ValueReader:
 
     Args:
         document: it is told what is wrong.
-        said: its values at the top, by key.
+        said: its values at some place, by key.
+        at: keys of that place; none for the top.
     """
 
-    def __init__(self, document: Document, said: Mapping[str, object]) -> None:
-        self._document, self._said = document, said
+    def __init__(self, document: Document, said: Mapping[str, object], at: tuple[object, ...] = ()) -> None:
+        self._document, self._said, self._at = document, said, at
 
     def _wrong(self, value: object, allowed: str, *keys: object) -> None:
-        label = ".".join(str(key) for key in keys)
-        self._document.error("SK-SCEN-003", f"{label}: found {short_repr(value)}, allowed is {allowed}", *keys)
+        label, message = ".".join(map(str, (*self._at, *keys))), f"found {short_repr(value)}, allowed is {allowed}"
+        self._document.error("SK-SCEN-003", f"{label}: {message}", *self._at, *keys)
 
     def _text(self, key: str, default: str) -> str:
         value = self._said.get(key, default)

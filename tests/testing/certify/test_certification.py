@@ -15,9 +15,8 @@ from simkit.errors import InputError
 from simkit.run_spec import RunSpec
 from simkit.testing.certify import Certificate, Difference, certify
 from simkit.testing.certify.certificate import streams_hash
-from simkit.testing.certify.certification import _code_at_timeout
+from simkit.testing.certify.certification import _code_at_timeout, _outcome_of_stopped_process
 from simkit.testing.certify.outcome import RunOutcome
-from simkit.testing.certify.process_runner import _outcome_of_stopped_process
 from simkit.testing.certify.variations import VARIATIONS, choose_variations
 
 WORLD = """<sdf version="1.9"><world name="w"><gravity>0 0 0</gravity><model name="m"><link name="l">

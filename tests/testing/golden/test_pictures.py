@@ -12,9 +12,10 @@ from made_up import IMAGE, OTHER_MACHINE, hashed, record, stream, times
 
 from simkit.run_spec import Tolerance
 from simkit.testing.golden.compare.difference import Verdict
+from simkit.testing.golden.compare.pictures import structural_similarity
 from simkit.testing.golden.compare.runs import compare
-from simkit.testing.golden.report.image_figure import image_figure
-from simkit.testing.run_record.pictures import TILE, shrink, structural_similarity, tile_hashes
+from simkit.testing.golden.report.difference_plot import image_figure
+from simkit.testing.run_record.message_recorder import TILE, shrink, tile_hashes
 from simkit.testing.run_record.record import Pictures, Stream
 
 

@@ -19,7 +19,7 @@ from falling import ball
 from simkit.errors import InputError
 from simkit.run_spec import Check, RunSpec, Tolerance
 from simkit.testing.golden.array_packing import Packer, PackingError, Unpacker
-from simkit.testing.golden.scenario_encoding import decode_scenario, encode_scenario
+from simkit.testing.golden.record_encoding import decode_scenario, encode_scenario
 from simkit.testing.golden.store import find_goldens, read_golden, read_history, write_golden
 from simkit.testing.run_record.record import RunRecord
 from simkit.testing.run_record.run_recorder import run_record

@@ -11,8 +11,7 @@ from typer.testing import CliRunner
 from simkit import LoadError
 from simkit.cli import app
 from simkit.testing.scenarios.exercise import read_exercise
-from simkit.testing.scenarios.grading import grade, grade_all, short_labels
-from simkit.testing.scenarios.grading_report import grade_json, grade_text, junit_cases
+from simkit.testing.scenarios.grading import grade, grade_all, grade_json, grade_text, junit_cases, short_labels
 
 CART = """<sdf version="1.9"><world name="track"><model name="cart"><pose>0 0 0.05 0 0 0</pose><link name="body">
 <gravity>false</gravity><inertial><mass>1</mass></inertial></link></model></world></sdf>"""

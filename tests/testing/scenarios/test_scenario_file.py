@@ -249,7 +249,7 @@ def test_what_is_played_is_sent_at_its_ticks_and_says_how_long_the_run_is(tmp_pa
     """Bit for bit: also from a golden run's file, which names the bag from where it lies itself."""
     from simkit.recording.bags.recorder import Recorder
     from simkit.runtime.engine.snapshot import state_hash
-    from simkit.testing.golden.scenario_encoding import decode_scenario, encode_scenario
+    from simkit.testing.golden.record_encoding import decode_scenario, encode_scenario
 
     (tmp_path / "ice.sdf").write_text(SLED)
     topic = "/model/sled/cmd_vel"

@@ -4,54 +4,27 @@ from __future__ import annotations
 
 import math
 import re
+import tomllib
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 from simkit.testing.golden.cause.first_tick import distinct_digits
-from simkit.testing.golden.compare.world_edits import ABSENT, Edit, entity_kind, scoped_name, split_entity_path
+from simkit.testing.golden.compare.world_edits import ABSENT, Edit, entity_kind, scoped_name
 
 _SHORTENED_PREFIXES = re.compile(r"^(params\.|geometry\.|inertial\.|surface\.|surroundings\.)")
-_NAMES_IN_FILES = {
-    "rate": "update_rate",
-    "xyz_joint": "axis xyz",
-    "geometry": "shape",
-    "params": "text",
-    "com": "centre of mass",
-}
+_WORDS = tomllib.loads(Path(__file__).with_name("change_words.toml").read_text(encoding="utf-8"))
+_UNITS: Mapping[str, str] = {name: unit for unit, names in _WORDS["units"].items() for name in names}
 _CONTENT = re.compile(r"^[0-9a-f]{16} \((\d+) bytes\)$")
 _LONGEST = 100  # letters of a value
-
-_UNITS: Mapping[str, str] = {
-    **dict.fromkeys(("radius", "length", "size", "radii", "height", "com", "elevation", "wheel_separation"), "m"),
-    **dict.fromkeys(("wheel_radius", "wheel_diameter", "near", "far", "min_depth", "patch_radius"), "m"),
-    **dict.fromkeys(("wheel_base", "kingpin_width", "surface_radius", "equatorial", "polar"), "m"),
-    **dict.fromkeys(("horizontal_fov", "min_angle", "max_angle", "latitude", "longitude", "heading"), "rad"),
-    **dict.fromkeys(("update_rate", "rate", "publish_rate", "odom_publish_frequency"), "Hz"),
-    **dict.fromkeys(("max_step_size", "latency", "delay_start", "duration", "timeout", "correlation_time"), "s"),
-    "mass": "kg",
-    "inertia": "kg·m²",
-    "gravity": "m/s²",
-    "wind": "m/s",
-    "magnetic_field": "T",
-    "temperature": "K",
-    "pressure": "Pa",
-    "irradiance": "W/m²",
-}
-_COMPONENTS: Mapping[str, Sequence[str]] = {
-    "inertia": ("ixx", "iyy", "izz", "ixy", "ixz", "iyz"),
-    "spot": ("inner_angle", "outer_angle", "falloff"),
-    "velocity_decay": ("linear", "angular"),
-    "size": "xyz",
-    "attenuation": ("range", "constant", "linear", "quadratic"),
-    **dict.fromkeys(("ambient", "diffuse", "specular", "emissive", "background", "colour"), "rgba"),
-}
 
 
 def attribute_name(attribute: str) -> str:
     """An attribute by the name that a file gives it."""
     text = re.sub(r"^axes\[(\d+)\]\.", lambda m: "" if m[1] == "0" else f"axis {int(m[1]) + 1} ", attribute)
     text = _SHORTENED_PREFIXES.sub("", text).replace("@", " ").strip()
-    return _NAMES_IN_FILES.get(text, text)
+    found: str = _WORDS["names_in_files"].get(text, text)
+    return found
 
 
 def entity_title(owner: str) -> str:
@@ -61,7 +34,7 @@ def entity_title(owner: str) -> str:
 
 def owner_title(edit: Edit) -> str:
     """Whose a leaf is."""
-    return entity_title(split_entity_path(edit.path)[0])
+    return entity_title(edit.owner)
 
 
 def list_names(names: Sequence[str], most: int = 4) -> str:
@@ -78,7 +51,7 @@ def edit_text(edit: Edit, leaves: Mapping[str, object]) -> str:
         edit: the change.
         leaves: all of the run's, for what a number belongs to.
     """
-    attribute = split_entity_path(edit.path)[1]
+    attribute = edit.attribute
     name = attribute_name(attribute)
     last = re.split(r"[. ]", attribute.rpartition("@")[2])[-1]
     unit = world_unit(edit, last, leaves)
@@ -87,9 +60,9 @@ def edit_text(edit: Edit, leaves: Mapping[str, object]) -> str:
 
 def world_unit(edit: Edit, last: str, leaves: Mapping[str, object]) -> str:
     """The unit of a number of a world's; "" where it has none, or it is not known."""
-    attribute = split_entity_path(edit.path)[1]
+    attribute = edit.attribute
     if last in ("lower", "upper", "spring_ref", "velocity") and attribute.startswith("axes["):
-        is_linear = leaves.get(f"{split_entity_path(edit.path)[0]}.type") == "prismatic"
+        is_linear = leaves.get(f"{edit.owner}.type") == "prismatic"
         base = "m" if is_linear else "rad"
         return base + "/s" if last == "velocity" else base
     if last in ("min", "max"):
@@ -118,7 +91,7 @@ def values_text(golden: Any, run: Any, last: str = "", unit: str = "") -> str:
 
 
 def _components(golden: list[object], run: list[object], last: str, unit: str) -> str:
-    names = _COMPONENTS.get(last) or ("xyz" if len(golden) == 3 else [f"[{i}]" for i in range(len(golden))])
+    names = _WORDS["components"].get(last) or ("xyz" if len(golden) == 3 else [f"[{i}]" for i in range(len(golden))])
     differing = [i for i, (a, b) in enumerate(zip(golden, run, strict=True)) if a != b]
     if len(differing) > 6:
         first = differing[0]

@@ -61,14 +61,12 @@ def find_changes(edits: list[Edit], golden: WorldValues, run: WorldValues) -> li
         edits: its leaves that differ.
         golden, run: all of its leaves.
     """
-    found: list[Change] = []
-    rest = list(edits)
-    if not rest:
-        return found
-    renamed, rest = _find_renames(rest, golden, run)
+    if not edits:
+        return []
+    renamed, rest = _find_renames(edits, golden, run)
     come_and_gone, rest = _entity_changes(rest, golden, run)
     moved, rest = _motions(rest, golden, run)
-    found += [*come_and_gone, *renamed, *moved, *_group_equal_changes(rest, golden, run)]
+    found = [*come_and_gone, *renamed, *moved, *_group_equal_changes(rest, golden, run)]
     order = {edit.path: n for n, edit in enumerate(edits)}
     return sorted(found, key=lambda c: min((order.get(e.path, len(order)) for e in c.edits), default=0))
 
@@ -78,14 +76,9 @@ def find_changes(edits: list[Edit], golden: WorldValues, run: WorldValues) -> li
 
 def _whole_entities(leaves: WorldValues, others: WorldValues) -> list[str]:
     """The outermost parts of the world that the other one does not have."""
-    theirs = {p for path in others for p in _entity_chain(split_entity_path(path)[0])}
-    mine = {p for path in leaves for p in _entity_chain(split_entity_path(path)[0])}
-    alone = mine - theirs
-    return [
-        p
-        for p in dict.fromkeys(q for path in leaves for q in _entity_chain(split_entity_path(path)[0]))
-        if p in alone and parent_path(p) not in alone
-    ]
+    mine = dict.fromkeys(p for path in leaves for p in _entity_chain(split_entity_path(path)[0]))
+    alone = mine.keys() - {p for path in others for p in _entity_chain(split_entity_path(path)[0])}
+    return [p for p in mine if p in alone and parent_path(p) not in alone]
 
 
 def _entity_chain(owner: str) -> Iterable[str]:
@@ -140,13 +133,9 @@ def _rename_change(
     mine: list[Edit] = []
     rest: list[Edit] = []
     for edit in edits:
-        owner = split_entity_path(edit.path)[0]
-        is_other_name = ABSENT not in (edit.golden, edit.run) and is_same_value(
-            _rename_in_text(edit.golden, a, b), edit.run
-        )
-        (mine if is_within(owner, old) or is_within(owner, new) or is_other_name else rest).append(edit)
-    where = next((e.where for e in mine if e.where and is_within(split_entity_path(e.path)[0], new)), "")
-    words = f"{entity_title(old)} is called {scoped_name(new)} now"
+        is_named = ABSENT not in (edit.golden, edit.run) and is_same_value(_rename_in_text(edit.golden, a, b), edit.run)
+        (mine if is_within(edit.owner, old) or is_within(edit.owner, new) or is_named else rest).append(edit)
+    where = next((e.where for e in mine if e.where and is_within(e.owner, new)), "")
     theirs = _within(run, new)
     others = []
     for tail, value in _within(golden, old).items():
@@ -154,32 +143,28 @@ def _rename_change(
         if not is_same_value(was, now) and not is_same_value(value, now):
             others.append(Edit("model", new + tail, was, now, where))
     others += [Edit("model", new + t, ABSENT, v, where) for t, v in theirs.items() if old + t not in golden]
-    if others:
-        words += "; " + "; ".join(edit_text(e, run) for e in others[:3])
-    return Change("model", words, new, scoped_name(old), scoped_name(new), where, tuple(mine)), rest
+    words = "; ".join([f"{entity_title(old)} is called {b} now", *(edit_text(e, run) for e in others[:3])])
+    return Change("model", words, new, a, b, where, tuple(mine)), rest
 
 
 def _entity_changes(edits: list[Edit], golden: WorldValues, run: WorldValues) -> tuple[list[Change], list[Edit]]:
     found = []
-    for leaves, others, verb, is_new in ((golden, run, "gone", False), (run, golden, "new", True)):
+    for leaves, others, verb in ((golden, run, "gone"), (run, golden, "new")):
         by_kind: dict[tuple[str, str], list[str]] = {}
-        touched = {split_entity_path(e.path)[0] for e in edits}
-        alone = [p for p in _whole_entities(leaves, others) if any(is_within(t, p) for t in touched)]
-        for part in alone:
-            by_kind.setdefault((parent_path(part), entity_kind(part)), []).append(part)
+        touched = {e.owner for e in edits}
+        for part in _whole_entities(leaves, others):
+            if any(is_within(t, part) for t in touched):
+                by_kind.setdefault((parent_path(part), entity_kind(part)), []).append(part)
         for (_, kind), parts in by_kind.items():
-            mine = [e for e in edits if any(is_within(split_entity_path(e.path)[0], p) for p in parts)]
-            edits = [e for e in edits if e not in mine]
+            names = [scoped_name(p) for p in parts]
+            mine = [e for e in edits if any(is_within(e.owner, p) for p in parts)]
             where = next((e.where for e in mine if e.where), "")
+            mine += [e for e in edits if e not in mine and _names_one(e, names)]  # a canonical link, say
+            edits = [e for e in edits if e not in mine]
+            words = f"{len(parts)} {kind}s are {verb}: {list_names(names)}"
             if len(parts) == 1:
                 words = f"{entity_title(parts[0])} is {verb}"
-            else:
-                words = f"{len(parts)} {kind}s are {verb}: {list_names([scoped_name(p) for p in parts])}"
-            named_there = [e for e in edits if _names_one(e, [scoped_name(p) for p in parts])]  # a canonical link, say
-            mine += named_there
-            edits = [e for e in edits if e not in named_there]
-            name = scoped_name(parts[0])
-            a, b = (None, name) if is_new else (name, None)
+            a, b = (None, names[0]) if verb == "new" else (names[0], None)
             found.append(Change("model", words, parts[0], a, b, where, tuple(mine)))
     return found, edits
 
@@ -200,15 +185,12 @@ def _motions(edits: list[Edit], golden: WorldValues, run: WorldValues) -> tuple[
         groups.setdefault((entity_kind(motion.owner), motion.words), []).append(motion)
     changes = []
     for (kind, words), several in groups.items():
+        first, main = several[0], several[0].edits[0]
+        sentence = f"{entity_title(first.owner)} {words}{first.numbers}{first.along}"
+        if len(several) > 1:
+            sentence = f"{len(several)} {kind}s {words}: {list_names([scoped_name(m.owner) for m in several])}"
         every = tuple(e for m in several for e in m.edits)
-        main = several[0].edits[0]
-        where = several[0].where
-        if len(several) == 1:
-            sentence = f"{entity_title(several[0].owner)} {words}{several[0].numbers}{several[0].along}"
-        else:
-            names = list_names([scoped_name(m.owner) for m in several])
-            sentence = f"{len(several)} {kind}s {words}: {names}"
-        changes.append(Change("model", sentence, main.path, main.golden, main.run, where, every))
+        changes.append(Change("model", sentence, main.path, main.golden, main.run, first.where, every))
     return changes, rest
 
 
@@ -294,7 +276,7 @@ def _changed_element(edit: Edit, kinds: set[str], others: set[str]) -> str:
     """The outermost element of its part that only one of the two has, or that is of another kind in both."""
     if ABSENT not in (edit.golden, edit.run) and edit.path not in kinds:
         return ""
-    owner = split_entity_path(edit.path)[0]
+    owner = edit.owner
     path, block = edit.path, ""
     while len(path) > len(owner) + 1:
         if path in kinds and path != edit.path:
@@ -309,11 +291,8 @@ def _element_change_text(block: str, head: Edit | None, several: list[Edit], run
     """What became of an element."""
     owner, attribute = split_entity_path(block)
     inner = [(e.path[len(block) :].lstrip(".@"), e) for e in several if e.path.startswith((block + ".", block + "@"))]
-    first = head or several[0]
-    where = next((e.where for e in (first, *several) if e.where), "")
-    edits = tuple(dict.fromkeys(e.path for e in ([head] if head else []) + several))
-    by_path = {e.path: e for e in ([head] if head else []) + several}
-    every = tuple(by_path[p] for p in edits)
+    every = tuple({e.path: e for e in ([head] if head else []) + several}.values())
+    where = next((e.where for e in every if e.where), "")
     gone = list_names([f"{n} {single_value_text(e.golden)}" for n, e in inner if e.run is ABSENT], 6)
     new = list_names([f"{n} {single_value_text(e.run)}" for n, e in inner if e.golden is ABSENT], 6)
     if head is not None and ABSENT not in (head.golden, head.run):
@@ -363,17 +342,14 @@ def _change(units: list[list[Edit]], run: WorldValues) -> Change:
     head = owner_title(first) + ": "
     # of the first the whole path, of the others in the same element the last name
     inner = [edit_text(e, run).removeprefix(head) for e in unit]
-    block = attribute_name(split_entity_path(first.path)[1]).rpartition(".")[0]
+    block = attribute_name(first.attribute).rpartition(".")[0]
     inner[1:] = [text.removeprefix(block + ".") if block else text for text in inner[1:]]
     words = ", ".join(inner)
-    owners = list(dict.fromkeys(split_entity_path(u[0].path)[0] for u in units))
+    owners = list(dict.fromkeys(u[0].owner for u in units))
     if len(owners) > 1:
         words = f"{words} in {len(owners)} places: {list_names([entity_title(o) for o in owners])}"
     else:
-        words = head + words
-        if len(units) > 1:
-            words += (
-                f"; the same for {list_names([attribute_name(split_entity_path(u[0].path)[1]) for u in units[1:]])}"
-            )
+        same = list_names([attribute_name(u[0].attribute) for u in units[1:]])
+        words = head + words + (f"; the same for {same}" if same else "")
     every = tuple(e for u in units for e in u)
     return Change(first.kind, words, first.path, first.golden, first.run, first.where, every)

@@ -15,8 +15,6 @@ from simkit.testing.golden.compare.world_edits import (
     Edit,
     field_edits,
     other_edits,
-    scoped_name,
-    split_entity_path,
 )
 from simkit.testing.run_record.record import RunRecord
 
@@ -44,7 +42,10 @@ def changes_outside_world(
         else:
             named.append(change)
     rest = [e for e in edits if not (e.kind in ("file", "code") and e.path in spoken)]
-    return named, [_file_change(edit) for edit in rest]
+    return named, [
+        Change(e.kind, _change_text(e), e.path, _short_value(e.golden), _short_value(e.run), e.where, (e,))
+        for e in rest
+    ]
 
 
 def _name(record: RunRecord, content: object) -> str:
@@ -52,12 +53,6 @@ def _name(record: RunRecord, content: object) -> str:
     if not isinstance(content, str) or not content.endswith(" bytes)"):
         return ""
     return next((name for name, digest in record.sources.items() if digest[:_HEAD] == content[:_HEAD]), "")
-
-
-def _file_change(edit: Edit) -> Change:
-    return Change(
-        edit.kind, _change_text(edit), edit.path, _short_value(edit.golden), _short_value(edit.run), edit.where, (edit,)
-    )
 
 
 def _short_value(value: object) -> Any:
@@ -74,13 +69,9 @@ def _change_text(edit: Edit) -> str:
         if edit.path == "simkit code":
             return f"simkit's own code was changed ({edit.golden} → {edit.run})"
         return f"{edit.path} {single_value_text(edit.golden) or 'none'} → {single_value_text(edit.run) or 'none'}"
-    return f"scenario: {_scenario_change(edit)}"
-
-
-def _scenario_change(edit: Edit) -> str:
     if isinstance(edit.golden, (tuple, list)) and isinstance(edit.run, (tuple, list)):
-        return f"{edit.path} {_lists(list(edit.golden), list(edit.run))}"
-    return f"{edit.path} {values_text(edit.golden, edit.run)}"
+        return f"scenario: {edit.path} {_lists(list(edit.golden), list(edit.run))}"
+    return f"scenario: {edit.path} {values_text(edit.golden, edit.run)}"
 
 
 def _lists(golden: list[object], run: list[object]) -> str:
@@ -120,7 +111,7 @@ def engine_changes(golden: RunRecord, run: RunRecord, changes: Sequence[Change])
         return []
     if any(change.kind == "model" for change in changes):
         return []
-    spoken = {scoped_name(split_entity_path(edit.path)[0]) for change in changes for edit in change.edits}
+    spoken = {edit.entity for change in changes for edit in change.edits}
     edits = [e for e in field_edits(golden, run) if not _is_explained_by_scene(e.path, spoken)]
     first = [e for e in edits if e.path.rpartition(" ")[2] not in _DERIVED_FIELDS] or edits
     groups: dict[tuple[str, str, str], list[Edit]] = {}
@@ -138,13 +129,11 @@ def _engine_change(several: list[Edit]) -> Change:
     first = several[0]
     part, _, field = first.path.rpartition(" ")
     a, b = _plain_number(first.golden), _plain_number(first.run)
-    said = values_text(a, b, {"pos": "position"}.get(field, field))
+    words = f"{field} {values_text(a, b, {'pos': 'position'}.get(field, field))}, as the engine has it"
     if len(several) == 1:
-        words = f"{part}: {field} {said}, as the engine has it"
+        words = f"{part}: {words}"
     else:
-        words = f"{field} {said}, as the engine has it, in {len(several)} places: " + list_names(
-            [e.path.rpartition(" ")[0] for e in several]
-        )
+        words += f", in {len(several)} places: {list_names([e.path.rpartition(' ')[0] for e in several])}"
     # nothing is put back with it: a compiled model is made anew for every run
     return Change("model", words, first.path, a, b, "", ())
 

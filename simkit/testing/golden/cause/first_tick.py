@@ -122,17 +122,11 @@ def _common_quantities(golden: States, run: States, by_input: bool) -> tuple[lis
     """The quantities that both have, and their values in both; what is put in is nothing where it has no entry."""
     if by_input:
         names = sorted({*golden.input_names, *run.input_names})
-        return (
-            names,
-            _columns(names, golden.input_names, golden.input_values, 0.0),
-            _columns(names, run.input_names, run.input_values, 0.0),
-        )
-    names = [n for n in golden.names if n in set(run.names)]
-    return (
-        names,
-        _columns(names, golden.names, golden.values, np.nan),
-        _columns(names, run.names, run.values, np.nan),
-    )
+        mine, other = (_columns(names, states.input_names, states.input_values, 0.0) for states in (golden, run))
+    else:
+        names = [n for n in golden.names if n in set(run.names)]
+        mine, other = (_columns(names, states.names, states.values, np.nan) for states in (golden, run))
+    return names, mine, other
 
 
 def _columns(names: list[str], have: list[str], values: Numbers, absent: float) -> Numbers:

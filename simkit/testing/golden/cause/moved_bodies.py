@@ -54,18 +54,13 @@ def find_motions(
         edits: leaves that differ.
         golden, run: all leaves.
     """
-    posed = {
-        split_entity_path(e.path)[0]: e for e in edits if _poses_of_edit(e, "pose_world", "pose_link") and _both(e)
-    }
-    local = {split_entity_path(e.path)[0]: e for e in edits if _poses_of_edit(e, "pose_link") and _both(e)}
-    derived = [e for e in edits if _is_derived(e, run)]
-    rest = [e for e in edits if e not in derived and not (_poses_of_edit(e, "pose_world", "pose_link") and _both(e))]
-    in_world = {
-        split_entity_path(e.path)[0]: e
-        for e in edits
-        if _poses_of_edit(e, "pose_world") and _both(e) and f"{split_entity_path(e.path)[0]}.pose_link" not in run
-    }
-    deltas = {owner: _world_motion(edit) for owner, edit in in_world.items()}
+    poses = [e for e in edits if e.attribute in ("pose_world", "pose_link") and _is_pose(e.golden) and _is_pose(e.run)]
+    # what follows from another leaf of its part and from where the part's owner is
+    derived = [e for e in edits if local_path(e.path) in run]
+    rest = [e for e in edits if e not in derived and e not in poses]
+    in_world = {e.owner: e for e in poses if e.attribute == "pose_world" and f"{e.owner}.pose_link" not in run}
+    # how the world must be moved to take the part along
+    deltas = {owner: _pose(edit.run) @ _pose(edit.golden).inverse() for owner, edit in in_world.items()}
     carriers = _carrying_entities(run, set(in_world))
     found: dict[str, Motion] = {}
     roots = {owner: _root_motion(owner, deltas, carriers) for owner in in_world}
@@ -76,23 +71,20 @@ def find_motions(
     for owner, edit in in_world.items():
         if roots[owner] != owner:
             found[roots[owner]].edits.append(edit)
-    for owner, edit in local.items():
-        words, numbers = _motion_text(_pose(edit.golden), _pose(edit.run))
-        found[owner] = Motion(owner, words, numbers, [edit])
+    for edit in poses:
+        if edit.attribute == "pose_link":
+            words, numbers = _motion_text(_pose(edit.golden), _pose(edit.run))
+            found[edit.owner] = Motion(edit.owner, words, numbers, [edit])
+    posed = {e.owner for e in poses}
     for edit in derived:
-        home = _owner_motion(split_entity_path(edit.path)[0], found, roots)
-        if home is None:
-            if split_entity_path(edit.path)[0] not in posed:
-                rest.append(edit)
-            continue
-        found[home].edits.append(edit)
+        home = _owner_motion(edit.owner, found, roots)
+        if home is not None:
+            found[home].edits.append(edit)
+        elif edit.owner not in posed:
+            rest.append(edit)
     for motion in found.values():
         motion.along = _count_carried(motion)
     return list(found.values()), rest
-
-
-def _both(edit: Edit) -> bool:
-    return _is_pose(edit.golden) and _is_pose(edit.run)
 
 
 def _is_pose(value: object) -> bool:
@@ -104,19 +96,10 @@ def _is_pose(value: object) -> bool:
     return bool(sum(v * v for v in value[3:]) > _CLOSE)
 
 
-def _poses_of_edit(edit: Edit, *names: str) -> bool:
-    return split_entity_path(edit.path)[1] in names
-
-
 def local_path(path: str) -> str:
     """The leaf that says in a part's own frame what this one says in the world; empty where there is no such."""
     beginning, dot, last = path.rpartition(".")
     return f"{beginning}{dot}{_LOCAL_FIELDS[last]}" if last in _LOCAL_FIELDS else ""
-
-
-def _is_derived(edit: Edit, run: Mapping[str, object]) -> bool:
-    """Whether a leaf follows from another of its part and from where the part's owner is."""
-    return local_path(edit.path) in run
 
 
 def _owner_motion(owner: str, found: Mapping[str, Motion], roots: Mapping[str, str]) -> str | None:
@@ -135,18 +118,10 @@ def _pose(numbers: Any) -> Pose:
     return Pose(numbers[:3], numbers[3:])
 
 
-def _world_motion(edit: Edit) -> Pose:
-    """How the world must be moved to take the part along."""
-    return _pose(edit.run) @ _pose(edit.golden).inverse()
-
-
 def _carrying_entities(run: Mapping[str, object], moved: set[str]) -> dict[str, list[str]]:
     """What a part goes along with, the nearest last: its model, the link that its joint hangs it on, a joint's link."""
-    links = {
-        scoped_name(split_entity_path(p)[0]): split_entity_path(p)[0]
-        for p in run
-        if split_entity_path(p)[1] == "pose_world" and _is_link(p)
-    }
+    owners = [split_entity_path(path)[0] for path in run if split_entity_path(path)[1] == "pose_world"]
+    links = {scoped_name(owner): owner for owner in owners if entity_kind(owner) == "link"}
     found: dict[str, list[str]] = {owner: [parent_path(owner)] for owner in moved}
     for path, child in run.items():
         owner, attribute = split_entity_path(path)
@@ -158,10 +133,6 @@ def _carrying_entities(run: Mapping[str, object], moved: set[str]) -> dict[str, 
         if links.get(child, "") in found and isinstance(parent, str) and parent in links:
             found[links[child]].append(links[parent])
     return found
-
-
-def _is_link(path: str) -> bool:
-    return entity_kind(split_entity_path(path)[0]) == "link"
 
 
 def _root_motion(owner: str, deltas: Mapping[str, Pose], carriers: Mapping[str, list[str]]) -> str:
@@ -253,6 +224,6 @@ def _rotation_axis(axis: Vector, golden: Pose) -> str:
 
 def _count_carried(motion: Motion) -> str:
     """How many others were taken along that a file might have named instead."""
-    owners = {split_entity_path(e.path)[0] for e in motion.edits} - {motion.owner}
+    owners = {e.owner for e in motion.edits} - {motion.owner}
     links = [o for o in owners if entity_kind(o) in ("link", "model") and not o.startswith(motion.owner + ".")]
     return f", with {len(links)} more on it" if links else ""

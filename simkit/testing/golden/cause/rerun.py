@@ -132,12 +132,11 @@ class ScenarioRerun:
         if self._comparison.tier == "exact":
             return _same_bits(self._golden, record, self.horizon)
 
-        golden, mine = cut_record(self._golden, self.horizon), cut_record(record, self.horizon)
-        found = compare(
-            replace(golden, scenario=replace(golden.scenario, model=False)),
-            replace(mine, scenario=replace(mine.scenario, model=False)),
+        golden, mine = (
+            replace(cut_record(one, self.horizon), scenario=replace(one.scenario, model=False))
+            for one in (self._golden, record)
         )
-        return found.passed
+        return compare(golden, mine).passed
 
 
 def _same_bits(golden: RunRecord, run: RunRecord, until: float) -> bool:
@@ -148,14 +147,12 @@ def _same_bits(golden: RunRecord, run: RunRecord, until: float) -> bool:
         if not np.array_equal(golden.states.marks[:count], run.states.marks[:count]):
             return False
     seconds = math.ceil(until)
-    topics = [t for t in {*golden.streams, *run.streams} if _counts(t, golden, run)]
-    return all(_chunks(golden.streams.get(t), seconds) == _chunks(run.streams.get(t), seconds) for t in topics)
-
-
-def _counts(topic: str, golden: RunRecord, run: RunRecord) -> bool:
-
-    stream = run.streams.get(topic) or golden.streams[topic]
-    return not tolerance_of(run.scenario, topic, stream.type_name, "").ignore
+    for topic in {*golden.streams, *run.streams}:
+        mine, other = golden.streams.get(topic), run.streams.get(topic)
+        is_ignored = tolerance_of(run.scenario, topic, (golden.streams | run.streams)[topic].type_name, "").ignore
+        if not is_ignored and _chunks(mine, seconds) != _chunks(other, seconds):
+            return False
+    return True
 
 
 def _chunks(stream: Stream | None, seconds: int) -> list[str]:
@@ -215,8 +212,5 @@ def can_be_put_back(change: Change, run: RunRecord) -> bool:
         return False
     world = getattr(run.simulation, "world", None)
     kept = [f"models[{m.name}]" for m in world.models if m.mjcf is not None] if world is not None else []
-    return all(_is_single_value(e.golden) and not e.path.startswith(("files[", *kept)) for e in change.edits)
-
-
-def _is_single_value(value: object) -> bool:
-    return value is ABSENT or isinstance(value, (bool, int, float, str, list))
+    is_plain = all(e.golden is ABSENT or isinstance(e.golden, (bool, int, float, str, list)) for e in change.edits)
+    return is_plain and not any(e.path.startswith(("files[", *kept)) for e in change.edits)

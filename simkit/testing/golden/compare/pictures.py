@@ -13,7 +13,7 @@ from simkit.testing.golden.compare.difference import Difference
 from simkit.testing.golden.compare.number_columns import compare_column
 from simkit.testing.golden.compare.tolerances import FieldTerms
 from simkit.testing.golden.compare.units import time_text
-from simkit.testing.run_record.pictures import TILE, structural_similarity
+from simkit.testing.run_record.message_recorder import TILE
 from simkit.testing.run_record.record import Array, Column, Pictures, Stream
 
 _DEPTH = 2.0**-10  # [m]
@@ -242,3 +242,30 @@ def _development_text(met: _CommonPictures, failing: npt.NDArray[np.intp], apart
     if worst > first and apart[worst] > 1.5 * apart[first]:
         words += f", up to {apart[worst]:.2g} of 255 at {met.when(worst)}"
     return words
+
+
+def structural_similarity(golden: Array, run: Array, peak: float = 255.0) -> float:
+    """Structural similarity of two pictures of one size, up to 1 for equal ones.
+
+    Args:
+        golden, run: shape (height, width) or (height, width, channels).
+        peak: greatest value.
+
+    Source: Wang, Bovik, Sheikh, Simoncelli, "Image quality assessment: from error visibility to structural
+    similarity", IEEE Trans. Image Processing 13(4), 2004: Gaussian window of 11 px, 1.5 px; K = 0.01, 0.03.
+    """
+    import cv2
+
+    a, b = golden.astype(np.float64), run.astype(np.float64)
+
+    def blur(image: Array) -> Array:
+        return np.asarray(cv2.GaussianBlur(image, (11, 11), 1.5, borderType=cv2.BORDER_REFLECT_101))
+
+    mean_a, mean_b = blur(a), blur(b)
+    variance_a, variance_b = blur(a * a) - mean_a**2, blur(b * b) - mean_b**2
+    covariance = blur(a * b) - mean_a * mean_b
+    c1, c2 = (0.01 * peak) ** 2, (0.03 * peak) ** 2
+    found = ((2 * mean_a * mean_b + c1) * (2 * covariance + c2)) / (
+        (mean_a**2 + mean_b**2 + c1) * (variance_a + variance_b + c2)
+    )
+    return float(found.mean())

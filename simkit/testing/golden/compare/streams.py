@@ -11,8 +11,7 @@ import numpy as np
 from simkit.diagnostics import shorten
 from simkit.run_spec import RunSpec, Tolerance
 from simkit.testing.golden.compare.difference import Difference, DifferenceKind
-from simkit.testing.golden.compare.number_columns import compare_column
-from simkit.testing.golden.compare.orientations import compare_orientation, quaternion_paths
+from simkit.testing.golden.compare.number_columns import compare_column, compare_orientation, quaternion_paths
 from simkit.testing.golden.compare.pictures import compare_pictures
 from simkit.testing.golden.compare.times import begin_time, compare_times, shift_allowed
 from simkit.testing.golden.compare.tolerances import FieldFinding, FieldTerms, tolerance_of

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 import re
+import tomllib
 from dataclasses import dataclass, replace
 from functools import cache
+from pathlib import Path
 from typing import Final
 
 import numpy as np
@@ -18,48 +20,7 @@ from simkit.testing.run_record.record import Array, Column, Stream
 
 _STEPS_PER_TOLERANCE = 8  # of a tolerance that a stored number is rounded to
 
-# absolute in the field's unit, and part of the value. What they come from is in docs/tolerances.md
-_BY_UNIT: Final[dict[str, tuple[float, float]]] = {
-    "m": (5e-4, 1e-4),
-    "rad": (1e-3, 0.0),
-    "rad or m": (5e-4, 1e-4),
-    "m/s": (2e-3, 1e-3),
-    "rad/s": (5e-4, 1e-3),
-    "rad/s or m/s": (5e-3, 1e-3),
-    "m/s²": (1e-2, 1e-3),
-    "rad/s²": (1e-2, 1e-3),
-    "N": (1e-1, 1e-2),
-    "N m": (1e-2, 1e-2),
-    "N m or N": (1e-2, 1e-2),
-    "T": (1e-8, 1e-3),
-    "Pa": (5e-2, 1e-6),
-    "K": (1e-3, 0.0),
-    "°C": (1e-3, 0.0),
-    "V": (1e-4, 1e-4),
-    "A": (1e-4, 1e-3),
-    "A h": (1e-5, 1e-4),
-    "lx": (1e-1, 1e-3),
-    "px": (2.0, 0.0),
-    "s": (0.0, 1e-6),
-    "ns": (0.0, 0.0),
-    "": (1e-4, 1e-3),
-}
-# type, field, absolute, relative, share of the values of one message that may be further off
-_BY_FIELD: Final[tuple[tuple[str, str, float, float, float], ...]] = (
-    (r"sensor_msgs/msg/LaserScan", r"ranges", 1e-3, 1e-4, 0.02),  # a ray past an edge may hit or miss
-    (r"sensor_msgs/msg/LaserScan", r"intensities", 1e-3, 1e-3, 0.02),
-    (r"sensor_msgs/msg/PointCloud2?", r"(.*\.)?(rgba?|intensity|r|g|b)", 2.0, 0.0, 0.02),
-    (r"sensor_msgs/msg/PointCloud2?", r".*", 2e-3, 1e-3, 0.02),
-    (r"sensor_msgs/msg/(Compressed)?Image", r".*", 2e-3, 1e-3, 0.02),  # depths [m]
-    (r"sensor_msgs/msg/Range", r"range", 2e-3, 1e-3, 0.0),
-    (r"sensor_msgs/msg/NavSatFix|gps_msgs/msg/GPSFix", r"(latitude|longitude)", 1e-8, 0.0, 0.0),  # 1 mm
-    (r"sensor_msgs/msg/CameraInfo", r".*", 0.0, 1e-6, 0.0),  # a setting, nothing that is measured
-    (r".*", r"(.*\.)?(angle_min|angle_max|angle_increment|range_min|range_max|min_range|max_range)", 0.0, 1e-6, 0.0),
-    (r".*", r"(.*\.)?(field_of_view|horizontal_fov|near_clip|far_clip|aspect_ratio)", 0.0, 1e-6, 0.0),
-    (r".*", r"(.*\.)?(variance|\w*covariance)", 0.0, 1e-6, 0.0),
-    (r"(ros_gz_interfaces|gazebo_msgs)/msg/Contact.*", r".*(force|torque).*", 1.0, 5e-2, 0.0),  # by the solver
-    (r"(ros_gz_interfaces|gazebo_msgs)/msg/Contact.*", r".*", 1e-3, 1e-3, 0.0),
-)
+_TABLES: Final = tomllib.loads(Path(__file__).with_name("default_tolerances.toml").read_text(encoding="utf-8"))
 IMAGE: Final = 2.0
 """Mean difference of a picture's values that is allowed, 0 to 255."""
 SSIM: Final = 0.98
@@ -74,9 +35,10 @@ def default_tolerance(type_name: str, field: str) -> Tolerance:
         type_name: the message's ROS type.
         field: path of the field within it.
     """
-    path = plain_path(field)
-    absolute, relative, share = (*_BY_UNIT.get(unit_of(type_name, field), _BY_UNIT[""]), 0.0)
-    for of_type, of_field, *numbers in _BY_FIELD:
+    path, by_unit = plain_path(field), _TABLES["by_unit"]
+    absolute, relative = by_unit.get(unit_of(type_name, field), by_unit[""])
+    share = 0.0
+    for of_type, of_field, *numbers in _TABLES["by_field"]:
         if re.fullmatch(of_type, type_name) and re.fullmatch(of_field, path):
             absolute, relative, share = numbers
             break
@@ -93,23 +55,13 @@ def tolerance_of(scenario: RunSpec, topic: str, type_name: str, field: str) -> T
     if not said:
         return found
     first = said[0]
-    absolute, relative = found.absolute, found.relative
+    for name in ("share", "image", "ssim", "statistics"):
+        value = next((getattr(t, name) for t in said if getattr(t, name) is not None), getattr(found, name))
+        first = replace(first, **{name: value})
     sizes = next((t for t in said if t.absolute is not None or t.relative is not None), None)
-    if sizes is not None:
-        absolute, relative = sizes.absolute or 0.0, sizes.relative or 0.0
-    return replace(
-        found,
-        pattern=first.pattern,
-        absolute=absolute,
-        relative=relative,
-        share=next((t.share for t in said if t.share is not None), found.share),
-        image=next((t.image for t in said if t.image is not None), found.image),
-        ssim=next((t.ssim for t in said if t.ssim is not None), found.ssim),
-        statistics=next((t.statistics for t in said if t.statistics is not None), found.statistics),
-        ignore=first.ignore,
-        exact=first.exact,
-        where=first.where,
-    )
+    if sizes is None:
+        return replace(first, absolute=found.absolute, relative=found.relative)
+    return replace(first, absolute=sizes.absolute or 0.0, relative=sizes.relative or 0.0)
 
 
 def storage_step(type_name: str, field: str, scenario: RunSpec | None = None, topic: str = "") -> float:

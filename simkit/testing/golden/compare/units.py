@@ -4,77 +4,15 @@ from __future__ import annotations
 
 import math
 import re
+import tomllib
+from collections.abc import Sequence
 from functools import cache
+from pathlib import Path
 from typing import Final
 
 _INDEX = re.compile(r"\[[^\]]*\]|\.\d+(?=\.|$)")
 
-_UNITS_BY_TYPE: Final[tuple[tuple[str, str, str], ...]] = (
-    (r"sensor_msgs/msg/LaserScan", r"(ranges|range_min|range_max)", "m"),
-    (r"sensor_msgs/msg/LaserScan", r"angle_.*", "rad"),
-    (r"sensor_msgs/msg/LaserScan", r"(time_increment|scan_time)", "s"),
-    (r"sensor_msgs/msg/Range", r"(range|min_range|max_range|variance)", "m"),
-    (r"sensor_msgs/msg/Range", r"field_of_view", "rad"),
-    (r"sensor_msgs/msg/PointCloud2", r"points\.rgba?", "of 255"),
-    (r"sensor_msgs/msg/PointCloud2?", r"(.*\.)?(xyz|x|y|z|points|range)", "m"),
-    (r"sensor_msgs/msg/(JointState|MultiDOFJointState)", r"position", "rad or m"),
-    (r"sensor_msgs/msg/(JointState|MultiDOFJointState)", r"velocity", "rad/s or m/s"),
-    (r"sensor_msgs/msg/(JointState|MultiDOFJointState)", r"effort", "N m or N"),
-    (r"sensor_msgs/msg/FluidPressure", r"fluid_pressure", "Pa"),
-    (r"sensor_msgs/msg/FluidPressure", r"variance", "Pa²"),
-    (r"sensor_msgs/msg/MagneticField", r"magnetic_field(\..*)?", "T"),
-    (r"sensor_msgs/msg/Temperature", r"temperature", "°C"),
-    (r"sensor_msgs/msg/(NavSatFix)|gps_msgs/msg/GPSFix", r"(latitude|longitude)", "°"),
-    (r"sensor_msgs/msg/(NavSatFix)|gps_msgs/msg/GPSFix", r"altitude", "m"),
-    (r"sensor_msgs/msg/(NavSatFix)|gps_msgs/msg/GPSFix", r"position_covariance.*", "m²"),
-    (r"gps_msgs/msg/GPSFix", r"(speed|climb)", "m/s"),
-    (r"gps_msgs/msg/GPSFix", r"(track|pitch|roll|dip)", "°"),
-    (r"sensor_msgs/msg/BatteryState", r"voltage|cell_voltage", "V"),
-    (r"sensor_msgs/msg/BatteryState", r"current", "A"),
-    (r"sensor_msgs/msg/BatteryState", r"(charge|capacity|design_capacity)", "A h"),
-    (r"sensor_msgs/msg/BatteryState", r"(temperature|cell_temperature)", "°C"),
-    (r"sensor_msgs/msg/Illuminance", r"illuminance", "lx"),
-    (r"ros_gz_interfaces/msg/Altimeter", r"vertical_velocity", "m/s"),
-    (r"ros_gz_interfaces/msg/Altimeter", r"vertical_(position|reference)", "m"),
-    (r"ros_gz_interfaces/msg/AirSpeed", r"diff_pressure", "Pa"),
-    (r"ros_gz_interfaces/msg/AirSpeed", r"temperature", "K"),
-    (r"actuator_msgs/msg/Actuators", r"velocity", "rad/s"),
-    (r"simkit_msgs/msg/LogicalCameraSensor", r"(near_clip|far_clip)", "m"),
-    (r"simkit_msgs/msg/LogicalCameraSensor", r"horizontal_fov", "rad"),
-    (r"sensor_msgs/msg/CameraInfo", r"[kKpP]|roi\..*|width|height", "px"),
-    (r"vision_msgs/msg/Detection2D.*", r"(.*\.)?(center|position|size_[xy]).*", "px"),
-    (r"simkit_msgs/msg/Wind", r".*", "m/s"),
-)
-_UNITS_BY_FIELD: Final[tuple[tuple[str, str], ...]] = (
-    (r"(.*\.)?(stamp|lifetime|time_from_start|\w+_time)", "ns"),  # times are columns of nanoseconds
-    (r"(.*\.)?orientation_covariance.*", "rad²"),
-    (r"(.*\.)?angular_velocity_covariance.*", "(rad/s)²"),
-    (r"(.*\.)?linear_acceleration_covariance.*", "(m/s²)²"),
-    (r"(.*\.)?magnetic_field_covariance.*", "T²"),
-    (r"(.*\.)?(orientation|rotation|quaternion)(\..*)?", "rad"),
-    (r"(.*\.)?linear_acceleration(\..*)?", "m/s²"),
-    (r"(.*\.)?angular_velocity(\..*)?", "rad/s"),
-    (r"(.*\.)?(twist|velocity)\.(linear)(\..*)?|(.*\.)?linear(\.[xyz])?", "m/s"),
-    (r"(.*\.)?(twist|velocity)\.(angular)(\..*)?|(.*\.)?angular(\.[xyz])?", "rad/s"),
-    (r"(.*\.)?accel\.linear(\..*)?", "m/s²"),
-    (r"(.*\.)?accel\.angular(\..*)?", "rad/s²"),
-    (r"(.*\.)?force(\.[xyz])?", "N"),
-    (r"(.*\.)?torque(\.[xyz])?", "N m"),
-    (r"(.*\.)?magnetic_field(\..*)?", "T"),
-    (r"(.*\.)?contact_normals.*|(.*\.)?normals.*", ""),
-    (r"(.*\.)?(positions?|translation|points?|depths?|contact_positions)(\.[xyz])?", "m"),
-    (r"(.*\.)?(size)(\.[xyz])", "m"),
-    (r"(.*\.)?(yaw|roll|pitch|theta|angle)", "rad"),
-    (r"(.*\.)?(lateral_slip|longitudinal_slip)", "m/s"),
-    (r"(.*\.)?speed", "m/s"),
-)
-_ITEM_NAMES: Final[tuple[tuple[str, str, str], ...]] = (
-    (r"sensor_msgs/msg/LaserScan", r"(ranges|intensities).*", "rays"),
-    (r"sensor_msgs/msg/PointCloud2?", r".*", "points"),
-    (r"sensor_msgs/msg/JointState|control_msgs/.*", r".*", "joints"),
-    (r"ros_gz_interfaces/msg/Contacts|gazebo_msgs/msg/Contacts?State", r".*", "contacts"),
-    (r"sensor_msgs/msg/(Compressed)?Image", r".*", "pixels"),
-)
+_TABLES = tomllib.loads(Path(__file__).with_name("field_units.toml").read_text(encoding="utf-8"))
 _SMALL: Final = {"m": ("mm", 1e3), "m/s": ("mm/s", 1e3), "s": ("ms", 1e3), "T": ("µT", 1e6), "V": ("mV", 1e3)}
 _SMALLER: Final = {"m": ("µm", 1e6), "T": ("nT", 1e9), "s": ("µs", 1e6)}
 
@@ -95,14 +33,17 @@ def unit_of(type_name: str, field: str) -> str:
         type_name: the message's ROS type.
         field: path of the field within it; indices do not count.
     """
+    by_field = ([".*", of_field, unit] for of_field, unit in _TABLES["by_field"])
+    return _first_that_fits([*_TABLES["by_type"], *by_field], type_name, field, "")
+
+
+def _first_that_fits(rows: Sequence[Sequence[str]], type_name: str, field: str, otherwise: str) -> str:
+    """The last column of the first row whose expressions for type and field fit."""
     path = plain_path(field)
-    for of_type, of_field, unit in _UNITS_BY_TYPE:
+    for of_type, of_field, found in rows:
         if re.fullmatch(of_type, type_name) and re.fullmatch(of_field, path):
-            return unit
-    for of_field, unit in _UNITS_BY_FIELD:
-        if re.fullmatch(of_field, path):
-            return unit
-    return ""
+            return found
+    return otherwise
 
 
 def period_of(type_name: str, field: str) -> float:
@@ -135,11 +76,7 @@ def joint_unit(unit: str, position: str) -> str:
 @cache
 def item_name(type_name: str, field: str) -> str:
     """What the values of an array are: rays, points, pixels, joints, contacts, or values."""
-    path = plain_path(field)
-    for of_type, of_field, things in _ITEM_NAMES:
-        if re.fullmatch(of_type, type_name) and re.fullmatch(of_field, path):
-            return things
-    return "values"
+    return _first_that_fits(_TABLES["item_names"], type_name, field, "values")
 
 
 def quantity_text(value: float, unit: str, signed: bool = True, error: float = 0.0) -> str:

@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Final
 from simkit.diagnostics import shorten
 from simkit.recording.charts.page_chart import PageChart, page_chart_svg
 from simkit.testing.golden.compare.difference import Cause, Comparison, Verdict
-from simkit.testing.golden.report.difference_plot import PlotFigure, plot_figure
-from simkit.testing.golden.report.image_figure import ImageFigure, image_figure
+from simkit.testing.golden.report.difference_plot import ImageFigure, PlotFigure, image_figure, plot_figure
 from simkit.testing.golden.report.text import (
     REGULAR_ENDINGS,
     allowed_text,

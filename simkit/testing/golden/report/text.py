@@ -5,14 +5,10 @@ from __future__ import annotations
 import re
 import textwrap
 from collections.abc import Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from simkit.testing.golden.compare.difference import Cause, Comparison, Difference, Explanation, Verdict
 from simkit.testing.junit import JunitCase
-
-if TYPE_CHECKING:
-    from simkit.testing.junit import JunitCase
-
 
 REGULAR_ENDINGS: Final = frozenset({"duration", "until", "timeout", "wall_timeout", ""})
 """Of a run that ended as it was meant to, or by its scenario's clock; anything else is an error's text."""
