@@ -6,7 +6,7 @@ import os
 import re
 import tempfile
 from collections import defaultdict
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -103,8 +103,8 @@ class _Replay:
 
     def run(self, on_slice: Callable[[Simulation], None] | None, record: Path | None) -> ReplayResult:
         """Loads the world, plays the journal, and compares."""
-
         said = self._said
+        machine = fingerprint_differences(said.fingerprint, fingerprint())
         numbers = sorted({int(n) for name in said.code if (n := name.split("/")[1]).isdecimal()})
         code = [self._folder / "code" / str(number) for number in numbers]
         spec = packed_run_spec(self._folder, said.world, said.spawn, said.params, said.run_spec, code)
@@ -112,7 +112,7 @@ class _Replay:
             opened = load_packed_world(spec)
         except PluginError as error:
             met = failure_from_error(error)
-            return ReplayResult(said, "", 0.0, met, tuple(self._failures(met)), self._machine(), (), 0)
+            return ReplayResult(said, "", 0.0, met, tuple(self._failures(met)), machine, (), 0)
         with opened as sim:
             self._read_models_here(sim)
             window, marks = MessageWindow(sim, said.seconds, said.topics, most=1 << 62), StateHashes(sim)
@@ -126,19 +126,8 @@ class _Replay:
             failure = None if raised is None else failure_from_error(raised)
             found = [*self._failures(failure), *self._states(sim, marks)]
             streams, count = self._streams(window)
-            return ReplayResult(
-                said,
-                state_hash(sim),
-                sim.time,
-                failure,
-                (*found, *streams),
-                self._machine(),
-                tuple(player.refused),
-                count,
-            )
-
-    def _machine(self) -> dict[str, tuple[str, str]]:
-        return fingerprint_differences(self._said.fingerprint, fingerprint())
+            refused = tuple(player.refused)
+            return ReplayResult(said, state_hash(sim), sim.time, failure, (*found, *streams), machine, refused, count)
 
     def _read_models_here(self, sim: Simulation) -> None:
         """Models that are spawned while it runs come from the bundle, and from nowhere else."""
@@ -183,14 +172,13 @@ class _Replay:
 
     def _failures(self, failure: Failure | None) -> list[str]:
         was = self._said.end.failure
-        repeats = was is not None and was.kind in ("PluginError", "SimulationDiverged", "RenderError")
-        if (failure is None and not repeats) or _is_same_failure(failure, was):
-            return []
-        if failure is None and was is not None:
-            return [f"the run failed, the replay did not: {was.text:.300}"]
-        if was is None and failure is not None:
+        if failure is None:
+            repeats = was is not None and was.kind in ("PluginError", "SimulationDiverged", "RenderError")
+            return [f"the run failed, the replay did not: {was.text:.300}"] if was is not None and repeats else []
+        if was is None:
             return [f"the replay failed, the run did not: {failure.text:.300}"]
-        assert failure is not None and was is not None
+        if _without_places(failure) == _without_places(was):
+            return []
         return [f"the run failed with {was.text:.300}\n    the replay with {failure.text:.300}"]
 
     def _states(self, sim: Simulation, marks: StateHashes) -> list[str]:
@@ -220,27 +208,23 @@ class _Replay:
         other = [topic for topic in sorted({*said.streams, *here}) if said.streams.get(topic) != here.get(topic)]
         if not other:
             return [], len(messages)
-        there = self._recorded()
-        mine: dict[str, list[WindowMessage]] = defaultdict(list)
-        for one in messages:
-            mine[one.topic].append(one)
+        with open_bag_to_read(self._folder / BAG) as bag:
+            recorded = [WindowMessage(one.time_ns, one.topic, one.type_name, one.data) for one in bag.messages()]
+        there, mine = _by_topic(recorded), _by_topic(messages)
         told = [(*_first_difference(there.get(t, []), mine.get(t, [])), t) for t in other]
         return [f"{topic}: {text}" for _, text, topic in sorted(told)], len(messages)
 
-    def _recorded(self) -> dict[str, list[WindowMessage]]:
 
-        found: dict[str, list[WindowMessage]] = defaultdict(list)
-        with open_bag_to_read(self._folder / BAG) as bag:
-            for one in bag.messages():
-                found[one.topic].append(WindowMessage(one.time_ns, one.topic, one.type_name, one.data))
-        return found
+def _without_places(failure: Failure) -> tuple[str, str, str]:
+    """What of an error is equal wherever it is written what raised."""
+    return failure.kind, failure.code, _CODE_POSITION.sub("()", failure.text)
 
 
-def _is_same_failure(a: Failure | None, b: Failure | None) -> bool:
-    """Whether two errors are the same but for where it is written what raised."""
-    if a is None or b is None:
-        return a is b
-    return (a.kind, a.code, _CODE_POSITION.sub("()", a.text)) == (b.kind, b.code, _CODE_POSITION.sub("()", b.text))
+def _by_topic(messages: Iterable[WindowMessage]) -> dict[str, list[WindowMessage]]:
+    found: dict[str, list[WindowMessage]] = defaultdict(list)
+    for one in messages:
+        found[one.topic].append(one)
+    return found
 
 
 def _first_difference(there: list[WindowMessage], here: list[WindowMessage]) -> tuple[int, str]:
@@ -249,10 +233,8 @@ def _first_difference(there: list[WindowMessage], here: list[WindowMessage]) -> 
         if a.type_name != b.type_name:
             return a.time_ns, f"is {b.type_name}, in the bundle {a.type_name}"
         if a.time_ns != b.time_ns:
-            return (
-                a.time_ns,
-                f"message {number + 1} comes at {b.time_ns / 1e9:g} s, in the bundle at {a.time_ns / 1e9:g} s",
-            )
+            times = f"at {b.time_ns / 1e9:g} s, in the bundle at {a.time_ns / 1e9:g} s"
+            return a.time_ns, f"message {number + 1} comes {times}"
         if a.data != b.data:
             return a.time_ns, f"other bits from t = {a.time_ns / 1e9:g} s on (message {number + 1} of {len(there)})"
     last = min(len(there), len(here))

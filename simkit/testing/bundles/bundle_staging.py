@@ -119,7 +119,7 @@ UNPACKED: Final = "SK-BUNDLE-006"
 class StagedWorld:
     """What was put into the stage."""
 
-    file: str = ""
+    file: str
     spawn: list[PackedModel] = field(default_factory=list)
     params: list[tuple[str, str]] = field(default_factory=list)
     models: dict[str, str] = field(default_factory=dict)
@@ -141,50 +141,42 @@ class WorldStager:
 
     def world(self, keeper: BundleRecorder) -> StagedWorld:
         """Everything that was loaded, and spawned later."""
-        spec, found = self._spec, StagedWorld()
-        found.file = self._vendored(spec.world, "world", base=spec.options.get("base", "auto"))
-        self._spawned(found)
+        spec, found = self._spec, self._main_files()
         for given in keeper.sim._loaded.structure.builder.parameter_files:
             found.params.append((given.model, self._copied(Path(given.file.path), f"params/{len(found.params)}")))
-        for source in dict.fromkeys(keeper.journal.sources):
-            if "<" not in source:
-                self._later(found, source)
+        for source in dict.fromkeys(source for source in keeper.journal.sources if "<" not in source):
+            try:
+                found.models[source] = self._vendored(source, f"models/{len(found.models)}")
+            except SimkitError as error:  # somebody may have asked for a model that there is not
+                found.missing.append(f"{source!r:.100}, which was to be spawned, could not be packed: {error!s:.200}")
         if spec.plugins:
-            kinds = ", ".join(
-                sorted({type(one[1] if isinstance(one, tuple) else one).__name__ for one in spec.plugins})
-            )
+            plugins = (one[1] if isinstance(one, tuple) else one for one in spec.plugins)
+            kinds = ", ".join(sorted({type(plugin).__name__ for plugin in plugins}))
             found.missing.append(f"plugins made in Python are not in it: {kinds}")
         if spec.change_world is not None:
-            found.missing.append(
-                "the world was changed in Python as it was loaded (change_world); it is packed without"
-            )
+            told = "the world was changed in Python as it was loaded (change_world); it is packed without"
+            found.missing.append(told)
         self._compare(found, keeper)
         return found
 
     def unloaded(self) -> StagedWorld:
         """Everything that was to be loaded."""
-        spec = self._spec
-        found = StagedWorld(self._vendored(spec.world, "world", base=spec.options.get("base", "auto")))
-        self._spawned(found)
-        files = spec.options.get("params_files", ())
+        found = self._main_files()
+        files = self._spec.options.get("params_files", ())
         for one in [files] if isinstance(files, (str, os.PathLike)) else files:
             model, file = one if isinstance(one, tuple) else _split_params_file(str(one))
             found.params.append((model, self._copied(Path(file), f"params/{len(found.params)}")))
         return found
 
-    def _spawned(self, found: StagedWorld) -> None:
-
+    def _main_files(self) -> StagedWorld:
+        """The world and the models that are spawned as it is loaded."""
+        found = StagedWorld(self._vendored(self._spec.world, "world", base=self._spec.options.get("base", "auto")))
         for number, one in enumerate(self._spec.spawn):
             spawn = parse_spawn(one, Diagnostics()) if isinstance(one, str) else one
             if spawn is not None:
                 file = self._vendored(spawn.source, f"spawn/{number}")
                 found.spawn.append(PackedModel(file, spawn.place, spawn.name))
-
-    def _later(self, found: StagedWorld, source: str) -> None:
-        try:
-            found.models[source] = self._vendored(source, f"models/{len(found.models)}")
-        except SimkitError as error:  # somebody may have asked for a model that there is not
-            found.missing.append(f"{source!r:.100}, which was to be spawned, could not be packed: {error!s:.200}")
+        return found
 
     def _vendored(self, source: Any, target: str, base: str = "auto") -> str:
         """The place of a file in the stage, with all that it names."""
@@ -209,7 +201,8 @@ class WorldStager:
             try:
                 main, _ = vendor(str(source), self._stage / target, describe, **options)
             except InputError as error:
-                raise InputError(f"{UNPACKED} {_source_text(source)} cannot be packed: {error}", UNPACKED) from None
+                what = "the text" if "<" in str(source) else source
+                raise InputError(f"{UNPACKED} {what} cannot be packed: {error}", UNPACKED) from None
         return f"{target}/{main.as_posix()}"
 
     def _found(self, uri: str) -> Path:
@@ -250,10 +243,6 @@ def _split_params_file(text: str) -> tuple[str, str]:
     """`[MODEL=]FILE`."""
     model, equals, file = text.partition("=")
     return (model, file) if equals and "/" not in model and not Path(text).exists() else ("", text)
-
-
-def _source_text(source: object) -> str:
-    return "the text" if "<" in str(source) else str(source)
 
 
 # ---------------------------------------------------------------------- code

@@ -25,7 +25,7 @@ from simkit.testing.bundles.bundle_recorder import (
     topic_digests,
     write_bag,
 )
-from simkit.testing.bundles.bundle_staging import UNPACKED, WorldStager, copy_plugin_modules
+from simkit.testing.bundles.bundle_staging import UNPACKED, StagedWorld, WorldStager, copy_plugin_modules
 from simkit.testing.bundles.manifest import (
     BAG,
     COMMANDS,
@@ -98,16 +98,19 @@ def write_bundle(
             cannot be written.
     """
     keeper = kept if isinstance(kept, BundleRecorder) else recorder_of(kept)
-    found = failure_from_error(failure) if isinstance(failure, BaseException) else failure
     target = Path(path)
     check_file(target, overwrite=overwrite)
-
-    def staged(stage: Path) -> Manifest:
-        return _stage_files(keeper, stage, found, name, with_code)
-
+    staged = _files_of_run(keeper, failure, name, with_code)
     with _write_hidden_file(target.absolute().parent, staged) as (file, _):
         os.replace(file, target)  # noqa: PTH105 - atomic on every platform
     return target
+
+
+def _files_of_run(
+    keeper: BundleRecorder, failure: BaseException | Failure | None, name: str, with_code: bool
+) -> StagedFiles:
+    found = failure_from_error(failure) if isinstance(failure, BaseException) else failure
+    return lambda stage: _stage_files(keeper, stage, found, name, with_code)
 
 
 def write_failed(
@@ -118,8 +121,7 @@ def write_failed(
     Raises:
         InputError: as `write_bundle`.
     """
-    found = failure_from_error(failure) if isinstance(failure, BaseException) else failure
-    return _write_under_own_name(folder, lambda stage: _stage_files(keeper, stage, found, "", with_code))
+    return _write_under_own_name(folder, _files_of_run(keeper, failure, "", with_code))
 
 
 def _write_under_own_name(folder: Path, staged: StagedFiles) -> Path:
@@ -136,24 +138,22 @@ def _write_under_own_name(folder: Path, staged: StagedFiles) -> Path:
 @contextmanager
 def _write_hidden_file(folder: Path, staged: StagedFiles) -> Iterator[tuple[Path, Manifest]]:
     """A whole bundle under a hidden name in a folder, which the caller moves to its place."""
+    work: Path | None = None
     try:
         folder.mkdir(parents=True, exist_ok=True)
         remove_abandoned(folder, _UNFINISHED)
         work = unfinished_folder(folder, _UNFINISHED)
-    except OSError as error:
-        raise InputError(f"SK-CLI-016 cannot write to {folder}: {error.strerror or error}", "SK-CLI-016") from None
-    try:
-        stage = work / "stage"
+        stage, file = work / "stage", work / "bundle.zip"
         stage.mkdir()
         manifest = staged(stage)
-        file = work / "bundle.zip"
         _write_zip(stage, manifest, file)
         yield file, manifest
     except OSError as error:
         said = f"SK-CLI-016 cannot write to {folder}: {error.strerror or error}"
         raise InputError(said, "SK-CLI-016") from None
     finally:
-        shutil.rmtree(work, ignore_errors=True)
+        if work is not None:
+            shutil.rmtree(work, ignore_errors=True)
 
 
 def _stage_files(keeper: BundleRecorder, stage: Path, failure: Failure | None, name: str, with_code: bool) -> Manifest:
@@ -171,10 +171,8 @@ def _stage_files(keeper: BundleRecorder, stage: Path, failure: Failure | None, n
         _write_error(stage, failure)
     given = sim.world.name if sim.world.name not in ("", "default") else Path(world.file).stem
     return Manifest(
-        name=name or given or "run", world=world.file, **_manifest_options(spec),
-        spawn=tuple(world.spawn), params=tuple(world.params), models=world.models, code=tuple(sorted(world.code)),
-        missing=(*world.missing, *journal.gaps), fingerprint=fingerprint(), seconds=keeper.seconds,
-        topics=keeper.topics, first=first, end=end, streams=topic_digests(iter(messages)),
+        name=name or given or "run", **_world_fields(spec, world), missing=(*world.missing, *journal.gaps),
+        seconds=keeper.seconds, topics=keeper.topics, first=first, end=end, streams=topic_digests(iter(messages)),
         marks=tuple(keeper.marks.found), commands=journal.count, files=_file_table(stage),
     )  # fmt: skip
 
@@ -195,24 +193,27 @@ def pack_load_failure(spec: RunSpec, folder: Path, failure: Failure) -> Path:
         world = WorldStager(spec, stage).unloaded()
         copy_plugin_modules(world, stage, spec.options.get("plugin_paths", ()))
         _write_error(stage, failure)
-        return Manifest(
-            name=Path(world.file).stem, world=world.file, **_manifest_options(spec),
-            spawn=tuple(world.spawn), params=tuple(world.params), models={}, code=tuple(sorted(world.code)),
-            missing=tuple(world.missing), fingerprint=fingerprint(), seconds=0.0, topics=(), first=0,
-            end=RunEnd(0, 0, 0, "", failure), streams={}, marks=(), commands=0, files=_file_table(stage),
-        )  # fmt: skip
+        end, name = RunEnd(0, 0, 0, "", failure), Path(world.file).stem
+        fields = _world_fields(spec, world)
+        return Manifest(name=name, **fields, missing=tuple(world.missing), end=end, files=_file_table(stage))
 
     return _write_under_own_name(folder, staged)
 
 
-def _manifest_options(spec: RunSpec) -> JsonObject:
-    """Return the fields of a manifest that a run specification gives."""
+def _world_fields(spec: RunSpec, world: StagedWorld) -> JsonObject:
+    """Return the fields of a manifest that say what was run, and on which machine."""
     return {
+        "world": world.file,
         "base": spec.options.get("base", "auto"),
         "seed": spec.seed,
         "sleep": spec.options.get("sleep", True),
         "on_error": spec.options.get("on_error"),
         "overrides": spec.overrides,
+        "spawn": tuple(world.spawn),
+        "params": tuple(world.params),
+        "models": world.models,
+        "code": tuple(sorted(world.code)),
+        "fingerprint": fingerprint(),
     }
 
 
@@ -232,22 +233,15 @@ def _encodable_messages(messages: Iterator[WindowMessage], gaps: list[str]) -> I
 
 
 def _file_table(stage: Path) -> dict[str, JsonObject]:
-    found = {}
-    total = 0
-    for path in sorted(stage.rglob("*")):
-        if not path.is_file():
-            continue
+    found: dict[str, JsonObject] = {}
+    for path in sorted(path for path in stage.rglob("*") if path.is_file()):
         name = path.relative_to(stage).as_posix()
         why = name_fault(name)
         if why:
             raise InputError(f"{UNPACKED} the world cannot be packed: the file {name!r:.100} {why}", UNPACKED)
-        digest = hashlib.sha256()
         with path.open("rb") as file:
-            while piece := file.read(1 << 20):
-                digest.update(piece)
-        size = path.stat().st_size
-        total += size
-        found[name] = {"size": size, "sha256": digest.hexdigest()}
+            found[name] = {"size": path.stat().st_size, "sha256": hashlib.file_digest(file, "sha256").hexdigest()}
+    total = sum(one["size"] for one in found.values())
     if total > MAX_BYTES:
         raise InputError(f"{UNPACKED} the run has {total >> 20} MiB, a bundle holds {MAX_BYTES >> 20}", UNPACKED)
     return found

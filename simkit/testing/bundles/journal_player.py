@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from collections import defaultdict, deque
-from collections.abc import Callable, Iterable, Mapping
-from functools import partial
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
 
 from simkit.errors import InputError, MessageError, SimkitError
-from simkit.msgs import Message
 from simkit.pose import Pose
 from simkit.run_spec import JsonMapping
 from simkit.testing.bundles.direct_changes import apply_changes
@@ -44,7 +42,7 @@ class JournalPlayer:
             if place is None:
                 self._between.append(entry)
             else:
-                self._within[_whole_number(place[0])].append(entry)
+                self._within[_integer_field(place[0])].append(entry)
             if entry["do"] == "restore":
                 self._restored.add(entry.get("number"))
             if entry["do"] == "cancel":
@@ -52,40 +50,8 @@ class JournalPlayer:
         self._snapshots: dict[object, Snapshot] = {}
         self._goals: dict[object, GoalHandle] = {}
         self._publishers: dict[object, Publisher] = {}
-        self._deeds = self._entry_deeds()
         self.count = 0
         self.refused: list[str] = []
-
-    def _entry_deeds(self) -> dict[str, Callable[[Entry], object]]:
-        """What is done for an entry, by its name."""
-        sim, contents = self._sim, self._sim.contents
-        calls: dict[str, tuple[Callable[..., object], dict[str, _FieldDecoder]]] = {
-            "publish": (sim.communication.bus.publish, {"topic": _text, "message": _message}),
-            "call": (sim.call, {"service": _text, "request": _message}),
-            "set": (sim.set_parameter, {"node": _text, "name": _text, "value": _parameter_value}),
-            "remove": (sim.remove, {"name": _text}),
-            "clone": (contents.clone, {"name": _text, "new_name": _text, "pose": _pose}),
-            "add_sensor": (contents.add_sensor, {"name": _text, "sensor": _value}),
-            "make_movable": (contents.make_movable, {"name": _text}),
-            "add_weld": (contents.add_weld, {"name": _text, "parent_link": _text, "child_link": _text}),
-            "set_weld": (contents.set_weld, {"name": _text, "closed": _is_true}),
-            "reset": (sim.reset, {"seed": _seed_or_none}),
-            "reseed": (sim.control.reseed, {"seed": _number}),
-            "reset_models": (sim.control.reset_models, {}),
-        }
-        return {
-            **{name: partial(_call_with_fields, act, fields) for name, (act, fields) in calls.items()},
-            "advertise": self._advertise,
-            "send": self._send,
-            "close": self._close,
-            "hear": self._hear,
-            "by_hand": self._by_hand,
-            "send_goal": self._send_goal,
-            "cancel": self._cancel,
-            "spawned": self._spawned,
-            "snapshot": self._snapshot,
-            "restore": self._restore,
-        }
 
     @property
     def next_steps(self) -> int | None:
@@ -106,10 +72,10 @@ class JournalPlayer:
         was_served = self._sim.control.pausing.is_served
         self._sim.control.pausing.is_served = entry.get("served") is True
         try:
-            deed = self._deeds.get(entry["do"])
+            deed = _ENTRY_METHODS.get(entry["do"])
             if deed is None:
                 raise MessageError(f"nothing is known of {entry['do']!r:.40}")
-            deed(entry)
+            deed(self, entry)
         except (InputError, KeyError, ValueError, TypeError, AttributeError) as error:
             # the run may have had the same answer, and gone on
             text = str(error) if isinstance(error, SimkitError) else repr(error)
@@ -119,15 +85,18 @@ class JournalPlayer:
 
     # ------------------------------------------------------------------ what can be done
 
+    def _publish(self, entry: Entry) -> None:
+        self._sim.communication.bus.publish(_text_field(entry, "topic"), decode_message(entry.get("message")))
+
     def _advertise(self, entry: Entry) -> None:
-        topic, type_name, latched = _text(entry, "topic"), _text(entry, "type"), _is_true(entry, "latched")
-        publisher = self._sim.communication.bus.advertise(topic, type_name, latched=latched)
+        topic, type_name = _text_field(entry, "topic"), _text_field(entry, "type")
+        publisher = self._sim.communication.bus.advertise(topic, type_name, latched=entry.get("latched") is True)
         self._publishers[entry.get("number")] = publisher
 
     def _send(self, entry: Entry) -> None:
-        message, publisher = _message(entry, "message"), self._publishers.get(entry.get("number"))
+        message, publisher = decode_message(entry.get("message")), self._publishers.get(entry.get("number"))
         if publisher is None:  # opened before the journal was
-            self._sim.communication.bus.publish(_text(entry, "topic"), message)
+            self._sim.communication.bus.publish(_text_field(entry, "topic"), message)
         else:
             publisher.publish(message)
 
@@ -138,11 +107,11 @@ class JournalPlayer:
         """A tap where the run had a callback; only where that did something."""
         heard = self._counting(entry.get("number"))
         if heard is not None:
-            self._sim.communication.bus.tap(_text(entry, "topic"), heard)
+            self._sim.communication.bus.tap(_text_field(entry, "topic"), heard)
 
     def _counting(self, number: object) -> Callable[[object], None] | None:
         """A callback that does, the n-th time it is called, what the run's did then; None where that did nothing."""
-        deeds = self._within.get(_whole_number(number)) if number is not None else None
+        deeds = self._within.get(_integer_field(number)) if number is not None else None
         if not deeds:
             return None
         count = 0
@@ -150,7 +119,7 @@ class JournalPlayer:
         def heard(_: object) -> None:
             nonlocal count
             count += 1
-            while deeds and _whole_number(deeds[0]["in"][1]) <= count:
+            while deeds and _integer_field(deeds[0]["in"][1]) <= count:
                 self._play(deeds.popleft())
 
         return heard
@@ -158,18 +127,55 @@ class JournalPlayer:
     def _by_hand(self, entry: Entry) -> None:
         apply_changes(self._sim, dict(entry))
 
+    def _call(self, entry: Entry) -> None:
+        self._sim.call(_text_field(entry, "service"), decode_message(entry.get("request")))
+
     def _send_goal(self, entry: Entry) -> None:
         feedback, done = (self._counting(entry.get(name)) for name in ("on_feedback", "on_done"))
-        handle = self._sim.send_goal(_text(entry, "action"), _message(entry, "goal"), feedback, done)
+        handle = self._sim.send_goal(_text_field(entry, "action"), decode_message(entry.get("goal")), feedback, done)
         if handle.id in self._cancelled:
             self._goals[handle.id] = handle
 
     def _cancel(self, entry: Entry) -> None:
         self._goals[entry.get("goal")].cancel()
 
+    def _set(self, entry: Entry) -> None:
+        value = entry.get("value")
+        value = tuple(value) if isinstance(value, list) else value
+        self._sim.set_parameter(_text_field(entry, "node"), _text_field(entry, "name"), value)
+
     def _spawned(self, entry: Entry) -> None:
         models = [(one["source"], one["name"], _decode_pose(one["pose"])) for one in entry["models"]]
         self._sim.contents.spawn_all(models)
+
+    def _remove(self, entry: Entry) -> None:
+        self._sim.remove(_text_field(entry, "name"))
+
+    def _clone(self, entry: Entry) -> None:
+        name, new_name = _text_field(entry, "name"), _text_field(entry, "new_name")
+        self._sim.contents.clone(name, new_name, _decode_pose(entry.get("pose")))
+
+    def _add_sensor(self, entry: Entry) -> None:
+        self._sim.contents.add_sensor(_text_field(entry, "name"), decode_value(entry.get("sensor")))
+
+    def _make_movable(self, entry: Entry) -> None:
+        self._sim.contents.make_movable(_text_field(entry, "name"))
+
+    def _add_weld(self, entry: Entry) -> None:
+        self._sim.contents.add_weld(*(_text_field(entry, name) for name in ("name", "parent_link", "child_link")))
+
+    def _set_weld(self, entry: Entry) -> None:
+        self._sim.contents.set_weld(_text_field(entry, "name"), entry.get("closed") is True)
+
+    def _reset(self, entry: Entry) -> None:
+        seed = entry.get("seed")
+        self._sim.reset(None if seed is None else _integer_field(seed))
+
+    def _reseed(self, entry: Entry) -> None:
+        self._sim.control.reseed(_integer_field(entry.get("seed")))
+
+    def _reset_models(self, _: Entry) -> None:
+        self._sim.control.reset_models()
 
     def _snapshot(self, entry: Entry) -> None:
         if entry.get("number") in self._restored:
@@ -179,50 +185,24 @@ class JournalPlayer:
         self._sim.restore(self._snapshots[entry.get("number")])
 
 
-_FieldDecoder = Callable[[Entry, str], object]
+_ENTRY_METHODS: dict[str, Callable[[JournalPlayer, Entry], None]] = {
+    name: getattr(JournalPlayer, f"_{name}")
+    for name in (
+        *("publish", "advertise", "send", "close", "hear", "by_hand", "call", "send_goal", "cancel", "set", "spawned"),
+        *("remove", "clone", "add_sensor", "make_movable", "add_weld", "set_weld", "reset", "reseed"),
+        *("reset_models", "snapshot", "restore"),
+    )
+}
 
 
-def _call_with_fields(act: Callable[..., object], fields: Mapping[str, _FieldDecoder], entry: Entry) -> None:
-    act(*(decode(entry, name) for name, decode in fields.items()))
-
-
-def _text(entry: Entry, name: str) -> str:
+def _text_field(entry: Entry, name: str) -> str:
     found = entry.get(name)
     if not isinstance(found, str):
         raise MessageError(f"{name}: found {found!r:.60}, allowed is a text")
     return found
 
 
-def _message(entry: Entry, name: str) -> Message:
-    return decode_message(entry.get(name))
-
-
-def _value(entry: Entry, name: str) -> object:
-    return decode_value(entry.get(name))
-
-
-def _pose(entry: Entry, name: str) -> Pose | None:
-    return _decode_pose(entry.get(name))
-
-
-def _is_true(entry: Entry, name: str) -> bool:
-    return entry.get(name) is True
-
-
-def _number(entry: Entry, name: str) -> int:
-    return _whole_number(entry.get(name))
-
-
-def _seed_or_none(entry: Entry, name: str) -> int | None:
-    return None if entry.get(name) is None else _number(entry, name)
-
-
-def _parameter_value(entry: Entry, name: str) -> object:
-    value = entry.get(name)
-    return tuple(value) if isinstance(value, list) else value
-
-
-def _whole_number(value: object) -> int:
+def _integer_field(value: object) -> int:
     if type(value) is not int or not 0 <= value < 1 << 62:
         raise MessageError(f"found {value!r:.60}, allowed is a whole number from 0 on")
     return value

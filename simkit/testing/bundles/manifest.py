@@ -126,13 +126,13 @@ class Manifest:
     code: tuple[str, ...]
     missing: tuple[str, ...]
     fingerprint: Mapping[str, str]
-    seconds: float
-    topics: tuple[str, ...]
-    first: int
     end: RunEnd
-    streams: Mapping[str, Mapping[str, object]]
-    marks: tuple[tuple[int, str], ...]
-    commands: int
+    seconds: float = 0.0
+    topics: tuple[str, ...] = ()
+    first: int = 0
+    streams: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
+    marks: tuple[tuple[int, str], ...] = ()
+    commands: int = 0
     files: Mapping[str, JsonMapping] = field(default_factory=dict)
 
     @property

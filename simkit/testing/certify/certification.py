@@ -17,8 +17,7 @@ from simkit.child_process import ChildProcesses, ProcessResult
 from simkit.errors import InputError
 from simkit.run_spec import JsonObject, LoadOptions, RunSpec
 from simkit.testing.certify.certificate import Certificate, Difference, Row, streams_hash
-from simkit.testing.certify.child_run import ChildRequest
-from simkit.testing.certify.child_run import run_child as run_here
+from simkit.testing.certify.child_run import ChildRequest, run_child
 from simkit.testing.certify.code_hints import hints_in
 from simkit.testing.certify.outcome import STACK_FILE, CodePosition, RunOutcome, read_pickle, write_pickle
 from simkit.testing.certify.outcome_comparison import Culprit, differences, find_culprit, first_tick
@@ -50,14 +49,15 @@ class ProcessRunner:
 
     def first(self, variation: Variation) -> RunOutcome:
         """The run that the others are compared with, to the scenario's end."""
-        found = self._run(ChildRequest(self._scenario, variation, plugins_from=self._plugins_from, limit=self._limit))
+        found = self.run(variation)
         if self._limit is None:
             self._limit = max(_LEAST_LIMIT, _TIMES * found.seconds)
         return found
 
-    def run(self, variation: Variation, ticks: int) -> RunOutcome:
-        """One run, to a tick."""
-        return self._run(ChildRequest(self._scenario, variation, ticks, False, None, self._plugins_from, self._limit))
+    def run(self, variation: Variation, ticks: int | None = None) -> RunOutcome:
+        """One run, to a tick; to the scenario's end where that is None."""
+        request = ChildRequest(self._scenario, variation, ticks, plugins_from=self._plugins_from, limit=self._limit)
+        return self._run(request)
 
     def watch(self, variation: Variation, ticks: int, half: int) -> RunOutcome:
         """One run whose plugins are watched at every call."""
@@ -70,7 +70,7 @@ class ProcessRunner:
             self._processes.end()
 
     def _run(self, request: ChildRequest) -> RunOutcome:
-        return run_here(request) if self._processes is None else _run_in_process(request, self._processes)
+        return run_child(request) if self._processes is None else _run_in_process(request, self._processes)
 
 
 def _run_in_process(request: ChildRequest, processes: ChildProcesses) -> RunOutcome:
@@ -106,15 +106,11 @@ def _outcome_of_stopped_process(ended: ProcessResult, limit: float | None, stack
         said = f"it was still running after {limit:g} s of wall time and was ended; --wall-timeout gives it longer"
         return RunOutcome(stopped=said, stack=places)
     last = (ended.last_lines(1) or ["nothing was said"])[0]
-    code = f"with {ended.code}" if ended.code >= 0 else f"by signal {_signal_name(-ended.code)}"
+    code = f"with {ended.code}"
+    if ended.code < 0:
+        known = -ended.code in set(signal.Signals)
+        code = f"by signal {signal.Signals(-ended.code).name if known else -ended.code}"
     return RunOutcome(stopped=f"its process was ended {code}: {last}", stack=places)
-
-
-def _signal_name(number: int) -> str:
-    try:
-        return signal.Signals(number).name
-    except ValueError:
-        return str(number)
 
 
 def _plugin_file(scenario: RunSpec) -> Path | None:
@@ -130,18 +126,20 @@ def _plugin_file(scenario: RunSpec) -> Path | None:
 
 def _with_absolute_paths(scenario: RunSpec) -> RunSpec:
     """The scenario with paths that mean the same in every working directory."""
+
+    def absolute(place: Any) -> str:
+        return str(Path(place).expanduser().absolute())
+
     source = scenario.source
     if "<" not in source and Path(source).exists():
         source = str(Path(source).absolute())
     options: JsonObject = dict(scenario.options)
     if "<" in source:
         options["resource_paths"] = [*options.get("resource_paths", ()), Path.cwd()]
-    for name in _FOLDERS:
-        if name in options:
-            options[name] = [str(Path(place).expanduser().absolute()) for place in options[name]]
+    for name in {*_FOLDERS} & options.keys():
+        options[name] = [absolute(place) for place in options[name]]
     if options.get("package_paths"):
-        pairs = dict(options["package_paths"]).items()
-        options["package_paths"] = {name: str(Path(place).expanduser().absolute()) for name, place in pairs}
+        options["package_paths"] = {name: absolute(place) for name, place in dict(options["package_paths"]).items()}
     if options.get("params_files"):
         given = options["params_files"]
         options["params_files"] = [_absolute_file(g) for g in ([given] if isinstance(given, (str, Path)) else given)]
@@ -201,56 +199,50 @@ def certify(
         LoadError: the world does not open.
         PluginError: a plugin of it does not.
     """
-    chosen_ = choose_variations(runs) if variations is None else list(variations)
-    if len(chosen_) < 2:
-        message = f"SK-CERT-001 found {len(chosen_)} runs, allowed are at least 2: the first is compared with others"
+    chosen = choose_variations(runs) if variations is None else list(variations)
+    if len(chosen) < 2:
+        message = f"SK-CERT-001 found {len(chosen)} runs, allowed are at least 2: the first is compared with others"
         raise InputError(message, "SK-CERT-001")
     runner = ProcessRunner(scenario, apart=apart, limit=wall_timeout)
-    first = runner.first(chosen_[0])
+    first = runner.first(chosen[0])
     if first.failure is not None:
         raise first.failure
     if first.stopped:
         place = f" It stood at {first.stack[0]}." if first.stack else ""
-        message = f"SK-CERT-004 the run {chosen_[0].name!r} gave nothing: {first.stopped}.{place}"
+        message = f"SK-CERT-004 the run {chosen[0].name!r} gave nothing: {first.stopped}.{place}"
         raise InputError(message, "SK-CERT-004")
-    rows = [Row(chosen_[0], first, streams_hash(first), True)]
-    _report_progress(told, rows[0])
+    # how far the others are to go: where the first was stopped by an error, one step further than it came
+    ticks = first.ticks + (1 if first.end else 0)
+    told = told or (lambda _: None)
+    rows = [Row(chosen[0], first, streams_hash(first), True)]
+    told(rows[0])
     with ThreadPoolExecutor(max(1, jobs if apart else 1)) as pool:
         try:
-            outcomes = pool.map(lambda v: runner.run(v, _ticks_to_run(first)), chosen_[1:])
-            for variation, outcome in zip(chosen_[1:], outcomes, strict=True):
+            outcomes = pool.map(lambda variation: runner.run(variation, ticks), chosen[1:])
+            for variation, outcome in zip(chosen[1:], outcomes, strict=True):
                 rows.append(Row(variation, outcome, streams_hash(outcome), not differences(first, outcome)))
-                _report_progress(told, rows[-1])
+                told(rows[-1])
         except BaseException:  # Ctrl-C too: the pool waits for its threads, and they for their processes
             runner.end()
             raise
     known: dict[int, Difference] = {}
-    found = [_explain_difference(row, rows[0], runner, known) for row in rows[1:] if not row.same]
-    duration, fingerprint = first.ticks * first.timestep, first.fingerprint
-    return Certificate(
-        scenario.title, scenario.world, duration, scenario.seed, rows, found, _attribute_notes(rows), fingerprint
-    )
-
-
-def _ticks_to_run(first: RunOutcome) -> int:
-    """How far the others are to go: where the first was stopped by an error, one step further than it came."""
-    return first.ticks + (1 if first.end else 0)
-
-
-def _report_progress(told: ProgressCallback | None, row: Row) -> None:
-    if told is not None:
-        told(row)
+    found = [_explain_difference(row, rows[0], runner, ticks, known) for row in rows[1:] if not row.same]
+    duration, notes = first.ticks * first.timestep, _attribute_notes(rows)
+    return Certificate(scenario.title, scenario.world, duration, scenario.seed, rows, found, notes, first.fingerprint)
 
 
 # ---------------------------------------------------------------------- what differs
 
 
-def _explain_difference(row: Row, first: Row, runner: ProcessRunner, known: dict[int, Difference]) -> Difference:
+def _explain_difference(
+    row: Row, first: Row, runner: ProcessRunner, ticks: int, known: dict[int, Difference]
+) -> Difference:
     """The first difference of a run, and who began it.
 
     Args:
         row, first: the run, and what it is compared with.
         runner: for running both again.
+        ticks: how far they go.
         known: differences that are explained, by their first tick; this one is put there.
     """
     found = differences(first.outcome, row.outcome)
@@ -263,7 +255,6 @@ def _explain_difference(row: Row, first: Row, runner: ProcessRunner, known: dict
         return plain
     if tick is not None and tick in known:  # no need to run it twice more
         return replace(known[tick], variation=row.variation, words=found[0].words, more=more)
-    ticks = _ticks_to_run(first.outcome)
     end, who = ticks if tick is None else min(ticks, tick + _TICK_MARGIN), None
     for _ in range(_WATCH_ATTEMPTS):
         who = find_culprit(*(runner.watch(r.variation, end, ticks // 2) for r in (first, row)))
@@ -309,7 +300,6 @@ def _attribute_notes(rows: Sequence[Row]) -> list[str]:
             others = row.outcome.remembered.get(owner, {})
             names = [n for n in attributes if n in others and others[n] != attributes[n]]
             if names:
-                notes[
-                    f"{owner} remembers something else from run to run ({', '.join(names[:4])}); nothing shows it"
-                ] = None
+                said = f"remembers something else from run to run ({', '.join(names[:4])}); nothing shows it"
+                notes[f"{owner} {said}"] = None
     return list(notes)

@@ -16,9 +16,16 @@ from simkit.run_spec import RunSpec
 from simkit.runtime import Simulation
 from simkit.runtime.engine.snapshot import state_hash
 from simkit.testing.certify.outcome import RunOutcome
-from simkit.testing.certify.plugin_calls import PluginCallRecorder, TickHashes, plugin_attributes, record_plugin_calls
-from simkit.testing.certify.topic_hashes import TopicHashes, plugin_title
-from simkit.testing.certify.value_hash import attribute_hashes, short_hash
+from simkit.testing.certify.run_witness import (
+    PluginCallRecorder,
+    TickHashes,
+    TopicHashes,
+    attribute_hashes,
+    plugin_attributes,
+    plugin_title,
+    record_plugin_calls,
+    short_hash,
+)
 from simkit.testing.certify.variations import Variation
 from simkit.testing.run_record.fingerprint import fingerprint
 from simkit.testing.scenarios.scenario_file import read_scenario
@@ -65,7 +72,10 @@ def run_child(request: ChildRequest) -> RunOutcome:
         if request.is_watched:
             stack.enter_context(record_plugin_calls(witness))
         try:
-            sim = stack.enter_context(_open_world(request))
+            scenario = request.scenario
+            if request.plugins_from is not None:
+                scenario = replace(scenario, plugins=read_scenario(request.plugins_from).plugins)
+            sim = stack.enter_context(open_scenario(scenario, render_thread=request.variation.render_thread))
         except SimkitError as error:
             return RunOutcome(failure=_picklable_error(error))
         if request.is_watched:
@@ -84,14 +94,6 @@ def _picklable_error(error: SimkitError) -> SimkitError:
     return InputError(str(error), error.code)
 
 
-def _open_world(request: ChildRequest) -> Simulation:
-
-    scenario = request.scenario
-    if request.plugins_from is not None:
-        scenario = replace(scenario, plugins=read_scenario(request.plugins_from).plugins)
-    return open_scenario(scenario, render_thread=request.variation.render_thread)
-
-
 class _ChildRun:
     """A run from its first tick to its last."""
 
@@ -101,23 +103,23 @@ class _ChildRun:
         self._request, self._scenario, self._sim = request, request.scenario, sim
         self._variation, self._witness, self._outcome = request.variation, witness, outcome
         self._ears: TopicHashes | None = None
+        self._marks = TickHashes(sim)
+        self._end = sim.engine.clock.ticks(self._scenario.longest) if request.ticks is None else request.ticks
+        self._half = self._end // 2 if request.half is None else request.half
 
     def run(self) -> None:
         """Fills the outcome."""
-        sim, outcome = self._sim, self._outcome
-        self._marks = TickHashes(sim)
-        end = sim.engine.clock.ticks(self._scenario.longest) if self._request.ticks is None else self._request.ticks
-        self._end = end
-        self._half = end // 2 if self._request.half is None else self._request.half
+        outcome = self._outcome
         try:
             if self._variation.detour == "reset":
                 self._reset()
             if self._variation.listening != "late":
                 self._listen()
             if self._request.ticks is None and self._scenario.until:
-                self._run_until()
+                # only `run_scenario` knows when the run is over
+                run_scenario(self._scenario, self._sim, self._take)
             else:
-                self._run_to(end)
+                self._run_to(self._end)
         except InputError as error:  # a command or a condition does not fit the world: nothing to certify
             outcome.failure = _picklable_error(error)
             return
@@ -127,16 +129,11 @@ class _ChildRun:
 
     # ------------------------------------------------------------------ running
 
-    def _run_until(self) -> None:
-        """As `simkit run` does, for only that knows when the run is over."""
-
-        run_scenario(self._scenario, self._sim, self._take)
-
     def _run_to(self, end: int) -> None:
         sim = self._sim
         has_turned = self._variation.detour != "restore"
         slice_ = max(1, sim.engine.clock.ticks(_SLICE))
-        with self._sender() as commands:
+        with ScenarioCommands(self._scenario, sim) as commands:
             while sim.tick < end:
                 if self._ears is None and sim.tick >= self._half:
                     self._listen()
@@ -150,15 +147,11 @@ class _ChildRun:
                 sim.step(min(stops) - sim.tick)
                 self._take()
 
-    def _sender(self) -> ScenarioCommands:
-
-        return ScenarioCommands(self._scenario, self._sim)
-
     def _reset(self) -> None:
         """Lives a little, and begins anew."""
         self._look_away(True)
-        with suppress(SimkitError), self._sender() as commands:  # what ends it comes again, if it is to
-            self._some_life(commands)
+        with suppress(SimkitError), ScenarioCommands(self._scenario, self._sim) as commands:
+            self._some_life(commands)  # what ends it comes again, if it is to
         self._sim.reset()
         self._look_away(False)
         self._marks.state.clear()
@@ -215,7 +208,7 @@ class _ChildRun:
         outcome.marks, outcome.inputs = self._marks.rows(sim.tick)
         outcome.heard = self._ears.heard() if self._ears is not None else {}
         for sensor in sim.engine.structure.all_sensors():
-            latest = _latest_readings(sensor)
+            latest = _latest_reading(sensor)
             outcome.latest[plugin_title(sensor)] = 0 if latest is None else short_hash(msgs.serialize(latest))
             outcome.sources[plugin_title(sensor)] = _class_source(sensor)
         for plugin in sim.engine.structure.all_plugins():
@@ -225,7 +218,7 @@ class _ChildRun:
         outcome.events = self._witness.events
 
 
-def _latest_readings(sensor: Any) -> Any:
+def _latest_reading(sensor: Any) -> Any:
     try:
         return sensor.latest
     except SimkitError:  # no renderer: it has been told
@@ -240,6 +233,3 @@ def _class_source(part: Any) -> tuple[str, int, int]:
         return inspect.getsourcefile(cls) or "", first, first + len(lines)
     except (OSError, TypeError):
         return "", 0, 0
-
-
-__all__ = ["ChildRequest", "run_child"]

@@ -68,22 +68,15 @@ def _find_hints(tree: ast.Module, span: tuple[int, int]) -> Iterator[tuple[int, 
             yield node.lineno, "os.environ depends on where the program was started"
         elif isinstance(node, ast.Attribute) and node.attr == "wanted":
             yield node.lineno, f"{_dotted_name(node)} depends on who listens; it may save work and change nothing"
-        elif isinstance(node, ast.Global):
-            yield node.lineno, f"global {', '.join(node.names)}: {_NOT_KEPT}"
-        elif isinstance(node, ast.Nonlocal):
-            yield node.lineno, f"nonlocal {', '.join(node.names)}: {_NOT_KEPT}"
+        elif isinstance(node, (ast.Global, ast.Nonlocal)):
+            yield node.lineno, f"{type(node).__name__.lower()} {', '.join(node.names)}: {_NOT_KEPT}"
         elif isinstance(node, (ast.Yield, ast.YieldFrom)):
             yield node.lineno, f"how far a generator has come: {_NOT_KEPT}"
         elif isinstance(node, ast.ClassDef) and span[0] <= node.lineno <= span[1]:
-            yield from _class_level_containers(node)
+            for line, name in _container_assignments(node.body):
+                yield line, f"{name} is the class's, not the instance's: {_NOT_KEPT}"
         elif isinstance(node, (ast.For, ast.comprehension)) and _is_set(node.iter, sets):
             yield node.iter.lineno, "goes through a set, whose order is another in every process; sorted() gives it one"
-
-
-def _class_level_containers(node: ast.ClassDef) -> Iterator[tuple[int, str]]:
-    """Lists, dicts and sets that a class has instead of its instances."""
-    for line, name in _container_assignments(node.body):
-        yield line, f"{name} is the class's, not the instance's: {_NOT_KEPT}"
 
 
 def _module_container_writes(tree: ast.Module) -> Iterator[tuple[int, str]]:
@@ -102,12 +95,14 @@ def _module_container_writes(tree: ast.Module) -> Iterator[tuple[int, str]]:
 
 def _container_assignments(statements: list[ast.stmt]) -> Iterator[tuple[int, str]]:
     """Line and name of what a list, a dict or a set is given to."""
+    containers = (ast.List, ast.Dict, ast.Set, ast.ListComp, ast.DictComp, ast.SetComp)
     for statement in statements:
-        if isinstance(statement, (ast.Assign, ast.AnnAssign)) and isinstance(
-            statement.value, (ast.List, ast.Dict, ast.Set, ast.ListComp, ast.DictComp, ast.SetComp)
-        ):
-            targets = statement.targets if isinstance(statement, ast.Assign) else [statement.target]
-            yield from ((statement.lineno, _dotted_name(target)) for target in targets)
+        if isinstance(statement, (ast.Assign, ast.AnnAssign)) and isinstance(statement.value, containers):
+            yield from ((statement.lineno, _dotted_name(target)) for target in _targets(statement))
+
+
+def _targets(statement: ast.Assign | ast.AnnAssign) -> list[ast.expr]:
+    return statement.targets if isinstance(statement, ast.Assign) else [statement.target]
 
 
 def _imported_names(node: ast.AST) -> Iterator[tuple[str, str]]:
@@ -130,10 +125,8 @@ def _call_hint(name: str, has_arguments: bool) -> str:
 
 def _names_of_sets(node: ast.AST) -> Iterator[str]:
     """What a statement gives a set to."""
-    if isinstance(node, ast.Assign) and _is_set(node.value, set()):
-        yield from (_dotted_name(target) for target in node.targets)
-    elif isinstance(node, ast.AnnAssign) and node.value is not None and _is_set(node.value, set()):
-        yield _dotted_name(node.target)
+    if isinstance(node, (ast.Assign, ast.AnnAssign)) and node.value is not None and _is_set(node.value, set()):
+        yield from map(_dotted_name, _targets(node))
 
 
 def _is_set(node: ast.expr, names: set[str]) -> bool:

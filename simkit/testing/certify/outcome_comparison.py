@@ -69,24 +69,20 @@ def _topic_differences(one: RunOutcome, other: RunOutcome) -> list[OutcomeDiffer
     for topic in sorted({*one.heard, *other.heard}):
         mine, theirs = one.heard.get(topic), other.heard.get(topic)
         if mine is None or theirs is None:
-            has = one if theirs is None else other
             known = mine or theirs
             if known is not None and (len(known.digests) or not (one.heard_from or other.heard_from)):
-                where = "the first run" if has is one else "this run"
+                where = "the first run" if theirs is None else "this run"
                 found.append(OutcomeDifference(f"{topic}: only in {where}", None, known.owner))
             continue
         if mine.type_name != theirs.type_name:
             found.append(OutcomeDifference(f"{topic}: {theirs.type_name}, not {mine.type_name}", None, mine.owner))
         index, tick = _first_message(mine, theirs, max(one.heard_from, other.heard_from))
         if index is not None:
-            count = "" if len(mine.digests) == len(theirs.digests) or other.heard_from else _count_text(mine, theirs)
-            when = f" at {tick_text(tick, one)}" if tick is not None else ""
-            found.append(OutcomeDifference(f"{topic}: message {index + 1}{when}{count}", tick, mine.owner))
+            words = f"{topic}: message {index + 1}" + (f" at {tick_text(tick, one)}" if tick is not None else "")
+            if len(mine.digests) != len(theirs.digests) and not other.heard_from:
+                words += f"; {len(mine.digests)} messages became {len(theirs.digests)}"
+            found.append(OutcomeDifference(words, tick, mine.owner))
     return found
-
-
-def _count_text(mine: TopicOutcome, theirs: TopicOutcome) -> str:
-    return f"; {len(mine.digests)} messages became {len(theirs.digests)}"
 
 
 def _first_message(mine: TopicOutcome, theirs: TopicOutcome, after: int) -> tuple[int | None, int | None]:
@@ -156,15 +152,12 @@ class Culprit:
 
 def find_culprit(one: RunOutcome, other: RunOutcome) -> Culprit | None:
     """Who began, of two runs whose plugins were watched; None where no plugin or sensor did."""
-    streams = [f for f in _topic_differences(one, other) if f.owner and f.tick is not None]
-    first = streams[0] if streams else None
-    first = min(streams, key=lambda f: f.tick or 0, default=first)
     called = _first_different_call(one.events, other.events, one)
-    if called is not None and (first is None or first.tick is None or called.tick <= first.tick):
+    ticks = {f.tick: f for f in reversed(_topic_differences(one, other)) if f.owner and f.tick is not None}
+    tick = min(ticks, default=None)
+    if tick is None or (called is not None and called.tick <= tick):
         return called
-    if first is not None and first.tick is not None:
-        return Culprit(first.owner, first.tick, f"what it publishes is other: {first.words}")
-    return called
+    return Culprit(ticks[tick].owner, tick, f"what it publishes is other: {ticks[tick].words}")
 
 
 def _first_different_call(ours: list[PluginCall], theirs: list[PluginCall], outcome: RunOutcome) -> Culprit | None:
@@ -174,23 +167,20 @@ def _first_different_call(ours: list[PluginCall], theirs: list[PluginCall], outc
     for mine, yours in zip(ours, theirs, strict=False):
         if (mine.tick, mine.owner, mine.hook) != (yours.tick, yours.owner, yours.hook):
             early = min(mine, yours, key=lambda event: event.tick)
+            if remembers and remembers.owner == early.owner:
+                return remembers
             words = f"its {early.hook} is called at {tick_text(early.tick, outcome)} in one of the runs only"
-            return (
-                remembers if remembers and remembers.owner == early.owner else Culprit(early.owner, early.tick, words)
-            )
+            return Culprit(early.owner, early.tick, words)
         if mine.before != yours.before:
             return remembers
         attributes = _other_attributes(mine, yours)
         if attributes and mine.owner not in known:
             known.add(mine.owner)
-            words = (
-                f"after its {mine.hook} at {tick_text(mine.tick, outcome)} it remembers something else: {attributes}"
-            )
-            remembers = remembers or Culprit(mine.owner, mine.tick, words, matters=False)
+            words = f"after its {mine.hook} at {tick_text(mine.tick, outcome)} it remembers something else"
+            remembers = remembers or Culprit(mine.owner, mine.tick, f"{words}: {attributes}", matters=False)
         if mine.after != yours.after:
             began = f"; {remembers.how}" if remembers and remembers.owner == mine.owner else ""
-            words = f"in its {mine.hook} it puts in something else{began}"
-            return Culprit(mine.owner, mine.tick, words)
+            return Culprit(mine.owner, mine.tick, f"in its {mine.hook} it puts in something else{began}")
     return remembers
 
 

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from itertools import count, islice
+from itertools import chain, count, islice
 from pathlib import Path
 from typing import Final, Literal
 
@@ -59,7 +58,9 @@ class Variation:
         if self.elsewhere:
             home = folder / "home"
             home.mkdir()
-            caches = [found.get("GZ_FUEL_CACHE_PATH", ""), *_fuel_cache(Path.home())]
+            # where models that Gazebo fetched lie, so that another HOME does not take a world's parts away
+            fetched = (Path.home() / name / "fuel" for name in (".gz", ".ignition"))
+            caches = [found.get("GZ_FUEL_CACHE_PATH", ""), *(str(place) for place in fetched if place.is_dir())]
             found["GZ_FUEL_CACHE_PATH"] = os.pathsep.join(place for place in caches if place)
             found.update(HOME=str(home), USERPROFILE=str(home), TZ="Asia/Kathmandu", LANG="C", LC_ALL="C")
             found.update(XDG_CACHE_HOME=str(home / "cache"), TMPDIR=str(folder), USER="somebody", COLUMNS="61")
@@ -74,9 +75,7 @@ class Variation:
 VARIATIONS: Final = (
     Variation("as it is", "hash seed 0, one thread, a callback on every topic"),
     Variation(
-        "elsewhere",
-        "other hash seed, working directory, HOME, TZ, LANG; messages kept",
-        *(4711, 2, True, "kept", True),
+        "elsewhere", "other hash seed, working directory, HOME, TZ, LANG; messages kept", 4711, 2, True, "kept", True
     ),
     Variation("unheard", "nobody subscribes; other hash seed, pictures drawn beside", 17, 4, True, "none"),
     Variation("late", "two subscribers on each topic from half way; other hash seed", 99, 2, False, "late"),
@@ -90,16 +89,9 @@ VARIATIONS: Final = (
 
 def choose_variations(runs: int) -> list[Variation]:
     """So many variations: the first ones, and from then on repetitions with other hash seeds."""
-    return list(islice(_endless_variations(), runs))
-
-
-def _endless_variations() -> Iterator[Variation]:
-    yield from VARIATIONS
-    for round_ in count(2):
-        for variation in VARIATIONS[1:]:
-            yield replace(variation, name=f"{variation.name} {round_}", hash_seed=variation.hash_seed + 7919 * round_)
-
-
-def _fuel_cache(home: Path) -> list[str]:
-    """Where models that Gazebo fetched lie, so that another HOME does not take a world's parts away."""
-    return [str(place) for place in (home / ".gz" / "fuel", home / ".ignition" / "fuel") if place.is_dir()]
+    repeated = (
+        replace(variation, name=f"{variation.name} {round_}", hash_seed=variation.hash_seed + 7919 * round_)
+        for round_ in count(2)
+        for variation in VARIATIONS[1:]
+    )
+    return list(islice(chain(VARIATIONS, repeated), runs))

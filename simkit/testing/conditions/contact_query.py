@@ -40,13 +40,9 @@ class ContactQuery:
     def now(self) -> tuple[tuple[int, int, int], ...]:
         """Contact number and two geoms of each, the first one's before the other's; of the state at this tick."""
         self._bind()
-        sim = self._sim
-        physics = sim.engine.physics
-        data = physics.fresh()
+        data = self._sim.engine.physics.fresh()
         sleepers = self._sleepers(data)
-        if sleepers:
-            return self._at_rest(len(sleepers))
-        return self._among(data) if data.ncon else ()
+        return self._at_rest(len(sleepers)) if sleepers else self._among(data)
 
     def force(self) -> float:
         """The sum of what presses the surfaces together [N]."""
@@ -106,12 +102,9 @@ class ContactQuery:
         pairs = contact.geom
         mine, others, found, up = self._mine, self._others, [], None
         # the usual few contacts cost less as Python's numbers than as arrays
-        rows = (
-            range(len(pairs))
-            if len(pairs) <= _MANY_CONTACTS
-            else self._concerned[pairs].any(axis=1).nonzero()[0].tolist()
-        )
-        geoms = pairs.tolist() if len(pairs) <= _MANY_CONTACTS else None
+        is_few = len(pairs) <= _MANY_CONTACTS
+        rows = range(len(pairs)) if is_few else self._concerned[pairs].any(axis=1).nonzero()[0].tolist()
+        geoms = pairs.tolist() if is_few else None
         for row in rows:
             one, two = geoms[row] if geoms is not None else pairs[row].tolist()
             if mine[one] and others[two]:

@@ -78,9 +78,8 @@ class Packer:
         head = json.dumps({"arrays": self._entries, "about": about}, separators=(",", ":"), ensure_ascii=False)
         text = head.encode()
         whole = b"".join((_MAGIC, struct.pack("<I", len(text)), text, *self._parts))
-        preset = (
-            _PRESET if len(whole) <= _LONG_BLOCK_BYTES else _FAST
-        )  # of large worlds most is alike, and the best takes minutes
+        # of large worlds most is alike, and the best takes minutes
+        preset = _PRESET if len(whole) <= _LONG_BLOCK_BYTES else _FAST
         return lzma.compress(whole, format=lzma.FORMAT_XZ, check=lzma.CHECK_CRC64, preset=preset)
 
     def _whole_numbers(self, values: Array, step: float, entry: dict[str, object]) -> Array | None:
@@ -145,18 +144,16 @@ class Unpacker:
             raise PackingError(f"array {number} is damaged: {error}") from None
 
     def _of(self, entry: JsonObject, data: bytes) -> Array:
-        shape = tuple(entry["shape"])
+        shape, dtype = tuple(entry["shape"]), np.dtype(entry["dtype"])
         stored = (1, *shape[1:]) if entry["constant"] else shape
-        dtype = np.dtype(entry["dtype"])
-        if not entry["order"]:
-            values = _join_byte_planes(data, dtype, math.prod(stored)).reshape(stored)
-        else:
-            count = math.prod(stored)
-            whole = _unzigzag(_join_byte_planes(data, np.dtype(entry["width"]), count)).reshape(stored)
-            whole = _undo_prediction(whole, entry["order"])
+        kept_as = np.dtype(entry["width"]) if entry["order"] else dtype
+        values = _join_byte_planes(data, kept_as, math.prod(stored))
+        if entry["order"]:
+            whole = _undo_prediction(_unzigzag(values).reshape(stored), entry["order"])
             values = whole.astype(dtype) if not entry["step"] else (whole * entry["step"]).astype(dtype)
             if entry["kinds"] is not None:
                 values = self._with_kinds(values, entry)
+        values = values.reshape(stored)
         return np.broadcast_to(values, shape).copy() if entry["constant"] else values
 
     def _with_kinds(self, values: Array, entry: JsonObject) -> Array:
@@ -249,16 +246,13 @@ def _entropy_bits(data: bytes, count: int) -> float:
 
 
 def _difference(whole: Array, order: str) -> Array:
-    found = whole.copy()
     if order == "across":
-        found[:, 1:] = whole[:, 1:] - whole[:, :-1]
-        if len(found) > 1:
-            found[1:, 0] = whole[1:, 0] - whole[:-1, 0]
+        found = np.diff(whole, axis=1, prepend=0)
+        found[:, 0] = np.diff(whole[:, 0], axis=0, prepend=0)
         return found
-    found[1:] = whole[1:] - whole[:-1]
-    if order == "time2":
-        return _difference(found, "time")
-    return found
+    for _ in range(2 if order == "time2" else 1):
+        whole = np.diff(whole, axis=0, prepend=0)
+    return whole
 
 
 def _undo_prediction(residual: Array, order: str) -> Array:
@@ -266,9 +260,7 @@ def _undo_prediction(residual: Array, order: str) -> Array:
         found = residual.copy()
         found[:, 0] = np.cumsum(residual[:, 0], axis=0)
         return np.asarray(np.cumsum(found, axis=1))
-    if order in ("time", "time2"):
-        residual = np.cumsum(residual, axis=0)
-    if order == "time2":
+    for _ in range(("plain", "time", "time2").index(order)):
         residual = np.cumsum(residual, axis=0)
     return np.asarray(residual)
 

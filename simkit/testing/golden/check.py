@@ -60,28 +60,26 @@ def check_golden(
     place = golden_folder(folder)
     golden = read_golden(place)
     asked = _current_scenario(place, golden, scenario)
-    with _recorded_environment(golden.environment):
-        return _verdict(place, golden, asked, bless, other_renderer, budget_s if causes else None)
+    with _recorded_environment(golden.environment), _run_today(golden, asked) as (run, elapsed):
+        comparison = compare(golden, run)
+        verdict = Verdict(place.resolve().name, golden, run, comparison, None, run.checks, elapsed)
+        if not comparison.passed and bless is not None:
+            make_golden(place, verdict, bless.strip(), other_renderer=other_renderer)
+        elif not comparison.passed and causes:
+            verdict.explanation = explain(golden, run, comparison, budget_s=budget_s)
+        return verdict
 
 
-def _verdict(
-    place: Path, golden: RunRecord, scenario: RunSpec, bless: str | None, other_renderer: bool, budget_s: float | None
-) -> Verdict:
-    """The verdict over a run of today."""
+@contextmanager
+def _run_today(golden: RunRecord, scenario: RunSpec) -> Iterator[tuple[RunRecord, float]]:
+    """A run of today with its wall time [s]; its simulation is closed at the end."""
     started = time.perf_counter()
     try:
         run = run_record(scenario)
     except InputError as error:
         raise _append_world_changes(error, golden, scenario) from None
     try:
-        elapsed = time.perf_counter() - started
-        comparison = compare(golden, run)
-        verdict = Verdict(golden_name(place), golden, run, comparison, None, run.checks, elapsed)
-        if not comparison.passed and bless is not None:
-            make_golden(place, verdict, bless.strip(), other_renderer=other_renderer)
-        elif not comparison.passed and budget_s is not None:
-            verdict.explanation = explain(golden, run, comparison, budget_s=budget_s)
-        return verdict
+        yield run, time.perf_counter() - started
     finally:
         if run.simulation is not None:
             run.simulation.close()
@@ -108,39 +106,27 @@ def _append_world_changes(error: InputError, golden: RunRecord, scenario: RunSpe
     return InputError(f"{error}\n{lines}", error.code)
 
 
-def golden_name(folder: Path) -> str:
-    """What a golden run is called: its folder."""
-    return folder.resolve().name
-
-
 def _current_scenario(place: Path, golden: RunRecord, given: RunSpec | None) -> RunSpec:
     """What is run: read anew from the scenario's file, for that is what somebody may have changed."""
+    stored = golden.scenario
     if given is not None:
         return given
-    stored = golden.scenario
-    if stored.file is not None:
-        if not stored.file.is_file():
-            raise InputError(
-                f"SK-GOLDEN-006 {place}: its scenario {stored.file.resolve()} is not there\n"
-                "    help: put it back, or record anew",
-                "SK-GOLDEN-006",
-            )
-
+    if stored.file is not None and stored.file.is_file():
         return read_scenario(stored.file)
-    if stored.test:
-        raise InputError(
-            f"SK-GOLDEN-006 {place} is of a test that makes plugins or steps by itself\n"
-            f"    help: pytest {shlex.quote(os.path.normpath(place / '../../..' / stored.test))}",
-            "SK-GOLDEN-006",
+    if stored.file is not None:
+        why = f": its scenario {stored.file.resolve()} is not there\n    help: put it back, or record anew"
+    elif stored.test:
+        test = shlex.quote(os.path.normpath(place / "../../.." / stored.test))
+        why = f" is of a test that makes plugins or steps by itself\n    help: pytest {test}"
+    elif stored.plugins:
+        why = (
+            f" was recorded with plugins made in Python ({', '.join(map(str, stored.plugins))}), which are not here\n"
+            "    help: check it where they are made: the fixture sensor_regression, or "
+            "simkit.testing.golden.check.check_golden(folder, scenario=...)"
         )
-    if stored.plugins:
-        raise InputError(
-            f"SK-GOLDEN-006 {place} was recorded with plugins made in Python ({', '.join(map(str, stored.plugins))}), "
-            "which are not here\n    help: check it where they are made: the fixture sensor_regression, or "
-            "simkit.testing.golden.check.check_golden(folder, scenario=...)",
-            "SK-GOLDEN-006",
-        )
-    return stored
+    else:
+        return stored
+    raise InputError(f"SK-GOLDEN-006 {place}{why}", "SK-GOLDEN-006")
 
 
 @contextmanager

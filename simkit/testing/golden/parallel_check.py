@@ -78,16 +78,9 @@ def check_golden_folder(folder: Path, wanted: CheckOptions) -> CheckResult:
     from simkit.testing.golden.check import check_golden
 
     try:
-        verdict = check_golden(
-            folder,
-            bless=wanted.bless,
-            other_renderer=wanted.other_renderer,
-            causes=wanted.causes,
-            budget_s=wanted.budget_s,
-        )
+        return CheckResult(folder, check_golden(folder, **vars(wanted)))
     except SimkitError as error:
         return CheckResult(folder, error=error)
-    return CheckResult(folder, verdict)
 
 
 def _check_in_parallel(folders: list[Path], wanted: CheckOptions, jobs: int) -> list[CheckResult]:

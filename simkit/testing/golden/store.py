@@ -72,10 +72,11 @@ def write_golden(
     )
     try:
         place.mkdir(parents=True, exist_ok=True)
-        with _locked_folder(place):
+        with _locked_folder(place) as handle:
             _write_atomically(place, name, data)
             _write_atomically(place, MAIN_FILE, (text + "\n").encode())
-            _sync_folder(place)
+            if handle is not None:
+                os.fsync(handle)
             _remove_old_data(place, name)
     except OSError as error:
         message = f"SK-GOLDEN-005 {place} cannot be written: {error.strerror or error}"
@@ -218,10 +219,14 @@ def _write_atomically(folder: Path, name: str, data: bytes) -> None:
 
 
 @contextmanager
-def _locked_folder(folder: Path) -> Iterator[None]:
-    """Lets one process at a time write in a folder: of two, the last one's run is golden, as a whole."""
-    if not hasattr(os, "O_DIRECTORY"):  # Windows has no lock for a folder
-        yield
+def _locked_folder(folder: Path) -> Iterator[int | None]:
+    """Lets one process at a time write in a folder: of two, the last one's run is golden, as a whole.
+
+    Yields:
+        A descriptor of the folder; None on Windows, which has no lock for one.
+    """
+    if not hasattr(os, "O_DIRECTORY"):
+        yield None
         return
     import fcntl
 
@@ -229,18 +234,9 @@ def _locked_folder(folder: Path) -> Iterator[None]:
     try:
         with suppress(OSError):  # a file system without locks
             fcntl.flock(handle, fcntl.LOCK_EX)
-        yield
+        yield handle
     finally:
         os.close(handle)
-
-
-def _sync_folder(folder: Path) -> None:
-    if hasattr(os, "O_DIRECTORY"):
-        handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
-        try:
-            os.fsync(handle)
-        finally:
-            os.close(handle)
 
 
 def _remove_old_data(folder: Path, name: str) -> None:

@@ -1,18 +1,27 @@
-"""What the bits of a run depend on beside its world: versions, processor, system, renderer."""
+"""What a run depends on beside its scenario: versions, processor, renderer, and hashes of its files."""
 
 from __future__ import annotations
 
+import ast
 import hashlib
 import platform
-from collections.abc import Mapping
+import sys
+from collections.abc import Iterator, Mapping
+from dataclasses import fields, is_dataclass
 from functools import cache
 from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from simkit.errors import RenderError
+from simkit.params import Params
+from simkit.testing.run_record.world_values import file_hash, plugin_value_files, values_of_files
 from simkit.version import __version__
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+
 
 RENDERER: Final = "renderer"
 """What draws pictures; it counts only where there are some."""
@@ -102,3 +111,108 @@ def _renderer() -> str:
     except RenderError as error:
         return f"none ({error.code})"
     return gl_context.describe_renderer() or "unknown"
+
+
+_MAX_MODULES: Final = 100
+_FILE_NAMING_SUFFIXES: Final = frozenset((".obj", ".dae", ".gltf", ".glb"))  # formats of meshes that name further files
+_SIMKIT_FOLDER: Final = Path(__file__).resolve().parents[2]
+
+
+def source_hashes(sim: Simulation) -> dict[str, str]:
+    """Meshes, pictures and the code of plugins that are not simkit's own: name -> SHA-256.
+
+    A name is a file's last parts, as many as tell it from the others.
+    """
+
+    of_plugins = plugin_value_files(sim)
+    are_leaves = values_of_files(of_plugins)[2]
+    paths = dict.fromkeys(
+        [*_files_of_scene(sim.world), *_plugin_code_files(sim), *(p for p in of_plugins if p not in are_leaves)]
+    )
+    found = {}
+    for path, name in _short_names(list(paths)).items():
+        digest = file_hash(path)[0]
+        if digest:
+            found[name] = digest
+    return dict(sorted(found.items()))
+
+
+def _files_of_scene(value: object) -> Iterator[Path]:
+    """The files that a scene names."""
+    if isinstance(value, Path):
+        yield value
+        yield from _files_of_mesh(value)
+    elif is_dataclass(value) and not isinstance(value, type):
+        for field in fields(value):
+            if field.name not in ("where", "mjcf", "moved_by"):
+                yield from _files_of_scene(getattr(value, field.name))
+    elif isinstance(value, (tuple, list)):
+        for item in value:
+            yield from _files_of_scene(item)
+    elif isinstance(value, Params):
+        if value.value.startswith("/") and len(value.value) < 4096 and Path(value.value).is_file():
+            yield Path(value.value)
+        for child in value.children:
+            yield from _files_of_scene(child)
+
+
+def _files_of_mesh(mesh: Path) -> Iterator[Path]:
+    """Materials, pictures and buffers that a mesh names itself."""
+    if mesh.suffix.lower() not in _FILE_NAMING_SUFFIXES:
+        return
+    from simkit.compiler.meshes.mesh_part import MeshFileError
+    from simkit.compiler.meshes.mesh_reader import convert_file
+
+    try:
+        yield from (Path(path) for path, known in convert_file(mesh).companions.items() if known is not None)
+    except (MeshFileError, OSError):
+        return  # loading said so
+
+
+def _plugin_code_files(sim: Simulation) -> Iterator[Path]:
+    """The files of plugins and sensors that somebody else wrote."""
+    for part in (*sim.engine.structure.all_plugins(), *sim.engine.structure.all_sensors()):
+        for kind in type(part).__mro__:
+            file = getattr(sys.modules.get(kind.__module__), "__file__", None)
+            if file and kind is not object:
+                path = Path(file).resolve()
+                if _SIMKIT_FOLDER not in path.parents and not _is_standard_library(kind.__module__):
+                    yield from imported_files(path)
+
+
+def imported_files(path: Path) -> list[Path]:
+    """A file of code and those beside it that it imports, and they: a change in any of them is one of the plugin."""
+    found = [path]
+    for file in found:  # grows on the way
+        if len(found) > _MAX_MODULES:
+            break
+        try:
+            tree = ast.parse(file.read_bytes())
+        except (OSError, SyntaxError, ValueError, RecursionError, MemoryError):
+            continue
+        for node in ast.walk(tree):
+            names = [alias.name for alias in node.names] if isinstance(node, ast.Import | ast.ImportFrom) else []
+            names += [node.module] if isinstance(node, ast.ImportFrom) and node.module else []
+            for name in names:
+                beside = file.parent.joinpath(*name.split("."))
+                for one in (beside.with_suffix(".py"), beside / "__init__.py"):
+                    if one not in found and one.is_file():
+                        found.append(one)
+    return found
+
+
+def _is_standard_library(module: str) -> bool:
+    return module.partition(".")[0] in sys.stdlib_module_names
+
+
+def _short_names(paths: list[Path]) -> dict[Path, str]:
+    """A name for each path: its last part, and more of them where two would be called the same."""
+    names = {path: path.name for path in paths}
+    for parts in range(2, 8):
+        taken: dict[str, int] = {}
+        for name in names.values():
+            taken[name] = taken.get(name, 0) + 1
+        if max(taken.values(), default=1) == 1:
+            break
+        names = {p: n if taken[n] == 1 else "/".join(p.parts[-parts:]) for p, n in names.items()}
+    return names

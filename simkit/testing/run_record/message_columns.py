@@ -14,7 +14,7 @@ from simkit import msgs
 from simkit.testing.run_record.record import Column
 
 _STAMPS: Final = ("builtin_interfaces/msg/Time", "builtin_interfaces/msg/Duration")
-_BASE, _NAME, _ARRAY, _SEQUENCE = 1, 2, 3, 4  # as the type store numbers the kinds of fields
+_BASE, _NAME = 1, 2  # as the type store numbers the kinds of fields; what is neither is a list
 _NS: Final = 1_000_000_000
 
 
@@ -25,52 +25,42 @@ class MessageFields(NamedTuple):
         numbers, texts, stamps: paths of single ones, with the type of the numbers.
         arrays: of lists of numbers, with their type.
         lists: of lists of texts.
-        parts: of lists of messages, with their fields.
+        parts: of lists of messages, with their type.
     """
 
     numbers: dict[str, str]
-    texts: tuple[str, ...]
-    stamps: tuple[str, ...]
+    texts: list[str]
+    stamps: list[str]
     arrays: dict[str, str]
-    lists: tuple[str, ...]
-    parts: dict[str, tuple[str, MessageFields]]
+    lists: list[str]
+    parts: dict[str, str]
 
 
 @cache
 def message_fields(type_name: str) -> MessageFields:
     """What a message type holds."""
-    store = msgs.type_store()
-    found = MessageFields({}, (), (), {}, (), {})
-    texts: list[str] = []
-    stamps: list[str] = []
-    lists: list[str] = []
+    found = MessageFields({}, [], [], {}, [], {})
+    _add_fields(found, type_name, "")
+    return found
 
-    def walk(name: str, prefix: str) -> None:
-        definition: Any = store.fielddefs[msgs.full_name(name)][1]
-        for field, (kind, of) in definition:
-            path = prefix + field
-            if int(kind) == _NAME:
-                if of in _STAMPS:
-                    stamps.append(path)
-                else:
-                    walk(str(of), path + ".")
-            elif int(kind) == _BASE:
-                base = str(of[0])
-                if base in ("string", "wstring"):
-                    texts.append(path)
-                else:
-                    found.numbers[path] = _dtype(base)
+
+def _add_fields(found: MessageFields, type_name: str, prefix: str) -> None:
+    definition: Any = msgs.type_store().fielddefs[msgs.full_name(type_name)][1]
+    for field, (kind, of) in definition:
+        path = prefix + field
+        is_list = int(kind) not in (_BASE, _NAME)
+        inner_kind, inner = of[0] if is_list else (kind, of)
+        if int(inner_kind) == _NAME:
+            if is_list:
+                found.parts[path] = str(inner)
+            elif inner in _STAMPS:
+                found.stamps.append(path)
             else:
-                inner_kind, inner = of[0]
-                if int(inner_kind) == _NAME:
-                    found.parts[path] = (str(inner), message_fields(str(inner)))
-                elif str(inner[0]) in ("string", "wstring"):
-                    lists.append(path)
-                else:
-                    found.arrays[path] = _dtype(str(inner[0]))
-
-    walk(type_name, "")
-    return found._replace(texts=tuple(texts), stamps=tuple(stamps), lists=tuple(lists))
+                _add_fields(found, str(inner), path + ".")
+        elif str(inner[0]) in ("string", "wstring"):
+            (found.lists if is_list else found.texts).append(path)
+        else:
+            (found.arrays if is_list else found.numbers)[path] = _dtype(str(inner[0]))
 
 
 def _dtype(base: str) -> str:
@@ -97,7 +87,7 @@ class MessageRows:
         self._kept: dict[str, list[Any]] = {path: [] for path in (*self._arrays, *self._lists)}
         self._parts = {
             path: (attrgetter(path), MessageRows(kind, _nested_path(skip, path)))
-            for path, (kind, _) in fields.parts.items()
+            for path, kind in fields.parts.items()
             if path not in skip
         }
         self._counts: dict[str, list[int]] = {path: [] for path in self._parts}
@@ -120,23 +110,16 @@ class MessageRows:
 
     def columns(self) -> tuple[dict[str, Column], dict[str, list[str]]]:
         """Numbers and texts by path."""
-        fields, count = self._fields, len(self._rows)
+        fields = self._fields
         columns: dict[str, Column] = {}
         words: dict[str, list[str]] = {}
-        at = 0
-        turned = list(zip(*self._rows, strict=True)) if count else []
-
-        def next_of() -> tuple[Any, ...]:
-            nonlocal at
-            at += 1
-            return turned[at - 1] if turned else ()
-
+        turned = zip(*self._rows, strict=True)
         for path in self._numbers:
-            columns[path] = Column(np.array(next_of(), dtype=fields.numbers[path]))
+            columns[path] = Column(np.array(next(turned, ()), dtype=fields.numbers[path]))
         for path in fields.texts:
-            words[path] = [str(text) for text in next_of()]
+            words[path] = [str(text) for text in next(turned, ())]
         for path in fields.stamps:
-            sec, nanosec = (np.array(next_of(), dtype=np.int64) for _ in range(2))
+            sec, nanosec = (np.array(next(turned, ()), dtype=np.int64) for _ in range(2))
             columns[path] = Column(sec * _NS + nanosec)
         for path in self._arrays:
             columns[path] = join_arrays([np.atleast_1d(a) for a in self._kept[path]], fields.arrays[path])

@@ -5,7 +5,8 @@ statistics.
 from __future__ import annotations
 
 import zlib
-from typing import TYPE_CHECKING, Any, Final, Literal, Protocol
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Final, Literal
 from zlib import crc32
 
 import numpy as np
@@ -96,14 +97,23 @@ _CLOUD_TYPES: Final = {
 }  # fmt: skip
 
 
-class MessageRecorder(Protocol):
-    """Takes the messages of one topic, and says in the end what they were."""
+class MessageRecorder:
+    """Takes the messages of one topic, and says in the end what they were: all fields as they are.
 
-    def take(self, message: object) -> None:
+    Args:
+        type_name: of the messages.
+    """
+
+    def __init__(self, type_name: str) -> None:
+        self._rows = MessageRows(type_name, _BINARY_FIELDS.get(type_name, frozenset()))
+
+    def take(self, message: Message) -> None:
         """One message more; what is kept of it is copied."""
+        self._rows.take(message)
 
     def fill(self, stream: Stream) -> None:
         """Puts what was taken into a stream."""
+        stream.columns, stream.words = self._rows.columns()
 
 
 def message_recorder_for(scenario: RunSpec, sim: Simulation, topic: str, type_name: str) -> MessageRecorder:
@@ -112,45 +122,24 @@ def message_recorder_for(scenario: RunSpec, sim: Simulation, topic: str, type_na
         return _ImageRecorder(scenario.picture)
     if type_name == _CLOUD:
         return _CloudRecorder()
-
-    plain = _FieldRecorder(type_name)
-    residuals = noise_recorder_for(scenario, sim, topic, type_name)
-    return plain if residuals is None else _NoisyFieldRecorder(plain, residuals)
-
-
-class _FieldRecorder:
-    """All fields as they are."""
-
-    def __init__(self, type_name: str) -> None:
-        self._rows = MessageRows(type_name, _BINARY_FIELDS.get(type_name, frozenset()))
-
-    def take(self, message: object) -> None:
-        self._rows.take(message)
-
-    def fill(self, stream: Stream) -> None:
-        stream.columns, stream.words = self._rows.columns()
+    fields = message_fields(type_name)
+    of_noise = [
+        path
+        for path in (*fields.numbers, *fields.arrays)
+        if any(t.statistics for t in scenario.tolerance(topic, path)[:1])
+    ]
+    sensor = next((s for s in sim.engine.structure.all_sensors() if s.topic == topic), None)
+    if not of_noise or sensor is None:
+        return MessageRecorder(type_name)
+    return _NoiseRecorder(sensor, type_name, of_noise)
 
 
-class _NoisyFieldRecorder:
-    """All fields but those of which the statistics are kept."""
-
-    def __init__(self, plain: _FieldRecorder, residuals: NoiseRecorder) -> None:
-        self._plain, self._residuals = plain, residuals
-
-    def take(self, message: object) -> None:
-        self._plain.take(message)
-        self._residuals.take(message)
-
-    def fill(self, stream: Stream) -> None:
-        self._plain.fill(stream)
-        self._residuals.fill(stream)
-
-
-class _ImageRecorder:
+class _ImageRecorder(MessageRecorder):
     """Pictures, made small."""
 
     def __init__(self, longest: int) -> None:
-        self._plain, self._longest = _FieldRecorder(_IMAGE), longest
+        super().__init__(_IMAGE)
+        self._longest = longest
         self._small: list[Array] = []
         self._tiles: list[Array] = []
         self._hashes: list[int] = []
@@ -159,9 +148,8 @@ class _ImageRecorder:
         self._encoding, self._is_odd = "", False
 
     def take(self, message: Message) -> None:
-
         number = len(self._hashes)
-        self._plain.take(message)
+        super().take(message)
         self._hashes.append(crc32(message.data))
         shape = (int(message.height), int(message.width))
         if self._shape is None:
@@ -180,7 +168,7 @@ class _ImageRecorder:
             del self._small[1::2], self._tiles[1::2]
 
     def fill(self, stream: Stream) -> None:
-        self._plain.fill(stream)
+        super().fill(stream)
         if self._shape is None or not self._small or self._is_odd:
             return
         kept = np.arange(0, len(self._hashes), self._every)
@@ -194,16 +182,16 @@ class _ImageRecorder:
         )
 
 
-class _CloudRecorder:
+class _CloudRecorder(MessageRecorder):
     """Clouds of points, thinned; the digest has all of them."""
 
     def __init__(self) -> None:
-        self._plain = _FieldRecorder(_CLOUD)
+        super().__init__(_CLOUD)
         self._values: dict[str, list[Array]] = {}
         self._names: list[str] = []
 
     def take(self, message: Message) -> None:
-        self._plain.take(message)
+        super().take(message)
         points = points_of_cloud(message)
         self._names.append(", ".join(points.dtype.names or ()))
         step = max(1, -(-len(points) // _POINTS_KEPT))
@@ -213,7 +201,7 @@ class _CloudRecorder:
                 self._values.setdefault(name, []).append(np.array(thin[name]))
 
     def fill(self, stream: Stream) -> None:
-        self._plain.fill(stream)
+        super().fill(stream)
         stream.words["fields"] = list(self._names)
         for name, arrays in self._values.items():
             if len(arrays) == len(stream.times_ns):
@@ -255,42 +243,27 @@ def points_of_cloud(message: Message) -> Any:
     return np.frombuffer(data[: count * step].tobytes(), dtype=dtype)
 
 
-def noise_recorder_for(scenario: RunSpec, sim: Simulation, topic: str, type_name: str) -> NoiseRecorder | None:
-    """What keeps the statistics of a topic's noise; None where nobody asks for them, or no sensor publishes it."""
-
-    fields = message_fields(type_name)
-    paths = [
-        path
-        for path in (*fields.numbers, *fields.arrays)
-        if any(t.statistics for t in scenario.tolerance(topic, path)[:1])
-    ]
-    sensor = next((s for s in sim.engine.structure.all_sensors() if s.topic == topic), None)
-    if not paths or sensor is None:
-        return None
-    return NoiseRecorder(sensor, type_name, frozenset(paths))
-
-
-class NoiseRecorder:
-    """Collects readings and truths of some fields.
+class _NoiseRecorder(MessageRecorder):
+    """All fields but those of which the statistics are kept, of readings less truths.
 
     Args:
         sensor: that publishes.
         type_name: of its messages.
-        paths: of the fields.
+        paths: of the fields whose statistics are kept.
     """
 
-    def __init__(self, sensor: Any, type_name: str, paths: frozenset[str]) -> None:
+    def __init__(self, sensor: Any, type_name: str, paths: Sequence[str]) -> None:
+        super().__init__(type_name)
         self._sensor, self._paths = sensor, paths
         self._read, self._true = MessageRows(type_name), MessageRows(type_name)
 
-    def take(self, message: object) -> None:
-        """A reading that is published now."""
+    def take(self, message: Message) -> None:
+        super().take(message)
         self._read.take(message)
         self._true.take(self._sensor.truth)
 
     def fill(self, stream: Stream) -> None:
-        """Puts statistics in the place of the samples."""
-
+        super().fill(stream)
         read, true = self._read.columns()[0], self._true.columns()[0]
         times = stream.times_ns * 1e-9
         period = float(np.median(np.diff(times))) if len(times) > 1 else 0.0

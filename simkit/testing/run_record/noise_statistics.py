@@ -189,10 +189,7 @@ def _distribution_difference(
         return None
     places = np.unique(np.concatenate([a, b]))
     low_a, high_a = _bounds(a, places)
-    gap = np.maximum(
-        low_a - _bounds(b, places + absolute)[1],
-        _bounds(b, places - absolute)[0] - high_a,
-    )
+    gap = np.maximum(low_a - _bounds(b, places + absolute)[1], _bounds(b, places - absolute)[0] - high_a)
     at = int(np.argmax(gap))
     counts = _sample_counts(golden, c), _sample_counts(run, c)
     limit = math.sqrt(-math.log(FALSE_ALARM / 2.0) / 2.0 * (1.0 / counts[0] + 1.0 / counts[1]))
@@ -249,12 +246,8 @@ def _sigmas(count: float) -> float:
 
 def _bounds(quantiles: Floats, places: Floats) -> tuple[Floats, Floats]:
     """The least and the greatest part of a sample that can lie at or below each place, by its quantiles."""
-    steps = quantiles.size - 1
-    at_least = np.searchsorted(quantiles, places, side="right") - 1
-    at_most = np.searchsorted(quantiles, places, side="right")
-    low = np.clip(at_least / steps, 0.0, 1.0)
-    high = np.clip(at_most / steps, 0.0, 1.0)
-    return low, high
+    steps, at_most = quantiles.size - 1, np.searchsorted(quantiles, places, side="right")
+    return np.clip((at_most - 1) / steps, 0.0, 1.0), np.clip(at_most / steps, 0.0, 1.0)
 
 
 # ---------------------------------------------------------------------- numbers of a sample

@@ -20,10 +20,9 @@ from simkit.msgs import Message
 from simkit.recording.bags.recorder import matches_topic
 from simkit.recording.message_taps import MessageQueue, TopicTaps
 from simkit.run_spec import RunSpec
-from simkit.testing.run_record.fingerprint import fingerprint
+from simkit.testing.run_record.fingerprint import fingerprint, source_hashes
 from simkit.testing.run_record.message_recorder import MessageRecorder, message_recorder_for
 from simkit.testing.run_record.record import RunRecord, Stream
-from simkit.testing.run_record.source_files import source_hashes
 from simkit.testing.run_record.state_recorder import StateRecorder, fields_of_model
 from simkit.testing.run_record.world_values import values_of_simulation
 from simkit.testing.scenarios.scenario_run import open_scenario, run_scenario
@@ -90,12 +89,12 @@ def _sort_points(part: Any, fields: tuple[str, ...]) -> object:
     order = sorted(range(len(keys)), key=keys.__getitem__)
     if order == list(range(len(keys))):
         return part
-    moved = {field: _reorder(column, order) for field, column in columns.items() if len(column) == len(keys)}
+    moved: dict[str, Any] = {
+        field: column[order] if isinstance(column, np.ndarray) else [column[i] for i in order]
+        for field, column in columns.items()
+        if len(column) == len(keys)
+    }
     return replace(part, **moved)
-
-
-def _reorder(column: Any, order: list[int]) -> object:
-    return column[order] if isinstance(column, np.ndarray) else [column[i] for i in order]
 
 
 def _without_entity_numbers(contact: Message) -> object:
@@ -131,27 +130,22 @@ def run_record(scenario: RunSpec, *, sim: Simulation | None = None) -> RunRecord
         InputError: the world, a command or a check cannot be used.
         RenderError: there are pictures to be drawn and nothing that draws.
     """
-    with contextlib.chdir("."):  # where a plugin may have gone is nobody else's place
-        return _run_and_record(scenario, sim)
-
-
-def _run_and_record(scenario: RunSpec, sim: Simulation | None) -> RunRecord:
-
-    opened = open_scenario(scenario) if sim is None else sim
     results: tuple[CheckResult, ...] = ()
     failed: Exception | None = None
-    try:
-        with RunRecorder(scenario, opened, scenario.longest) as capture:
-            try:
-                ended = run_scenario(scenario, opened)
-                end, results = ended.reason, ended.results
-            except (SimulationDiverged, PluginError, SubscriberError) as error:
-                end, failed = str(error), error
-            record = capture.record(end)
-    except BaseException:
-        if sim is None:
-            opened.close()
-        raise
+    with contextlib.chdir("."):  # where a plugin may have gone is nobody else's place
+        opened = open_scenario(scenario) if sim is None else sim
+        try:
+            with RunRecorder(scenario, opened, scenario.longest) as capture:
+                try:
+                    ended = run_scenario(scenario, opened)
+                    end, results = ended.reason, ended.results
+                except (SimulationDiverged, PluginError, SubscriberError) as error:
+                    end, failed = str(error), error
+                record = capture.record(end)
+        except BaseException:
+            if sim is None:
+                opened.close()
+            raise
     record.checks, record.error = results, failed
     return record
 

@@ -97,7 +97,7 @@ def element_keys(elements: Iterable[Params]) -> list[str]:
         named = all(names) and len(set(names)) == len(names)
         for number, one in enumerate(several, 1):
             if named:
-                keys[id(one)] = f"{name}[{_escaped(one.attributes['name'])}]"
+                keys[id(one)] = f"{name}[{escaped_key(one.attributes['name'])}]"
             else:
                 keys[id(one)] = name if len(several) == 1 else f"{name}[{number}]"
     return [keys[id(one)] for one in found]
@@ -136,7 +136,7 @@ class _WorldWalk:
             self.dataclass(value, path, place)
         elif isinstance(value, Mapping):
             for key in sorted(value, key=str):
-                self.value(value[key], f"{path}[{_escaped(str(key))}]", place)
+                self.value(value[key], f"{path}[{escaped_key(str(key))}]", place)
         elif isinstance(value, (tuple, list, frozenset)):
             self._items(value, path, place)
 
@@ -148,7 +148,7 @@ class _WorldWalk:
                 self._put(path, [_scalar(item) for item in items], place)
             return
         for key, item in zip(item_keys(items), items, strict=True):
-            self.value(item, f"{path}[{_escaped(key)}]", place)
+            self.value(item, f"{path}[{escaped_key(key)}]", place)
 
     def element(self, params: Params, path: str, place: str, left_out: frozenset[str] = frozenset()) -> None:
         """An element with what is in it."""
@@ -191,7 +191,8 @@ def _scalar(item: object) -> object:
     return [_scalar(one) for one in item] if isinstance(item, (tuple, list)) else item
 
 
-def _escaped(key: str) -> str:
+def escaped_key(key: str) -> str:
+    """A name as it stands in the brackets of a path."""
     return key.replace("%", "%25").replace("]", "%5D")
 
 
@@ -263,7 +264,7 @@ def values_of_files(paths: Iterable[Path]) -> tuple[dict[str, object], dict[str,
         taken = any(key.startswith(f"files[{path.name}]") for key in leaves)
         name = f"{path.parent.name}/{path.name}" if taken else path.name
         found: dict[str, tuple[object, int]] = {}
-        if _flatten_document(root, f"files[{name.replace('%', '%25').replace(']', '%5D')}]", found, 0):
+        if _flatten_document(root, f"files[{escaped_key(name)}]", found, 0):
             leaves.update({key: value for key, (value, _) in found.items()})
             places.update({key: f"{path}:{line}" for key, (_, line) in found.items()})
             read.add(path)
@@ -292,11 +293,7 @@ def _flatten_document(node: Any, path: str, found: dict[str, tuple[object, int]]
     if node.id == "mapping":
         for key, value in node.value:
             name = str(key.value) if key.id == "scalar" else "?"
-            step = (
-                f".{name}"
-                if _PLAIN_YAML_VALUE.fullmatch(name)
-                else f".of[{name.replace('%', '%25').replace(']', '%5D')}]"
-            )
+            step = f".{name}" if _PLAIN_YAML_VALUE.fullmatch(name) else f".of[{escaped_key(name)}]"
             if not _flatten_document(value, path + step, found, depth + 1):
                 return False
         return True

@@ -238,8 +238,8 @@ def grade_text(graded: Grade) -> Iterator[str]:
     for outcome in graded.outcomes:
         yield f"  {outcome.name}: {outcome.time:g} s simulated, seed {outcome.seed}"
         width = max((len(mark.title) for mark in outcome.marks), default=0)
-        if outcome.error:
-            yield from (f"    stopped: {line}" if not n else f"      {line}" for n, line in _plural(outcome.error))
+        for number, line in enumerate(outcome.error.splitlines()):
+            yield f"      {line}" if number else f"    stopped: {line}"
         for mark in outcome.marks:
             sign = "pass" if mark.passed else "FAIL"
             yield f"    {sign}  {mark.title:<{width}}  {mark.points:g} of {mark.worth:g}   {mark.message}".rstrip()
@@ -251,10 +251,6 @@ def grade_text(graded: Grade) -> Iterator[str]:
     share = graded.points / graded.worth if graded.worth else 1.0
     verdict = "passed" if graded.passed else "not passed"
     yield f"  {graded.points:g} of {graded.worth:g} points ({share:.0%}), {exercise.pass_mark:.0%} needed: {verdict}"
-
-
-def _plural(text: str) -> Iterator[tuple[int, str]]:
-    return iter(enumerate(text.splitlines()))
 
 
 def grade_json(graded: Grade) -> JsonObject:

@@ -12,8 +12,7 @@ from renderer import RENDERS
 
 from simkit.plugins import Plugin
 from simkit.plugins.discovery.find_plugin_class import plugin_kinds
-from simkit.testing.certify.plugin_calls import PluginCallRecorder, record_plugin_calls
-from simkit.testing.certify.topic_hashes import plugin_title
+from simkit.testing.certify.run_witness import PluginCallRecorder, plugin_title, record_plugin_calls
 
 pytestmark = pytest.mark.slow  # processes and whole runs
 

@@ -7,7 +7,7 @@ import math
 import pytest
 
 from simkit.run_spec import RunSpec, Tolerance
-from simkit.testing.golden.compare.tolerances import Allowed, default_tolerance, storage_step, tolerance_of
+from simkit.testing.golden.compare.tolerances import allowed_text, default_tolerance, storage_step, tolerance_of
 from simkit.testing.golden.compare.units import item_name, period_of, quantity_text, time_text, unit_of
 
 FIELDS = [
@@ -97,9 +97,9 @@ def test_a_wider_tolerance_is_stored_coarser_and_an_exact_one_exactly() -> None:
 
 
 def test_tolerances_read_in_words() -> None:
-    words = Allowed(Tolerance("x", absolute=1e-3, relative=0.01, share=0.02), "m")
+    words = allowed_text(Tolerance("x", absolute=1e-3, relative=0.01, share=0.02), "m")
     assert str(words) == "1 mm + 1 % of the value, 2 % of a message further off"
-    assert str(Allowed(Tolerance("x"), "m")) == "nothing"
+    assert allowed_text(Tolerance("x"), "m") == "nothing"
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ import pytest
 from falling import ball
 
 import simkit
-from simkit.testing.run_record.source_files import source_hashes
+from simkit.testing.run_record.fingerprint import source_hashes
 from simkit.testing.run_record.state_recorder import fields_of_model
 from simkit.testing.run_record.world_values import split_path, values_of_simulation
 

@@ -94,19 +94,15 @@ def explain(
     engine = engine_changes(golden, run, changes)
     parted = first_different_tick(golden.states, run.states)
     scenario = [c for c in beside if c.kind == "scenario"]
-    others = [c for c in beside if c.kind != "scenario"]
-    every = [*scenario, *changes, *engine, *others]
-    proof = _Proof()
-    if rerun is not None and _has_recorded_difference(comparison):
-        proof = _prove(every, golden, run, comparison, rerun, budget_s, parted)
+    every = [*scenario, *changes, *engine, *(c for c in beside if c.kind != "scenario")]
+    proof = _Proof([n for n, change in enumerate(every) if can_be_put_back(change, run)])
+    if proof.tried and rerun is not None and _has_recorded_difference(comparison):
+        _prove(proof, ScenarioRerun(golden, run, comparison, every, rerun, budget_s), parted)
     causes = _rank_causes(every, proof)
-    explanation = Explanation(
-        [cause for _, cause in causes],
-        None if parted is None else parted.tick,
-        None if parted is None else parted.time,
-        proof.quantity or ("" if parted is None else parted.quantity),
-    )
-    explanation.lines = _lines([cause for _, cause in causes], proof, parted, golden, run, comparison)
+    explanation = Explanation(causes, lines=_lines(causes, proof, parted, golden, run, comparison))
+    explanation.quantity = proof.quantity or ("" if parted is None else parted.quantity)
+    if parted is not None:
+        explanation.tick, explanation.time = parted.tick, parted.time
     return explanation
 
 
@@ -115,22 +111,23 @@ def world_changes(golden: RunRecord, run: RunRecord) -> list[Change]:
     return find_changes(model_edits(golden.leaves, run.leaves, run.leaf_places), golden.leaves, run.leaves)
 
 
+@dataclass
 class _Proof:
     """What running again has shown.
 
     Attributes:
+        tried: the numbers of the changes that can be put back.
         found: by number of the change; None where nothing was run.
-        tried: the numbers of the changes that were put back.
         until: up to where outputs were compared [s].
+        is_whole: whether that is the whole run.
         quantity: what differs first, at the very tick; "" where that was not looked at.
     """
 
-    def __init__(self) -> None:
-        self.found: SearchResult | None = None
-        self.tried: list[int] = []
-        self.until = 0.0
-        self.is_whole = False
-        self.quantity = ""
+    tried: list[int]
+    found: SearchResult | None = None
+    until: float = 0.0
+    is_whole: bool = False
+    quantity: str = ""
 
 
 def _has_recorded_difference(comparison: Comparison) -> bool:
@@ -138,32 +135,18 @@ def _has_recorded_difference(comparison: Comparison) -> bool:
     return any(difference.kind != "model" for difference in comparison.differences)
 
 
-def _prove(
-    every: Sequence[Change],
-    golden: RunRecord,
-    run: RunRecord,
-    comparison: Comparison,
-    rerun: RunChangedWorld,
-    budget: float,
-    parted: FirstDifferentTick | None,
-) -> _Proof:
-    proof = _Proof()
-    proof.tried = [n for n, change in enumerate(every) if can_be_put_back(change, run)]
-    if not proof.tried:
-        return proof
-    again = ScenarioRerun(golden, run, comparison, every, rerun, budget)
+def _prove(proof: _Proof, again: ScenarioRerun, parted: FirstDifferentTick | None) -> None:
     proof.found = find_effective_changes(proof.tried, again.same)
     proof.until = again.horizon
     if proof.found.needed and again.go_on():
         _explain_whole_run(proof, again)
-    proof.is_whole = proof.until >= run.scenario.longest
+    proof.is_whole = proof.until >= again.run.scenario.longest
     if parted is not None and parted.tick and proof.found.needed and parted.time <= again.horizon:
-        at = parted.tick * run.states.timestep
+        at = parted.tick * again.run.states.timestep
         mine = again.record(frozenset(), at)
         theirs = again.record(frozenset(proof.found.needed), at) if mine is not None else None
         if mine is not None and theirs is not None:
             proof.quantity = largest_final_difference(theirs.states, mine.states, by_input=parted.is_put_in)
-    return proof
 
 
 def _explain_whole_run(proof: _Proof, again: ScenarioRerun) -> None:
@@ -180,24 +163,18 @@ def _explain_whole_run(proof: _Proof, again: ScenarioRerun) -> None:
             proof.found, proof.until = later, again.horizon
 
 
-def _rank_causes(every: Sequence[Change], proof: _Proof) -> list[tuple[int, Cause]]:
+def _rank_causes(every: Sequence[Change], proof: _Proof) -> list[Cause]:
     """The causes: proven ones first, then those of which nothing is known, then those that make no difference."""
     found = []
+    search = proof.found or SearchResult()
     for number, change in enumerate(every):
-        proven: bool | None = None
-        if proof.found is not None:
-            if number in proof.found.needed:
-                proven = True
-            elif number in proof.found.idle:
-                proven = False
+        proven = True if number in search.needed else False if number in search.idle else None
         place = {True: 0, None: 1, False: 3}[proven]
-        if proven is None and (proof.found is not None and proof.found.needed and proof.found.all_back):
+        if proven is None and ((search.needed and search.all_back) or change.kind == "version"):
             place = 2  # what is proven is enough
-        elif proven is None and change.kind == "version":
-            place = 2
         cause = Cause(change.kind, change.words, change.path, change.golden, change.run, change.where, proven)
         found.append((place, number, cause))
-    return [(number, cause) for _, number, cause in sorted(found, key=lambda t: t[:2])]
+    return [cause for _, _, cause in sorted(found, key=lambda ranking: ranking[:2])]
 
 
 def _lines(

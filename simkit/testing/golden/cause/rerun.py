@@ -68,21 +68,18 @@ class ScenarioRerun:
         rerun: RunChangedWorld,
         budget: float,
     ) -> None:
-        self._golden, self._run, self._comparison = golden, run, comparison
+        self._golden, self.run, self._comparison = golden, run, comparison
         self._changes, self._rerun = changes, rerun
         self._end = time.perf_counter() + budget
         self._begin = self._pace = 0.0  # wall time of a run [s], and that of a simulated second [s/s]
         self._known: dict[frozenset[int], bool | None] = {}
-        self.runs = 0
         self.horizon = self._first_horizon()
-        self.last: RunRecord | None = None
 
     def same(self, chosen: frozenset[int]) -> bool | None:
         """Whether the run with these changes put back gives the golden outputs; None where that was not tried."""
         if chosen not in self._known:
             record = self.record(chosen, self.horizon)
             self._known[chosen] = None if record is None else self._is_golden(record)
-            self.last = record
         return self._known[chosen]
 
     def record(self, chosen: frozenset[int], duration: float) -> RunRecord | None:
@@ -92,23 +89,22 @@ class ScenarioRerun:
             return None
         edits = [edit for index in chosen for edit in self._changes[index].edits]
         values = {edit.path: edit.golden for edit in edits if edit.kind != "scenario"}
-        scenario = replace(self._run.scenario, **{e.path: e.golden for e in edits if e.kind == "scenario"})
+        scenario = replace(self.run.scenario, **{e.path: e.golden for e in edits if e.kind == "scenario"})
         scenario = replace(scenario, duration=duration, until="", timeout=None, wall_timeout=None, checks=())
-        now = self._run.leaves
+        now = self.run.leaves
         change = (lambda world: patch_world(world, now, values, order=self._golden.leaves)) if values else None
         try:
             return self._rerun(scenario, change)
         except Exception:  # noqa: BLE001 - what is put back comes from a file, and may be anything
             return None
         finally:
-            self.runs += 1
             taken = time.perf_counter() - begun
             self._begin = min(self._begin or taken, taken)
             self._pace = max(self._pace, (taken - self._begin) / max(duration, 1e-9))
 
     def go_on(self) -> bool:
         """Has the whole run count from now on, where it did not; what was found so far is forgotten."""
-        whole = self._run.scenario.longest
+        whole = self.run.scenario.longest
         if self.horizon >= whole:
             return False
         self._pace = max(self._pace, self._begin / self.horizon)
@@ -121,7 +117,7 @@ class ScenarioRerun:
 
     def _first_horizon(self) -> float:
         """Up to where it is run [s]: the end of the second in which the first difference is."""
-        whole = self._run.scenario.longest
+        whole = self.run.scenario.longest
         differences = self._comparison.differences
         if any(d.kind == "statistics" for d in differences) or not differences:
             return whole

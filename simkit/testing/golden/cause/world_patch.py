@@ -15,7 +15,7 @@ from simkit.params import Params
 from simkit.pose import Pose
 from simkit.scene import SceneWorld
 from simkit.testing.golden.compare.world_edits import ABSENT
-from simkit.testing.run_record.world_values import element_keys, file_content_text, item_keys, split_path
+from simkit.testing.run_record.world_values import element_keys, escaped_key, file_content_text, item_keys, split_path
 
 _KEPT_FIELDS = frozenset(("mjcf", "moved_by"))
 
@@ -143,14 +143,10 @@ class _PatchedBuilder:
                 given[one.name] = self._field(kind, one, None if default is MISSING else default, inner, whole)
             elif one.name in words and isinstance(words[one.name], str) and hints[one.name] is str:
                 given[one.name] = words[one.name]
-            elif _may_be_none(hints[one.name]):
-                given[one.name] = None  # without a leaf there is nothing
-            elif typing.get_origin(hints[one.name]) is tuple:
-                given[one.name] = ()
             elif hints[one.name] is Params:
                 given[one.name] = Params(one.name)
-            elif default is MISSING:
-                raise CannotPatch(f"{kind.__name__}.{one.name}")
+            else:  # without a leaf there is nothing
+                given[one.name] = self._nothing(one, hints[one.name])
         return kind(**given)
 
     def _field(self, kind: type, one: Field[Any], now: Any, wanted: _PatchNode, owner: str) -> object:
@@ -267,7 +263,7 @@ class _PatchedBuilder:
                 continue
             keyed = {k: v for k, v in inner.below.items() if k.startswith("[")}
             for key, one in keyed.items():
-                elements[f"{step}[{key[1:-1].replace('%', '%25').replace(']', '%5D')}]"] = one
+                elements[f"{step}[{escaped_key(key[1:-1])}]"] = one
             if inner.value is not ABSENT or len(keyed) < len(inner.below):
                 elements[step] = inner
         return elements, given

@@ -22,44 +22,6 @@ Flags = npt.NDArray[np.bool_]
 _NAMES = ("child_frame_id", "name", "names", "joint_names", "link_name", "id")
 
 
-def value_difference(
-    terms: FieldTerms, shift: Floats, bad: Flags, failing: Flags, golden: FlatValues, run: FlatValues, error: float
-) -> Difference:
-    """What there is to say of values that are too far off.
-
-    Args:
-        terms: of the comparison.
-        shift: run less golden, a number for each value.
-        bad: which values are too far off.
-        failing: which messages have too many of those.
-        golden, run: the values.
-        error: what rounding may make a difference seem larger or smaller.
-    """
-    first = int(np.argmax(failing))
-    counted = bad & failing[golden.messages]
-    here = counted & (golden.messages == first)
-    start = int(golden.widths[:first].sum())
-    numbers = np.flatnonzero(here) - start
-    largest, at = _largest_deviation(shift, counted, golden.messages)
-    said = _setting_text(terms, golden, run, first, failing)
-    if not said:
-        said = _which_values(terms, numbers, int(golden.widths[first]), first)
-        said += _deviation_text(terms, shift[here], golden.values[here], run.values[here], error)
-        said += _duration_text(terms, first, failing, _typical(shift[here]), largest, at, error)
-    size = abs(largest)
-    return Difference(
-        terms.stream.topic,
-        terms.field,
-        "value",
-        terms.time(first),
-        size,
-        terms.unit,
-        f"{terms.name}: {said}",
-        terms.allowed,
-        first,
-    )
-
-
 def _largest_deviation(shift: Floats, counted: Flags, messages: npt.NDArray[np.intp]) -> tuple[float, int]:
     """The largest finite difference and its message; nan and -1 where there is none."""
     off = np.where(counted & np.isfinite(shift), np.abs(shift), -1.0)
@@ -87,9 +49,9 @@ def _setting_text(terms: FieldTerms, golden: FlatValues, run: FlatValues, first:
 
 def _which_values(terms: FieldTerms, numbers: npt.NDArray[np.intp], width: int, index: int) -> str:
     """Which values of the message: `14 of 360 rays (45 to 58) `."""
-    if width == 1 and not _value_names(terms, width, index):
-        return ""
     names = _value_names(terms, width, index)
+    if width == 1 and not names:
+        return ""
     if names and len(numbers) <= 3:
         return ", ".join(names[int(i)] for i in numbers) + " "
     things = item_name(terms.stream.type_name, terms.field)
@@ -98,10 +60,10 @@ def _which_values(terms: FieldTerms, numbers: npt.NDArray[np.intp], width: int, 
     first, last = int(numbers[0]), int(numbers[-1])
     place = ""
     if len(numbers) == 1:
-        place = f"number {first}"
+        place = f"(number {first}) "
     elif last - first + 1 == len(numbers):
-        place = f"{first} to {last}"
-    return f"{len(numbers)} of {width} {things} " + (f"({place}) " if place else "")
+        place = f"({first} to {last}) "
+    return f"{len(numbers)} of {width} {things} {place}"
 
 
 def _value_names(terms: FieldTerms, width: int, index: int) -> list[str]:
@@ -121,13 +83,9 @@ def _value_names(terms: FieldTerms, width: int, index: int) -> list[str]:
 
 
 def _deviation_text(terms: FieldTerms, shift: Floats, golden: Array, run: Array, error: float) -> str:
-    finite = shift[np.isfinite(shift)]
-    parts = []
-    if finite.size:
-        parts.append(_signed(finite, terms.unit, error))
-    parts += _finiteness_text(
-        golden[~np.isfinite(shift)], run[~np.isfinite(shift)], only=not finite.size, single=shift.size == 1
-    )
+    is_finite = np.isfinite(shift)
+    parts = [_signed(shift[is_finite], terms.unit, error)] if is_finite.any() else []
+    parts += _finiteness_text(golden[~is_finite], run[~is_finite], only=not is_finite.any(), single=shift.size == 1)
     return ", ".join(parts)
 
 
@@ -177,16 +135,6 @@ def _duration_text(
     return words
 
 
-def width_difference(terms: FieldTerms, index: int, golden: Column, run: Column) -> Difference:
-    """A message that has more or fewer values."""
-    a, b = int(golden.of(index).size), int(run.of(index).size)
-    things = item_name(terms.stream.type_name, terms.field)
-    words = f"{terms.name}: {a} {things} became {b} at {time_text(terms.time(index))}"
-    return Difference(
-        terms.stream.topic, terms.field, "count", terms.time(index), float(abs(b - a)), things, words, "none", index
-    )
-
-
 HALF_STEP: Final = 0.5 * (1.0 + 1e-9)
 """Of a step: how far rounding moves a value."""
 
@@ -195,16 +143,21 @@ def compare_column(terms: FieldTerms, golden: Column, run: Column) -> FieldFindi
     """Compares a field of numbers."""
     mine, other = FlatValues.of(golden, terms.count), FlatValues.of(run, terms.count)
     uneven = np.flatnonzero(mine.widths != other.widths)
-    count = terms.count
+    first = int(uneven[0]) if uneven.size else terms.count
     if uneven.size:
-        count = int(uneven[0])
-        mine, other = mine.first(count), other.first(count)
+        mine, other = mine.first(first), other.first(first)
     shift = _deviation(terms, mine.values, other.values)
     limit = _limit(terms, golden, run, mine.values)
     found = field_finding(terms, shift, limit, mine, other, HALF_STEP * (golden.step + run.step))
-    if found.difference is None and uneven.size:
-        return FieldFinding(width_difference(terms, count, golden, run), math.inf, math.inf)
-    return found
+    if found.difference is not None or not uneven.size:
+        return found
+    # a message that has more or fewer values
+    a, b, time = int(golden.of(first).size), int(run.of(first).size), terms.time(first)
+    things = item_name(terms.stream.type_name, terms.field)
+    words, size = f"{terms.name}: {a} {things} became {b} at {time_text(time)}", float(abs(b - a))
+    topic, field = terms.stream.topic, terms.field
+    difference = Difference(topic, field, "count", time, size, things, words, "none", first)
+    return FieldFinding(difference, math.inf, math.inf)
 
 
 def field_finding(
@@ -222,16 +175,29 @@ def field_finding(
     off = np.abs(shift)
     bad = ~(off <= limit)
     share = 0.0 if terms.is_exact else float(terms.tolerance.share or 0.0)
-    bad_counts = np.bincount(golden.messages[bad], minlength=len(golden.widths))
-    failing = bad_counts > share * golden.widths
-    finite = off[np.isfinite(off)]
-    largest = max(0.0, float(finite.max(initial=0.0)) - rounding)
-    if not failing.any():
-        with np.errstate(divide="ignore", invalid="ignore"):
+    failing = np.bincount(golden.messages[bad], minlength=len(golden.widths)) > share * golden.widths
+    largest_off = max(0.0, float(off[np.isfinite(off)].max(initial=0.0)) - rounding)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        if not failing.any():
             ratio = np.nan_to_num(off / limit, nan=0.0, posinf=0.0)
-        return FieldFinding(None, float(ratio[~bad].max(initial=0.0)), largest)
-    excess = _excess(off[bad], _tolerance_text(terms.tolerance, golden.values[bad]))
-    return FieldFinding(value_difference(terms, shift, bad, failing, golden, run, rounding), excess, largest)
+            return FieldFinding(None, float(ratio[~bad].max(initial=0.0)), largest_off)
+        ratio = off[bad] / _tolerance_text(terms.tolerance, golden.values[bad])
+        excess = float(np.nan_to_num(ratio, nan=np.inf, posinf=np.inf).max(initial=0.0))
+    first = int(np.argmax(failing))
+    counted = bad & failing[golden.messages]
+    largest, at = _largest_deviation(shift, counted, golden.messages)
+    said = _setting_text(terms, golden, run, first, failing)
+    if not said:
+        here = counted & (golden.messages == first)
+        numbers = np.flatnonzero(here) - int(golden.widths[:first].sum())
+        said = _which_values(terms, numbers, int(golden.widths[first]), first)
+        said += _deviation_text(terms, shift[here], golden.values[here], run.values[here], rounding)
+        said += _duration_text(terms, first, failing, _typical(shift[here]), largest, at, rounding)
+    topic, words = terms.stream.topic, f"{terms.name}: {said}"
+    difference = Difference(
+        topic, terms.field, "value", terms.time(first), abs(largest), terms.unit, words, terms.allowed, first
+    )
+    return FieldFinding(difference, excess, largest_off)
 
 
 # ---------------------------------------------------------------------- values
@@ -244,11 +210,9 @@ def _deviation(terms: FieldTerms, golden: Array, run: Array) -> Floats:
     if is_colour(terms.field) and golden.dtype == run.dtype and golden.dtype.itemsize == 4:
         return _colour_deviation(golden, run)
     if golden.dtype.kind in "iub" and run.dtype.kind in "iub":
-        return (
-            (run.astype(np.float64) - golden.astype(np.float64))
-            if golden.dtype != np.int64
-            else _time_deviation(golden, run)
-        )
+        if golden.dtype == np.int64:  # times [ns] are too large for a float
+            return np.asarray((run.astype(np.int64) - golden).astype(np.float64))
+        return run.astype(np.float64) - golden.astype(np.float64)
     a, b = golden.astype(np.float64), run.astype(np.float64)
     with np.errstate(invalid="ignore"):
         shift = b - a
@@ -268,11 +232,6 @@ def _colour_deviation(golden: Array, run: Array) -> Floats:
     shift = b - a
     at = np.argmax(np.abs(shift), axis=1)
     return np.asarray(np.take_along_axis(shift, at[:, None], axis=1)[:, 0])
-
-
-def _time_deviation(golden: Array, run: Array) -> Floats:
-    """The difference of times [ns], which are too large for a float."""
-    return np.asarray((run.astype(np.int64) - golden).astype(np.float64))
 
 
 def _limit(terms: FieldTerms, golden: Column, run: Column, values: Array) -> Floats:
@@ -295,11 +254,6 @@ def _tolerance_text(tolerance: Tolerance, values: Array) -> Floats:
     with np.errstate(invalid="ignore"):
         part = (tolerance.relative or 0.0) * np.nan_to_num(np.abs(values.astype(np.float64)), posinf=0.0)
     return np.asarray((tolerance.absolute or 0.0) + part)
-
-
-def _excess(off: Floats, limit: Floats) -> float:
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return float(np.nan_to_num(off / limit, nan=np.inf, posinf=np.inf).max(initial=0.0))
 
 
 def quaternion_paths(columns: Sequence[str]) -> list[str]:

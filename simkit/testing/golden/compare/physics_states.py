@@ -52,7 +52,8 @@ def compare_physics(
     parts = _entity_changes(golden, run)
     if parts:
         return _state(f"physics: moving parts are other: {parts}", 0.0, float("nan"), "", "")
-    return _bits(golden, run, joints or {}) if is_exact else _values(golden, run, joints or {})
+    kept = _state_differences(golden, run, joints or {})
+    return _bits(golden, run, kept) if is_exact else _values(kept)
 
 
 def _state(words: str, time: float, size: float, unit: str, name: str, allowed: str = "the same bits") -> Difference:
@@ -81,32 +82,22 @@ def _quantity_owner(name: str) -> str:
 # ---------------------------------------------------------------------- the same bits
 
 
-def _bits(golden: States, run: States, joints: Mapping[str, str]) -> Difference | None:
+def _bits(golden: States, run: States, kept: _StateDifferences) -> Difference | None:
+    if len(kept.times) and kept.times[0] <= 0.0 and kept.shift[0].any():
+        return _largest_difference(kept, 0, "physics: begins in another state", 0.0, "the same bits")
     both = min(len(golden.marks), len(run.marks))
     apart = np.flatnonzero(golden.marks[:both] != run.marks[:both])
-    begins = _initial_difference(golden, run, joints)
-    if not apart.size and begins is None:
+    if not apart.size:
         has_digests = golden.named_digest and run.named_digest and len(golden.marks) == len(run.marks)
         if not has_digests or golden.named_digest == run.named_digest:
             return None
-    if begins is not None:
-        return begins
     tick = int(apart[0]) + 1 if apart.size else both
     time = tick * run.timestep
     words = f"physics: state differs from {time_text(time)} (tick {tick})"
-    kept = _state_differences(golden, run, joints)
     first = next((i for i in range(len(kept.times)) if kept.times[i] >= time and kept.shift[i].any()), None)
     if first is None:
         return _state(f"{words}, and not in the states that were kept", time, 0.0, "", "")
     return _largest_difference(kept, first, words, time, "the same bits")
-
-
-def _initial_difference(golden: States, run: States, joints: Mapping[str, str]) -> Difference | None:
-    """What is other before the first step."""
-    kept = _state_differences(golden, run, joints)
-    if not len(kept.times) or kept.times[0] > 0.0 or not kept.shift[0].any():
-        return None
-    return _largest_difference(kept, 0, "physics: begins in another state", 0.0, "the same bits")
 
 
 def _largest_difference(kept: _StateDifferences, index: int, words: str, time: float, allowed: str) -> Difference:
@@ -114,44 +105,36 @@ def _largest_difference(kept: _StateDifferences, index: int, words: str, time: f
     scale = np.maximum(np.abs(kept.golden).max(axis=0), _TINY)
     at = int(np.argmax(np.abs(kept.shift[index]) / scale))
     name, unit = kept.names[at], unit_of_quantity(kept.names[at], kept.joints)
-    shift, largest = float(kept.shift[index, at]), int(np.argmax(np.abs(kept.shift[:, at])))
-    said = quantity_text(shift, unit)
+    shifts = kept.shift[:, at]
+    shift, largest = float(shifts[index]), int(np.argmax(np.abs(shifts)))
     when = "" if kept.times[index] == time else f" at {time_text(float(kept.times[index]))}"
-    words += f": {name} {said}{when}"
-    size = abs(float(kept.shift[largest, at]))
+    words += f": {name} {quantity_text(shift, unit)}{when}"
+    size = abs(float(shifts[largest]))
     if largest > index and size > 1.5 * abs(shift):
-        words += (
-            f", up to {quantity_text(float(kept.shift[largest, at]), unit)} at {time_text(float(kept.times[largest]))}"
-        )
+        words += f", up to {quantity_text(float(shifts[largest]), unit)} at {time_text(float(kept.times[largest]))}"
     return _state(words, time, size, unit, name, allowed)
 
 
 # ---------------------------------------------------------------------- another machine
 
 
-def _values(golden: States, run: States, joints: Mapping[str, str]) -> Difference | None:
-    kept = _state_differences(golden, run, joints)
+def _values(kept: _StateDifferences) -> Difference | None:
     if not len(kept.times):
         return None
     largest = np.abs(kept.golden).max(axis=0)
     limits = np.array([_limit(name, float(size)) for name, size in zip(kept.names, largest, strict=True)])
+    over = np.where(np.abs(kept.shift) > limits, kept.shift, 0.0)
     failing = (np.abs(kept.shift) > limits).any(axis=1)
     if not failing.any():
         return None
     index = int(np.argmax(failing))
-    time = float(kept.times[index])
-    over = np.where(np.abs(kept.shift) > limits, kept.shift, 0.0)
-    told = replace(kept, shift=over)
-    return _largest_difference(
-        told, index, f"physics: state differs from {time_text(time)}", time, "1 mm, 1 mrad, 1 % of velocities"
-    )
+    time, allowed = float(kept.times[index]), "1 mm, 1 mrad, 1 % of velocities"
+    words = f"physics: state differs from {time_text(time)}"
+    return _largest_difference(replace(kept, shift=over), index, words, time, allowed)
 
 
 def _limit(name: str, size: float) -> float:
-    for word, absolute, relative in _ALLOWED:
-        if word in name:
-            return absolute + relative * size
-    raise AssertionError(name)
+    return next(absolute + relative * size for word, absolute, relative in _ALLOWED if word in name)
 
 
 def _state_differences(golden: States, run: States, joints: Mapping[str, str]) -> _StateDifferences:

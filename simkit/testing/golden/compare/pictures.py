@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -42,7 +42,12 @@ def compare_pictures(
     if form is not None:
         return [(math.inf, form)]
     both = np.intersect1d(mine.messages, other.messages)
-    met = _CommonPictures(run, mine, other, tolerance, is_exact, count, both[both < count])
+    messages = both[both < count]
+    changed = None
+    if mine.hashes is not None and other.hashes is not None:
+        known = min(count, len(mine.hashes), len(other.hashes))
+        changed = np.flatnonzero(mine.hashes[:known] != other.hashes[:known])
+    met = _CommonPictures(run, mine.at(messages), other.at(messages), tolerance, is_exact, count, messages, changed)
     if mine.small.dtype.kind == "f" or other.small.dtype.kind == "f":
         ranked = _depths(met, notes)
     else:
@@ -50,33 +55,31 @@ def compare_pictures(
     return _with_hashes(met, ranked) if is_exact else ranked
 
 
+@dataclass(frozen=True)
 class _CommonPictures:
     """The pictures that both kept, of the same messages.
 
-    Args:
-        run: the stream.
-        golden, other: pictures of the golden stream and of the run's.
+    Attributes:
+        stream: the run's.
+        golden, run: pictures of the golden stream and of the run's.
         tolerance, is_exact, count: as of `compare_pictures`.
         messages: of which both kept the picture.
+        changed: messages whose pictures are other, kept or not; None where that is not known.
     """
 
-    def __init__(
-        self,
-        run: Stream,
-        golden: Pictures,
-        other: Pictures,
-        tolerance: Tolerance,
-        is_exact: bool,
-        count: int,
-        messages: npt.NDArray[np.int64],
-    ) -> None:
-        self.stream, self.tolerance, self.is_exact = run, tolerance, is_exact
-        self.golden, self.run, self.messages = golden.at(messages), other.at(messages), messages
-        self.count, self.all_kept = count, len(messages) == count
-        self.changed: npt.NDArray[np.intp] | None = None  # messages whose pictures are other
-        if golden.hashes is not None and other.hashes is not None:
-            both = min(count, len(golden.hashes), len(other.hashes))
-            self.changed = np.flatnonzero(golden.hashes[:both] != other.hashes[:both])
+    stream: Stream
+    golden: Pictures
+    run: Pictures
+    tolerance: Tolerance
+    is_exact: bool
+    count: int
+    messages: npt.NDArray[np.int64]
+    changed: npt.NDArray[np.intp] | None
+
+    @property
+    def all_kept(self) -> bool:
+        """Whether all pictures are kept."""
+        return len(self.messages) == self.count
 
     def seconds(self, row: int) -> float:
         """When the message of a row came."""
@@ -138,10 +141,8 @@ def _colours(met: _CommonPictures, notes: list[str]) -> Ranked:
     if not suspects.size:
         return []
     tolerance = met.tolerance
-    if met.is_exact:
-        failing = suspects
-        allowed = "the same bits"
-    else:
+    failing, allowed = suspects, "the same bits"
+    if not met.is_exact:
         image, least = float(tolerance.image or 0.0), float(1.0 if tolerance.ssim is None else tolerance.ssim)
         failing = np.array([i for i in suspects if apart[i] > image or met.similarity(int(i)) < least], np.intp)
         allowed = f"a mean difference of {image:g} of 255, similarity {least:g}"

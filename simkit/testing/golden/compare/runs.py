@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable
 
 import numpy as np
 
-from simkit.testing.golden.compare.difference import Comparison, Difference
+from simkit.testing.golden.compare.difference import Comparison, Difference, DifferenceKind
 from simkit.testing.golden.compare.physics_states import compare_physics
-from simkit.testing.golden.compare.streams import StreamPair, compare_stream
-from simkit.testing.golden.compare.times import begin_time
+from simkit.testing.golden.compare.streams import StreamPair, begin_time, compare_stream
 from simkit.testing.golden.compare.tolerances import tolerance_of
 from simkit.testing.golden.compare.world_edits import field_edits
 from simkit.testing.run_record.fingerprint import fingerprint_differences
@@ -64,7 +62,7 @@ def _is_reordered(golden: RunRecord, run: RunRecord) -> bool:
     return mine != [path for path in run.leaves if path in golden.leaves]
 
 
-_JOINT = re.compile(r"joints\[([^\]]+)\]\.type")
+_JOINT = re.compile(r"joints\[([^\]]+)\]\.type$")
 
 
 def joint_units(record: RunRecord) -> dict[str, str]:
@@ -72,10 +70,9 @@ def joint_units(record: RunRecord) -> dict[str, str]:
     found: dict[str, str] = {}
     for path, kind in record.leaves.items():
         match = _JOINT.search(path)
-        if match and path.endswith("].type"):
+        if match:
             unit = "m" if kind == "prismatic" else "rad"
-            name = match[1]
-            found[name] = unit if found.get(name, unit) == unit else ""
+            found[match[1]] = unit if found.get(match[1], unit) == unit else ""
     return found
 
 
@@ -101,21 +98,20 @@ def _compare_topics(golden: RunRecord, run: RunRecord, same: bool, same_pictures
             notes += result.notes
             found.topics += 1
             found.messages += len(mine.times_ns)
-    found.notes += _few_names(notes)
+    more = [f"{len(notes) - _NOTES} more are other and allowed"] if len(notes) > _NOTES else []
+    found.notes += notes[:_NOTES] + more
 
 
 def _missing_topic(stream: Stream, is_new: bool, golden: RunRecord, run: RunRecord) -> Difference:
     """A topic that only one of the two has."""
     number = len(stream.times_ns)
     messages = f"{number} message{'' if number == 1 else 's'} of {stream.type_name}"
-    if is_new:
-        words = f"{stream.topic}: is new, {messages}"
-        return Difference(stream.topic, "", "extra", begin_time(stream), math.nan, "", words, "the same topics")
+    kind: DifferenceKind = "extra" if is_new else "missing"
+    words = f"{stream.topic}: is new, {messages}" if is_new else f"{stream.topic}: is gone, {messages} are missing"
     renamed = [s.topic for t, s in run.streams.items() if t not in golden.streams and s.type_name == stream.type_name]
-    words = f"{stream.topic}: is gone, {messages} are missing"
-    if renamed:
+    if renamed and not is_new:
         words += f"; {_listed(sorted(renamed))} of its type {'is' if len(renamed) == 1 else 'are'} new"
-    return Difference(stream.topic, "", "missing", begin_time(stream), math.nan, "", words, "the same topics")
+    return Difference(stream.topic, "", kind, begin_time(stream), math.nan, "", words, "the same topics")
 
 
 def _is_rendered(stream: Stream) -> bool:
@@ -147,37 +143,26 @@ def _compare_meaning(golden: RunRecord, run: RunRecord, found: Comparison) -> No
     leaves = sorted(path for path in common if not _is_same_value(golden.leaves[path], run.leaves[path]))
     alone = sorted(golden.leaves.keys() ^ run.leaves.keys()) if golden.leaves and run.leaves else []
     if other_version and alone:
-        found.notes.append(
-            f"{len(alone)} values of the world are known to one version of simkit only: {_listed(alone)}"
-        )
+        words = f"{len(alone)} values of the world are known to one version of simkit only: {_listed(alone)}"
+        found.notes.append(words)
         alone = []
-    sources = sorted(
-        name for name in golden.sources.keys() | run.sources.keys() if golden.sources.get(name) != run.sources.get(name)
-    )
-    changed = [*leaves, *alone, *sources]
-    if not changed:
-        if found.tier == "exact":
-            _compare_fields(golden, run, found)
-        return
-    places = "place" if len(changed) == 1 else "places"
-    words = f"the world is another in {len(changed)} {places}, and nothing that is recorded shows it: "
-    words += _count_text(golden, run, changed)
-    found.differences.append(
-        Difference("", changed[0], "model", 0.0, math.nan, "", words, "the same meaning (model: false allows others)")
-    )
+    names = sorted(golden.sources.keys() | run.sources.keys())
+    changed = [*leaves, *alone, *(name for name in names if golden.sources.get(name) != run.sources.get(name))]
+    if changed:
+        said = _count_text(golden, run, changed)
+        found.differences.append(_unrecorded_difference("the world", len(changed), changed[0], said))
+    elif found.tier == "exact" and golden.fields and run.fields:
+        # a world that says the same as before may have parts that are the engine's own language
+        edits = field_edits(golden, run)
+        if edits:
+            said = _listed([f"{edit.path} {edit.golden} → {edit.run}" for edit in edits])
+            found.differences.append(_unrecorded_difference("the compiled model", len(edits), edits[0].path, said))
 
 
-def _compare_fields(golden: RunRecord, run: RunRecord, found: Comparison) -> None:
-    """What the engine was given, of a world that says the same as before: parts that are the engine's own language."""
-
-    edits = field_edits(golden, run) if golden.fields and run.fields else []
-    if not edits:
-        return
-    places = "place" if len(edits) == 1 else "places"
-    words = f"the compiled model is another in {len(edits)} {places}, and nothing that is recorded shows it: "
-    words += _listed([f"{edit.path} {edit.golden} → {edit.run}" for edit in edits])
-    allowed = "the same meaning (model: false allows others)"
-    found.differences.append(Difference("", edits[0].path, "model", 0.0, math.nan, "", words, allowed))
+def _unrecorded_difference(what: str, count: int, path: str, said: str) -> Difference:
+    places = "place" if count == 1 else "places"
+    words = f"{what} is another in {count} {places}, and nothing that is recorded shows it: {said}"
+    return Difference("", path, "model", 0.0, math.nan, "", words, "the same meaning (model: false allows others)")
 
 
 def _count_text(golden: RunRecord, run: RunRecord, changed: list[str]) -> str:
@@ -212,10 +197,3 @@ def _note_diagnostics(golden: RunRecord, run: RunRecord, found: Comparison) -> N
 def _listed(names: list[str], most: int = 3) -> str:
     more = len(names) - most
     return ", ".join(names[:most]) + (f" and {more} more" if more > 0 else "")
-
-
-def _few_names(notes: Iterable[str]) -> list[str]:
-    told = list(notes)
-    if len(told) <= _NOTES:
-        return told
-    return [*told[:_NOTES], f"{len(told) - _NOTES} more are other and allowed"]

@@ -1,4 +1,4 @@
-"""Compare two streams of one topic: fields, texts, noise statistics and bits."""
+"""Compare two streams of one topic: times, fields, texts, noise statistics and bits."""
 
 from __future__ import annotations
 
@@ -7,17 +7,106 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+import numpy.typing as npt
 
 from simkit.diagnostics import shorten
 from simkit.run_spec import RunSpec, Tolerance
 from simkit.testing.golden.compare.difference import Difference, DifferenceKind
 from simkit.testing.golden.compare.number_columns import compare_column, compare_orientation, quaternion_paths
 from simkit.testing.golden.compare.pictures import compare_pictures
-from simkit.testing.golden.compare.times import begin_time, compare_times, shift_allowed
 from simkit.testing.golden.compare.tolerances import FieldFinding, FieldTerms, tolerance_of
 from simkit.testing.golden.compare.units import joint_unit, quantity_text, time_text, unit_of, value_text
 from simkit.testing.run_record.noise_statistics import NoiseStatistics, StatisticDifference, statistic_differences
 from simkit.testing.run_record.record import Column, Stream
+
+_REGULAR = 0.02  # part by which intervals may be other at a steady rate: a rate need not divide the step
+_EVENTS = 0.02  # part of messages that may be more or fewer on another machine, of topics without a rate
+
+Times = npt.NDArray[np.int64]
+
+
+def compare_times(golden: Stream, run: Stream, timestep: float, is_exact: bool) -> tuple[int, Difference | None]:
+    """How many messages from the first on can be laid side by side, and how times are other.
+
+    Args:
+        golden, run: of one topic.
+        timestep: of the physics [s]; on another machine an event may be a step off.
+        is_exact: whether times must be equal.
+    """
+    a, b = golden.times_ns, run.times_ns
+    both = min(len(a), len(b))
+    rates = _rate(a), _rate(b)
+    allowed = 0 if is_exact or any(rates) else shift_allowed(timestep)
+    apart = np.flatnonzero(np.abs(a[:both] - b[:both]) > allowed)
+    same = int(apart[0]) if apart.size else both
+    if same == len(a) == len(b):
+        return same, None
+    if not is_exact and rates[0] is None and abs(len(a) - len(b)) <= max(1.0, _EVENTS * len(a)):
+        return same, None
+    return same, _first_time_difference(golden, run, same, rates)
+
+
+def shift_allowed(timestep: float) -> int:
+    """By how much an event may come at another time on another machine [ns]: a step."""
+    return int(timestep * 1.5e9)
+
+
+def _first_time_difference(
+    golden: Stream, run: Stream, same: int, rates: tuple[float | None, float | None]
+) -> Difference:
+    a, b, topic = golden.times_ns, run.times_ns, run.topic
+    counts = f"{len(a)} messages became {len(b)}" if len(a) != len(b) else f"{len(a)} messages as before"
+    kind: DifferenceKind = "count" if len(a) != len(b) else "time"
+    size = float(abs(len(b) - len(a))) if kind == "count" else abs(float(b[same] - a[same])) * 1e-9
+    unit = "messages" if kind == "count" else "s"
+    if rates[0] and rates[1] and abs(rates[1] / rates[0] - 1.0) > 1e-3:
+        words = f"{rates[0]:.4g} Hz became {rates[1]:.4g} Hz: {counts}"
+        kind, size, unit = "count", abs(rates[1] - rates[0]), "Hz"
+    elif not len(b) or not len(a):
+        words = f"{'no messages' if not len(b) else f'{len(b)} messages'} instead of {len(a) or 'none'}"
+    elif same == len(b):
+        words = f"ends at {_time_text(b[-1])}: {counts}"
+    elif same == len(a):
+        words = f"goes on after {_time_text(a[-1])}: {counts}"
+    elif len(a) == len(b) and np.ptp(b - a) == 0:
+        words, same = f"every message comes {_later(int(b[0] - a[0]))}", 0
+    else:
+        words = f"message {same + 1} comes {_later(int(b[same] - a[same]))} at {_time_text(b[same])}; {counts}"
+    return Difference(topic, "", kind, _seconds(b, same, a), size, unit, f"{topic}: {words}", "the same times", same)
+
+
+def _rate(times: Times) -> float | None:
+    """Messages per second of a steady topic; None of one that is not."""
+    if len(times) < 3:
+        return None
+    gaps = np.diff(times)[1:]  # the first reading is taken after the first step, which is no multiple of the period
+    mean = float(gaps.mean())
+    if mean <= 0.0 or float(np.abs(gaps - np.median(gaps)).mean()) > max(_REGULAR * mean, 1e6):
+        return None
+    rate, error = 1e9 / mean, 2e6 / float(gaps.sum())  # readings come with a step, at most some milliseconds off
+    return float(round(rate)) if abs(rate - round(rate)) <= error * rate else rate
+
+
+def _seconds(times: Times, index: int, others: Times) -> float:
+    for known in (times, others):
+        if index < len(known):
+            return float(known[index]) * 1e-9
+    last = [float(known[-1]) for known in (times, others) if len(known)]
+    return min(last) * 1e-9 if last else 0.0
+
+
+def begin_time(stream: Stream) -> float:
+    """When the first message came [s]; 0 without one."""
+    return float(stream.times_ns[0]) * 1e-9 if len(stream.times_ns) else 0.0
+
+
+def _time_text(time_ns: np.int64) -> str:
+    return time_text(float(time_ns) * 1e-9)
+
+
+def _later(nanoseconds: int) -> str:
+    words = quantity_text(abs(nanoseconds) * 1e-9, "s", signed=False)
+    return f"{words} {'later' if nanoseconds > 0 else 'earlier'}"
 
 
 def difference_in_bits(golden: Stream, run: Stream) -> Difference:
@@ -38,14 +127,12 @@ def difference_in_bits(golden: Stream, run: Stream) -> Difference:
 
 def rounding_text(stream: Stream) -> str:
     """What numbers of a stream are rounded to, in words: `31 µm of ranges`; "" where nothing is."""
-    steps = {path: column.step for path, column in stream.columns.items() if column.step}
-    if not steps:
-        return ""
-    by_unit: dict[str, tuple[float, str]] = {}
-    for path, step in steps.items():
-        unit = unit_of(stream.type_name, path)
-        by_unit[unit] = max(by_unit.get(unit, (0.0, "")), (step / 2.0, path))
-    told = [quantity_text(step, unit, signed=False) for unit, (step, _) in sorted(by_unit.items(), key=lambda i: i[0])]
+    by_unit: dict[str, float] = {}
+    for path, column in stream.columns.items():
+        if column.step:
+            unit = unit_of(stream.type_name, path)
+            by_unit[unit] = max(by_unit.get(unit, 0.0), column.step / 2.0)
+    told = [quantity_text(step, unit, signed=False) for unit, step in sorted(by_unit.items())]
     return ", ".join(told[:3])
 
 
@@ -211,7 +298,8 @@ def _compare_texts(pair: StreamPair, count: int) -> Ranked:
         if not apart:
             continue
         first, rest = apart[0], both - apart[0]
-        words = f"{run.topic}.{path}: “{_line(mine[first])}” became “{_line(other[first])}”"
+        was, now = (shorten(texts[first].replace("\n", " "), 60) for texts in (mine, other))
+        words = f"{run.topic}.{path}: “{was}” became “{now}”"
         time = float(run.times_ns[first]) * 1e-9
         words += f" {'at' if len(apart) == 1 else 'from'} {time_text(time)}"
         if len(apart) < rest:
@@ -219,10 +307,6 @@ def _compare_texts(pair: StreamPair, count: int) -> Ranked:
         difference = Difference(run.topic, path, "text", time, math.nan, "", words, "the same text", first)
         ranked.append((math.inf, difference))
     return ranked
-
-
-def _line(text: str) -> str:
-    return shorten(text.replace("\n", " "), 60)
 
 
 # ---------------------------------------------------------------------- noise
@@ -252,9 +336,6 @@ def _allowed_by_scenario(scenario: RunSpec, topic: str, path: str) -> tuple[floa
     return (said[0].absolute or 0.0, said[0].relative or 0.0) if said else (0.0, 0.0)
 
 
-# ---------------------------------------------------------------------- bits
-
-
 def _compare_bits(pair: StreamPair, found: StreamComparison) -> None:
     """All that was kept agrees, and the bits do not."""
     loose = sorted(_loose_fields(pair))
@@ -268,9 +349,9 @@ def _compare_bits(pair: StreamPair, found: StreamComparison) -> None:
 def _loose_fields(pair: StreamPair) -> set[str]:
     """Fields whose samples are not looked at, which the digest of the messages covers all the same."""
     golden, run = pair.golden, pair.run
-    fields = {*golden.columns, *run.columns, *golden.words, *run.words, *golden.statistics, *run.statistics}
-    tolerances = {path: pair.tolerance(path) for path in fields}
-    return {path for path, t in tolerances.items() if t.ignore or path in golden.statistics or path in run.statistics}
+    of_noise = {*golden.statistics, *run.statistics}
+    fields = {*golden.columns, *run.columns, *golden.words, *run.words}
+    return of_noise | {path for path in fields if pair.tolerance(path).ignore}
 
 
 def statistic_text(

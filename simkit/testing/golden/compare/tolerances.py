@@ -79,23 +79,15 @@ def storage_step(type_name: str, field: str, scenario: RunSpec | None = None, to
     return math.ldexp(1.0, math.floor(math.log2(found.absolute / _STEPS_PER_TOLERANCE)))
 
 
-@dataclass(frozen=True)
-class Allowed:
-    """A tolerance in words."""
-
-    tolerance: Tolerance
-    unit: str
-
-    def __str__(self) -> str:
-        parts = []
-        if self.tolerance.absolute:
-            parts.append(quantity_text(self.tolerance.absolute, self.unit, signed=False))
-        if self.tolerance.relative:
-            parts.append(f"{100.0 * self.tolerance.relative:g} % of the value")
-        words = " + ".join(parts) or "nothing"
-        if self.tolerance.share:
-            words += f", {100.0 * self.tolerance.share:g} % of a message further off"
-        return words
+def allowed_text(tolerance: Tolerance, unit: str) -> str:
+    """Describe what a tolerance allows."""
+    parts = []
+    if tolerance.absolute:
+        parts.append(quantity_text(tolerance.absolute, unit, signed=False))
+    if tolerance.relative:
+        parts.append(f"{100.0 * tolerance.relative:g} % of the value")
+    words = " + ".join(parts) or "nothing"
+    return words + (f", {100.0 * tolerance.share:g} % of a message further off" if tolerance.share else "")
 
 
 @dataclass(frozen=True)
@@ -126,7 +118,7 @@ class FieldTerms:
     @property
     def allowed(self) -> str:
         """In words."""
-        return "the same bits" if self.is_exact else str(Allowed(self.tolerance, self.unit))
+        return "the same bits" if self.is_exact else allowed_text(self.tolerance, self.unit)
 
     def time(self, index: int) -> float:
         """Of a message [s]."""

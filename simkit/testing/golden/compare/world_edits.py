@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
 from functools import lru_cache
 from typing import Any
@@ -119,32 +119,24 @@ class Edit:
 
 def model_edits(golden: Mapping[str, object], run: Mapping[str, object], places: Mapping[str, str]) -> list[Edit]:
     """The leaves of the world that are other, in the run's order."""
-    order = {path: n for n, path in enumerate([*run, *(p for p in golden if p not in run)])}
-    found = []
-    for path in order:
-        old, new = golden.get(path, ABSENT), run.get(path, ABSENT)
-        if not is_same_value(old, new):
-            found.append(Edit("model", path, old, new, places.get(path, "")))
-    return found
+    return [Edit("model", path, old, new, places.get(path, "")) for path, old, new in _unequal(golden, run)]
 
 
 def other_edits(golden: RunRecord, run: RunRecord) -> list[Edit]:
     """What is other beside the world: the scenario, files, code and versions."""
     found = [Edit("scenario", name, a, b) for name, (a, b) in _scenario(golden.scenario, run.scenario).items()]
     code = (".py", ".so", ".pyc")
-    for name, (a, b) in _mapping(golden.sources, run.sources).items():
+    for name, a, b in _unequal(golden.sources, run.sources):
         found.append(Edit("code" if name.split(" ")[0].endswith(code) else "file", name, a, b))
-    found += [Edit("version", name, a, b) for name, (a, b) in _mapping(golden.fingerprint, run.fingerprint).items()]
-    return found
+    return found + [Edit("version", name, a, b) for name, a, b in _unequal(golden.fingerprint, run.fingerprint)]
 
 
 def field_edits(golden: RunRecord, run: RunRecord) -> list[Edit]:
     """The compiled model's fields that are other."""
     found = []
-    for name in [*run.fields, *(n for n in golden.fields if n not in run.fields)]:
-        a, b = golden.fields.get(name), run.fields.get(name)
-        if a is None or b is None:
-            found.append(Edit("model", name, ABSENT if a is None else a, ABSENT if b is None else b))
+    for name, a, b in _pairs(golden.fields, run.fields):
+        if a is ABSENT or b is ABSENT:
+            found.append(Edit("model", name, a, b))
         elif np.shape(a) != np.shape(b) or not _is_equal(a, b):
             found.append(Edit("model", name, np.asarray(a).tolist(), np.asarray(b).tolist()))
     return found
@@ -206,9 +198,11 @@ def _plain(value: Any) -> object:
     return value if isinstance(value, (int, float, str, bool, type(None))) else str(value)
 
 
-def _mapping(a: Mapping[str, object], b: Mapping[str, object]) -> dict[str, tuple[object, object]]:
-    return {
-        name: (a.get(name, ABSENT), b.get(name, ABSENT))
-        for name in [*b, *(n for n in a if n not in b)]
-        if not is_same_value(a.get(name, ABSENT), b.get(name, ABSENT))
-    }
+def _pairs(golden: Mapping[str, Any], run: Mapping[str, Any]) -> Iterator[tuple[str, Any, Any]]:
+    """Each name with its values in both, in the run's order; ABSENT where one does not have it."""
+    for name in [*run, *(name for name in golden if name not in run)]:
+        yield name, golden.get(name, ABSENT), run.get(name, ABSENT)
+
+
+def _unequal(golden: Mapping[str, Any], run: Mapping[str, Any]) -> Iterator[tuple[str, Any, Any]]:
+    return (pair for pair in _pairs(golden, run) if not is_same_value(pair[1], pair[2]))

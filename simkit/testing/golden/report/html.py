@@ -38,13 +38,6 @@ _BLESS: Final = 'simkit golden check GOLDEN --bless "why it is meant"'
 
 
 @dataclass(frozen=True)
-class _DifferenceRow:
-    time: str
-    words: str
-    allowed: str
-
-
-@dataclass(frozen=True)
 class _MachineRow:
     name: str
     golden: str
@@ -67,17 +60,12 @@ class _VerdictView:
     number: int
     verdict: Verdict
     found: str
-    differences: Sequence[_DifferenceRow]
     figures: Sequence[PlotFigure | ImageFigure]
     ending: str
     codes: Sequence[str]
     diagnostics: Sequence[object]
     tier: str
     machine: Sequence[_MachineRow]
-
-    @property
-    def failed(self) -> bool:
-        return not self.verdict.passed
 
 
 def write_html(path: str | os.PathLike[str], verdicts: Iterable[Verdict], *, bless: str = _BLESS) -> None:
@@ -122,6 +110,8 @@ def _template() -> Template:
         autoescape=True, finalize=clean, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
     environment.filters["not"] = lambda value: not value
+    environment.filters["seconds"] = lambda time: f"{time:.6g} s" if math.isfinite(time) else ""
+    environment.filters["allowed"] = lambda difference, exact: allowed_text(difference, exact=exact)
     environment.globals.update(most_rows=_ROWS, svg=svg, cause_lines=cause_lines, proof=_proof)
     return environment.from_string(_TEMPLATE.read_text(encoding="utf-8"))
 
@@ -132,7 +122,6 @@ def _verdict_view(verdict: Verdict, number: int, most_plots: int) -> _VerdictVie
         number,
         verdict,
         passed_text(verdict) if verdict.passed else headline(verdict),
-        _difference_rows(verdict.comparison),
         [] if verdict.passed else list(_figures(verdict, most_plots)),
         end if end not in REGULAR_ENDINGS or end != verdict.golden.end else "",
         [code for code in sorted({*golden, *run}) if golden.get(code, 0) != run.get(code, 0)],
@@ -144,17 +133,6 @@ def _verdict_view(verdict: Verdict, number: int, most_plots: int) -> _VerdictVie
 
 def _proof(cause: Cause) -> str:
     return proof_text(cause).removeprefix("; put back, ") or "not tried"
-
-
-def _difference_rows(comparison: Comparison) -> list[_DifferenceRow]:
-    return [
-        _DifferenceRow(
-            f"{one.time:.6g} s" if math.isfinite(one.time) else "",
-            one.words,
-            allowed_text(one, exact=comparison.tier == "exact"),
-        )
-        for one in comparison.differences[:_ROWS]
-    ]
 
 
 def _figures(verdict: Verdict, most: int) -> Iterator[PlotFigure | ImageFigure]:

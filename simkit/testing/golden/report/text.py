@@ -45,21 +45,18 @@ def text_report(verdict: Verdict, width: int = 100, *, most: int = MAX_DIFFERENC
 def passed_text(verdict: Verdict) -> str:
     """Describe how equal a passed run is: `5 topics, 1200 messages, bit for bit; 2 checks (1.3 s)`."""
     comparison = verdict.comparison
-    parts = [f"{_count(comparison.topics, 'topic')}, {_count(comparison.messages, 'message')}, {tier_text(comparison)}"]
+    tier = "bit for bit" if comparison.tier == "exact" else "within the tolerances"
+    parts = [f"{_count(comparison.topics, 'topic')}, {_count(comparison.messages, 'message')}, {tier}"]
     if verdict.checks:
         parts.append(f"{_count(len(verdict.checks), 'check')} passed")
     return "; ".join(parts) + (f" ({verdict.elapsed:.1f} s)" if verdict.elapsed > 0.0 else "")
 
 
-def tier_text(comparison: Comparison) -> str:
-    """Describe how equal a run had to be."""
-    return "bit for bit" if comparison.tier == "exact" else "within the tolerances"
-
-
 def headline(verdict: Verdict) -> str:
     """The one thing to know of a verdict that did not pass."""
     if run_failed(verdict):
-        return f"the run failed: {_first_line(verdict.run.end)}"
+        said = [line.strip() for line in verdict.run.end.splitlines() if line.strip()]
+        return f"the run failed: {said[0] if said else 'no reason is known'}"
     first, explanation = first_difference(verdict.comparison), verdict.explanation
     if first is not None:
         if first.kind == "model" and explanation is not None and explanation.causes:
@@ -178,10 +175,6 @@ def _wrap_lines(label: str, text: str, width: int, indent: int) -> list[str]:
         break_long_words=False,
         break_on_hyphens=False,
     ) or [start.rstrip()]
-
-
-def _first_line(text: str) -> str:
-    return next((line.strip() for line in text.splitlines() if line.strip()), "no reason is known")
 
 
 def _count(number: int, what: str) -> str:

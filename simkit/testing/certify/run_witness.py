@@ -1,0 +1,359 @@
+"""Witness a run: what its subscribers get, what its plugins are called for, change and remember, in short hashes."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from typing import Any, Final
+from zlib import crc32
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from simkit import msgs
+from simkit.msgs import Message
+from simkit.recording.bags.recorder import matches_topic
+from simkit.recording.message_taps import TopicTaps
+from simkit.run_spec import JsonObject
+from simkit.runtime import Simulation
+from simkit.runtime.communication.topic_bus import NO_MESSAGE, LazyMessage
+from simkit.runtime.engine import grouped_hooks
+from simkit.runtime.engine.engine_state import EngineState
+from simkit.runtime.engine.held_state import applied_forces
+from simkit.runtime.engine.plugin_faults import PluginFaults
+from simkit.testing.certify.outcome import PluginCall, TopicOutcome
+from simkit.testing.certify.variations import Listening
+
+_MAX_DEPTH: Final = 24
+_PLAIN: Final = (type(None), bool, int, str, bytes, complex)
+_OWN_NAMES: Final = ("scoped", "topic", "name")
+
+
+def short_hash(content: bytes) -> int:
+    """A hash of 64 bits."""
+    return int.from_bytes(hashlib.blake2b(content, digest_size=8).digest(), "little")
+
+
+def value_hash(value: object) -> int:
+    """A hash of a value and of all that is in it; equal for equal values of two processes."""
+    return _update_hash(value, {}, 0)
+
+
+def attribute_hashes(state: Mapping[str, object]) -> dict[str, int]:
+    """The hash of each attribute."""
+    return {str(name): value_hash(value) for name, value in state.items()}
+
+
+def short_value_text(value: object) -> str:
+    """A value as a report says it, where it is short; else empty."""
+    if isinstance(value, (bool, int, float, str, np.number)):
+        text = repr(value.item() if isinstance(value, np.number) else value)
+        return text if len(text) <= 60 else text[:57] + "..."
+    if isinstance(value, (tuple, list)) and len(value) <= 6:
+        parts = [short_value_text(part) for part in value]
+        return f"({', '.join(parts)})" if all(parts) else ""
+    if isinstance(value, np.ndarray) and 0 < value.size <= 6:
+        return short_value_text(tuple(value.ravel().tolist()))
+    return ""
+
+
+def _update_hash(value: Any, seen: dict[int, tuple[int, object]], depth: int) -> int:
+    kind = type(value)
+    if kind is float:
+        return short_hash(b"f" + (b"nan" if math.isnan(value) else value.hex().encode()))
+    if kind in _PLAIN:
+        return short_hash(f"{kind.__name__}:{value!r}".encode("utf-8", "backslashreplace"))
+    if isinstance(value, np.ndarray) and value.dtype != object:
+        return short_hash(f"{value.dtype.str}{value.shape}".encode() + np.ascontiguousarray(value).tobytes())
+    if isinstance(value, np.generic):
+        return short_hash(value.dtype.str.encode() + value.tobytes())
+    if id(value) in seen or depth > _MAX_DEPTH:
+        return short_hash(f"again {seen.get(id(value), (-1,))[0]}".encode())
+    seen[id(value)] = len(seen), value  # and it stays: another may not come to lie where it lay
+    return _update_hash_of_items(value, seen, depth + 1)
+
+
+def _update_hash_of_items(value: Any, seen: dict[int, tuple[int, object]], depth: int) -> int:
+    name = type(value).__name__
+    if isinstance(value, Mapping):
+        pairs = sorted((_update_hash(key, {}, depth), _update_hash(item, seen, depth)) for key, item in value.items())
+        return short_hash(f"{name}{pairs}".encode())
+    if isinstance(value, (set, frozenset)):
+        return short_hash(f"{name}{sorted(_update_hash(item, {}, depth) for item in value)}".encode())
+    if isinstance(value, (np.ndarray, list, tuple, deque)):
+        return short_hash(f"{name}{[_update_hash(item, seen, depth) for item in value]}".encode())
+    if isinstance(value, np.random.Generator):
+        return _update_hash(value.bit_generator.state, seen, depth)
+    if _is_handle(value):
+        named = next((getattr(value, n) for n in _OWN_NAMES if isinstance(getattr(value, n, None), str)), "")
+        return short_hash(f"{name} {named}".encode())
+    own = _attributes(value)
+    if own is None:
+        return short_hash(f"{name} {getattr(value, '__qualname__', '')}".encode())
+    parts = [(key, _update_hash(item, seen, depth)) for key, item in sorted(own.items())]
+    return short_hash(f"{name}{parts}".encode())
+
+
+def _is_handle(value: object) -> bool:
+    """What stands for itself when a state is copied: links, publishers, plugins, the simulation."""
+    copy = getattr(type(value), "__deepcopy__", None)
+    return copy is not None and getattr(copy, "__module__", "").startswith("simkit.")
+
+
+def _attributes(value: object) -> dict[str, object] | None:
+    """What an object has; None of functions, modules, classes and what is made in C."""
+    if callable(value) and hasattr(value, "__qualname__"):
+        return None
+    listed = [vars(cls).get("__slots__", ()) for cls in type(value).__mro__]
+    slots = [slot for one in listed for slot in ([one] if isinstance(one, str) else one)]
+    found = {slot: getattr(value, slot) for slot in slots if hasattr(value, slot) and slot != "__dict__"}
+    if hasattr(value, "__dict__") and not isinstance(value, type):
+        found.update(vars(value))
+    elif not slots:
+        return None
+    return found
+
+
+UNKNOWN = -1
+
+
+class TopicHashes:
+    """Subscriptions to all topics of a run, those that come later included.
+
+    Topics that a bus has aside (`/stats`, whose fields are of the wall clock) are left out unless they are named.
+
+    Args:
+        sim: the simulation.
+        how: they hear.
+        topics: shell patterns of what is heard; empty for all.
+        skip: shell patterns of what is not.
+    """
+
+    def __init__(self, sim: Simulation, how: Listening, topics: Sequence[str] = (), skip: Sequence[str] = ()) -> None:
+        self._sim, self._how, self._topics, self._skip = sim, how, tuple(topics), tuple(skip)
+        self._streams: dict[str, _TopicHash] = {}
+        self.is_deaf = False
+        if how != "none":
+            TopicTaps(sim, self._receiver_of).open()
+
+    def take(self) -> None:
+        """Looks at what was kept; to be called now and then between two steps."""
+        for stream in self._streams.values():
+            stream.take()
+
+    def heard(self) -> dict[str, TopicOutcome]:
+        """What came, by topic."""
+        self.take()
+        owners = _topic_publishers(self._sim)
+        return {topic: stream.heard(owners.get(topic, "")) for topic, stream in sorted(self._streams.items())}
+
+    def _receiver_of(self, topic: str, type_name: str) -> Callable[[Message], None] | None:
+        if topic in self._streams or not self._is_wanted(topic):
+            return None
+        stream = self._streams[topic] = _TopicHash(self, self._sim, type_name)
+        if self._how == "kept":
+            return stream.keep
+        self._sim.subscribe(topic, stream.receive, keep=1)
+        if self._how == "late":
+            self._sim.subscribe(topic, lambda _: None, keep=3)
+            self._sim.subscribe(topic, keep=2)
+        return None  # real subscriptions, so that how a topic is heard differs from run to run
+
+    def _is_wanted(self, topic: str) -> bool:
+        if topic in self._sim.communication.bus.aside and topic not in self._topics:
+            return False
+        return not matches_topic(topic, self._skip) and (not self._topics or matches_topic(topic, self._topics))
+
+
+class _TopicHash:
+    """One topic."""
+
+    def __init__(self, ears: TopicHashes, sim: Simulation, type_name: str) -> None:
+        self._ears, self._sim, self._type_name = ears, sim, type_name
+        self._digests: list[int] = []
+        self._ticks: list[int] = []
+        self._kept: list[Message] = []
+        self._all = hashlib.sha256()
+
+    def receive(self, message: object) -> None:
+        """Called back with a message."""
+        if not self._ears.is_deaf:
+            self._count(message, self._sim.tick)
+
+    def keep(self, message: object) -> None:
+        """Given a message, or what will be one."""
+        if not self._ears.is_deaf:
+            self._kept.append(message)
+
+    def take(self) -> None:
+
+        kept, self._kept = self._kept, []
+        for message in kept:
+            made = message.get() if type(message) is LazyMessage else message
+            if made is not NO_MESSAGE:
+                self._count(made, UNKNOWN)
+
+    def _count(self, message: object, tick: int) -> None:
+        content = msgs.serialize(message)
+        self._all.update(content)
+        self._digests.append(short_hash(content))
+        self._ticks.append(tick)
+
+    def heard(self, owner: str) -> TopicOutcome:
+        digests, ticks = np.array(self._digests, np.uint64), np.array(self._ticks, np.int64)
+        return TopicOutcome(self._type_name, digests, ticks, self._all.hexdigest(), owner)
+
+
+def _topic_publishers(sim: Simulation) -> dict[str, str]:
+    """Who publishes each topic."""
+    found: dict[str, list[str]] = {}
+    for topic, end, _, does in sim.communication.bus.endpoints():
+        if does == "publishes" and end.owner is not None:
+            found.setdefault(topic, []).append(plugin_title(end.owner))
+    return {topic: " and ".join(dict.fromkeys(names)) for topic, names in found.items()}
+
+
+def plugin_title(part: Any) -> str:
+    """A plugin or a sensor as a report calls it: `plugin 'drive' (robot.sdf:12)`."""
+    where = getattr(part, "where", None) or getattr(getattr(part, "scene", None), "where", None)
+    kind = "plugin" if hasattr(part, "has_hook") else "sensor" if hasattr(part, "scene") else ""
+    if not kind:
+        return type(part).__name__
+    name = (
+        f"{part.scoped}::{part.name}" if kind == "plugin" and part.scoped else getattr(part, "scoped", "") or part.name
+    )
+    place = f" ({where})" if where is not None and where.line else ""
+    return f"{kind} {name!r}{place}"
+
+
+class PluginCallRecorder:
+    """Notes every call of a plugin.
+
+    Attributes:
+        is_away: whether it looks the other way.
+    """
+
+    def __init__(self) -> None:
+        self.events: list[PluginCall] = []
+        self.is_away = False
+        self._known: dict[int, dict[str, int]] = {}
+
+    def call(
+        self, engine: EngineState, plugin: object, hook: str, method: Callable[..., object], values: tuple[object, ...]
+    ) -> Any:
+        """Calls something of a plugin, and notes what it did."""
+        if self.is_away or not hasattr(plugin, "has_hook"):
+            return method(*values)
+        before, tick = writable_state_hash(engine.physics.data), engine.tick
+        try:
+            return method(*values)
+        finally:
+            self._note(engine.physics.data, plugin, hook, tick, before)
+
+    def loaded(self, sim: Simulation) -> None:
+        """Notes what plugins remember once the world is open."""
+        for plugin in sim.engine.structure.all_plugins():
+            self._note(sim.mj_data, plugin, "load", 0, writable_state_hash(sim.mj_data))
+
+    def again(self) -> None:
+        """After a reset: nothing of before counts."""
+        self.events.clear()
+        self._known.clear()
+
+    def _note(self, data: mujoco.MjData, plugin: object, hook: str, tick: int, before: int) -> None:
+        state = plugin_attributes(plugin)
+        now = {name: value_hash(value) for name, value in state.items()}
+        known = self._known.get(id(plugin), {})
+        self._known[id(plugin)] = now
+        changed = {name: value for name, value in now.items() if known.get(name) != value}
+        changed.update({name: 0 for name in known if name not in now})
+        said = {name: short_value_text(state[name]) for name in changed if name in state}
+        self.events.append(
+            PluginCall(tick, plugin_title(plugin), hook, before, writable_state_hash(data), changed, said)
+        )
+
+
+@contextmanager
+def record_plugin_calls(witness: PluginCallRecorder) -> Iterator[None]:
+    """Has every call of a plugin go by a witness; for simulations that are opened within."""
+
+    task, guard, least = PluginFaults.task, PluginFaults.guard, grouped_hooks.MIN_GROUP_SIZE
+
+    def watched_task(self: Any, plugin: Any, hook: str) -> Callable[[int], None]:
+        inner = task(self, plugin, hook)
+
+        def call(tick: int = 0) -> None:
+            witness.call(self._engine, plugin, hook, inner, (tick,))
+
+        return call
+
+    def watched_guard(self: Any, plugin: Any, hook: str, method: Callable[..., Any]) -> Callable[..., Any]:
+        return guard(self, plugin, hook, lambda *values: witness.call(self._engine, plugin, hook, method, values))
+
+    PluginFaults.task, PluginFaults.guard, grouped_hooks.MIN_GROUP_SIZE = watched_task, watched_guard, 1 << 30  # type: ignore
+    try:
+        yield
+    finally:
+        PluginFaults.task, PluginFaults.guard, grouped_hooks.MIN_GROUP_SIZE = task, guard, least  # type: ignore
+
+
+def plugin_attributes(plugin: Any) -> JsonObject:
+    """A plugin's attributes, as a snapshot keeps them."""
+    try:
+        state = plugin.get_state()
+    except Exception:  # noqa: BLE001 - a plugin may raise anything
+        return {}
+    if not isinstance(state, Mapping):
+        return {"state": state}
+    inner = state.get("variables")  # of a system of gz
+    return dict(inner if isinstance(inner, Mapping) else state)
+
+
+def writable_state_hash(data: mujoco.MjData) -> int:
+    """Return a hash of what plugins can write to: the state, controls and forces."""
+    found = 0
+    for field in (data.qpos, data.qvel, data.act, data.ctrl, data.qfrc_applied, data.xfrc_applied, data.mocap_pos):
+        found = crc32(field.tobytes(), found)
+    return crc32(data.mocap_quat.tobytes(), found)
+
+
+class TickHashes:
+    """A short hash of the physics, and of what was put in, for every tick.
+
+    Attributes:
+        is_away: whether it looks the other way.
+    """
+
+    def __init__(self, sim: Simulation) -> None:
+        self._sim, self.is_away = sim, False
+        self.state: dict[int, int] = {}
+        self.inputs: dict[int, int] = {}
+        self._told = object()
+        sim.communication.on_demand.add(lambda: True, None, self._mark, "after")
+
+    def rows(self, ticks: int) -> tuple[npt.NDArray[np.uint64], npt.NDArray[np.uint64]]:
+        """Both as arrays of so many ticks."""
+        wanted = range(1, ticks + 1)
+        state, inputs = ([of.get(tick, 0) for tick in wanted] for of in (self.state, self.inputs))
+        return np.array(state, np.uint64), np.array(inputs, np.uint64)
+
+    def _mark(self, _: int) -> None:
+        if self.is_away:
+            return
+        physics = self._sim.engine.physics
+        data, tick = physics.data, physics.tick
+        self.state[tick] = _two_hashes(data.qpos, data.qvel, data.act)
+        applied, pushed = applied_forces(physics)
+        self.inputs[tick] = _two_hashes(data.ctrl, applied, pushed, data.mocap_pos)
+
+
+def _two_hashes(*fields: npt.NDArray[np.float64]) -> int:
+    first = second = 0
+    for field in fields:
+        content = field.tobytes()
+        first, second = crc32(content, first), crc32(content, second ^ 0x5BD1E995)
+    return first | second << 32
