@@ -14,15 +14,7 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
-from simkit.errors import (
-    InputError,
-    LoadError,
-    MessageError,
-    PluginError,
-    RenderError,
-    SimkitError,
-    SimulationDiverged,
-)
+from simkit.errors import InputError, LoadError, MessageError, PluginError, RenderError, SimkitError, SimulationDiverged
 from simkit.version import __version__
 
 if TYPE_CHECKING:

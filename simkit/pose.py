@@ -170,11 +170,7 @@ class Pose:
         x, y, z = -x, -y, -z
         tx, ty, tz = 2 * (y * vz - z * vy), 2 * (z * vx - x * vz), 2 * (x * vy - y * vx)
         return _make_pose(
-            (
-                -(vx + w * tx + y * tz - z * ty),
-                -(vy + w * ty + z * tx - x * tz),
-                -(vz + w * tz + x * ty - y * tx),
-            ),
+            (-(vx + w * tx + y * tz - z * ty), -(vy + w * ty + z * tx - x * tz), -(vz + w * tz + x * ty - y * tx)),
             (w, x, y, z),
         )
 

@@ -127,11 +127,8 @@ def _sliding_friction(surface: Surface, diagnostics: Diagnostics) -> float:
     if has_directional_friction(surface):
         return max(mu, mu2)
     if mu != mu2:
-        diagnostics.warning(
-            "SK-PHYS-005",
-            f"friction differs along (mu {mu:g}) and across (mu2 {mu2:g}): the smaller one is used both ways",
-            surface.where,
-        )
+        message = f"friction differs along (mu {mu:g}) and across (mu2 {mu2:g}): the smaller one is used both ways"
+        diagnostics.warning("SK-PHYS-005", message, surface.where)
     if surface.slip1 != surface.slip2:
         diagnostics.warning(
             "SK-PHYS-006", "slip1 and slip2 differ and there is no <fdir1>: they are not used", surface.where
@@ -150,12 +147,11 @@ def _turning_friction(surface: Surface, diagnostics: Diagnostics) -> tuple[float
         if surface.use_patch_radius:
             torsion = 3.0 * math.pi / 16.0 * max(0.0, surface.patch_radius) * surface.torsional
         elif surface.surface_radius > 0.0:
-            diagnostics.note(
-                "SK-PHYS-007",
+            message = (
                 "torsional friction of a patch that grows with the depth (surface_radius) is not used; that of a fixed "
-                "patch_radius is",
-                surface.where,
+                "patch_radius is"
             )
+            diagnostics.note("SK-PHYS-007", message, surface.where)
     if roll > 0.0 and torsion == 0.0:
         torsion = _LEAST
     return torsion, roll
@@ -175,35 +171,25 @@ def _impedance(
 def _softness(surface: Surface, timestep: float, mass: float, diagnostics: Diagnostics) -> tuple[float, float]:
     world = contact_time_constant(timestep)
     if surface.restitution > 0.0:
-        diagnostics.note(
-            "SK-PHYS-003",
-            f"restitution {surface.restitution:g} holds at any speed: <threshold> is not used",
-            surface.where,
-        )
+        message = f"restitution {surface.restitution:g} holds at any speed: <threshold> is not used"
+        diagnostics.note("SK-PHYS-003", message, surface.where)
         return bounce_solref(surface.restitution, timestep)
     if surface.kp is None or surface.kp >= STIFF_KP or surface.kp <= 0.0:
         if surface.kp is not None and surface.kp != 1e12:
-            diagnostics.note(
-                "SK-PHYS-004",
-                f"contact stiffness {surface.kp:g} N/m counts as rigid: {world * 1e3:g} ms, critically damped",
-                surface.where,
-            )
+            message = f"contact stiffness {surface.kp:g} N/m counts as rigid: {world * 1e3:g} ms, critically damped"
+            diagnostics.note("SK-PHYS-004", message, surface.where)
         return rigid_time_constant(timestep), 1.0
     if mass <= 0.0:
-        diagnostics.note(
-            "SK-PHYS-004",
-            f"contact stiffness {surface.kp:g} N/m of a static surface is not used; that of what touches it is",
-            surface.where,
-        )
+        message = f"contact stiffness {surface.kp:g} N/m of a static surface is not used; that of what touches it is"
+        diagnostics.note("SK-PHYS-004", message, surface.where)
         return rigid_time_constant(timestep), 1.0
     omega = math.sqrt(surface.kp / mass)
     damping = max(1.0, (surface.kd or 0.0) / (2.0 * mass * omega))
     constant = max(1.0 / (damping * omega), world)
-    diagnostics.note(
-        "SK-PHYS-004",
-        f"contact stiffness {surface.kp:g} N/m carries {mass:g} kg with a time constant of {constant * 1e3:.3g} ms",
-        surface.where,
+    message = (
+        f"contact stiffness {surface.kp:g} N/m carries {mass:g} kg with a time constant of {constant * 1e3:.3g} ms"
     )
+    diagnostics.note("SK-PHYS-004", message, surface.where)
     return constant, damping
 
 

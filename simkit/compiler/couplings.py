@@ -41,13 +41,7 @@ class Couplings:
         equality.data = data
 
     def weld(
-        self,
-        name: str,
-        body: str,
-        other: str,
-        anchor_in_other: Vector,
-        active: bool = True,
-        damping: float = 1.0,
+        self, name: str, body: str, other: str, anchor_in_other: Vector, active: bool = True, damping: float = 1.0
     ) -> None:
         """Holds two MuJoCo bodies as they stand in the specification, with a damping ratio."""
         equality = self._equality(name, mujoco.mjtEq.mjEQ_WELD, mujoco.mjtObj.mjOBJ_BODY, body, other)
@@ -81,12 +75,11 @@ class Couplings:
         first = self._gear_hinge(joint, joint.parent_link, 0)
         second = self._gear_hinge(joint, joint.child_link, 1)
         if first is None or second is None:
-            self.diagnostics.warning(
-                "SK-PHYS-021",
+            message = (
                 f"gearbox {joint.scoped} is left out: its links need a revolute joint to the reference link "
-                f"{joint.gearbox_reference or '(none)'} along its axes",
-                joint.where,
+                f"{joint.gearbox_reference or '(none)'} along its axes"
             )
+            self.diagnostics.warning("SK-PHYS-021", message, joint.where)
             return ()
         name = f"{joint.scoped}#gear"
         ratio = -joint.gearbox_ratio * first[1] * second[1]
@@ -167,12 +160,8 @@ class Couplings:
         if own is not None and leader is not None and _has_axis(own, axis) and _has_axis(leader, law.axis):
             return leader
         hint = did_you_mean(law.joint, [j.name for j in (b.scene for b in known.values())]) if leader is None else ""
-        self.diagnostics.warning(
-            "SK-PHYS-022",
-            f"joint {joint.scoped} mimics {law.joint}, which has no such axis; left out",
-            joint.where,
-            hint,
-        )
+        message = f"joint {joint.scoped} mimics {law.joint}, which has no such axis; left out"
+        self.diagnostics.warning("SK-PHYS-022", message, joint.where, hint)
         return None
 
     def _add_follower(self, leader: JointBinding, follower: Follower) -> None:

@@ -57,11 +57,10 @@ def apply_options(spec: mujoco.MjSpec, world: SceneWorld, diagnostics: Diagnosti
     """Sets step, gravity, integrator, solver flags, compiler conventions and the surroundings' light."""
     step = world.physics.max_step_size
     if not (math.isfinite(step) and SHORTEST_STEP <= step <= LONGEST_STEP):
-        diagnostics.error(
-            "SK-PHYS-015",
-            f"max_step_size is {step}; a positive number of seconds is needed, {SHORTEST_STEP:g} to {LONGEST_STEP:g}",
-            world.physics.where,
+        message = (
+            f"max_step_size is {step}; a positive number of seconds is needed, {SHORTEST_STEP:g} to {LONGEST_STEP:g}"
         )
+        diagnostics.error("SK-PHYS-015", message, world.physics.where)
         step = 0.001
     option = spec.option
     option.timestep = step

@@ -60,12 +60,10 @@ def add_idle_armature(
         if link not in record.unladen and all(_joint_inertia(model, data, dof) >= _NO_INERTIA for dof in dofs):
             continue
         if not joint:
-            diagnostics.error(
-                "SK-JOINT-010",
-                f"link {link} moves freely and has no mass; what it carries turns by itself and does not weigh on it",
-                binding.scene.where,
-                "give the link an <inertial>, or fix it",
+            message = (
+                f"link {link} moves freely and has no mass; what it carries turns by itself and does not weigh on it"
             )
+            diagnostics.error("SK-JOINT-010", message, binding.scene.where, "give the link an <inertial>, or fix it")
             continue
         given = _give_armature(spec, model, body)
         steadied = steadied or bool(given)
@@ -164,10 +162,8 @@ def check_derived_numbers(model: mujoco.MjModel, diagnostics: Diagnostics, where
         rows = values.reshape(max(1, len(values)), -1)
         bad = np.flatnonzero(~np.isfinite(rows).all(axis=1))
         if bad.size:
-            diagnostics.error(
-                "SK-PHYS-028",
-                f"{owner(model, int(bad[0]))}: its masses, inertias and distances are too far apart to compute with",
-                where,
-                "check the units: metres, kilograms and kg·m²",
+            message = (
+                f"{owner(model, int(bad[0]))}: its masses, inertias and distances are too far apart to compute with"
             )
+            diagnostics.error("SK-PHYS-028", message, where, "check the units: metres, kilograms and kg·m²")
             diagnostics.raise_if_errors()

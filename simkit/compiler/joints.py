@@ -33,12 +33,8 @@ def is_valid_axis(joint: SceneJoint, axis: Axis, diagnostics: Diagnostics) -> bo
         )
         return False
     if abs(math.hypot(*axis.xyz_world) - 1.0) > _UNIT:
-        diagnostics.error(
-            "SK-JOINT-002",
-            f"joint {joint.scoped}: its axis {axis.xyz_world} has a length of {math.hypot(*axis.xyz_world):g}",
-            joint.where,
-            "an axis points somewhere: 0 0 1, for example",
-        )
+        message = f"joint {joint.scoped}: its axis {axis.xyz_world} has a length of {math.hypot(*axis.xyz_world):g}"
+        diagnostics.error("SK-JOINT-002", message, joint.where, "an axis points somewhere: 0 0 1, for example")
         return False
     _report_odd_values(joint, axis, diagnostics)
     return True
@@ -46,40 +42,31 @@ def is_valid_axis(joint: SceneJoint, axis: Axis, diagnostics: Diagnostics) -> bo
 
 def _report_odd_values(joint: SceneJoint, axis: Axis, diagnostics: Diagnostics) -> None:
     if axis.lower > axis.upper:
-        diagnostics.warning(
-            "SK-JOINT-006",
+        message = (
             f"joint {joint.scoped}: its lower limit {axis.lower:g} is above its upper limit {axis.upper:g}; "
-            "it is taken as unlimited",
-            joint.where,
+            "it is taken as unlimited"
         )
+        diagnostics.warning("SK-JOINT-006", message, joint.where)
     elif axis.lower > 0.0 or axis.upper < 0.0:
-        diagnostics.warning(
-            "SK-JOINT-007",
+        message = (
             f"joint {joint.scoped} begins at 0, outside its limits [{axis.lower:g}, {axis.upper:g}]: "
-            "it is pushed inside in the first steps",
-            joint.where,
-            "limits count from the pose in the file",
+            "it is pushed inside in the first steps"
         )
+        diagnostics.warning("SK-JOINT-007", message, joint.where, "limits count from the pose in the file")
     if axis.limit_stiffness is not None and axis.limit_stiffness < _RIGID and math.isfinite(axis.upper - axis.lower):
-        diagnostics.note(
-            "SK-JOINT-014",
-            f"joint {joint.scoped}: the stops at its limits are rigid; stiffness {axis.limit_stiffness:g} is not used",
-            joint.where,
+        message = (
+            f"joint {joint.scoped}: the stops at its limits are rigid; stiffness {axis.limit_stiffness:g} is not used"
         )
+        diagnostics.note("SK-JOINT-014", message, joint.where)
     if axis.velocity == 0.0:
-        diagnostics.warning(
-            "SK-JOINT-008",
-            f"joint {joint.scoped} has a velocity limit of 0: it stands still",
-            joint.where,
-            "leave the limit out for a joint without one",
-        )
+        message = f"joint {joint.scoped} has a velocity limit of 0: it stands still"
+        diagnostics.warning("SK-JOINT-008", message, joint.where, "leave the limit out for a joint without one")
     if axis.damping < 0.0 or axis.friction < 0.0 or axis.stiffness < 0.0:
-        diagnostics.warning(
-            "SK-JOINT-009",
+        message = (
             f"joint {joint.scoped}: damping {axis.damping:g}, friction {axis.friction:g}, spring stiffness "
-            f"{axis.stiffness:g}: the negative ones are taken as 0",
-            joint.where,
+            f"{axis.stiffness:g}: the negative ones are taken as 0"
         )
+        diagnostics.warning("SK-JOINT-009", message, joint.where)
 
 
 UNBOUNDED: Final = 1e10
@@ -148,22 +135,18 @@ class JointWriter:
             binding = replace(self._binding(joint), joint_names=(free.free_joint,), free=free.scoped)
             self._bind(replace(binding, is_reversed=is_reversed))
             return
-        self.diagnostics.warning(
-            "SK-JOINT-005",
-            f"floating joint {joint.scoped} can be read but not set: another joint holds {joint.child_link}",
-            joint.where,
-        )
+        message = f"floating joint {joint.scoped} can be read but not set: another joint holds {joint.child_link}"
+        self.diagnostics.warning("SK-JOINT-005", message, joint.where)
         self._bind(self._binding(joint))
 
     def bind_static(self, joint: SceneJoint, is_expected: bool = True) -> None:
         """Notes a joint between links that never move: it is there by name and has no degree of freedom."""
         if not is_expected and joint.type != "fixed":
-            self.diagnostics.warning(
-                "SK-JOINT-004",
+            message = (
                 f"joint {joint.scoped} ({joint.type}) joins {joint.parent_link} and {joint.child_link}, "
-                "which are both static: it never moves",
-                joint.where,
+                "which are both static: it never moves"
             )
+            self.diagnostics.warning("SK-JOINT-004", message, joint.where)
         self._bind(self._binding(joint))
 
     def _add_motions(
@@ -250,9 +233,7 @@ class JointWriter:
         self._joint(body, slide, _SLIDE, frame, direction)
         self.couplings.couple(f"{joint.scoped}#thread", slide, joint.scoped, 0.0, ratio)
         self.diagnostics.note(
-            "SK-PHYS-009",
-            f"screw joint {joint.scoped} is a stiff constraint between turning and sliding",
-            joint.where,
+            "SK-PHYS-009", f"screw joint {joint.scoped} is a stiff constraint between turning and sliding", joint.where
         )
         return Follower(slide, ratio)
 

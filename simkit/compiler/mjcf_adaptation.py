@@ -91,12 +91,8 @@ def report_settings(child: mujoco.MjSpec, spec: mujoco.MjSpec, model: SceneModel
         places[severity] = place
     for severity, what in lost.items():
         if what:
-            diagnostics.add(
-                "warning" if severity == "warning" else "note",
-                "SK-MJCF-009",
-                f"model {model.scoped}: the world's settings stand, not the file's {', '.join(what)}",
-                places[severity],
-            )
+            message = f"model {model.scoped}: the world's settings stand, not the file's {', '.join(what)}"
+            diagnostics.add("warning" if severity == "warning" else "note", "SK-MJCF-009", message, places[severity])
 
 
 def _flag(name: str) -> int:
@@ -133,11 +129,8 @@ def rank_friction(child: mujoco.MjSpec, model: SceneModel, diagnostics: Diagnost
             slides = float(geom.friction[0]) if int(geom.condim) > 1 else 0.0
             geom.priority = friction_priority(min(slides, MU_MOST))
     if first:
-        diagnostics.note(
-            "SK-MJCF-013",
-            f"model {model.scoped}: {first} geoms have a priority, so their friction counts against everything",
-            model.where,
-        )
+        message = f"model {model.scoped}: {first} geoms have a priority, so their friction counts against everything"
+        diagnostics.note("SK-MJCF-013", message, model.where)
 
 
 def write_masses(child: mujoco.MjSpec, source: MjcfSource) -> None:
@@ -159,11 +152,8 @@ def drop_lights(child: mujoco.MjSpec, model: SceneModel, diagnostics: Diagnostic
     for light in lights:
         child.delete(light)
     if lights:
-        diagnostics.note(
-            "SK-MJCF-011",
-            f"model {model.scoped}: {len(lights)} lights of the file's own world are left out",
-            model.where,
-        )
+        message = f"model {model.scoped}: {len(lights)} lights of the file's own world are left out"
+        diagnostics.note("SK-MJCF-011", message, model.where)
 
 
 def rename_lights(child: mujoco.MjSpec, source: MjcfSource, prefix: str = "") -> None:

@@ -31,12 +31,10 @@ def compile_spec(
     """
     moving = sum(not link.static for r in records for link in r.links.values())
     if moving > MOST_MOVING:
-        diagnostics.error(
-            "SK-PHYS-029",
-            f"there are {moving} moving links; at most {MOST_MOVING} are compiled, which takes the engine a minute",
-            world.where,
-            "make what never moves <static>",
+        message = (
+            f"there are {moving} moving links; at most {MOST_MOVING} are compiled, which takes the engine a minute"
         )
+        diagnostics.error("SK-PHYS-029", message, world.where, "make what never moves <static>")
         diagnostics.raise_if_errors()
     apply_size(spec, sum(not o.is_visual for r in records for o in r.geoms.values()))
     if world.mjcf is None:

@@ -186,36 +186,29 @@ class ModelWriter:
             parts = (min(0.999, max(0.0, part)) for part in link.velocity_decay)
             linear, angular = (part / (1.0 - part) / step for part in parts)
             self.record.damped[name] = (linear, angular)
-            self.diagnostics.note(
-                "SK-PHYS-026",
-                f"velocity_decay of link {link.scoped} is a damping of {linear:g}/s along and {angular:g}/s in turning",
-                link.where,
+            message = (
+                f"velocity_decay of link {link.scoped} is a damping of {linear:g}/s along and {angular:g}/s in turning"
             )
+            self.diagnostics.note("SK-PHYS-026", message, link.where)
         return name
 
     def _report_kinematic(self, link: SceneLink) -> None:
         if link.kinematic:
-            self.diagnostics.warning(
-                "SK-PHYS-012",
-                f"kinematic: link {link.scoped} hangs on a joint; it is not pulled by gravity, but it can be pushed",
-                link.where,
+            message = (
+                f"kinematic: link {link.scoped} hangs on a joint; it is not pulled by gravity, but it can be pushed"
             )
+            self.diagnostics.warning("SK-PHYS-012", message, link.where)
         if any(link.velocity_decay):
+            message = f"velocity_decay of link {link.scoped} is not used: the link hangs on a joint"
             self.diagnostics.warning(
-                "SK-PHYS-027",
-                f"velocity_decay of link {link.scoped} is not used: the link hangs on a joint",
-                link.where,
-                "<dynamics><damping> of the joint slows it down",
+                "SK-PHYS-027", message, link.where, "<dynamics><damping> of the joint slows it down"
             )
 
     def _report_depth(self, tree: KinematicTree) -> None:
         """An error instead of a model; its links and joints are noted, for whoever looks for them meanwhile."""
         last = self.joints.links[tree.deepest]
-        self.diagnostics.error(
-            "SK-JOINT-015",
-            f"link {last.scoped} hangs on a chain of {tree.depth} links; at most {DEEPEST} can be simulated",
-            last.where,
-        )
+        message = f"link {last.scoped} hangs on a chain of {tree.depth} links; at most {DEEPEST} can be simulated"
+        self.diagnostics.error("SK-JOINT-015", message, last.where)
         for link in tree.order:
             self.record.links[link.scoped] = LinkBinding(
                 link.scoped, WORLD, link.pose_world, link, self.record.scene.scoped, True

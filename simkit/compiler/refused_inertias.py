@@ -176,11 +176,8 @@ def _rigid_groups(members: list[SceneLink], moves: bool, diagnostics: Diagnostic
 def _with_some_mass(members: list[SceneLink], diagnostics: Diagnostics) -> dict[str, BodyInertia]:
     """Links with an inertia and without mass: the foot gets the least that moves."""
     foot = members[0]
-    diagnostics.warning(
-        "SK-PHYS-011",
-        f"link {foot.scoped}: {foot.inertial.mass:g} kg cannot be moved; {LEAST_MASS:g} kg are used",
-        foot.where,
-    )
+    message = f"link {foot.scoped}: {foot.inertial.mass:g} kg cannot be moved; {LEAST_MASS:g} kg are used"
+    diagnostics.warning("SK-PHYS-011", message, foot.where)
     written = {m.scoped: _file_inertia(repair_inertia(m.inertial).inertial) for m in members}
     own = written[foot.scoped]
     written[foot.scoped] = BodyInertia(LEAST_MASS, own.com, own.inertia, own.exact)

@@ -54,11 +54,10 @@ def add_drive_armature(
         rotor = min(rotor, DRIVE_ARMATURE_LINEAR_MAX)
     if joint.armature < rotor:
         joint.armature = rotor
-        diagnostics.note(
-            "SK-PHYS-010",
-            f"joint {scoped} gets an armature of {rotor:.3g} {'kg' if is_slide else 'kg m²'}, the rotor of its drive",
-            where,
+        message = (
+            f"joint {scoped} gets an armature of {rotor:.3g} {'kg' if is_slide else 'kg m²'}, the rotor of its drive"
         )
+        diagnostics.note("SK-PHYS-010", message, where)
 
 
 def drive_gains(

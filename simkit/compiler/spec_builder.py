@@ -312,11 +312,9 @@ class SpecBuilder:
         if axis < len(joint.scene.axes):
             max_effort = min(max_effort, joint.scene.axes[axis].effort)
         if max_effort == 0.0:
+            message = f"joint {scoped} is driven by {owner}, but its effort limit is 0: nothing moves it"
             self.diagnostics.warning(
-                "SK-JOINT-011",
-                f"joint {scoped} is driven by {owner}, but its effort limit is 0: nothing moves it",
-                joint.scene.where,
-                "leave <effort> out for a joint without a limit",
+                "SK-JOINT-011", message, joint.scene.where, "leave <effort> out for a joint without a limit"
             )
         base, k = f"{owner}/{joint.joint_names[axis]}/{kind}", 1
         taken = {ref.name for r in self.records.values() for ref in r.actuators}

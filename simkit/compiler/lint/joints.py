@@ -75,11 +75,9 @@ class _JointInertia:
 def _check_range(joint: JointBinding, found: Diagnostics) -> None:
     for axis in joint.scene.axes:
         if joint.type in ("revolute", "prismatic", "universal", "revolute2") and axis.lower == axis.upper:
+            message = f"joint {joint.scoped!r} is {joint.type} and has no room to move: both limits are {axis.lower:g}"
             found.note(
-                "SK-LINT-005",
-                f"joint {joint.scoped!r} is {joint.type} and has no room to move: both limits are {axis.lower:g}",
-                joint.scene.where,
-                "a joint of type fixed says the same and costs nothing",
+                "SK-LINT-005", message, joint.scene.where, "a joint of type fixed says the same and costs nothing"
             )
 
 
@@ -106,13 +104,11 @@ def _check_servos(compiled: Compiled, inertias: _JointInertia, step: float, foun
             inertia = inertias.at(joint.dofs[ref.axis])
             most = _GAIN_LIMIT * inertia / step
             if ref.kv > most:
-                found.warning(
-                    "SK-LINT-003",
+                message = (
                     f"joint {joint.scoped!r}: the velocity gain {ref.kv:g} that {ref.owner} asks for would ring at a "
-                    f"step of {step * 1e3:g} ms on an inertia of {inertia:.3g}; {most:.3g} is used",
-                    joint.scene.where,
-                    "ask for less, or take a smaller step",
+                    f"step of {step * 1e3:g} ms on an inertia of {inertia:.3g}; {most:.3g} is used"
                 )
+                found.warning("SK-LINT-003", message, joint.scene.where, "ask for less, or take a smaller step")
 
 
 def controller_gains(params: Params, name: str, where: Where) -> Iterator[JointGains]:
@@ -159,13 +155,11 @@ def _check_gains(
             if d_number > _RINGING_DAMPING
             else ("p_gain", gains.p, _RINGING_STIFFNESS * inertia / step**2)
         )
-        found.warning(
-            "SK-LINT-003",
+        message = (
             f"plugin {gains.plugin!r}: <{which}> {value:g} on joint {joint.scoped!r}, which feels {inertia:.3g} "
-            f"(kg m2 or kg), rings or diverges at a step of {step * 1e3:g} ms",
-            gains.where,
-            f"at most {most:.3g}, or a smaller step",
+            f"(kg m2 or kg), rings or diverges at a step of {step * 1e3:g} ms"
         )
+        found.warning("SK-LINT-003", message, gains.where, f"at most {most:.3g}, or a smaller step")
 
 
 def _check_loads(compiled: Compiled, found: Diagnostics) -> None:

@@ -66,12 +66,8 @@ def _check_default_masses(top: SceneModel, found: Diagnostics) -> None:
     kilograms = sum(link.inertial.mass for link in default)
     total = sum(link.inertial.mass for link in links)
     names = ", ".join(link.name for link in default[:6]) + (f" and {len(default) - 6} more" if len(default) > 6 else "")
-    found.warning(
-        "SK-LINT-007",
-        f"model {top.name!r}: {kilograms:g} kg of its {total:.4g} kg come from links without <inertial> ({names})",
-        default[0].where,
-        "give them an <inertial>, or make them a <frame>",
-    )
+    message = f"model {top.name!r}: {kilograms:g} kg of its {total:.4g} kg come from links without <inertial> ({names})"
+    found.warning("SK-LINT-007", message, default[0].where, "give them an <inertial>, or make them a <frame>")
 
 
 def _check_inertia(model: mujoco.MjModel, state: mujoco.MjData, links: list[LinkBinding], found: Diagnostics) -> None:
@@ -113,13 +109,11 @@ def _check_collision_size(model: mujoco.MjModel, state: mujoco.MjData, link: Lin
         return
     a, b = float(np.ptp(solid, axis=0).max()), float(np.ptp(drawn, axis=0).max())
     if a > LARGEST_COLLISION_RATIO * b:
-        found.warning(
-            "SK-LINT-010",
+        message = (
             f"link {link.scoped!r}: its collisions fill {_box_in_words(solid)} m, "
-            f"what is drawn of it {_box_in_words(drawn)} m",
-            link.scene.where,
-            "check the scale of the collision's mesh",
+            f"what is drawn of it {_box_in_words(drawn)} m"
         )
+        found.warning("SK-LINT-010", message, link.scene.where, "check the scale of the collision's mesh")
 
 
 def _total_inertia(model: mujoco.MjModel, data: mujoco.MjData, bodies: Iterable[int]) -> tuple[float, Floats, Floats]:
