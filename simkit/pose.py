@@ -15,8 +15,7 @@ _set = object.__setattr__
 
 def _floats(values: Sequence[float] | Vector) -> list[float]:
     # arithmetic on Python's floats is several times faster than on NumPy's scalars, with the same bits
-    floats: list[float] = values.tolist() if isinstance(values, np.ndarray) else [float(v) for v in values]
-    return floats
+    return values.tolist() if isinstance(values, np.ndarray) else [float(v) for v in values]
 
 
 def quat_multiply(a: Sequence[float] | Vector, b: Sequence[float] | Vector) -> Vector:

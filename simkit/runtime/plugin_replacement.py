@@ -166,8 +166,7 @@ def _swap_in_structure(structure: WorldStructure, old: AttachedPlugin, new: Atta
 
 def _loaded_state(sim: Simulation, plugin: AttachedPlugin) -> PluginState:
     """A plugin's state after its `load`; of one that was spawned later nothing is known."""
-    found: PluginState = next((state for p, state in sim._loaded.plugins if p is plugin), {})
-    return found
+    return next((state for p, state in sim._loaded.plugins if p is plugin), {})
 
 
 def _carried_state(new: Any, loaded: PluginState, had: PluginState, first: PluginState) -> PluginState:

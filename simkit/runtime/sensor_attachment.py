@@ -97,8 +97,7 @@ def find_owner(structure: WorldStructure, name: str) -> tuple[str, SceneLink | S
     for top, model in models:
         table.update({link.scoped: (top, link) for link in model.all_links()})
         table.update({joint.scoped: (top, joint) for joint in model.all_joints()})
-    found: tuple[str, SceneLink | SceneJoint] = look_up(table, name, "link or joint")
-    return found
+    return look_up(table, name, "link or joint")
 
 
 def _move_sensor(sensor: SceneSensor, scoped: str, owner: SceneLink | SceneJoint) -> SceneSensor:

@@ -149,10 +149,7 @@ class AnisotropicFriction:
 
     def _table(self) -> _ModelFriction:
         compiled = self._compiled
-        made: _ModelFriction = compiled.names.shared(
-            _SHARED_KEY, lambda: _ModelFriction(compiled.model, compiled.names)
-        )
-        return made
+        return compiled.names.shared(_SHARED_KEY, lambda: _ModelFriction(compiled.model, compiled.names))
 
 
 class _ModelFriction:

@@ -64,8 +64,7 @@ def _circular_directions(along: Floats, normal: Floats, away: Floats) -> Floats:
     over = dot(circle, along)
     ahead = np.where(over == 0.0, 0.0, np.copysign(1.0, over))
     is_none = (circle == 0.0).all(axis=1, keepdims=True)
-    found: Floats = np.where(is_none, along, circle * ahead[:, None])
-    return found
+    return np.where(is_none, along, circle * ahead[:, None])
 
 
 def cross(a: Floats, b: Floats) -> Floats:
@@ -84,8 +83,7 @@ def dot(a: Floats, b: Floats) -> Floats:
 def unit(vectors: Floats) -> Floats:
     """Vectors of length 1 (k, 3); zero for one that has nearly none."""
     length = np.sqrt(dot(vectors, vectors))[:, None]
-    found: Floats = np.where(length > MIN_SINE, vectors / np.maximum(length, MIN_SINE), 0.0)
-    return found
+    return np.where(length > MIN_SINE, vectors / np.maximum(length, MIN_SINE), 0.0)
 
 
 def along_tangents(frames: Floats, vectors: Floats) -> Floats:

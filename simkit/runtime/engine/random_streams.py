@@ -52,8 +52,7 @@ class RandomStream:
         """The same of up to `most` samples from `index` on: those that are drawn together, shape (count, width)."""
         self.normal(index)
         row = index % self._rows
-        values: Values = self._normals[row : row + most]
-        return values
+        return self._normals[row : row + most]
 
     def uniform(self, index: int) -> Values:
         """Numbers of a sample, evenly spread within ±1, shape (width,); a view that must not be written to."""

@@ -139,8 +139,7 @@ class Sleep:
         return trees[trees >= 0]
 
     def _distance(self, a: Floats, b: Floats) -> Floats:
-        distance: Floats = np.maximum.reduceat(np.abs(a - b), self._starts)
-        return distance
+        return np.maximum.reduceat(np.abs(a - b), self._starts)
 
     def let_fall_asleep(self) -> None:
         """Before the step in which the engine puts to sleep what is ready."""

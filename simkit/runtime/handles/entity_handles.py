@@ -110,8 +110,7 @@ class EntityHandles:
             found = next((v for v in link.visuals.values() if v.scoped == name), None)
             if found is not None:
                 return found
-        visual: Visual = look_up(self.visuals(), name, "visual")
-        return visual
+        return look_up(self.visuals(), name, "visual")
 
     def visuals(self) -> dict[str, Visual]:
         """All there are, by scoped name."""

@@ -117,8 +117,7 @@ class Joint(Handle):
             limit = float(self._effort_limit[0])
             return max(-limit, min(limit, float(pending[self._one_dof] + data.qfrc_actuator[self._one_dof])))
         total = pending[self._dofs] + data.qfrc_actuator[self._dofs]
-        clipped: Vector = np.clip(self._to_joint(total), -self._limit(), self._limit())
-        return clipped
+        return np.clip(self._to_joint(total), -self._limit(), self._limit())
 
     @property
     def transmitted_wrench(self) -> tuple[Vector, Vector]:

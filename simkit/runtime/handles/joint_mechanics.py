@@ -206,8 +206,7 @@ def _body_velocity(engine: EngineState, body: int) -> Vector:
     model, data = engine.mj_model, engine.mj_data
     jacobian = np.zeros((6, model.nv))
     mujoco.mj_jacBody(model, data, jacobian[:3], jacobian[3:], body)
-    moved: Vector = jacobian @ data.qvel
-    return moved
+    return jacobian @ data.qvel
 
 
 def transmitted_wrench(

@@ -81,8 +81,7 @@ class Link(Handle):
             return out[3:]
         data = physics.fresh_accelerations()
         mujoco.mj_objectAcceleration(self._physics.model, data, _BODY, self._body, out, 0)
-        linear: Vector = out[3:] + self._physics.model.opt.gravity
-        return linear
+        return out[3:] + self._physics.model.opt.gravity
 
     @property
     def mass(self) -> float:
