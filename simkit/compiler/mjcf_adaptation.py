@@ -13,6 +13,7 @@ import numpy as np
 
 from simkit.compiler.contact_friction import MU_MOST, friction_priority
 from simkit.compiler.kinematic_tree import WORLD
+from simkit.compiler.state_transfer import JOINT_WIDTHS
 from simkit.diagnostics import NOWHERE, Diagnostics
 from simkit.scene import SceneModel
 from simkit.scene.mjcf_source import MjcfSource
@@ -199,7 +200,7 @@ def _shorten_keys(child: mujoco.MjSpec, joint: str) -> None:
     """Takes a joint's numbers out of the keyframes."""
     q = v = 0
     for other in child.joints:
-        wide = {0: (7, 6), 1: (4, 3)}.get(int(other.type), (1, 1))
+        wide = JOINT_WIDTHS.get(int(other.type), (1, 1))
         if other.name == joint:
             break
         q, v = q + wide[0], v + wide[1]

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import Any, TypeVar
 
 import mujoco
 
 from simkit.compiler.geom_groups import COLLISION, COLLISION_CONTACT, COLLISION_RAY, DRAWN_COLLISION
+from simkit.compiler.state_transfer import JOINT_WIDTHS
 from simkit.diagnostics import did_you_mean
 from simkit.pose import IDENTITY, Pose
 from simkit.scene import SceneJoint, SceneLight, SceneLink, SceneModel
@@ -193,26 +194,12 @@ class ModelRecord:
 
     def copy(self) -> ModelRecord:
         """A record of its own; the bindings in it are immutable and shared."""
-        return replace(
-            self,
-            root_bodies=list(self.root_bodies),
-            geoms=dict(self.geoms),
-            links=dict(self.links),
-            joints=dict(self.joints),
-            lights=dict(self.lights),
-            sites=list(self.sites),
-            world_sites=list(self.world_sites),
-            world_cameras=list(self.world_cameras),
-            excludes=list(self.excludes),
-            equalities=list(self.equalities),
-            actuators=list(self.actuators),
-            assets=set(self.assets),
-            damped=dict(self.damped),
-            massless=dict(self.massless),
-            unladen=set(self.unladen),
-            exact=dict(self.exact),
-            attached=dict(self.attached),
-        )
+        same = replace(self)
+        for name in (one.name for one in fields(self)):
+            content = getattr(self, name)
+            if isinstance(content, (dict, list, set)):
+                setattr(same, name, content.copy())
+        return same
 
 
 def lookup(items: Mapping[str, T], name: str, what: str) -> T:
@@ -362,7 +349,7 @@ class NameMap:
         ids = tuple(int(mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, n)) for n in joint.joint_names)
         dofs: list[int] = []
         for i in ids:
-            width = {0: 6, 1: 3}.get(int(model.jnt_type[i]), 1)
+            _, width = JOINT_WIDTHS.get(int(model.jnt_type[i]), (1, 1))
             dofs += range(int(model.jnt_dofadr[i]), int(model.jnt_dofadr[i]) + width)
         followers = []
         for f in joint.followers:

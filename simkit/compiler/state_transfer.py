@@ -1,9 +1,25 @@
-"""State from one compiled model to the next: everything that exists in both keeps its bits."""
+"""State and changed fields from one compiled model to another: everything that exists in both keeps its bits."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Final
+
 import mujoco
 import numpy as np
+import numpy.typing as npt
+
+JOINT_WIDTHS: Final = {int(mujoco.mjtJoint.mjJNT_FREE): (7, 6), int(mujoco.mjtJoint.mjJNT_BALL): (4, 3)}
+"""Numbers of the position and of the velocity of a joint by MuJoCo's type; types that are not here have one of each."""
+_KINDS: Final = {
+    "geom": mujoco.mjtObj.mjOBJ_GEOM,
+    "body": mujoco.mjtObj.mjOBJ_BODY,
+    "jnt": mujoco.mjtObj.mjOBJ_JOINT,
+    "light": mujoco.mjtObj.mjOBJ_LIGHT,
+    "eq": mujoco.mjtObj.mjOBJ_EQUALITY,
+    "actuator": mujoco.mjtObj.mjOBJ_ACTUATOR,
+}
+"""Kinds of elements by the prefixes of MuJoCo's model fields."""
 
 
 def transfer_state(old: mujoco.MjModel, source: mujoco.MjData, new: mujoco.MjModel, target: mujoco.MjData) -> None:
@@ -11,47 +27,71 @@ def transfer_state(old: mujoco.MjModel, source: mujoco.MjData, new: mujoco.MjMod
 
     The solver's warm start is carried as well, so a trajectory goes on as if nothing had happened around it.
     """
-    obj = mujoco.mjtObj
     target.time = source.time
-    for _, i, j in _shared_elements(old, new, obj.mjOBJ_JOINT):
-        width_q = {0: 7, 1: 4}.get(int(old.jnt_type[i]), 1)
-        width_v = {0: 6, 1: 3}.get(int(old.jnt_type[i]), 1)
-        if old.jnt_type[i] != new.jnt_type[j]:
-            continue
-        a, b = int(old.jnt_qposadr[i]), int(new.jnt_qposadr[j])
-        target.qpos[b : b + width_q] = source.qpos[a : a + width_q]
-        a, b = int(old.jnt_dofadr[i]), int(new.jnt_dofadr[j])
-        for field in ("qvel", "qacc", "qacc_warmstart", "qfrc_applied"):
-            getattr(target, field)[b : b + width_v] = getattr(source, field)[a : a + width_v]
-    for _, i, j in _shared_elements(old, new, obj.mjOBJ_BODY):
+    copy_state(old, source, new, target, ("qvel", "qacc", "qacc_warmstart", "qfrc_applied"))
+    for i, j in _pair_by_name("body", old.nbody, old, new):
         target.xfrc_applied[j] = source.xfrc_applied[i]
-        a, b = int(old.body_mocapid[i]), int(new.body_mocapid[j])
-        if a >= 0 and b >= 0:
-            target.mocap_pos[b], target.mocap_quat[b] = source.mocap_pos[a], source.mocap_quat[a]
-    for _, i, j in _shared_elements(old, new, obj.mjOBJ_ACTUATOR):
-        target.ctrl[j] = source.ctrl[i]
-        n = int(old.actuator_actnum[i])
-        if n > 0 and n == int(new.actuator_actnum[j]):
-            a, b = int(old.actuator_actadr[i]), int(new.actuator_actadr[j])
-            target.act[b : b + n] = source.act[a : a + n]
-    for _, i, j in _shared_elements(old, new, obj.mjOBJ_EQUALITY):
-        target.eq_active[j] = source.eq_active[i]
+    for i, j in _pair_by_name("eq", old.neq, old, new):
         new.eq_data[j] = np.array(old.eq_data[i])
     mujoco.mj_forward(new, target)
 
 
-def _shared_elements(old: mujoco.MjModel, new: mujoco.MjModel, kind: mujoco.mjtObj) -> list[tuple[str, int, int]]:
-    """(name, old id, new id) of named elements of both models."""
-    count = {
-        mujoco.mjtObj.mjOBJ_JOINT: old.njnt,
-        mujoco.mjtObj.mjOBJ_BODY: old.nbody,
-        mujoco.mjtObj.mjOBJ_ACTUATOR: old.nu,
-        mujoco.mjtObj.mjOBJ_EQUALITY: old.neq,
-    }[kind]
-    pairs = []
+def copy_state(
+    old: mujoco.MjModel,
+    source: mujoco.MjData,
+    new: mujoco.MjModel,
+    target: mujoco.MjData,
+    dof_fields: Sequence[str] = ("qvel",),
+) -> None:
+    """Copies joints, poses of mocap bodies, controls, activations and active equalities of what both models have."""
+    for i, j in _pair_by_name("jnt", old.njnt, old, new):
+        if old.jnt_type[i] == new.jnt_type[j]:
+            positions, velocities = JOINT_WIDTHS.get(int(old.jnt_type[i]), (1, 1))
+            a, b = int(old.jnt_qposadr[i]), int(new.jnt_qposadr[j])
+            target.qpos[b : b + positions] = source.qpos[a : a + positions]
+            a, b = int(old.jnt_dofadr[i]), int(new.jnt_dofadr[j])
+            for field in dof_fields:
+                getattr(target, field)[b : b + velocities] = getattr(source, field)[a : a + velocities]
+    for i, j in _pair_by_name("body", old.nbody, old, new):
+        a, b = int(old.body_mocapid[i]), int(new.body_mocapid[j])
+        if a >= 0 and b >= 0:
+            target.mocap_pos[b], target.mocap_quat[b] = source.mocap_pos[a], source.mocap_quat[a]
+    for i, j in _pair_by_name("actuator", old.nu, old, new):
+        target.ctrl[j] = source.ctrl[i]
+        count = int(old.actuator_actnum[i])
+        if count > 0 and count == int(new.actuator_actnum[j]):
+            a, b = int(old.actuator_actadr[i]), int(new.actuator_actadr[j])
+            target.act[b : b + count] = source.act[a : a + count]
+    for i, j in _pair_by_name("eq", old.neq, old, new):
+        target.eq_active[j] = source.eq_active[i]
+
+
+def copy_fields_by_name(old: mujoco.MjModel, new: mujoco.MjModel, fields: Iterable[str]) -> None:
+    """Copies changed model fields to a recompiled model, element by element by name."""
+    for field in fields:
+        source, target = getattr(old, field), getattr(new, field)
+        if field.startswith("dof_"):  # degrees of freedom have the names of their joints
+            for i, j in _pair_by_name("jnt", old.njnt, old, new):
+                _, width = JOINT_WIDTHS.get(int(old.jnt_type[i]), (1, 1))
+                a, b = int(old.jnt_dofadr[i]), int(new.jnt_dofadr[j])
+                target[b : b + width] = source[a : a + width]
+            continue
+        for i, j in _pair_by_name(field.split("_")[0], len(source), old, new):
+            target[j] = source[i]
+
+
+def restore_compiled_fields(model: mujoco.MjModel, originals: Mapping[str, npt.NDArray[np.float64]]) -> None:
+    """Writes the compiled values back to a model that is left: who returns to it brings the changes of then."""
+    for field, original in originals.items():
+        getattr(model, field)[:] = original
+
+
+def _pair_by_name(prefix: str, count: int, old: mujoco.MjModel, new: mujoco.MjModel) -> list[tuple[int, int]]:
+    """Return (id in the old model, id in the new one) of everything of a kind that both have under one name."""
+    kind, found = _KINDS[prefix], []
     for i in range(count):
         name = mujoco.mj_id2name(old, kind, i)
         j = mujoco.mj_name2id(new, kind, name) if name else -1
         if j >= 0:
-            pairs.append((name, i, int(j)))
-    return pairs
+            found.append((i, j))
+    return found

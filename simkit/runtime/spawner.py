@@ -7,6 +7,7 @@ import weakref
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from simkit.compiler.state_transfer import copy_fields_by_name, restore_compiled_fields
 from simkit.diagnostics import Diagnostics
 from simkit.errors import InputError, LoadError, SimkitError
 from simkit.pose import Pose
@@ -21,7 +22,6 @@ from simkit.runtime.engine.entity_structure import (
     bodies_kept_awake,
     plugins_in_order,
 )
-from simkit.runtime.engine.model_edits import copy_fields_by_name, restore_compiled_fields
 from simkit.runtime.engine.plugin_faults import call_plugin
 from simkit.runtime.engine.snapshot import Snapshot, Snapshots, Stateful
 from simkit.scene import SceneJoint, SceneModel

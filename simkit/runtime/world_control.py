@@ -6,12 +6,13 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import mujoco
 import numpy as np
 
+from simkit.compiler.state_transfer import copy_state
 from simkit.errors import InputError
 from simkit.pose import Vector
 from simkit.runtime.communication.journal import journaled
-from simkit.runtime.engine.model_reset import reset_models
 from simkit.runtime.engine.pause_control import Advance, PauseControl
 from simkit.runtime.engine.physics_state import STALE
 from simkit.runtime.model_copy import present_world
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from simkit.scene import SceneWorld, SphericalCoordinates
 
 _MASK_FIELDS = ("geom_contype", "geom_conaffinity")
+_PLACE_FIELDS = ("body_pos", "body_quat")  # of what is fixed or hinged to the world and was moved
 
 
 class GeographicOrigin:
@@ -182,7 +184,38 @@ class WorldControl:
         """
         engine, loaded = self._engine, self._loaded()
         self._bus.settle()
-        reset_models(engine, self._handles.tables["model"].values(), loaded)
+        for sensor in engine.structure.all_sensors():
+            sensor.take_held()
+        _reset_physics(engine, loaded)
+        models, plugins = self._handles.tables["model"].values(), engine.structure.all_plugins()
+        for handle, state in loaded.handles:
+            if handle in models or handle is engine.velocity_servos:
+                handle.set_state(state)
+        for plugin, state in loaded.plugins:
+            if plugin in plugins:
+                engine.faults.take_back(plugin, state)
         engine.reschedule()
         for plugin in engine.structure.all_plugins():
             engine.faults.task(plugin, "reset")(0)
+
+
+def _reset_physics(engine: Engine, loaded: Snapshot) -> None:
+    """Puts every model back: one that was loaded to its first state, one that was spawned since to where it came.
+
+    What was removed stays away. Positions, velocities, controls, welds and the places of static models are set;
+    forces that wait for the next step are dropped.
+    """
+    model, data, physics = engine.mj_model, engine.mj_data, engine.physics
+    for field in _PLACE_FIELDS:
+        if field in engine.originals:
+            engine.touch(field)[:] = engine.original(field)
+    fresh = mujoco.MjData(model)
+    data.qpos[:], data.qvel[:] = fresh.qpos, 0.0
+    data.mocap_pos[:], data.mocap_quat[:] = fresh.mocap_pos, fresh.mocap_quat
+    data.ctrl[:], data.eq_active[:] = fresh.ctrl, fresh.eq_active
+    data.qacc_warmstart[:] = data.qfrc_applied[:] = 0.0
+    data.xfrc_applied[:] = physics.persistent_wrenches
+    copy_state(loaded.structure.compiled.model, loaded.data, model, data)
+    physics.one_shot = False
+    physics.changed_model()
+    physics.changed(STALE)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
 
 if TYPE_CHECKING:
-    from simkit.runtime.engine.held_state import HeldState
+    from simkit.runtime.engine.physics_state import HeldState
 
 
 # What a sensor of some kind measures: the kind's own dataclass, or an array.

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from simkit.runtime import Publisher, Simulation
     from simkit.runtime.communication.subscription import PendingWork
     from simkit.runtime.communication.topic_bus import LazyMessage
-    from simkit.runtime.engine.held_state import HeldState
+    from simkit.runtime.engine.physics_state import HeldState
     from simkit.runtime.engine.scheduler import Timetable
 
 

@@ -7,13 +7,13 @@ import numpy as np
 
 from simkit.runtime.contact.contact_law import ContactLaw, ContactShaper
 from simkit.runtime.contact.speculative_contacts import FastBodyDetector
-from simkit.runtime.engine.held_state import HeldState
 from simkit.runtime.engine.physics_state import (
     CONTROL,
     FRESH,
     INTEGRATION_STATE,
     STALE,
     VELOCITY,
+    HeldState,
     PhysicsState,
     set_speculative,
 )

@@ -15,6 +15,8 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from simkit.compiler.state_transfer import JOINT_WIDTHS
+
 MIN_CHAIN_LENGTH: Final = 8
 """Passive joints in a row from which on a tree counts as a chain; arms have seven."""
 
@@ -52,7 +54,7 @@ class PassiveTree:
         turns = (kinds == _BALL) | (kinds == _HINGE) | ((kinds == _FREE) & (offset >= 3))
         self.turning = self.dofs.start + np.flatnonzero(turns)
         first, last = int(joints[0]), int(joints[-1])
-        width = {_FREE: 7, _BALL: 4}.get(int(model.jnt_type[last]), 1)
+        width, _ = JOINT_WIDTHS.get(int(model.jnt_type[last]), (1, 1))
         self.coordinates = slice(int(model.jnt_qposadr[first]), int(model.jnt_qposadr[last]) + width)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import mujoco
@@ -14,7 +15,6 @@ from simkit.runtime.contact.contact_law import ContactLaw, ContactShaper, window
 from simkit.runtime.contact.speculative_contacts import SPECULATIVE_FLAG, FastBodyDetector
 from simkit.runtime.engine.divergence import ENGINE_WARNINGS
 from simkit.runtime.engine.free_motion import FreeMotionIntegrator
-from simkit.runtime.engine.held_state import HeldState
 from simkit.runtime.engine.simulated_time import Clock
 from simkit.runtime.engine.sleep import Sleep
 
@@ -51,6 +51,32 @@ class StepWindow(NamedTuple):
     fast_until: int = -1
     probes: bool = False
     probed: tuple[float, ...] = ()
+
+
+@dataclass(slots=True, eq=False)
+class HeldState:
+    """The physics state of one tick, which is kept so that a sensor can be read later.
+
+    Attributes:
+        tick: the tick.
+        model: of the engine, that the state is of.
+        values: of the engine (`mjSTATE_INTEGRATION`).
+        request: what plugins asked of contacts at that tick, for `ContactShaper.shape`.
+        uses_law, is_fast: whether its step follows the contact law, and has speculative contacts; None where that is
+            still to be found from the state.
+        probes: whether controls or forces have changed before that step so that contacts may begin to slide.
+    """
+
+    tick: int
+    model: mujoco.MjModel
+    values: npt.NDArray[np.float64]
+    request: object
+    uses_law: bool | None
+    is_fast: bool | None
+    probes: bool
+
+    def __deepcopy__(self, memo: dict[int, object]) -> HeldState:
+        return self
 
 
 class PhysicsState:
@@ -158,6 +184,16 @@ class PhysicsState:
             self.data.xfrc_applied += self.persistent_wrenches - before
             for changed in np.flatnonzero((self.persistent_wrenches != before).any(axis=1)):
                 self.changed_body(CONTROL, int(changed))
+
+    def applied_forces(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+        """Forces on joints, shape (nv,), and on bodies, shape (nbody, 6), of the last step [N, N m].
+
+        Those that hold for one step are gone from the state by then, and remembered.
+        """
+        applied, pushed = self.data.qfrc_applied, self.data.xfrc_applied
+        if self.shows_applied:
+            return self.last_applied + applied, self.last_pushed + pushed
+        return applied, pushed
 
     def changed_surface(self) -> None:
         """Says that a surface runs otherwise than before: whatever may lie on it wakes."""

@@ -12,7 +12,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from simkit.runtime.engine.model_edits import restore_compiled_fields
+from simkit.compiler.state_transfer import restore_compiled_fields
 from simkit.runtime.engine.physics_state import STALE, StepWindow
 
 if TYPE_CHECKING:

@@ -23,7 +23,6 @@ from simkit.runtime import Simulation
 from simkit.runtime.communication.topic_bus import NO_MESSAGE, LazyMessage
 from simkit.runtime.engine import grouped_hooks
 from simkit.runtime.engine.engine_state import EngineState
-from simkit.runtime.engine.held_state import applied_forces
 from simkit.runtime.engine.plugin_faults import PluginFaults
 from simkit.testing.certify.outcome import PluginCall, TopicOutcome
 from simkit.testing.certify.variations import Listening
@@ -347,7 +346,7 @@ class TickHashes:
         physics = self._sim.engine.physics
         data, tick = physics.data, physics.tick
         self.state[tick] = _two_hashes(data.qpos, data.qvel, data.act)
-        applied, pushed = applied_forces(physics)
+        applied, pushed = physics.applied_forces()
         self.inputs[tick] = _two_hashes(data.ctrl, applied, pushed, data.mocap_pos)
 
 

@@ -12,7 +12,6 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.runtime import Simulation
-from simkit.runtime.engine.held_state import applied_forces
 from simkit.runtime.engine.physics_step import Physics
 from simkit.runtime.engine.snapshot import state_hash
 from simkit.testing.run_record.record import Array, States
@@ -179,7 +178,7 @@ class StateQuantities:
         for name, position, turn in zip(self.mocaps, data.mocap_pos.tolist(), data.mocap_quat.tolist(), strict=True):
             state.update((f"{name} {part}", v) for part, v in zip(_FREE_POSITION, [*position, *turn], strict=True))
         given = {f"control {name}": value for name, value in zip(self.controls, data.ctrl.tolist(), strict=True)}
-        applied, pushed = applied_forces(physics)
+        applied, pushed = physics.applied_forces()
         for at in np.flatnonzero(applied):
             given[self.forces[int(at)]] = float(applied[at])
         for body, part in zip(*np.nonzero(pushed), strict=True):
