@@ -19,6 +19,7 @@ __all__ = [
     "closest",
     "did_you_mean",
     "follows_from",
+    "name_hint",
     "shorten",
 ]
 
@@ -137,6 +138,12 @@ def did_you_mean(name: str, allowed: Iterable[str]) -> str:
     """`did you mean 'x'?`, or an empty text."""
     near = closest(name, allowed)
     return f"did you mean {near!r}?" if near else ""
+
+
+def name_hint(name: str, known: Iterable[str]) -> str:
+    """`did you mean 'x'?`, else `there is` with all known names, or `none`."""
+    names = list(known)
+    return did_you_mean(name, names) or "there is " + (", ".join(names) or "none")
 
 
 def shorten(text: str, most: int) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Generic, TypeVar
 
 from simkit.msgs.message_types import Message
-from simkit.runtime.communication.topic_bus import NO_MESSAGE, LazyMessage
+from simkit.runtime.communication.subscription import NO_MESSAGE, LazyMessage
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation, Subscription

@@ -7,7 +7,8 @@ and plugins by name, and sockets. `contact` is below `engine`, that is below `co
 """
 
 from simkit.mujoco_import import mujoco  # noqa: F401  (before any module imports MuJoCo by itself)
-from simkit.runtime.communication.topic_bus import Publisher, Subscription
+from simkit.runtime.communication.publisher import Publisher
+from simkit.runtime.communication.subscription import Subscription
 from simkit.runtime.engine.entity_structure import SensorsAndPlugins, WorldStructure
 from simkit.runtime.engine.snapshot import Snapshot
 from simkit.runtime.handles.joint import Joint

@@ -274,7 +274,7 @@ def _add_parameter_values(sim: Simulation, snapshot: Snapshot, values: Parameter
 
 def _hand_over_goals(sim: Simulation, old: AttachedPlugin, new: AttachedPlugin) -> None:
     """Goals that are being worked on go on with the new plugin's action of the same name, or are aborted."""
-    actions = {a.name: a for opened in sim.communication.actions._actions.values() for a in opened if a.owner is new}
+    actions = sim.communication.actions.endpoints_of(new)
     for goal in [g for g in sim.communication.actions._goals if g._action.owner is old and not g.is_done]:
         if goal._action.name in actions:
             goal._action = actions[goal._action.name]

@@ -12,7 +12,8 @@ from simkit.runtime.communication.action_server import GoalHandle
 from simkit.runtime.communication.communication import Communication
 from simkit.runtime.communication.journal import journaled
 from simkit.runtime.communication.service_server import Service, ServiceHandler
-from simkit.runtime.communication.topic_bus import Callback, CallbackErrorPolicy, Subscription, TopicBus
+from simkit.runtime.communication.subscription import Callback, CallbackErrorPolicy, Subscription
+from simkit.runtime.communication.topic_bus import TopicBus
 from simkit.runtime.engine.engine import Engine
 from simkit.runtime.engine.plugin_faults import add_driver_hints
 from simkit.runtime.engine.simulated_time import Clock

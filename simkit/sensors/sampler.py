@@ -15,8 +15,7 @@ if TYPE_CHECKING:
     import mujoco
 
     from simkit.runtime import Publisher, Simulation
-    from simkit.runtime.communication.subscription import PendingWork
-    from simkit.runtime.communication.topic_bus import LazyMessage
+    from simkit.runtime.communication.subscription import LazyMessage, PendingWork
     from simkit.runtime.engine.physics_state import HeldState
     from simkit.runtime.engine.scheduler import Timetable
 

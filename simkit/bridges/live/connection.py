@@ -23,7 +23,7 @@ from simkit.bridges.live.protocol import (
 
 if TYPE_CHECKING:
     from simkit.runtime.communication.action_server import GoalHandle
-    from simkit.runtime.communication.topic_bus import Publisher
+    from simkit.runtime.communication.publisher import Publisher
 
 MOST_BYTES = 32 << 20  # of messages that wait for one client
 MOST_DEPTH = 100_000  # messages that wait for one subscription

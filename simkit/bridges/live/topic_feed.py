@@ -9,10 +9,10 @@ from simkit import msgs
 from simkit.bridges.live.connection import ClientSubscription
 from simkit.errors import MessageError
 from simkit.msgs.message_types import Message
-from simkit.runtime.communication.topic_bus import NO_MESSAGE, LazyMessage
+from simkit.runtime.communication.subscription import NO_MESSAGE, LazyMessage
 
 if TYPE_CHECKING:
-    from simkit.runtime.communication.topic_bus import Subscription
+    from simkit.runtime.communication.subscription import Subscription
     from simkit.runtime.simulation import Simulation
 
 _MOST_WAITING = 100  # messages of a topic that are still being made

@@ -10,13 +10,12 @@ A goal, and the wish to cancel one, reach the plugin between two steps, in the o
 from __future__ import annotations
 
 import enum
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
 from simkit import msgs
-from simkit.diagnostics import did_you_mean
 from simkit.errors import ActionError, InputError, MessageError, PluginError, SimkitError, SubscriberError
-from simkit.msgs.message_types import definition_files
+from simkit.runtime.communication.endpoint_table import EndpointTable
 from simkit.runtime.communication.subscription import Callback, Message, callback_name
 from simkit.runtime.communication.topic_bus import absolute_name
 
@@ -81,10 +80,7 @@ class GoalHandle:
     def cancel(self) -> None:
         """Asks for it to be called off; the plugin hears of it before the next step, and may go on."""
         bus = self._action.bus
-        if bus.journal is None:
-            bus.enqueue(lambda: self._action.ask_to_cancel(self))
-            return
-        with bus.journal.passing("cancel", {"goal": self.id}):
+        with bus.passing("cancel", goal=self.id):
             bus.enqueue(lambda: self._action.ask_to_cancel(self))
 
     # ------------------------------------------------------------------ for the plugin
@@ -207,7 +203,7 @@ GoalStates = tuple[int, tuple[tuple[GoalHandle, tuple[GoalStatus, Message, Messa
 """How many goals were sent, and status, result, feedback and reason of each."""
 
 
-class ActionTable:
+class ActionTable(EndpointTable[Action]):
     """All actions of a simulation, and the goals that were sent.
 
     Args:
@@ -215,9 +211,10 @@ class ActionTable:
         engine: calls plugins.
     """
 
+    kind, part, error = "action", "Goal", ActionError
+
     def __init__(self, bus: TopicBus, engine: Engine) -> None:
-        self._bus, self._engine = bus, engine
-        self._actions: dict[str, list[Action]] = {}
+        super().__init__(bus, engine)
         self._goals: list[GoalHandle] = []
         self._sent = 0
 
@@ -235,21 +232,13 @@ class ActionTable:
             MessageError: an unknown type.
         """
         name = absolute_name(name)
-        if type_name not in definition_files():  # what is in there is read when a goal comes
-            msgs.full_name(f"{type_name}_Goal")
+        self._check_type(type_name)
         if self._find(name) is not None:
             raise ActionError(f"there is an action {name!r} already")
-        if self._bus.journal is not None:
-            with self._bus.journal.passing("act", {"action": name}):
-                pass
-        action = Action(self._bus, self._engine, name, type_name, on_goal, on_cancel)
-        self._actions.setdefault(name, []).append(action)
+        with self._bus.passing("act", action=name):
+            action = Action(self._bus, self._engine, name, type_name, on_goal, on_cancel)
+            self._endpoints.setdefault(name, []).append(action)
         return action
-
-    def names(self) -> dict[str, str]:
-        """Action -> type, sorted."""
-        found = ((name, self._find(name)) for name in sorted(self._actions))
-        return {name: action.type_name for name, action in found if action is not None}
 
     def send(
         self,
@@ -270,49 +259,19 @@ class ActionTable:
             ActionError: there is no such action; names the closest.
             MessageError: the goal does not fit.
         """
-        name = absolute_name(name)
-        action = self._find(name)
-        if action is None:
-            there = self.names()
-            hint = did_you_mean(name, there) or "there is " + (", ".join(there) or "none")
-            raise ActionError(f"no action {name!r}; {hint}")
-        wanted = f"{action.type_name}_Goal"
-        request = msgs.from_dict([wanted], goal or {}) if goal is None or isinstance(goal, Mapping) else goal
-        if msgs.type_name(request) != wanted:
-            raise MessageError(f"{name!r} takes {wanted}, got {msgs.type_name(request)}")
+        action = self._get(absolute_name(name))
+        request = self._as_message(action, goal)
         journal = self._bus.journal
-        if journal is None:
-            return self._send(action, request, on_feedback, on_done)
-        on_feedback, on_done = journal.outside(on_feedback), journal.outside(on_done)
-        words = {"action": action.name, "goal": request, "on_feedback": on_feedback, "on_done": on_done}
-        with journal.passing("send_goal", words):
-            return self._send(action, request, on_feedback, on_done)
-
-    def _send(
-        self,
-        action: Action,
-        request: Message,
-        on_feedback: Callback | None,
-        on_done: Callable[[GoalHandle], None] | None,
-    ) -> GoalHandle:
-        self._sent += 1
-        handle = GoalHandle(action, self._sent, request, self._engine.time_ns)
-        handle._on_feedback, handle._on_done = on_feedback, on_done
-        self._goals = [g for g in self._goals if not g.is_done]
-        self._goals.append(handle)
-        self._bus.enqueue(lambda: action.offer(handle))
+        if journal is not None:
+            on_feedback, on_done = journal.outside(on_feedback), journal.outside(on_done)
+        with self._bus.passing("send_goal", action=action.name, goal=request, on_feedback=on_feedback, on_done=on_done):
+            self._sent += 1
+            handle = GoalHandle(action, self._sent, request, self._engine.time_ns)
+            handle._on_feedback, handle._on_done = on_feedback, on_done
+            self._goals = [g for g in self._goals if not g.is_done]
+            self._goals.append(handle)
+            self._bus.enqueue(lambda: action.offer(handle))
         return handle
-
-    def set_active(self, owners: Sequence[object]) -> None:
-        """Leaves only the actions of these owners (and those without one) in use."""
-        living = {id(owner) for owner in owners}
-        for action in (a for opened in self._actions.values() for a in opened):
-            action.active = action.owner is None or id(action.owner) in living
-
-    def forget(self, owners: Sequence[object]) -> None:
-        """Takes every action of these owners away for good."""
-        gone = {id(owner) for owner in owners}
-        self._actions = {n: [a for a in opened if id(a.owner) not in gone] for n, opened in self._actions.items()}
 
     def abandon(self, owner: object, reason: str) -> None:
         """Ends every goal of a plugin that is left out."""
@@ -337,6 +296,3 @@ class ActionTable:
         self._goals = [goal for goal, _ in state[1]]
         for goal, values in state[1]:
             goal.status, goal.result, goal.feedback, goal.reason = values
-
-    def _find(self, name: str) -> Action | None:
-        return next((a for a in self._actions.get(name, ()) if a.active), None)

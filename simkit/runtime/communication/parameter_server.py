@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy as np
 
-from simkit.diagnostics import did_you_mean
+from simkit.diagnostics import did_you_mean, name_hint
 from simkit.errors import ParameterError
 from simkit.runtime.communication.journal import journaled
 
@@ -160,7 +160,7 @@ class ParameterTable:
         """
         nodes = self.nodes()
         if node not in nodes:
-            hint = did_you_mean(node, nodes) or "there is " + (", ".join(nodes) or "none")
+            hint = name_hint(node, nodes)
             raise ParameterError(f"no node {node!r} has parameters; {hint}")
         if name not in nodes[node]:
             hint = did_you_mean(name, nodes[node]) or "it has " + ", ".join(nodes[node])

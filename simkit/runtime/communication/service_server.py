@@ -8,20 +8,18 @@ A bridge has only to carry them.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
 from simkit import msgs
-from simkit.diagnostics import did_you_mean
-from simkit.errors import MessageError, PluginError, ServiceError, SimkitError
-from simkit.msgs.message_types import definition_files
+from simkit.errors import PluginError, ServiceError, SimkitError
+from simkit.runtime.communication.endpoint_table import EndpointTable
 from simkit.runtime.communication.subscription import Message
 from simkit.runtime.communication.topic_bus import absolute_name
 from simkit.runtime.engine.plugin_faults import call_plugin
 
 if TYPE_CHECKING:
-    from simkit.runtime.communication.topic_bus import TopicBus
-    from simkit.runtime.engine.engine import Engine
+    pass
 
 ServiceHandler = Callable[[Message], Message]
 
@@ -48,7 +46,7 @@ class Service:
         return self
 
 
-class ServiceTable:
+class ServiceTable(EndpointTable[Service]):
     """All services of a simulation.
 
     Args:
@@ -56,9 +54,7 @@ class ServiceTable:
         engine: calls plugins.
     """
 
-    def __init__(self, bus: TopicBus, engine: Engine) -> None:
-        self._bus, self._engine = bus, engine
-        self._services: dict[str, list[Service]] = {}
+    kind, part, error = "service", "Request", ServiceError
 
     def offer(self, name: str, type_name: str, handler: ServiceHandler) -> Service:
         """Opens a service; whatever opens it within `bus.owned_by(owner)` belongs to that owner.
@@ -68,16 +64,13 @@ class ServiceTable:
             MessageError: an unknown type.
         """
         name = absolute_name(name)
-        if type_name not in definition_files():  # what is in there is read when somebody calls
-            msgs.full_name(f"{type_name}_Request")
+        self._check_type(type_name)
         standing = self._find(name)
         if standing is not None and not standing.yields:
             raise ServiceError(f"there is a service {name!r} already, {_describe_owner(standing)}")
-        if self._bus.journal is not None:
-            with self._bus.journal.passing("offer", {"service": name}):
-                pass
-        service = Service(name, type_name, handler, self._bus.owner)
-        self._services.setdefault(name, []).insert(0, service)
+        with self._bus.passing("offer", service=name):
+            service = Service(name, type_name, handler, self._bus.owner)
+            self._endpoints.setdefault(name, []).insert(0, service)
         return service
 
     def offer_by_default(self, name: str, type_name: str, handler: ServiceHandler) -> None:
@@ -85,18 +78,13 @@ class ServiceTable:
         name = absolute_name(name)
         service = Service(name, type_name, handler, self._bus.owner)
         service.yields = True
-        self._services.setdefault(name, []).append(service)
+        self._endpoints.setdefault(name, []).append(service)
 
     def close(self, service: Service) -> None:
         """Takes a service away for good."""
-        offered = self._services.get(service.name, [])
+        offered = self._endpoints.get(service.name, [])
         if service in offered:
             offered.remove(service)
-
-    def names(self) -> dict[str, str]:
-        """Service -> type, sorted."""
-        found = ((name, self._find(name)) for name in sorted(self._services))
-        return {name: service.type_name for name, service in found if service is not None}
 
     def call(self, name: str, request: Message = None) -> Message:
         """The response of a service, which is at work when this returns.
@@ -110,40 +98,18 @@ class ServiceTable:
             MessageError: the request does not fit.
             PluginError: the service of a plugin raised.
         """
-        name = absolute_name(name)
-        service = self._find(name)
-        if service is None:
-            there = self.names()
-            hint = did_you_mean(name, there) or "there is " + (", ".join(there) or "none")
-            raise ServiceError(f"no service {name!r}; {hint}")
-        asked = (
-            msgs.from_dict([f"{service.type_name}_Request"], request or {}) if _is_dict_or_none(request) else request
-        )
-        if msgs.type_name(asked) != f"{service.type_name}_Request":
-            raise MessageError(f"{name!r} takes {service.type_name}_Request, got {msgs.type_name(asked)}")
-        journal = self._bus.journal
-        if journal is None:
+        service = self._get(absolute_name(name))
+        asked = self._as_message(service, request)
+        with self._bus.passing("call", service=service, request=asked):
             return self._answer(service, asked)
-        with journal.passing("call", {"service": service, "request": asked}):
-            return self._answer(service, asked)
-
-    def set_active(self, owners: Sequence[object]) -> None:
-        """Leaves only the services of these owners (and those without one) in use."""
-        living = {id(owner) for owner in owners}
-        for service in (s for offered in self._services.values() for s in offered):
-            service.active = service.owner is None or id(service.owner) in living
-
-    def forget(self, owners: Sequence[object]) -> None:
-        """Takes every service of these owners away for good."""
-        gone = {id(owner) for owner in owners}
-        for service in [s for offered in self._services.values() for s in offered if id(s.owner) in gone]:
-            self.close(service)
 
     def _answer(self, service: Service, request: Message) -> Message:
         owner, hook = service.owner, f"service {service.name}"
         try:
             found = call_plugin(owner, hook, service.handler, request)
-            return found if not _is_dict_or_none(found) else msgs.make(f"{service.type_name}_Response", **(found or {}))
+            if found is None or isinstance(found, Mapping):
+                return msgs.make(f"{service.type_name}_Response", **(found or {}))
+            return found
         except SimkitError:
             raise
         except Exception as error:
@@ -154,13 +120,6 @@ class ServiceTable:
                 self._engine.faults.meet(owner, hook, error)
                 raise ServiceError(f"service {service.name!r} raised, and plugin {name!r} is left out") from error
             raise PluginError(name, hook, self._engine.time, where, repr(error)) from error
-
-    def _find(self, name: str) -> Service | None:
-        return next((s for s in self._services.get(name, ()) if s.active), None)
-
-
-def _is_dict_or_none(value: object) -> bool:
-    return value is None or isinstance(value, Mapping)
 
 
 def _describe_owner(service: Service) -> str:

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from typing import Any
 
 from simkit import msgs
-from simkit.diagnostics import Diagnostics, did_you_mean
+from simkit.diagnostics import Diagnostics, name_hint
 from simkit.errors import MessageError, SimkitError
 from simkit.runtime.communication.command_queue import CommandQueue
 from simkit.runtime.communication.journal import Journal
 from simkit.runtime.communication.publisher import ExternalPublisher, Listener, Publisher, TopicSides
 from simkit.runtime.communication.subscription import (
-    NO_MESSAGE,
     Callback,
     CallbackErrorPolicy,
     LazyMessage,
@@ -25,18 +24,6 @@ from simkit.runtime.communication.subscription import (
 from simkit.runtime.communication.topic_conflicts import find_conflict
 from simkit.runtime.communication.topic_failures import TopicFailures
 from simkit.runtime.engine.plugin_faults import is_guarded
-
-__all__ = [
-    "NO_MESSAGE",
-    "Callback",
-    "CallbackErrorPolicy",
-    "LazyMessage",
-    "Listener",
-    "Publisher",
-    "Subscription",
-    "TopicBus",
-    "absolute_name",
-]
 
 
 def absolute_name(topic: str) -> str:
@@ -83,6 +70,10 @@ class TopicBus:
 
     # ------------------------------------------------------------------ ends
 
+    def passing(self, door: str, **words: object) -> AbstractContextManager[Any]:
+        """A context of what is done by somebody who may be outside; a journal, if there is one, hears of it."""
+        return nullcontext() if self.journal is None else self.journal.passing(door, words)
+
     @contextmanager
     def owned_by(self, owner: object) -> Iterator[None]:
         """Whatever opens a topic within belongs to `owner` and is silenced with it."""
@@ -109,8 +100,8 @@ class TopicBus:
         self._check_type(topic, publisher)
         sides.publishers.append(publisher)
         self._announce(topic, type_name)
-        if self.journal is not None and self.owner is None:
-            with self.journal.passing("advertise", {"publisher": publisher}):
+        if self.owner is None:
+            with self.passing("advertise", publisher=publisher):
                 pass
         return publisher
 
@@ -173,8 +164,8 @@ class TopicBus:
     def close(self, end: Publisher | Listener) -> None:
         """Takes a publisher or a listener away for good."""
         self.gather(end.topic)
-        if self.journal is not None and isinstance(end, ExternalPublisher):
-            with self.journal.passing("close", {"publisher": end}):
+        if isinstance(end, ExternalPublisher):
+            with self.passing("close", publisher=end):
                 pass
         self.revision += 1
         table: Mapping[str, Endpoints] = self._publishers if isinstance(end, Publisher) else self._listeners
@@ -293,15 +284,17 @@ class TopicBus:
         types += [p.type_name for p in self._publishers.get(topic, ()) if p.active]
         if isinstance(message, Mapping):
             if not types:
-                raise MessageError(f"no topic {topic!r}; {did_you_mean(topic, self.topics()) or self._listed()}")
+                raise MessageError(f"no topic {topic!r}; {name_hint(topic, self.topics())}")
             message = msgs.from_dict(list(dict.fromkeys(types)), dict(message))
         elif types and msgs.type_name(message) not in types:
             raise MessageError(f"{topic!r} takes {' or '.join(dict.fromkeys(types))}, got {msgs.type_name(message)}")
-        if self.journal is None:
-            self._deliver(topic, message)
-        else:
-            with self.journal.passing("publish", {"topic": topic, "message": message}):
-                self._deliver(topic, message)
+        with self.passing("publish", topic=topic, message=message):
+            self.gather(topic)
+            readers = self._readers_of(topic)
+            for receive in readers.receivers:
+                receive(message)
+            if readers.feeds:
+                self.inbox.put(topic, message)
 
     def enqueue(self, call: Callable[[], None]) -> None:
         """Has something done between two steps, in its turn among the queued commands."""
@@ -343,17 +336,6 @@ class TopicBus:
     def dropped(self) -> dict[str, int]:
         """Topic -> how many messages to its inputs were dropped, since too many came for one step."""
         return dict(self.inbox.dropped)
-
-    def _listed(self) -> str:
-        return "there is " + (", ".join(self.topics()) or "none")
-
-    def _deliver(self, topic: str, message: Message) -> None:
-        self.gather(topic)
-        readers = self._readers_of(topic)
-        for receive in readers.receivers:
-            receive(message)
-        if readers.feeds:
-            self.inbox.put(topic, message)
 
     def _readers_of(self, topic: str) -> TopicReaders:
         found = self._readers.get(topic)

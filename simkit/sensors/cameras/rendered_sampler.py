@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from simkit.diagnostics import Diagnostics
 from simkit.errors import RenderError
 from simkit.msgs.message_types import Message
-from simkit.runtime.communication.topic_bus import NO_MESSAGE
+from simkit.runtime.communication.subscription import NO_MESSAGE
 from simkit.sensors.base import Sample, Sensor
 from simkit.sensors.cameras.camera_options import CameraOptions
 from simkit.sensors.cameras.rendering import gl_context, render_thread
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     import mujoco
 
     from simkit.runtime import Publisher
-    from simkit.runtime.communication.topic_bus import LazyMessage
+    from simkit.runtime.communication.subscription import LazyMessage
     from simkit.scene import SceneSensor
 
 

@@ -23,7 +23,7 @@ from simkit.recording.message_taps import TopicTaps
 from simkit.recording.topic_counts import RENDERED
 from simkit.run_spec import JsonObject
 from simkit.runtime import Simulation
-from simkit.runtime.communication.topic_bus import NO_MESSAGE, LazyMessage
+from simkit.runtime.communication.subscription import NO_MESSAGE, LazyMessage
 from simkit.runtime.engine.snapshot import state_hash
 from simkit.testing.bundles.journal_writer import JournalWriter
 from simkit.testing.bundles.manifest import Failure, RunEnd

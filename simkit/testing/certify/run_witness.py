@@ -20,7 +20,7 @@ from simkit.recording.bags.recorder import matches_topic
 from simkit.recording.message_taps import TopicTaps
 from simkit.run_spec import JsonObject
 from simkit.runtime import Simulation
-from simkit.runtime.communication.topic_bus import NO_MESSAGE, LazyMessage
+from simkit.runtime.communication.subscription import NO_MESSAGE, LazyMessage
 from simkit.runtime.engine import grouped_hooks
 from simkit.runtime.engine.engine_state import EngineState
 from simkit.runtime.engine.plugin_faults import PluginFaults
