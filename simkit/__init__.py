@@ -53,21 +53,16 @@ __all__ = [
 
 # loaded when first asked for: the engine alone takes most of what an import may cost, and NumPy most of the rest,
 # which a run of tests that needs no world does not pay either (`simkit.pytest_plugin`)
-_LAZY = {
-    "load": "simkit.build",
-    "describe": "simkit.build",
-    "check": "simkit.build",
-    "Simulation": "simkit.runtime",
-    "Diagnostic": "simkit.diagnostics",
-    "Params": "simkit.params",
-    "Pose": "simkit.pose",
-    "RunSpec": "simkit.run_spec",
-    "Plugin": "simkit.plugins.base",
-    "WorldPlugin": "simkit.plugins.base",
-    "ModelPlugin": "simkit.plugins.base",
-    "SensorPlugin": "simkit.plugins.base",
-    "VisualPlugin": "simkit.plugins.base",
+_MODULES = {
+    "simkit.build": ("load", "describe", "check"),
+    "simkit.runtime": ("Simulation",),
+    "simkit.diagnostics": ("Diagnostic",),
+    "simkit.params": ("Params",),
+    "simkit.pose": ("Pose",),
+    "simkit.run_spec": ("RunSpec",),
+    "simkit.plugins.base": ("Plugin", "WorldPlugin", "ModelPlugin", "SensorPlugin", "VisualPlugin"),
 }
+_LAZY = {name: module for module, names in _MODULES.items() for name in names}
 
 
 def __getattr__(name: str) -> Any:

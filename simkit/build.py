@@ -119,7 +119,7 @@ def load(
         return resolver.search(uri, folder)[0]
 
     scene = _scene(source, resolver, diagnostics, xacro_args, base, overrides, spawn)
-    world = scene.world if sleep else _without_sleep(scene.world)
+    world = scene.world if sleep else replace(scene.world, physics=replace(scene.world.physics, sleep=False))
     world = add_actor_models(world, find_file, diagnostics)
     if change_world is not None and not diagnostics.has_errors:
         world = change_world(world)
@@ -296,10 +296,6 @@ def _mjcf_parser() -> MjcfParser:
     from simkit.compiler.mjcf_parser import MjcfParser
 
     return MjcfParser()
-
-
-def _without_sleep(world: SceneWorld) -> SceneWorld:
-    return replace(world, physics=replace(world.physics, sleep=False))
 
 
 def read_scene(

@@ -48,9 +48,11 @@ class InputError(SimkitError):
 
     exit_code: ClassVar[int] = 2
 
-    def __init__(self, message: str, code: str = "SK-INPUT-001") -> None:
+    code = "SK-INPUT-001"
+
+    def __init__(self, message: str, code: str = "") -> None:
         super().__init__(message)
-        self.code = code
+        self.code = code or self.code
 
 
 class LoadError(InputError):
@@ -69,29 +71,25 @@ class LoadError(InputError):
 class MessageError(InputError):
     """A message does not fit the topic it is sent to."""
 
-    def __init__(self, message: str) -> None:
-        super().__init__(message, "SK-MSG-001")
+    code = "SK-MSG-001"
 
 
 class ServiceError(InputError):
     """A service is not there, or is there already."""
 
-    def __init__(self, message: str) -> None:
-        super().__init__(message, "SK-SERVICE-001")
+    code = "SK-SERVICE-001"
 
 
 class ActionError(InputError):
     """An action is not there, is there already, or a goal cannot go where it is told to."""
 
-    def __init__(self, message: str) -> None:
-        super().__init__(message, "SK-ACTION-001")
+    code = "SK-ACTION-001"
 
 
 class ParameterError(InputError):
     """A live parameter is not there, or does not take a value."""
 
-    def __init__(self, message: str) -> None:
-        super().__init__(message, "SK-PARAMETER-001")
+    code = "SK-PARAMETER-001"
 
 
 class SimulationDiverged(SimkitError):

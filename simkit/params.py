@@ -90,12 +90,15 @@ class Params:
 
     # ------------------------------------------------------------------ structure
 
-    def child(self, name: str) -> Params | None:
-        """The first child of that name, marked as read; None when absent."""
+    def _ask_for(self, name: str) -> None:
         if self._asked is None:
             self._asked = {name}
         else:
             self._asked.add(name)
+
+    def child(self, name: str) -> Params | None:
+        """The first child of that name, marked as read; None when absent."""
+        self._ask_for(name)
         for c in self.children:
             if c.name == name:
                 c._read = c._read or _READ
@@ -108,10 +111,7 @@ class Params:
 
     def all(self, name: str) -> list[Params]:
         """All children of that name in document order, marked as read."""
-        if self._asked is None:
-            self._asked = {name}
-        else:
-            self._asked.add(name)
+        self._ask_for(name)
         found = [c for c in self.children if c.name == name]
         for c in found:
             c._read = c._read or _READ
@@ -124,10 +124,7 @@ class Params:
 
     def has(self, name: str) -> bool:
         """Whether a child of that name is there (does not count as reading it)."""
-        if self._asked is None:
-            self._asked = {name}
-        else:
-            self._asked.add(name)
+        self._ask_for(name)
         return any(c.name == name for c in self.children)
 
     @property

@@ -41,14 +41,7 @@ def _folder_time(folder: Path) -> int:
         return 0
 
 
-def discover(
-    packages: str | Sequence[str],
-    group: str,
-    base: type[T],
-    names: Callable[[type[T]], Iterable[str]],
-    attributes: Sequence[str] = ("types",),
-    spell: Callable[[str], str] = str,
-) -> Kinds[T]:
+class Kinds(Mapping[str, type[T]], Generic[T]):
     """Every class under `packages` and in the entry points `group` that is a `base`, by each name it answers to.
 
     A class that is asked for by name is all that is imported: the names are read from the text of the modules. To go
@@ -65,22 +58,18 @@ def discover(
     Raises:
         RuntimeError: two classes answer to one name; said when all are gone through.
     """
-    return Kinds((packages,) if isinstance(packages, str) else packages, group, base, names, attributes, spell)
-
-
-class Kinds(Mapping[str, type[T]], Generic[T]):
-    """The classes of `discover`; read-only."""
 
     def __init__(
         self,
-        packages: Sequence[str],
+        packages: str | Sequence[str],
         group: str,
         base: type[T],
         names: Callable[[type[T]], Iterable[str]],
-        attributes: Sequence[str],
-        spell: Callable[[str], str],
+        attributes: Sequence[str] = ("types",),
+        spell: Callable[[str], str] = str,
     ) -> None:
-        self._packages, self._group, self._base, self._names = packages, group, base, names
+        self._packages = (packages,) if isinstance(packages, str) else packages
+        self._group, self._base, self._names = group, base, names
         self._attributes, self._spell = attributes, spell
         self._found: dict[str, type[T] | None] = {}
 

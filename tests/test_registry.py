@@ -13,7 +13,7 @@ import pytest
 from simkit.loaders import loader_kinds
 from simkit.plugins.discovery.find_plugin_class import plugin_kinds
 from simkit.plugins.ros2_control.controller_manager import controller_kinds
-from simkit.registry import Kinds, discover
+from simkit.registry import Kinds
 from simkit.sensors import sensor_kinds
 
 KINDS: tuple[Callable[[], Any], ...] = (plugin_kinds, sensor_kinds, controller_kinds, loader_kinds)
@@ -62,9 +62,7 @@ def animals(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Kinds[A
         (package / f"{name}.py").write_text(text)
     monkeypatch.syspath_prepend(tmp_path)
     base = __import__("animals").Animal
-    yield discover(
-        "animals", "animals.nobody", base, lambda cls: [n.lower() for n in cls.called], ("called",), str.lower
-    )
+    yield Kinds("animals", "animals.nobody", base, lambda cls: [n.lower() for n in cls.called], ("called",), str.lower)
     for name in [n for n in sys.modules if n.partition(".")[0] == "animals"]:
         del sys.modules[name]
 

@@ -1,10 +1,12 @@
-"""Meshes, textures and materials of a spec, named by their content so that equal ones are one."""
+"""Meshes, textures and materials of a spec, named by their content so that equal ones are one, and colours of geoms."""
 
 from __future__ import annotations
 
 import hashlib
+from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
+from typing import Final
 from weakref import WeakKeyDictionary
 
 import mujoco
@@ -12,7 +14,8 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.compiler.meshes.companion_files import Pixels, read_pixels
-from simkit.compiler.meshes.mesh_part import Floats, Ints, MeshPart
+from simkit.compiler.meshes.mesh_part import Colour, Floats, Ints, MeshPart
+from simkit.scene import Material, SceneVisual
 
 AssetKey = tuple[str, str]
 """(kind, MuJoCo's name)."""
@@ -80,21 +83,16 @@ class Assets:
             texture.data = np.ascontiguousarray(pixels).tobytes()
         return name
 
-    def material(
-        self,
-        emission: float,
-        specular: float,
-        shininess: float = 0.3,
-        texture: str = "",
-        repeat: tuple[float, float] = (1.0, 1.0),
-    ) -> str:
+    def material(self, emission: float, look: GeomColours, texture: str, repeat: tuple[float, float]) -> str:
         """How a geom reflects; its colour stays with the geom.
 
         Args:
+            emission: under the scene's ambient light.
+            look: tells what the material mirrors.
             texture: an image that it wears.
             repeat: how often the image is there, across and up, on shapes without texture coordinates of their own.
         """
-        values = (round(emission, 4), round(specular, 4), round(shininess, 4))
+        values = (round(emission, 4), round(look.specular, 4), round(look.shininess, 4))
         name = _material_name(*values, texture, *repeat)
         if texture:
             self.used.add(("texture", texture))
@@ -168,3 +166,79 @@ def _digest(*values: object) -> str:
             digest.update(repr(value).encode())
         digest.update(b"|")
     return digest.hexdigest()[:20]
+
+
+PLAIN: Final[Colour] = (0.7, 0.7, 0.7, 1.0)
+_SHININESS: Final = 0.3
+
+
+@dataclass(frozen=True, slots=True)
+class GeomColours:
+    """A geom's colour, and its material's shares from 0 to 1: how much of the light it mirrors and how much it glows.
+
+    The renderer lights every surface as diffuse + specular + emission in the style of OpenGL. The ambient colour of a
+    material is not separate there: it is the diffuse one. Where a file's is darker or brighter than that, emission
+    makes up for it under the scene's own ambient light (it may be negative), as Gazebo Classic would have it; a hue of
+    its own it cannot have. PBR's roughness sets the size of highlights; metalness and further maps have no counterpart.
+
+    Attributes:
+        ambient: brightness under ambient light, in parts of that of its colour; 1 is as bright.
+    """
+
+    rgba: tuple[float, float, float, float]
+    emission: float = 0.0
+    specular: float = 0.0
+    shininess: float = _SHININESS
+    ambient: float = 1.0
+
+    def emission_under(self, ambient: Colour) -> float:
+        """Emission that makes up for a material's own ambient colour under the scene's ambient light."""
+        return self.emission + (self.ambient - 1.0) * brightness(ambient)
+
+
+def geom_colours(visual: SceneVisual, part: MeshPart | None) -> GeomColours:
+    """How a visual (or one part of its mesh) looks; the file's material wins over the mesh's own."""
+    material = visual.material
+    emission, specular, shininess, ambient = 0.0, 0.0, _SHININESS, 1.0
+    if material is not None:
+        colour, emission = _glowing(material)
+        specular, ambient = max(material.specular[:3]), _ambient_share(material)
+        if material.shininess is not None:
+            shininess = min(1.0, material.shininess / 128.0)
+        elif material.roughness is not None:
+            shininess = 1.0 - min(1.0, max(0.0, material.roughness))
+    elif part is not None:
+        colour = part.colour or PLAIN
+        emission, specular = part.emission, part.specular
+    else:
+        colour = PLAIN
+    r, g, b, a = colour
+    a *= 1.0 - min(1.0, max(0.0, visual.transparency))
+    if (r, g, b, a) == (0.5, 0.5, 0.5, 1.0):
+        r = 0.5001  # exactly MuJoCo's default would be taken for "not given"
+    return GeomColours((r, g, b, a), min(1.0, emission), min(1.0, specular), shininess, ambient)
+
+
+def _ambient_share(material: Material) -> float:
+    """How bright the ambient colour is, in parts of the diffuse one; 1 where that is black or what glows decides."""
+    own = brightness(material.diffuse)
+    if own <= 0.0 or brightness(material.emissive) > own:
+        return 1.0
+    return brightness(material.ambient) / own
+
+
+def _glowing(material: Material) -> tuple[Colour, float]:
+    """Colour and emission: MuJoCo glows in the surface's own colour, so what glows more than it shines keeps that."""
+    own, glow = brightness(material.diffuse), brightness(material.emissive)
+    if glow <= 0.0:
+        return material.diffuse, 0.0
+    if glow > own:
+        strongest = max(material.emissive[:3])
+        r, g, b = (c / strongest for c in material.emissive[:3])
+        return (r, g, b, material.diffuse[3]), strongest
+    return material.diffuse, glow / own
+
+
+def brightness(colour: Colour) -> float:
+    """Relative luminance of linear red, green and blue (Rec. 709)."""
+    return 0.2126 * colour[0] + 0.7152 * colour[1] + 0.0722 * colour[2]

@@ -8,9 +8,8 @@ coefficient, so a model that is spawned changes no other's.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import lru_cache
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -35,8 +34,7 @@ _DECIDING_IMPEDANCE: Final = 1e6  # the engine takes the mean of both surfaces w
 _TORSION, _ROLL, _LEAST = 0.005, 0.0001, 1e-5
 
 
-@dataclass(frozen=True, slots=True)
-class ContactProperties:
+class ContactProperties(NamedTuple):
     """Contact properties of a MuJoCo geom."""
 
     friction: tuple[float, float, float]

@@ -10,13 +10,12 @@ from typing import Any, Final
 import mujoco
 import numpy as np
 
-from simkit.compiler.assets import Assets
-from simkit.compiler.contact_friction import ContactProperties, contact_properties
+from simkit.compiler.assets import Assets, geom_colours
+from simkit.compiler.contact_friction import contact_properties
 from simkit.compiler.geom_groups import COLLISION, COLLISION_CONTACT, COLLISION_RAY, DRAWN_COLLISION, VISUAL
-from simkit.compiler.material_colours import geom_colours
 from simkit.compiler.meshes.collision_bodies import convex_bodies, convex_hull
 from simkit.compiler.meshes.companion_files import Pixels
-from simkit.compiler.meshes.mesh_part import Colour, Floats, Ints, MeshFileError, MeshPart, has_area, join_parts
+from simkit.compiler.meshes.mesh_part import Colour, MeshFileError, MeshPart, has_area, join_parts
 from simkit.compiler.meshes.mesh_reader import load_mesh, report_once
 from simkit.compiler.name_map import GeomOwner, ModelRecord
 from simkit.compiler.shape_geometry import (
@@ -94,6 +93,7 @@ class GeomWriter:
         if isinstance(shape, Empty) or not self._has_size(shape, collision.where):
             return
         contact = contact_properties(collision.surface, self.timestep, place.mass, self.diagnostics)
+        solid: GeomSettings = {"group": COLLISION, **contact._asdict()}
         owner = GeomOwner(place.link, collision.scoped, False)
         primitive = primitive_of(shape, False)
         if isinstance(shape, Plane) and not place.fixed and primitive is not None:
@@ -101,28 +101,21 @@ class GeomWriter:
                 "SK-PHYS-016", "a plane on a moving link collides as a 100 m × 100 m plate", collision.where
             )
             sunk = collision.pose_link @ primitive.pose @ Pose((0.0, 0.0, -_HALF_SPACE[2]))
-            self._add(
-                place, owner, sunk, type=mujoco.mjtGeom.mjGEOM_BOX, size=_HALF_SPACE, **_colliding(contact, COLLISION)
-            )
+            self._add(place, owner, sunk, type=mujoco.mjtGeom.mjGEOM_BOX, size=_HALF_SPACE, **solid)
         elif primitive is not None:
             pose = collision.pose_link @ primitive.pose
-            self._add(place, owner, pose, type=primitive.type, size=primitive.size, **_colliding(contact, COLLISION))
+            self._add(place, owner, pose, type=primitive.type, size=primitive.size, **solid)
         elif isinstance(shape, Heightmap):
-            self._heightmap(place, owner, collision.pose_link, shape, collision.where, _colliding(contact, COLLISION))
+            self._heightmap(place, owner, collision.pose_link, shape, collision.where, solid)
         elif isinstance(shape, Polyline):
-            self._outlines(place, owner, collision, shape, contact)
+            self._outlines(place, owner, collision, shape, solid)
         else:
             parts = self._visual_parts(shape, collision.where)
             if parts:
-                self._mesh_collision(place, owner, collision, parts, contact)
+                self._mesh_collision(place, owner, collision, parts, solid)
 
     def _outlines(
-        self,
-        place: GeomParent,
-        owner: GeomOwner,
-        collision: SceneCollision,
-        shape: Polyline,
-        contact: ContactProperties,
+        self, place: GeomParent, owner: GeomOwner, collision: SceneCollision, shape: Polyline, solid: GeomSettings
     ) -> None:
         """Extruded outlines, which fall into convex pieces exactly."""
         try:
@@ -133,16 +126,11 @@ class GeomWriter:
         for points in pieces:
             body = convex_hull(points)
             if body is not None:
-                name, settings = self.assets.surface(*body), _colliding(contact, COLLISION)
-                self._add(place, owner, collision.pose_link, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=name, **settings)
+                name = self.assets.surface(*body)
+                self._add(place, owner, collision.pose_link, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=name, **solid)
 
     def _mesh_collision(
-        self,
-        place: GeomParent,
-        owner: GeomOwner,
-        collision: SceneCollision,
-        parts: list[MeshPart],
-        contact: ContactProperties,
+        self, place: GeomParent, owner: GeomOwner, collision: SceneCollision, parts: list[MeshPart], solid: GeomSettings
     ) -> None:
         shape = collision.geometry
         vertices, faces = join_parts(parts)
@@ -151,38 +139,28 @@ class GeomWriter:
         if isinstance(shape, Mesh) and place.axis is not None:
             wheel = round_mesh(bodies.shapes, collision.pose_link, place.axis)
             if wheel is not None:
-                self._wheel(place, owner, collision, wheel, contact)
+                self._wheel(place, owner, collision, wheel, solid)
                 return
         for severity, code, text, hint in bodies.findings:
             report_once(self.diagnostics, severity, code, f"{_collision_title(shape)} {text}", collision.where, hint)
-        settings = _colliding(contact, COLLISION if bodies.is_exact else COLLISION_CONTACT)
+        settings = solid if bodies.is_exact else {**solid, "group": COLLISION_CONTACT}
         for corners, triangles in bodies.shapes:
             name = self.assets.surface(corners, triangles)
             self._add(place, owner, collision.pose_link, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=name, **settings)
         if not bodies.is_exact:
-            self._ray_copy(place, owner, collision.pose_link, vertices, faces)
+            drawn: GeomSettings = {"contype": 0, "conaffinity": 0, "group": COLLISION_RAY}
+            name = self.assets.surface(vertices, faces)
+            self._add(place, owner, collision.pose_link, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=name, **drawn)
 
     def _wheel(
-        self,
-        place: GeomParent,
-        owner: GeomOwner,
-        collision: SceneCollision,
-        wheel: RoundMesh,
-        contact: ContactProperties,
+        self, place: GeomParent, owner: GeomOwner, collision: SceneCollision, wheel: RoundMesh, solid: GeomSettings
     ) -> None:
         size = (wheel.radius, wheel.length / 2, 0.0)
         cylinder = f"a cylinder of radius {wheel.radius:.4g} m and length {wheel.length:.4g} m"
         text = f"{_collision_title(collision.geometry)} is round about the axis of its joint: it collides as {cylinder}"
         report_once(self.diagnostics, "note", "SK-MESH-016", text, collision.where)
         kind = mujoco.mjtGeom.mjGEOM_CYLINDER
-        self._add(
-            place, owner, collision.pose_link @ wheel.pose, type=kind, size=size, **_colliding(contact, COLLISION)
-        )
-
-    def _ray_copy(self, place: GeomParent, owner: GeomOwner, pose: Pose, vertices: Floats, faces: Ints) -> None:
-        name = self.assets.surface(vertices, faces)
-        mesh = mujoco.mjtGeom.mjGEOM_MESH
-        self._add(place, owner, pose, type=mesh, meshname=name, contype=0, conaffinity=0, group=COLLISION_RAY)
+        self._add(place, owner, collision.pose_link @ wheel.pose, type=kind, size=size, **solid)
 
     # ------------------------------------------------------------------ visuals
 
@@ -249,7 +227,7 @@ class GeomWriter:
         emission = look.emission_under(self._ambient)
         return {
             "rgba": look.rgba,
-            "material": self.assets.material(emission, look.specular, look.shininess, texture, repeat),
+            "material": self.assets.material(emission, look, texture, repeat),
             "contype": 0,
             "conaffinity": 0,
             # who is moved by a script touches nothing, and lidars that see collisions see it as it is drawn
@@ -308,20 +286,6 @@ class GeomWriter:
         x, y, z = shape.position
         at = pose @ Pose((x, y, z + low * z_size))
         self._add(place, owner, at, type=mujoco.mjtGeom.mjGEOM_HFIELD, hfieldname=name, **settings)
-
-
-def _colliding(contact: ContactProperties, group: int) -> GeomSettings:
-    return {
-        "group": group,
-        "contype": contact.contype,
-        "conaffinity": contact.conaffinity,
-        "condim": contact.condim,
-        "priority": contact.priority,
-        "friction": contact.friction,
-        "solref": contact.solref,
-        "solimp": contact.solimp,
-        "solmix": contact.solmix,
-    }
 
 
 def _collision_title(shape: Geometry) -> str:

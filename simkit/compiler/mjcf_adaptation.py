@@ -84,7 +84,7 @@ def report_settings(child: mujoco.MjSpec, spec: mujoco.MjSpec, model: SceneModel
             if not (int(child.option.disableflags) ^ int(spec.option.disableflags)) & mask:
                 continue
             lost[severity].append(name)
-        elif name in OPTIONS and not _is_same_value(getattr(child.option, name), getattr(spec.option, name)):
+        elif name in OPTIONS and not np.array_equal(getattr(child.option, name), getattr(spec.option, name)):
             theirs, ours = (_text(name, getattr(o, name)) for o in (child.option, spec.option))
             lost[severity].append(f"{name} {theirs} (here {ours})")
         else:
@@ -99,10 +99,6 @@ def report_settings(child: mujoco.MjSpec, spec: mujoco.MjSpec, model: SceneModel
 def _flag(name: str) -> int:
     bit = getattr(mujoco.mjtDisableBit, f"mjDSBL_{name.upper()}", None)
     return 0 if bit is None or name == "autoreset" else int(bit)
-
-
-def _is_same_value(a: object, b: object) -> bool:
-    return bool(np.array_equal(np.asarray(a), np.asarray(b)))
 
 
 _OPTION_NAMES: Final[dict[str, Any]] = {

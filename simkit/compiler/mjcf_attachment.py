@@ -86,11 +86,7 @@ def attach_world(spec: mujoco.MjSpec, records: Iterable[ModelRecord]) -> None:
 
 
 def attach_model(
-    spec: mujoco.MjSpec,
-    record: ModelRecord,
-    model: SceneModel,
-    diagnostics: Diagnostics,
-    joints: Iterable[SceneJoint] = (),
+    spec: mujoco.MjSpec, record: ModelRecord, model: SceneModel, diagnostics: Diagnostics, joints: Iterable[SceneJoint]
 ) -> list[SceneJoint]:
     """Attaches one model where its pose says, or under the link that a fixed joint holds it on.
 

@@ -13,7 +13,6 @@ import mujoco
 from simkit.compiler.assets import Assets
 from simkit.compiler.bodies import remove_split_body
 from simkit.compiler.engine_options import apply_options
-from simkit.compiler.initial_state import place_followers, report_overlaps
 from simkit.compiler.kinematic_tree import WORLD
 from simkit.compiler.lights import add_light, report_light, report_lights
 from simkit.compiler.mjcf_attachment import (
@@ -25,10 +24,9 @@ from simkit.compiler.mjcf_attachment import (
     models_of_own_file,
     without_attached,
 )
-from simkit.compiler.model_compilation import compile_spec, finish_model
-from simkit.compiler.model_writer import ModelWriter
+from simkit.compiler.model_compilation import compile_spec, finish_model, place_followers, report_overlaps
+from simkit.compiler.model_writer import FIRST_OWN_BIT, PAIRS_MOST, ModelWriter
 from simkit.compiler.name_map import ActuatorRef, JointBinding, LightBinding, ModelRecord, NameMap, lookup
-from simkit.compiler.self_collision import FIRST_OWN_BIT, PAIRS_MOST
 from simkit.compiler.servo_gains import add_actuator, add_armature, add_drive_armature
 from simkit.compiler.state_transfer import transfer_state
 from simkit.diagnostics import Diagnostics
@@ -112,7 +110,7 @@ class SpecBuilder:
         self._names = None
         self.assets.used = record.assets
         if model.mjcf is not None:
-            attach_model(self.spec, record, model, self.diagnostics)
+            attach_model(self.spec, record, model, self.diagnostics, ())
         else:
             links = len(list(model.all_links()))
             if links * (links - 1) // 2 > PAIRS_MOST:  # else nobody wants it, and there may be thousands of models

@@ -37,11 +37,7 @@ def transfer_state(old: mujoco.MjModel, source: mujoco.MjData, new: mujoco.MjMod
 
 
 def copy_state(
-    old: mujoco.MjModel,
-    source: mujoco.MjData,
-    new: mujoco.MjModel,
-    target: mujoco.MjData,
-    dof_fields: Sequence[str] = ("qvel",),
+    old: mujoco.MjModel, source: mujoco.MjData, new: mujoco.MjModel, target: mujoco.MjData, dof_fields: Sequence[str]
 ) -> None:
     """Copies joints, poses of mocap bodies, controls, activations and active equalities of what both models have."""
     for i, j in _pair_by_name("jnt", old.njnt, old, new):

@@ -27,7 +27,7 @@ from simkit.loaders.resources.uris import access_problem, sibling_names
 from simkit.loaders.resources.xml_reader import ALLOWED_FORMATS, Document, foreign_root_hint, parse_file, parse_text
 from simkit.loaders.xacro import expand, needs_expansion
 from simkit.pose import Pose
-from simkit.registry import discover
+from simkit.registry import Kinds
 from simkit.scene import Scene
 
 __all__ = ["Document", "LoadRequest", "Loader", "Resolver", "find_document", "load_scene", "loader_kinds"]
@@ -36,7 +36,7 @@ __all__ = ["Document", "LoadRequest", "Loader", "Resolver", "find_document", "lo
 @lru_cache(maxsize=1)
 def loader_kinds() -> Mapping[str, type[Loader]]:
     """Every loader by the root element it reads."""
-    return discover("simkit.loaders", "simkit.loaders", Loader, lambda cls: cls.roots, ("roots",))  # type: ignore[type-abstract]
+    return Kinds("simkit.loaders", "simkit.loaders", Loader, lambda cls: cls.roots, ("roots",))  # type: ignore[type-abstract]
 
 
 def load_scene(

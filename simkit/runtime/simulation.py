@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 from simkit.errors import InputError, SimulationDiverged
 from simkit.pose import Pose, Vector
 from simkit.run_spec import PluginErrorPolicy, RunSpec
-from simkit.runtime.communication.action_server import GoalHandle
+from simkit.runtime.communication.action_server import EndCallback, GoalHandle
 from simkit.runtime.communication.communication import Communication
 from simkit.runtime.communication.journal import journaled
 from simkit.runtime.communication.service_server import Service, ServiceHandler
-from simkit.runtime.communication.subscription import Callback, CallbackErrorPolicy, Subscription
+from simkit.runtime.communication.subscription import Callback, CallbackPolicy, Subscription
 from simkit.runtime.communication.topic_bus import TopicBus
 from simkit.runtime.engine.engine import Engine
 from simkit.runtime.engine.plugin_faults import add_driver_hints
@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     import mujoco
 
     from simkit.diagnostics import Diagnostic, Diagnostics
-    from simkit.runtime.communication.journal import Journal
     from simkit.runtime.communication.subscription import Callback, Message
     from simkit.runtime.engine.entity_structure import WorldStructure
     from simkit.runtime.engine.scheduler import Scheduler
@@ -65,13 +64,13 @@ class Simulation:
         on_error: PluginErrorPolicy | None = None,
     ) -> None:
         clock = Clock(world.physics.max_step_size)
-        bus = TopicBus(diagnostics, lambda: self.time)
+        self._bus = bus = TopicBus(diagnostics, lambda: self.time)
         self.engine = Engine(world, structure, clock, seed, diagnostics, bus, self._fill, on_error)
         self.communication = Communication(bus, self.engine)
         self.engine.faults.interfaces = self.communication
         self.contents = WorldContents(self, self.engine, self.communication, self._stateful, load_model, make_parts)
         state = self._loaded_state
-        self.control = WorldControl(self.engine, self.communication, self.contents.handles, self._advance, state)
+        self.control = WorldControl(self.engine, bus, self.contents.handles, self._advance, state)
         self.contents.spawner.adopt(structure)
         self.contents.spawner.start(list(structure.parts.values()), diagnostics)
         self.engine.reschedule()
@@ -124,7 +123,7 @@ class Simulation:
 
     def _advance(self, target: int, *, is_served: bool = False) -> None:
         self.engine.check_open()
-        journal = self._journal
+        journal = self._bus.journal
         if journal is not None:
             journal.before_steps()
         try:
@@ -285,11 +284,7 @@ class Simulation:
         self.communication.bus.publish(topic, message)
 
     def subscribe(
-        self,
-        topic: str,
-        callback: Callback | None = None,
-        keep: int | None = None,
-        on_error: CallbackErrorPolicy = "stop",
+        self, topic: str, callback: Callback | None = None, keep: int | None = None, on_error: CallbackPolicy = "stop"
     ) -> Subscription:
         """Receives a topic, before or after its publisher exists.
 
@@ -330,11 +325,7 @@ class Simulation:
         return self.communication.services.offer(service, type_name, handler)
 
     def send_goal(
-        self,
-        action: str,
-        goal: Message = None,
-        on_feedback: Callback | None = None,
-        on_done: Callable[[GoalHandle], None] | None = None,
+        self, action: str, goal: Message = None, on_feedback: Callback | None = None, on_done: EndCallback | None = None
     ) -> GoalHandle:
         """Sends a goal; the plugin has it before the next step.
 
@@ -353,10 +344,6 @@ class Simulation:
     def set_parameter(self, node: str, name: str, value: object) -> None:
         """Changes a live parameter; raises ParameterError where none has that name or takes the value."""
         self.communication.set_parameter(node, name, value)
-
-    @property
-    def _journal(self) -> Journal | None:
-        return self.communication.bus.journal
 
     @property
     def diagnostics(self) -> list[Diagnostic]:

@@ -13,14 +13,13 @@ from simkit.runtime.engine.physics_state import STALE
 from simkit.runtime.handles.entity_handles import EntityHandles
 from simkit.runtime.handles.light import Light
 from simkit.runtime.handles.model import Model
-from simkit.runtime.handles.visual_properties import Labels, Temperatures
+from simkit.runtime.handles.visual import Labels, Temperatures
 from simkit.runtime.model_copy import check_model_name, copy_model
 from simkit.runtime.spawner import ModelLoader, SensorsAndPluginsMaker, Spawner, SpawnRequest
 from simkit.scene import SceneLink
 
 if TYPE_CHECKING:
     from simkit.runtime.communication.communication import Communication
-    from simkit.runtime.communication.journal import Journal
     from simkit.runtime.engine.engine import Engine
     from simkit.runtime.engine.snapshot import Stateful
 
@@ -49,13 +48,9 @@ class WorldContents:
         load_model: ModelLoader,
         make_parts: SensorsAndPluginsMaker,
     ) -> None:
-        self._engine, self._communication = engine, communication
+        self._engine, self._communication, self._bus = engine, communication, communication.bus
         self.handles = EntityHandles(engine, self.make_movable)
         self.spawner = Spawner(sim, engine, communication, self.handles, stateful, load_model, make_parts)
-
-    @property
-    def _journal(self) -> Journal | None:
-        return self._communication.bus.journal
 
     # ------------------------------------------------------------------ what there is
 

@@ -11,7 +11,7 @@ import functools
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from simkit.registry import discover
+from simkit.registry import Kinds
 
 if TYPE_CHECKING:
     from simkit.sensors.base import Sensor
@@ -30,4 +30,4 @@ def sensor_kinds() -> Mapping[str, type[Sensor]]:
     """
     from simkit.sensors.base import Sensor
 
-    return discover("simkit.sensors", GROUP, Sensor, lambda cls: cls.kinds, ("kinds",))  # type: ignore[type-abstract]
+    return Kinds("simkit.sensors", GROUP, Sensor, lambda cls: cls.kinds, ("kinds",))  # type: ignore[type-abstract]

@@ -10,8 +10,8 @@ import pytest
 from mesh_makers import QUAD, picture
 
 import simkit
+from simkit.compiler.assets import geom_colours
 from simkit.compiler.lights import spot_parameters
-from simkit.compiler.material_colours import geom_colours
 from simkit.compiler.meshes.mesh_part import MeshPart
 from simkit.errors import SimkitError
 from simkit.pose import Pose

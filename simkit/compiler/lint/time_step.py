@@ -27,7 +27,9 @@ def check_time_step(world: SceneWorld, compiled: Compiled, found: Diagnostics) -
 
 def _check_step(world: SceneWorld, compiled: Compiled, found: Diagnostics) -> None:
     step = world.physics.max_step_size
-    moving = [b for b in compiled.names.links.values() if not b.static and b.geoms and _can_move(compiled, b.body)]
+    moving = [
+        b for b in compiled.names.links.values() if not b.static and b.geoms and compiled.model.body_weldid[b.body] != 0
+    ]
     if step > LONGEST_STEP and moving:
         found.warning(
             "SK-LINT-001",
@@ -36,11 +38,6 @@ def _check_step(world: SceneWorld, compiled: Compiled, found: Diagnostics) -> No
             world.physics.where,
             "write <max_step_size>0.001</max_step_size>, or try --set physics.max_step_size=0.001",
         )
-
-
-def _can_move(compiled: Compiled, body: int) -> bool:
-    """Check whether a body can move: it is not welded to the world."""
-    return int(compiled.model.body_weldid[body]) != 0
 
 
 def rate_pattern(rate: float, step: float) -> str:

@@ -20,7 +20,7 @@ from simkit.plugins.find_entities import find_link
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, OptionsOf, integer, number, text, texts
 from simkit.pose import IDENTITY
-from simkit.runtime.contact.belt import Belt, BeltMotion
+from simkit.runtime.contact.moving_surface import Belt, BeltMotion
 from simkit.scene import Cylinder, SceneJoint, SceneLink
 
 if TYPE_CHECKING:

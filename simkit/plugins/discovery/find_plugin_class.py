@@ -12,7 +12,7 @@ from simkit.plugins.base import ParentKind, Plugin
 from simkit.plugins.discovery.unsupported_plugins import GAZEBO_PLUGINS, UNSUPPORTED_REASONS
 from simkit.plugins.discovery.user_plugins import find_user_plugin
 from simkit.plugins.plugin_names import ENTRY_POINT_GROUP, aliases, normalise
-from simkit.registry import Kinds, discover
+from simkit.registry import Kinds
 from simkit.scene import ScenePlugin
 
 
@@ -24,7 +24,7 @@ def plugin_kinds() -> Kinds[Plugin]:
         return [normalise(name) for name in (*cls.filenames, *cls.names)]
 
     attributes = ("filenames", "names")
-    return discover("simkit.plugins", ENTRY_POINT_GROUP, Plugin, names, attributes, normalise)  # type: ignore[type-abstract]
+    return Kinds("simkit.plugins", ENTRY_POINT_GROUP, Plugin, names, attributes, normalise)  # type: ignore[type-abstract]
 
 
 def find_plugin(

@@ -11,7 +11,7 @@ import numpy as np
 from simkit.compiler.contact_friction import has_directional_friction
 from simkit.plugins.drives.odometry import BodyTwist, DeadReckoning
 from simkit.pose import Pose
-from simkit.runtime.contact.belt import Belt, BeltMotion
+from simkit.runtime.contact.moving_surface import Belt, BeltMotion
 
 if TYPE_CHECKING:
     from simkit.params import Params

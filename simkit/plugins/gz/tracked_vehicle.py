@@ -29,7 +29,7 @@ from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, OptionsOf, block, blocks, boolean, number, text, vector3
 from simkit.plugins.publish_on_demand import publish_while_subscribed, set_after_step_rate, set_before_step_rate
 from simkit.pose import Pose
-from simkit.runtime.contact.belt import Belt, BeltMotion
+from simkit.runtime.contact.moving_surface import Belt, BeltMotion
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder

@@ -13,7 +13,7 @@ from simkit.compiler.meshes.mesh_part import MeshFileError
 from simkit.params import Params
 from simkit.plugins.base import Plugin, SensorPlugin
 from simkit.plugins.options import Options, OptionsOf, integer, number, text
-from simkit.runtime.handles.visual_properties import MAX_LABEL, HeatSignature, Temperature
+from simkit.runtime.handles.visual import MAX_LABEL, HeatSignature, Temperature
 from simkit.scene import Atmosphere, SceneModel, SceneVisual
 
 if TYPE_CHECKING:

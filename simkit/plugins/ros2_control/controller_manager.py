@@ -15,7 +15,7 @@ from simkit.plugins.ros2_control.controller import Controller, ControllerEndpoin
 from simkit.plugins.ros2_control.hardware import Hardware
 from simkit.plugins.ros_parameter_files import ParameterFiles
 from simkit.plugins.shared_by_copies import SharedByCopies
-from simkit.registry import discover
+from simkit.registry import Kinds
 
 if TYPE_CHECKING:
     from simkit.plugins.base import Plugin
@@ -37,7 +37,7 @@ def controller_kinds() -> Mapping[str, type[Controller]]:
         own: tuple[str, ...] = vars(cls).get("types", ())  # what it inherits is the other's
         return own
 
-    return discover("simkit.plugins.ros2_control.controllers", GROUP, Controller, names)  # type: ignore[type-abstract]
+    return Kinds("simkit.plugins.ros2_control.controllers", GROUP, Controller, names)  # type: ignore[type-abstract]
 
 
 @dataclass(slots=True)

@@ -24,6 +24,12 @@ if TYPE_CHECKING:
     from simkit.runtime.engine.engine import Engine
 
 
+EndCallback = Callable[["GoalHandle"], None]
+"""Called with a goal that has ended."""
+GoalCallback = Callable[["GoalHandle"], None]
+CancelCallback = Callable[["GoalHandle"], bool | None]
+
+
 class GoalStatus(enum.IntEnum):
     """How far a goal is; the numbers are those of `action_msgs/msg/GoalStatus`, REJECTED is ours.
 
@@ -63,7 +69,7 @@ class GoalHandle:
         self.feedback: Message = None
         self.reason = ""
         self._on_feedback: Callback | None = None
-        self._on_done: Callable[[GoalHandle], None] | None = None
+        self._on_done: EndCallback | None = None
 
     # ------------------------------------------------------------------ for the one who sent it
 
@@ -156,8 +162,8 @@ class Action:
         engine: Engine,
         name: str,
         type_name: str,
-        on_goal: Callable[[GoalHandle], None],
-        on_cancel: Callable[[GoalHandle], bool | None] | None,
+        on_goal: GoalCallback,
+        on_cancel: CancelCallback | None,
     ) -> None:
         self.bus, self.engine, self.name, self.type_name, self.owner = bus, engine, name, type_name, bus.owner
         self.active = True
@@ -218,13 +224,7 @@ class ActionTable(EndpointTable[Action]):
         self._goals: list[GoalHandle] = []
         self._sent = 0
 
-    def act(
-        self,
-        name: str,
-        type_name: str,
-        on_goal: Callable[[GoalHandle], None],
-        on_cancel: Callable[[GoalHandle], bool | None] | None = None,
-    ) -> Action:
+    def act(self, name: str, type_name: str, on_goal: GoalCallback, on_cancel: CancelCallback | None = None) -> Action:
         """Opens an action; whatever opens it within `bus.owned_by(owner)` belongs to that owner.
 
         Raises:
@@ -241,11 +241,7 @@ class ActionTable(EndpointTable[Action]):
         return action
 
     def send(
-        self,
-        name: str,
-        goal: Message = None,
-        on_feedback: Callback | None = None,
-        on_done: Callable[[GoalHandle], None] | None = None,
+        self, name: str, goal: Message = None, on_feedback: Callback | None = None, on_done: EndCallback | None = None
     ) -> GoalHandle:
         """Sends a goal; the plugin has it before the next step.
 

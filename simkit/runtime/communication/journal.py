@@ -23,35 +23,39 @@ class Journal(Protocol):
 
     def passing(self, door: str, words: Mapping[str, object]) -> AbstractContextManager[Any]:
         """A context manager around what is done by somebody who may be outside; `words` are the arguments."""
-        ...
 
     def called_back(self, subscription: object) -> AbstractContextManager[None]:
         """A context manager around a callback that is no plugin's."""
-        ...
 
     def hears(self, topic: str, subscription: object) -> None:
         """Told before somebody subscribes with a callback that is no plugin's."""
-        ...
 
     def outside(self, callback: OutsideCallback) -> OutsideCallback:
         """A callback that somebody hands over who may be outside, to be called instead of it."""
-        ...
 
     def before_steps(self) -> None:
         """Told before steps are made."""
-        ...
 
     def after_steps(self) -> None:
         """Told after them, also where they ended in an error."""
-        ...
+
+
+class JournalKeeper(Protocol):
+    """Knows who writes a journal: the topic bus.
+
+    Attributes:
+        journal: hears of what comes in from outside; None where nobody does.
+    """
+
+    journal: Journal | None
 
 
 class Journaled(Protocol):
     """Part of a simulation whose calls from outside go into a journal."""
 
     @property
-    def _journal(self) -> Journal | None:
-        """The journal; None where nobody keeps one."""
+    def _bus(self) -> JournalKeeper:
+        """Knows the journal."""
 
 
 def journaled(method: Callable[Concatenate[S, P], R]) -> Callable[Concatenate[S, P], R]:
@@ -60,7 +64,7 @@ def journaled(method: Callable[Concatenate[S, P], R]) -> Callable[Concatenate[S,
     name = method.__name__.lstrip("_")
 
     def call_through(self: S, /, *args: P.args, **kwargs: P.kwargs) -> R:
-        journal = self._journal
+        journal = self._bus.journal
         if journal is None:
             return method(self, *args, **kwargs)
         bound = signature.bind(self, *args, **kwargs)

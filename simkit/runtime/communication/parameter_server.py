@@ -20,7 +20,6 @@ from simkit.errors import ParameterError
 from simkit.runtime.communication.journal import journaled
 
 if TYPE_CHECKING:
-    from simkit.runtime.communication.journal import Journal
     from simkit.runtime.communication.service_server import ServiceHandler, ServiceTable
     from simkit.runtime.communication.subscription import Message
     from simkit.runtime.communication.topic_bus import TopicBus
@@ -129,11 +128,6 @@ class ParameterTable:
         self._bus, self._engine = bus, engine
         # a model that comes under the name of one that is gone, and may come back, has the same node
         self._parameters: dict[str, dict[tuple[int, str], AnyParameter]] = {}
-
-    @property
-    def _journal(self) -> Journal | None:
-        """Hears of what comes in from outside; None where nobody does."""
-        return self._bus.journal
 
     def add(self, parameter: AnyParameter) -> None:
         """Adds a parameter to its node."""

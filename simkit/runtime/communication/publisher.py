@@ -6,18 +6,17 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from simkit import msgs
+from simkit.runtime.communication.journal import JournalKeeper
 from simkit.runtime.communication.subscription import Callback, LazyMessage, Message, PendingWork
 
 if TYPE_CHECKING:
     from simkit.runtime.communication.command_queue import CommandQueue
-    from simkit.runtime.communication.journal import Journal
     from simkit.runtime.communication.subscription import TopicReaders
 
 
-class PublishingBus(Protocol):
+class PublishingBus(JournalKeeper, Protocol):
     """What a publisher asks of the topic bus."""
 
-    journal: Journal | None
     inbox: CommandQueue
 
 

@@ -14,7 +14,7 @@ Message = Any
 """A message: an instance of a class of `simkit.msgs`, which are made as definitions are read."""
 
 Callback = Callable[[Message], object]
-CallbackErrorPolicy = Literal["stop", "drop"]
+CallbackPolicy = Literal["stop", "drop"]
 
 MAX_KEPT_MESSAGES: Final = 1_000_000
 """So many messages are kept by a subscription that says nothing of it; of more, the newest are."""
@@ -132,12 +132,7 @@ class Subscription:
     """
 
     def __init__(
-        self,
-        bus: SubscribingBus,
-        topic: str,
-        callback: Callback | None,
-        keep: int | None,
-        on_error: CallbackErrorPolicy = "stop",
+        self, bus: SubscribingBus, topic: str, callback: Callback | None, keep: int | None, on_error: CallbackPolicy
     ) -> None:
         self._bus, self.topic, self.callback, self.on_error = bus, topic, callback, on_error
         self._messages: deque[Message] = deque(maxlen=MAX_KEPT_MESSAGES if keep is None else keep)
@@ -196,7 +191,7 @@ class StreamSubscription(Subscription):
     """A subscription that only calls back and keeps nothing (a recorder's)."""
 
     def __init__(self, bus: SubscribingBus, topic: str, callback: Callback, takes_later: bool) -> None:
-        super().__init__(bus, topic, callback, 0)
+        super().__init__(bus, topic, callback, 0, "stop")
         self.receive = callback
         self.is_called = not takes_later
 

@@ -14,7 +14,7 @@ from simkit.runtime.communication.journal import Journal
 from simkit.runtime.communication.publisher import ExternalPublisher, Listener, Publisher, TopicSides
 from simkit.runtime.communication.subscription import (
     Callback,
-    CallbackErrorPolicy,
+    CallbackPolicy,
     LazyMessage,
     Message,
     StreamSubscription,
@@ -129,11 +129,7 @@ class TopicBus:
         return listener
 
     def subscribe(
-        self,
-        topic: str,
-        callback: Callback | None = None,
-        keep: int | None = None,
-        on_error: CallbackErrorPolicy = "stop",
+        self, topic: str, callback: Callback | None = None, keep: int | None = None, on_error: CallbackPolicy = "stop"
     ) -> Subscription:
         """Receives a topic, whether its publisher exists yet or not.
 

@@ -21,11 +21,10 @@ import numpy as np
 
 from simkit.compiler.contact_friction import directional_friction, directional_slip, has_directional_friction
 from simkit.diagnostics import NOWHERE, Where
-from simkit.runtime.contact.belt import Belt, BeltMotion
 from simkit.runtime.contact.contact_slip import ContactSlip
-from simkit.runtime.contact.friction_contacts import FrictionContactArrays, FrictionContacts, find_friction_contacts
+from simkit.runtime.contact.friction_contacts import AnyFrictionContacts, find_friction_contacts
 from simkit.runtime.contact.friction_tangents import FrictionRow, FrictionTangents, RowContacts
-from simkit.runtime.contact.moving_surface import MovingSurfaces
+from simkit.runtime.contact.moving_surface import Belt, BeltMotion, MovingSurfaces
 
 if TYPE_CHECKING:
     from simkit.compiler import Compiled
@@ -286,11 +285,7 @@ class _ModelFriction:
                 self._softness.soften_pyramid(data, number, slip)
 
     def _soft(
-        self,
-        data: mujoco.MjData,
-        found: FrictionContacts | FrictionContactArrays,
-        places: RowContacts,
-        wheels: list[list[Pair]],
+        self, data: mujoco.MjData, found: AnyFrictionContacts, places: RowContacts, wheels: list[list[Pair]]
     ) -> list[tuple[int, int, Pair]]:
         """The contacts that slip, with the tree that does and their compliances [m/s/N]."""
         slips = self._slip

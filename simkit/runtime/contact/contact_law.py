@@ -25,8 +25,12 @@ import numpy as np
 from simkit.compiler.engine_options import contact_time_constant, has_engine_contacts
 from simkit.runtime.contact.centripetal_friction import CentripetalFriction
 from simkit.runtime.contact.contact_conditions import ARRAY_THRESHOLD, DEEP_PENETRATION, ContactConditions
-from simkit.runtime.contact.contact_correction import ContactCorrection, find_correction
-from simkit.runtime.contact.contact_correction_arrays import ArrayContactCorrection, find_array_correction
+from simkit.runtime.contact.contact_correction import (
+    ArrayContactCorrection,
+    ContactCorrection,
+    find_array_correction,
+    find_correction,
+)
 from simkit.runtime.contact.height_field_contacts import HeightFieldContacts
 from simkit.runtime.contact.wheel_contacts import WheelContacts
 
@@ -130,12 +134,7 @@ class ContactLaw:
         return self._has_flying(data) or self._has_fast(data) or bool(self._carried.find(data))
 
     def solve(
-        self,
-        data: mujoco.MjData,
-        closing: list[float] | None = None,
-        *,
-        keeps_references: bool = False,
-        probes: bool = False,
+        self, data: mujoco.MjData, closing: list[float] | None, *, keeps_references: bool = False, probes: bool = False
     ) -> bool:
         """Solve for accelerations and forces.
 

@@ -42,9 +42,10 @@ class FrictionContactArrays(NamedTuple):
     frames: Floats
 
 
-def find_friction_contacts(
-    data: mujoco.MjData, concerns: Sequence[bool]
-) -> FrictionContacts | FrictionContactArrays | None:
+AnyFrictionContacts = FrictionContacts | FrictionContactArrays
+
+
+def find_friction_contacts(data: mujoco.MjData, concerns: Sequence[bool]) -> AnyFrictionContacts | None:
     """The contacts that rub among those that are about certain geoms; None where there is none.
 
     Args:

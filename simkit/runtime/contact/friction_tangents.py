@@ -10,9 +10,14 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from simkit.runtime.contact.friction_contacts import FrictionContactArrays, FrictionContacts
-from simkit.runtime.contact.moving_surface import BeltContactArrays, BeltContacts
-from simkit.runtime.contact.moving_surface_arrays import Floats, Ints, rotate_frames, rotate_surface_velocities
+from simkit.runtime.contact.friction_contacts import (
+    AnyFrictionContacts,
+    Floats,
+    FrictionContactArrays,
+    FrictionContacts,
+    Ints,
+)
+from simkit.runtime.contact.moving_surface import AnyBeltContacts, rotate_frames, rotate_surface_velocities
 
 Numbers = list[float]
 Pair = tuple[float, float]
@@ -65,7 +70,7 @@ class FrictionTangents:
         self._axes: Floats = np.array([row.axis for row in rows]).reshape(-1, 3)
         self._mus: Floats = np.array([row.mu for row in rows]).reshape(-1, 2)
 
-    def find(self, found: FrictionContacts | FrictionContactArrays) -> RowContacts:
+    def find(self, found: AnyFrictionContacts) -> RowContacts:
         """The contacts that have a row."""
         if isinstance(found, FrictionContacts):
             return self._find(found)
@@ -86,11 +91,7 @@ class FrictionTangents:
         return places
 
     def turn(
-        self,
-        data: mujoco.MjData,
-        found: FrictionContacts | FrictionContactArrays,
-        places: RowContacts,
-        flow: BeltContacts | BeltContactArrays | None,
+        self, data: mujoco.MjData, found: AnyFrictionContacts, places: RowContacts, flow: AnyBeltContacts | None
     ) -> None:
         """Turns the tangents of contacts and sets their coefficients; the frames of the touches are turned as well.
 
@@ -106,11 +107,7 @@ class FrictionTangents:
             self._turn_many(data, found, places, flow)
 
     def _turn(
-        self,
-        data: mujoco.MjData,
-        found: FrictionContacts,
-        places: list[RowContact],
-        flow: BeltContacts | BeltContactArrays | None,
+        self, data: mujoco.MjData, found: FrictionContacts, places: list[RowContact], flow: AnyBeltContacts | None
     ) -> None:
         """Turns the tangents of contacts and sets their coefficients; the frames of the touches are turned as well."""
         contact, ground, least = data.contact, self._model.geom_friction, mujoco.mjMINMU
@@ -151,11 +148,7 @@ class FrictionTangents:
             contact.surfacevel[which] = flows
 
     def _turn_many(
-        self,
-        data: mujoco.MjData,
-        found: FrictionContactArrays,
-        asked: Ints,
-        flow: BeltContacts | BeltContactArrays | None,
+        self, data: mujoco.MjData, found: FrictionContactArrays, asked: Ints, flow: AnyBeltContacts | None
     ) -> None:
         """The same on arrays, with the same bits."""
         contact, least = data.contact, mujoco.mjMINMU

@@ -28,7 +28,6 @@ class PublishedProduct(Protocol):
     @property
     def type_name(self) -> str:
         """Its ROS type."""
-        ...
 
 
 class AttachedSensor(Protocol):
@@ -41,7 +40,6 @@ class AttachedSensor(Protocol):
     @property
     def reads_contacts(self) -> bool:
         """Whether it needs the contacts of its bodies."""
-        ...
 
     @property
     def _products(self) -> Mapping[str, PublishedProduct]: ...
@@ -49,7 +47,6 @@ class AttachedSensor(Protocol):
     @property
     def topic(self) -> str:
         """Topic of its first message."""
-        ...
 
     def build(self, builder: SpecBuilder) -> None:
         """Adds what it needs to the specification."""
@@ -105,12 +102,10 @@ class AttachedPlugin(Protocol):
     @property
     def reads_parameter_files(self) -> bool:
         """Whether it reads those that the run was given."""
-        ...
 
     @classmethod
     def has_hook(cls, hook: Any) -> bool:
         """Checks whether its class has a hook."""
-        ...
 
     def prepare(self, scene: Any, params: Params, builder: Any) -> None:
         """Adds what it needs to the specification."""

@@ -1,22 +1,71 @@
-"""State of the physics between two steps: MuJoCo's model and data, and how much of them is up to date."""
+"""State of the physics between two steps: MuJoCo's model and data, and how much is up to date; report of divergence."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import mujoco
 import numpy as np
 import numpy.typing as npt
 
 from simkit.compiler.engine_options import has_engine_contacts
+from simkit.errors import SimulationDiverged
 from simkit.runtime.contact.contact_law import ContactLaw, ContactShaper, window_length
 from simkit.runtime.contact.speculative_contacts import SPECULATIVE_FLAG, FastBodyDetector
-from simkit.runtime.engine.divergence import ENGINE_WARNINGS
 from simkit.runtime.engine.free_motion import FreeMotionIntegrator
 from simkit.runtime.engine.simulated_time import Clock
 from simkit.runtime.engine.sleep import Sleep
+
+BAD_POSITION: Final = int(mujoco.mjtWarning.mjWARN_BADQPOS)
+BAD_VELOCITY: Final = int(mujoco.mjtWarning.mjWARN_BADQVEL)
+BAD_ACCELERATION: Final = int(mujoco.mjtWarning.mjWARN_BADQACC)
+_BAD: Final = (BAD_POSITION, BAD_VELOCITY, BAD_ACCELERATION)
+
+
+class EngineWarnings:
+    """Texts of MuJoCo's warnings, which has one place for them in a process."""
+
+    def __init__(self) -> None:
+        self._texts: list[str] = []
+
+    def record(self, text: str) -> None:
+        """Keeps a text; an exception here would end the interpreter."""
+        if len(self._texts) < 8:
+            self._texts.append(text)
+
+    def take_first(self) -> str:
+        """Returns the first text and forgets all."""
+        text = self._texts[0] if self._texts else ""
+        self._texts.clear()
+        return text
+
+
+ENGINE_WARNINGS: Final = EngineWarnings()
+
+
+def divergence(model: mujoco.MjModel, data: mujoco.MjData, clock: Clock, tick: int) -> SimulationDiverged:
+    """Return the error for a state of which MuJoCo counts NaN or infinite numbers.
+
+    Args:
+        model, data: of MuJoCo.
+        clock: gives the time of a tick.
+        tick: of the state.
+    """
+    counts = data.warning.number
+    first = max(0, tick - max(int(counts[w]) for w in _BAD))
+    dof = next((int(i) for a in (data.qvel, data.qacc) for i in np.flatnonzero(~(np.abs(a) < 1e10))), None)
+    if dof is None:
+        info = next(int(data.warning[w].lastinfo) for w in _BAD if counts[w])
+        dof = min(info, model.nv - 1)
+    joint = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_JOINT, int(model.dof_jntid[dof])) or f"dof {dof}"
+    hint = (
+        f"a gain, a force or a stiffness is too large for the step of {clock.timestep:g} s; "
+        "try a smaller max_step_size, a smaller gain or command, or a larger inertia"
+    )
+    return SimulationDiverged(joint.split("#")[0], clock.time(first), hint, ENGINE_WARNINGS.take_first())
+
 
 FRESH, CONTROL, VELOCITY, STALE = range(4)
 """How much of the forward pass is out of date: nothing, accelerations, velocities on, all."""

@@ -14,9 +14,18 @@ import mujoco
 import numpy as np
 
 from simkit.runtime.engine.control_callback import call_before_forces
-from simkit.runtime.engine.divergence import BAD_ACCELERATION, BAD_POSITION, BAD_VELOCITY, ENGINE_WARNINGS, divergence
 from simkit.runtime.engine.forward_pass import SKIPPED_STAGE, ForwardPass
-from simkit.runtime.engine.physics_state import CONTROL, FRESH, STALE, VELOCITY
+from simkit.runtime.engine.physics_state import (
+    BAD_ACCELERATION,
+    BAD_POSITION,
+    BAD_VELOCITY,
+    CONTROL,
+    ENGINE_WARNINGS,
+    FRESH,
+    STALE,
+    VELOCITY,
+    divergence,
+)
 from simkit.runtime.engine.simulated_time import Clock
 
 __all__ = ["CONTROL", "FRESH", "STALE", "VELOCITY", "Physics"]

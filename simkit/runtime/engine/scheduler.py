@@ -20,7 +20,6 @@ class Timetable(Protocol):
 
     def next(self, tick: int) -> int:
         """First due tick after a tick."""
-        ...
 
 
 class Agenda:

@@ -41,21 +41,16 @@ class StepLoop:
         self.scheduler = Scheduler(physics.clock)
         self._physics, self._commands, self._fill = physics, commands, fill
         self.jumped = self._target = 0
-        self._running = self._is_outdated = self._is_served = self._halts = False
+        self.is_running = self._is_outdated = self._is_served = self._halts = False
         self._deferred: list[Callable[[], None]] = []
         self._idle = threading.Event()
         self._idle.set()
         _OPEN_LOOPS.loops.add(self)
 
-    @property
-    def is_running(self) -> bool:
-        """Whether it is advancing."""
-        return self._running
-
     def reschedule(self) -> None:
         """Takes changed rates, sensors and plugins into account; within a hook, once the tick is dealt with."""
         self._is_outdated = True
-        if not self._running:
+        if not self.is_running:
             self._refill()
 
     def defer(self, call: Callable[[], None]) -> None:
@@ -82,16 +77,16 @@ class StepLoop:
             InputError: it is advancing already.
             SystemExit: the program has ended, and this is a thread that nobody waits for.
         """
-        if self._running:
+        if self.is_running:
             message = "a step is under way: a hook or callback cannot step the simulation, nor a second thread"
             raise InputError(message, "SK-CORE-003")
-        self._running, self._is_served, self._halts = True, is_served, False
+        self.is_running, self._is_served, self._halts = True, is_served, False
         self._target = target
         self._idle.clear()
         try:
             self._run()
         finally:
-            self._running = self._is_served = self._halts = False
+            self.is_running = self._is_served = self._halts = False
             self._deferred.clear()
             self._idle.set()
 

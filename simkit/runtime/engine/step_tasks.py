@@ -1,18 +1,119 @@
-"""What of a simulation is due when, in document order."""
+"""What of a simulation is due when, in document order; hooks of plugins of one kind as one task."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from simkit.runtime.engine import grouped_hooks, sleep, velocity_servos
+from simkit.runtime.engine import sleep, velocity_servos
 from simkit.runtime.engine.scheduler import Scheduler, Task
 
 if TYPE_CHECKING:
     from simkit.runtime.engine.engine import Engine
-    from simkit.runtime.engine.entity_structure import AttachedSensor
+    from simkit.runtime.engine.entity_structure import AttachedPlugin, AttachedSensor
+    from simkit.runtime.engine.plugin_faults import PluginFaults
+
+MIN_GROUP_SIZE = 4
+"""So few are as soon called one by one."""
+
+
+class PluginGroup:
+    """The plugins of one task; going through them notes whose turn it is, so that who raises can be named.
+
+    Attributes:
+        plugins: in the order of the document.
+        turn: whose turn it is.
+    """
+
+    def __init__(self, plugins: Sequence[AttachedPlugin]) -> None:
+        self.plugins, self.turn = list(plugins), plugins[0]
+
+    def __iter__(self) -> Iterator[AttachedPlugin]:
+        for plugin in self.plugins:
+            self.turn = plugin
+            yield plugin
+
+
+GroupHook = Callable[[Sequence["AttachedPlugin"]], Callable[[PluginGroup], None]]
+"""Makes of plugins what calls a hook of all of them."""
+
+HookTasks = Iterator[tuple[float | None, Task]]
+"""Rates [Hz] and tasks."""
+
+
+def hook_tasks(faults: PluginFaults, plugins: Iterable[AttachedPlugin], hook: str) -> HookTasks:
+    """The hooks of these plugins with their rates [Hz], in the order of the document.
+
+    Hooks of plugins of one kind that are due together are one task where the plugin's class defines beside the hook a
+    class method of the hook's name with `_together` after it:
+
+        @classmethod
+        def before_step_together(cls, plugins):
+            ...                       # once for each schedule: look up what all need
+            def run(group):
+                for plugin in group:  # the same bits, and in the same order, as one after the other
+                    ...
+            return run
+
+    Only plugins that follow on each other are taken together, so that hooks keep the order of the document.
+
+    Args:
+        faults: calls the plugins.
+        plugins: those that are at work.
+        hook: `before_step` or `after_step`.
+    """
+    run: list[AttachedPlugin] = []
+    for plugin in plugins:
+        if not plugin.has_hook(hook):
+            continue
+        if run and not (_can_group(run[-1], plugin, hook)):
+            yield from _group_tasks(faults, run, hook)
+            run = []
+        run.append(plugin)
+    yield from _group_tasks(faults, run, hook)
+
+
+def _can_group(one: AttachedPlugin, other: AttachedPlugin, hook: str) -> bool:
+    return type(one) is type(other) and _hook_rate(one, hook) == _hook_rate(other, hook)
+
+
+def _hook_rate(plugin: AttachedPlugin, hook: str) -> float | None:
+    rate: float | None = getattr(plugin, f"{hook}_rate")
+    return rate
+
+
+def _group_tasks(faults: PluginFaults, run: list[AttachedPlugin], hook: str) -> HookTasks:
+    together = _group_hook(type(run[0]), hook) if len(run) >= MIN_GROUP_SIZE else None
+    # who may be left out when it raises is called by itself
+    if together is None or any(faults.policy(plugin) != "stop" for plugin in run):
+        for plugin in run:
+            yield _hook_rate(plugin, hook), faults.task(plugin, hook)
+    else:
+        yield _hook_rate(run[0], hook), _guard_group(faults, PluginGroup(run), hook, together(run))
+
+
+def _group_hook(kind: type, hook: str) -> GroupHook | None:
+    """What a class gives for many of its plugins; None where a class below it has another hook than that is for."""
+    for cls in kind.__mro__:
+        if f"{hook}_together" in vars(cls):
+            found: GroupHook = getattr(kind, f"{hook}_together")
+            return found
+        if hook in vars(cls):
+            return None
+    return None
+
+
+def _guard_group(faults: PluginFaults, rota: PluginGroup, hook: str, run: Callable[[PluginGroup], None]) -> Task:
+    def task(_: int = 0) -> None:
+        try:
+            run(rota)
+        except Exception as error:  # noqa: BLE001 - what a plugin calls may raise anything
+            faults.meet(rota.turn, hook, error)
+
+    return task
+
 
 _LIMIT_SHARE = 0.999  # of the sum of squares of velocities over their limits
 _NO_LIMIT = 1e6  # [rad/s or m/s] from which on a limit of the file is none
@@ -75,12 +176,12 @@ def fill_schedule(
     _schedule_scenery(engine, scheduler, plugins)
     for sensor in engine.structure.all_sensors():
         scheduler.on(sensor.timetable(), sensor.sample, "sense")
-    for rate, task in grouped_hooks.hook_tasks(engine.faults, plugins, "before_step"):
+    for rate, task in hook_tasks(engine.faults, plugins, "before_step"):
         scheduler.every(rate, task, "before")
     for plugin in plugins:
         if getattr(plugin, "is_gz_system", False):  # every system's update comes after every system's pre_update
             scheduler.every(None, engine.faults.task(plugin, "update_step"), "before")
-    for rate, task in grouped_hooks.hook_tasks(engine.faults, plugins, "after_step"):
+    for rate, task in hook_tasks(engine.faults, plugins, "after_step"):
         scheduler.every(rate, task, "after")
 
 

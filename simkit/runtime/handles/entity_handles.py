@@ -10,8 +10,7 @@ from simkit.runtime.handles.joint import Joint
 from simkit.runtime.handles.light import Light
 from simkit.runtime.handles.link import Link
 from simkit.runtime.handles.model import Model
-from simkit.runtime.handles.visual import Visual
-from simkit.runtime.handles.visual_properties import Labels, Temperatures
+from simkit.runtime.handles.visual import Labels, Temperatures, Visual
 from simkit.scene import SceneLink, SceneModel
 
 if TYPE_CHECKING:

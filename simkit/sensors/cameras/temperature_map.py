@@ -17,7 +17,7 @@ from simkit.compiler.meshes.mesh_reader import load_mesh
 from simkit.compiler.shape_geometry import textured_triangles, turn_z_to
 from simkit.diagnostics import NOWHERE, Diagnostics
 from simkit.pose import Pose, Vector
-from simkit.runtime.handles.visual_properties import HeatSignature
+from simkit.runtime.handles.visual import HeatSignature
 from simkit.scene import Geometry, Mesh, Plane
 from simkit.sensors.cameras.rendering.view import Ids
 from simkit.sensors.rays.embree_rays import TriangleScene, has_embree

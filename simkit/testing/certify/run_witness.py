@@ -21,7 +21,7 @@ from simkit.recording.message_taps import TopicTaps
 from simkit.run_spec import JsonObject
 from simkit.runtime import Simulation
 from simkit.runtime.communication.subscription import NO_MESSAGE, LazyMessage
-from simkit.runtime.engine import grouped_hooks
+from simkit.runtime.engine import step_tasks
 from simkit.runtime.engine.engine_state import EngineState
 from simkit.runtime.engine.plugin_faults import PluginFaults
 from simkit.testing.certify.outcome import PluginCall, TopicOutcome
@@ -280,7 +280,7 @@ class PluginCallRecorder:
 def record_plugin_calls(witness: PluginCallRecorder) -> Iterator[None]:
     """Has every call of a plugin go by a witness; for simulations that are opened within."""
 
-    task, guard, least = PluginFaults.task, PluginFaults.guard, grouped_hooks.MIN_GROUP_SIZE
+    task, guard, least = PluginFaults.task, PluginFaults.guard, step_tasks.MIN_GROUP_SIZE
 
     def watched_task(self: Any, plugin: Any, hook: str) -> Callable[[int], None]:
         inner = task(self, plugin, hook)
@@ -293,11 +293,11 @@ def record_plugin_calls(witness: PluginCallRecorder) -> Iterator[None]:
     def watched_guard(self: Any, plugin: Any, hook: str, method: Callable[..., Any]) -> Callable[..., Any]:
         return guard(self, plugin, hook, lambda *values: witness.call(self._engine, plugin, hook, method, values))
 
-    PluginFaults.task, PluginFaults.guard, grouped_hooks.MIN_GROUP_SIZE = watched_task, watched_guard, 1 << 30  # type: ignore
+    PluginFaults.task, PluginFaults.guard, step_tasks.MIN_GROUP_SIZE = watched_task, watched_guard, 1 << 30  # type: ignore
     try:
         yield
     finally:
-        PluginFaults.task, PluginFaults.guard, grouped_hooks.MIN_GROUP_SIZE = task, guard, least  # type: ignore
+        PluginFaults.task, PluginFaults.guard, step_tasks.MIN_GROUP_SIZE = task, guard, least  # type: ignore
 
 
 def plugin_attributes(plugin: Any) -> JsonObject:

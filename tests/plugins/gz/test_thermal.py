@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import simkit
-from simkit.runtime.handles.visual_properties import HeatSignature
+from simkit.runtime.handles.visual import HeatSignature
 
 BALL = "<geometry><sphere><radius>0.1</radius></sphere></geometry>"
 KELVIN = "<temperature>{}</temperature>"

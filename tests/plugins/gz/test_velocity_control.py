@@ -242,7 +242,7 @@ def test_many_are_moved_to_the_same_bits_as_one_by_one(step: float, monkeypatch:
     models = [box(velocity_control(), name=f"b{k}", pose=f"{k} 0 0.1 0 0 0", extra=ARM) for k in range(6)]
     ends = []
     for least in (2, 100):
-        monkeypatch.setattr("simkit.runtime.engine.grouped_hooks.MIN_GROUP_SIZE", least)
+        monkeypatch.setattr("simkit.runtime.engine.step_tasks.MIN_GROUP_SIZE", least)
         with simkit.load(world(GROUND, *models, step=step)) as sim:
             for k in range(6):
                 sim.publish(f"/model/b{k}/cmd_vel", {"linear": {"x": 0.5 - k}, "angular": {"z": 0.1 * k}})

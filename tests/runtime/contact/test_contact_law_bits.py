@@ -15,7 +15,7 @@ import pytest
 import simkit
 from simkit.errors import SimulationDiverged
 from simkit.runtime.contact import centripetal_friction, contact_law
-from simkit.runtime.contact.contact_correction_arrays import ArrayContactCorrection
+from simkit.runtime.contact.contact_correction import ArrayContactCorrection
 from simkit.runtime.contact.contact_law import window_length
 from simkit.runtime.engine.physics_step import STALE, VELOCITY
 

@@ -6,7 +6,7 @@ import pytest
 import simkit
 from simkit import msgs
 from simkit.errors import PluginError, SubscriberError
-from simkit.runtime.engine import grouped_hooks
+from simkit.runtime.engine import step_tasks
 from simkit.sensors import sensor_batch
 
 COUNT = 5
@@ -98,7 +98,7 @@ def apart(monkeypatch):
     def alone(call, *args, **kwargs):
         with monkeypatch.context() as patch:
             patch.setattr(sensor_batch, "MIN_MEMBERS", 10_000)
-            patch.setattr(grouped_hooks, "MIN_GROUP_SIZE", 10_000)
+            patch.setattr(step_tasks, "MIN_GROUP_SIZE", 10_000)
             return call(*args, **kwargs)
 
     return alone

@@ -12,7 +12,7 @@ import pytest
 from renderer import NEEDS_RENDERER
 
 import simkit
-from simkit.runtime.handles.visual_properties import HeatSignature
+from simkit.runtime.handles.visual import HeatSignature
 
 pytestmark = NEEDS_RENDERER
 
