@@ -317,9 +317,8 @@ class Params:
         found = self.child(name)
         if found is None:
             if required:
-                self.diagnostics.error(
-                    "SK-PARAM-001", f"<{self.name}> needs <{name}>: {allowed}", self.where, self._near(name)
-                )
+                message = f"<{self.name}> needs <{name}>: {allowed}"
+                self.diagnostics.error("SK-PARAM-001", message, self.where, self._near(name))
             return fallback if default is None else default
         try:
             return parse(found)

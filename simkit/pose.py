@@ -10,15 +10,16 @@ import numpy as np
 import numpy.typing as npt
 
 Vector = npt.NDArray[np.float64]
+VectorLike = Sequence[float] | Vector
 _set = object.__setattr__
 
 
-def _floats(values: Sequence[float] | Vector) -> list[float]:
+def _floats(values: VectorLike) -> list[float]:
     # arithmetic on Python's floats is several times faster than on NumPy's scalars, with the same bits
     return values.tolist() if isinstance(values, np.ndarray) else [float(v) for v in values]
 
 
-def quat_multiply(a: Sequence[float] | Vector, b: Sequence[float] | Vector) -> Vector:
+def quat_multiply(a: VectorLike, b: VectorLike) -> Vector:
     """Hamilton product of two (w, x, y, z) quaternions."""
     aw, ax, ay, az = _floats(a)
     bw, bx, by, bz = _floats(b)
@@ -32,12 +33,12 @@ def quat_multiply(a: Sequence[float] | Vector, b: Sequence[float] | Vector) -> V
     )
 
 
-def quat_conjugate(q: Sequence[float] | Vector) -> Vector:
+def quat_conjugate(q: VectorLike) -> Vector:
     w, x, y, z = _floats(q)
     return np.array((w, -x, -y, -z))
 
 
-def quat_rotate(q: Sequence[float] | Vector, v: Sequence[float] | Vector) -> Vector:
+def quat_rotate(q: VectorLike, v: VectorLike) -> Vector:
     """The vector `v` turned by the unit quaternion `q`."""
     w, x, y, z = _floats(q)
     vx, vy, vz = _floats(v)
@@ -60,7 +61,7 @@ def quat_from_rpy(roll: float, pitch: float, yaw: float) -> Vector:
     )
 
 
-def rpy_from_quat(q: Sequence[float] | Vector) -> Vector:
+def rpy_from_quat(q: VectorLike) -> Vector:
     """Roll, pitch, yaw [rad] of a unit quaternion."""
     w, x, y, z = _floats(q)
     sin_pitch = max(-1.0, min(1.0, 2 * (w * y - z * x)))
@@ -73,7 +74,7 @@ def rpy_from_quat(q: Sequence[float] | Vector) -> Vector:
     )
 
 
-def quat_to_matrix(q: Sequence[float] | Vector) -> Vector:
+def quat_to_matrix(q: VectorLike) -> Vector:
     """The 3×3 rotation matrix of a unit quaternion."""
     w, x, y, z = _floats(q)
     return np.array(
@@ -97,11 +98,7 @@ class Pose:
     position: Vector
     quaternion: Vector
 
-    def __init__(
-        self,
-        position: Sequence[float] | Vector = (0.0, 0.0, 0.0),
-        quaternion: Sequence[float] | Vector = (1.0, 0.0, 0.0, 0.0),
-    ) -> None:
+    def __init__(self, position: VectorLike = (0.0, 0.0, 0.0), quaternion: VectorLike = (1.0, 0.0, 0.0, 0.0)) -> None:
         p = np.array(position, dtype=np.float64)
         q = np.array(quaternion, dtype=np.float64)
         if p.shape != (3,) or q.shape != (4,):
@@ -173,11 +170,11 @@ class Pose:
             (w, x, y, z),
         )
 
-    def rotate(self, vector: Sequence[float] | Vector) -> Vector:
+    def rotate(self, vector: VectorLike) -> Vector:
         """A free vector of this frame, in the parent's axes."""
         return quat_rotate(self.quaternion, vector)
 
-    def transform(self, point: Sequence[float] | Vector) -> Vector:
+    def transform(self, point: VectorLike) -> Vector:
         """A point of this frame, in the parent's frame."""
         return self.position + quat_rotate(self.quaternion, point)
 

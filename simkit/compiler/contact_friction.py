@@ -66,9 +66,8 @@ def contact_properties(surface: Surface, timestep: float, mass: float, diagnosti
     solimp, solmix = _impedance(surface.restitution, solref, timestep)
     contype, conaffinity = contact_masks(surface)
     if surface.collide_without_contact:
-        diagnostics.warning(
-            "SK-PHYS-014", "collide_without_contact: the collision is left out of all contacts", surface.where
-        )
+        message = "collide_without_contact: the collision is left out of all contacts"
+        diagnostics.warning("SK-PHYS-014", message, surface.where)
         contype = conaffinity = 0
     torsion, roll = _turning_friction(surface, diagnostics) if mu > 0.0 else (0.0, 0.0)
     return ContactProperties(
@@ -128,9 +127,8 @@ def _sliding_friction(surface: Surface, diagnostics: Diagnostics) -> float:
         message = f"friction differs along (mu {mu:g}) and across (mu2 {mu2:g}): the smaller one is used both ways"
         diagnostics.warning("SK-PHYS-005", message, surface.where)
     if surface.slip1 != surface.slip2:
-        diagnostics.warning(
-            "SK-PHYS-006", "slip1 and slip2 differ and there is no <fdir1>: they are not used", surface.where
-        )
+        message = "slip1 and slip2 differ and there is no <fdir1>: they are not used"
+        diagnostics.warning("SK-PHYS-006", message, surface.where)
     return min(mu, mu2)
 
 
@@ -169,25 +167,23 @@ def _impedance(
 def _softness(surface: Surface, timestep: float, mass: float, diagnostics: Diagnostics) -> tuple[float, float]:
     world = contact_time_constant(timestep)
     if surface.restitution > 0.0:
-        message = f"restitution {surface.restitution:g} holds at any speed: <threshold> is not used"
-        diagnostics.note("SK-PHYS-003", message, surface.where)
+        text = f"restitution {surface.restitution:g} holds at any speed: <threshold> is not used"
+        diagnostics.note("SK-PHYS-003", text, surface.where)
         return bounce_solref(surface.restitution, timestep)
     if surface.kp is None or surface.kp >= STIFF_KP or surface.kp <= 0.0:
         if surface.kp is not None and surface.kp != 1e12:
-            message = f"contact stiffness {surface.kp:g} N/m counts as rigid: {world * 1e3:g} ms, critically damped"
-            diagnostics.note("SK-PHYS-004", message, surface.where)
+            text = f"contact stiffness {surface.kp:g} N/m counts as rigid: {world * 1e3:g} ms, critically damped"
+            diagnostics.note("SK-PHYS-004", text, surface.where)
         return rigid_time_constant(timestep), 1.0
     if mass <= 0.0:
-        message = f"contact stiffness {surface.kp:g} N/m of a static surface is not used; that of what touches it is"
-        diagnostics.note("SK-PHYS-004", message, surface.where)
+        text = f"contact stiffness {surface.kp:g} N/m of a static surface is not used; that of what touches it is"
+        diagnostics.note("SK-PHYS-004", text, surface.where)
         return rigid_time_constant(timestep), 1.0
     omega = math.sqrt(surface.kp / mass)
     damping = max(1.0, (surface.kd or 0.0) / (2.0 * mass * omega))
     constant = max(1.0 / (damping * omega), world)
-    message = (
-        f"contact stiffness {surface.kp:g} N/m carries {mass:g} kg with a time constant of {constant * 1e3:.3g} ms"
-    )
-    diagnostics.note("SK-PHYS-004", message, surface.where)
+    text = f"contact stiffness {surface.kp:g} N/m carries {mass:g} kg with a time constant of {constant * 1e3:.3g} ms"
+    diagnostics.note("SK-PHYS-004", text, surface.where)
     return constant, damping
 
 

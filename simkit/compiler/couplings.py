@@ -85,9 +85,8 @@ class Couplings:
         ratio = -joint.gearbox_ratio * first[1] * second[1]
         self.couple(name, second[0], first[0], 0.0, ratio)
         self._add_follower(first[2], Follower(second[0], ratio))
-        self.diagnostics.note(
-            "SK-PHYS-009", f"gearbox {joint.scoped} is a stiff constraint between two joints", joint.where
-        )
+        message = f"gearbox {joint.scoped} is a stiff constraint between two joints"
+        self.diagnostics.note("SK-PHYS-009", message, joint.where)
         return (name,)
 
     def _gear_hinge(self, joint: SceneJoint, link: str, axis: int) -> tuple[str, float, JointBinding] | None:
@@ -141,15 +140,13 @@ class Couplings:
             at = (leader.scoped, law.axis)
             if at in seen:
                 ring = " -> ".join(name for name, _ in sorted(seen))
-                self.diagnostics.error(
-                    "SK-JOINT-001", f"joint {joint.scoped} mimics itself in a ring: {ring}", joint.where
-                )
+                message = f"joint {joint.scoped} mimics itself in a ring: {ring}"
+                self.diagnostics.error("SK-JOINT-001", message, joint.where)
                 return None
             seen.add(at)
         if not (np.isfinite(ratio) and np.isfinite(offset)):
-            self.diagnostics.error(
-                "SK-JOINT-003", f"joint {joint.scoped}: multiplier, offset or reference is not finite", joint.where
-            )
+            message = f"joint {joint.scoped}: multiplier, offset or reference is not finite"
+            self.diagnostics.error("SK-JOINT-003", message, joint.where)
             return None
         return self.record.joints[at[0]], at[1], ratio, offset
 

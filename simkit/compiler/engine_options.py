@@ -57,10 +57,8 @@ def apply_options(spec: mujoco.MjSpec, world: SceneWorld, diagnostics: Diagnosti
     """Sets step, gravity, integrator, solver flags, compiler conventions and the surroundings' light."""
     step = world.physics.max_step_size
     if not (math.isfinite(step) and SHORTEST_STEP <= step <= LONGEST_STEP):
-        message = (
-            f"max_step_size is {step}; a positive number of seconds is needed, {SHORTEST_STEP:g} to {LONGEST_STEP:g}"
-        )
-        diagnostics.error("SK-PHYS-015", message, world.physics.where)
+        text = f"max_step_size is {step}; a positive number of seconds is needed, {SHORTEST_STEP:g} to {LONGEST_STEP:g}"
+        diagnostics.error("SK-PHYS-015", text, world.physics.where)
         step = 0.001
     option = spec.option
     option.timestep = step

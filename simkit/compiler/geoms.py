@@ -97,9 +97,8 @@ class GeomWriter:
         owner = GeomOwner(place.link, collision.scoped, False)
         primitive = primitive_of(shape, False)
         if isinstance(shape, Plane) and not place.fixed and primitive is not None:
-            self.diagnostics.warning(
-                "SK-PHYS-016", "a plane on a moving link collides as a 100 m × 100 m plate", collision.where
-            )
+            message = "a plane on a moving link collides as a 100 m × 100 m plate"
+            self.diagnostics.warning("SK-PHYS-016", message, collision.where)
             sunk = collision.pose_link @ primitive.pose @ Pose((0.0, 0.0, -_HALF_SPACE[2]))
             self._add(place, owner, sunk, type=mujoco.mjtGeom.mjGEOM_BOX, size=_HALF_SPACE, **solid)
         elif primitive is not None:
@@ -250,9 +249,8 @@ class GeomWriter:
     def _has_size(self, shape: Geometry, where: Where) -> bool:
         if all(0.0 < s < math.inf for s in shape_sizes(shape)):
             return True
-        self.diagnostics.warning(
-            "SK-PHYS-017", f"a {type(shape).__name__.lower()} without size is left out: {shape}", where
-        )
+        message = f"a {type(shape).__name__.lower()} without size is left out: {shape}"
+        self.diagnostics.warning("SK-PHYS-017", message, where)
         return False
 
     def _visual_parts(self, shape: Geometry, where: Where) -> list[MeshPart]:

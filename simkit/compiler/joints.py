@@ -28,9 +28,8 @@ def is_valid_axis(joint: SceneJoint, axis: Axis, diagnostics: Diagnostics) -> bo
     numbers = (axis.damping, axis.friction, axis.stiffness, axis.spring_ref)
     limits = (axis.lower, axis.upper, axis.effort, axis.velocity)
     if not all(map(math.isfinite, (*axis.xyz_world, *numbers))) or any(map(math.isnan, limits)):
-        diagnostics.error(
-            "SK-JOINT-003", f"joint {joint.scoped}: a number of its axis, limits or dynamics is not finite", joint.where
-        )
+        message = f"joint {joint.scoped}: a number of its axis, limits or dynamics is not finite"
+        diagnostics.error("SK-JOINT-003", message, joint.where)
         return False
     if abs(math.hypot(*axis.xyz_world) - 1.0) > _UNIT:
         message = f"joint {joint.scoped}: its axis {axis.xyz_world} has a length of {math.hypot(*axis.xyz_world):g}"
@@ -172,9 +171,8 @@ class JointWriter:
 
     def _motions(self, joint: SceneJoint, at: Pose, is_reversed: bool) -> list[_JointMotion]:
         if joint.type not in _KINDS:
-            self.diagnostics.warning(
-                "SK-PHYS-013", f"joint {joint.scoped}: type {joint.type} is taken as fixed", joint.where
-            )
+            message = f"joint {joint.scoped}: type {joint.type} is taken as fixed"
+            self.diagnostics.warning("SK-PHYS-013", message, joint.where)
             return []
         kinds = _KINDS[joint.type]
         axes: list[Axis | None] = list(joint.axes)
@@ -186,9 +184,8 @@ class JointWriter:
             directions = _plane_axes(joint, at)
             axes = [*axes, None, None, None] if len(axes) != 1 else [*axes, *axes, *axes]
         elif len(axes) < len(kinds):
-            self.diagnostics.error(
-                "SK-PHYS-019", f"joint {joint.scoped} ({joint.type}) needs {len(kinds)} axes", joint.where
-            )
+            message = f"joint {joint.scoped} ({joint.type}) needs {len(kinds)} axes"
+            self.diagnostics.error("SK-PHYS-019", message, joint.where)
             return []
         else:
             directions = [at.inverse().rotate(a.xyz_world) for a in joint.axes]
@@ -232,9 +229,8 @@ class JointWriter:
         slide, ratio = f"{joint.scoped}#slide", joint.thread_pitch / (2.0 * math.pi)
         self._joint(body, slide, _SLIDE, frame, direction)
         self.couplings.couple(f"{joint.scoped}#thread", slide, joint.scoped, 0.0, ratio)
-        self.diagnostics.note(
-            "SK-PHYS-009", f"screw joint {joint.scoped} is a stiff constraint between turning and sliding", joint.where
-        )
+        message = f"screw joint {joint.scoped} is a stiff constraint between turning and sliding"
+        self.diagnostics.note("SK-PHYS-009", message, joint.where)
         return Follower(slide, ratio)
 
     # ------------------------------------------------------------------ loops
@@ -258,9 +254,8 @@ class JointWriter:
         weld, thread = f"{joint.scoped}#loop", f"{joint.scoped}#thread"
         anchor = at.inverse() @ joint.pose_world
         self.couplings.weld(weld, twin, self._body_name(carrier), anchor.position, damping=LOOP_DAMPING)
-        self.diagnostics.note(
-            "SK-PHYS-020", f"joint {joint.scoped} closes a loop: it is held by a constraint", joint.where
-        )
+        message = f"joint {joint.scoped} closes a loop: it is held by a constraint"
+        self.diagnostics.note("SK-PHYS-020", message, joint.where)
         self._bind(
             replace(
                 self._binding(joint),

@@ -66,10 +66,8 @@ def add_idle_armature(
         if link not in record.unladen and all(_joint_inertia(model, data, dof) >= _NO_INERTIA for dof in dofs):
             continue
         if not joint:
-            message = (
-                f"link {link} moves freely and has no mass; what it carries turns by itself and does not weigh on it"
-            )
-            diagnostics.error("SK-JOINT-010", message, binding.scene.where, "give the link an <inertial>, or fix it")
+            text = f"link {link} moves freely and has no mass; what it carries turns by itself and does not weigh on it"
+            diagnostics.error("SK-JOINT-010", text, binding.scene.where, "give the link an <inertial>, or fix it")
             continue
         given = _give_armature(spec, model, body)
         steadied = steadied or bool(given)
@@ -168,10 +166,8 @@ def check_derived_numbers(model: mujoco.MjModel, diagnostics: Diagnostics, where
         rows = values.reshape(max(1, len(values)), -1)
         bad = np.flatnonzero(~np.isfinite(rows).all(axis=1))
         if bad.size:
-            message = (
-                f"{owner(model, int(bad[0]))}: its masses, inertias and distances are too far apart to compute with"
-            )
-            diagnostics.error("SK-PHYS-028", message, where, "check the units: metres, kilograms and kg·m²")
+            text = f"{owner(model, int(bad[0]))}: its masses, inertias and distances are too far apart to compute with"
+            diagnostics.error("SK-PHYS-028", text, where, "check the units: metres, kilograms and kg·m²")
             diagnostics.raise_if_errors()
 
 
@@ -189,10 +185,8 @@ def compile_spec(
     """
     moving = sum(not link.static for r in records for link in r.links.values())
     if moving > MOST_MOVING:
-        message = (
-            f"there are {moving} moving links; at most {MOST_MOVING} are compiled, which takes the engine a minute"
-        )
-        diagnostics.error("SK-PHYS-029", message, world.where, "make what never moves <static>")
+        text = f"there are {moving} moving links; at most {MOST_MOVING} are compiled, which takes the engine a minute"
+        diagnostics.error("SK-PHYS-029", text, world.where, "make what never moves <static>")
         diagnostics.raise_if_errors()
     apply_size(spec, sum(not o.is_visual for r in records for o in r.geoms.values()))
     if world.mjcf is None:

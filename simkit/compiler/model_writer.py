@@ -194,15 +194,11 @@ class ModelWriter:
 
     def _report_kinematic(self, link: SceneLink) -> None:
         if link.kinematic:
-            message = (
-                f"kinematic: link {link.scoped} hangs on a joint; it is not pulled by gravity, but it can be pushed"
-            )
-            self.diagnostics.warning("SK-PHYS-012", message, link.where)
+            text = f"kinematic: link {link.scoped} hangs on a joint; it is not pulled by gravity, but it can be pushed"
+            self.diagnostics.warning("SK-PHYS-012", text, link.where)
         if any(link.velocity_decay):
-            message = f"velocity_decay of link {link.scoped} is not used: the link hangs on a joint"
-            self.diagnostics.warning(
-                "SK-PHYS-027", message, link.where, "<dynamics><damping> of the joint slows it down"
-            )
+            text = f"velocity_decay of link {link.scoped} is not used: the link hangs on a joint"
+            self.diagnostics.warning("SK-PHYS-027", text, link.where, "<dynamics><damping> of the joint slows it down")
 
     def _report_depth(self, tree: KinematicTree) -> None:
         """An error instead of a model; its links and joints are noted, for whoever looks for them meanwhile."""

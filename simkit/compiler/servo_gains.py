@@ -54,10 +54,8 @@ def add_drive_armature(
         rotor = min(rotor, DRIVE_ARMATURE_LINEAR_MAX)
     if joint.armature < rotor:
         joint.armature = rotor
-        message = (
-            f"joint {scoped} gets an armature of {rotor:.3g} {'kg' if is_slide else 'kg m²'}, the rotor of its drive"
-        )
-        diagnostics.note("SK-PHYS-010", message, where)
+        text = f"joint {scoped} gets an armature of {rotor:.3g} {'kg' if is_slide else 'kg m²'}, the rotor of its drive"
+        diagnostics.note("SK-PHYS-010", text, where)
 
 
 def drive_gains(
@@ -164,9 +162,8 @@ def add_armature(joint: mujoco.MjsJoint, scoped: str, diagnostics: Diagnostics, 
     if joint.armature < least:
         joint.armature = least
         unit = "kg" if is_slide else "kg m²"
-        diagnostics.note(
-            "SK-PHYS-010", f"joint {scoped} gets an armature of {least:g} {unit}, because a plugin drives it", where
-        )
+        message = f"joint {scoped} gets an armature of {least:g} {unit}, because a plugin drives it"
+        diagnostics.note("SK-PHYS-010", message, where)
 
 
 def tune_servos(spec: mujoco.MjSpec, model: mujoco.MjModel, refs: Iterable[ActuatorRef]) -> None:

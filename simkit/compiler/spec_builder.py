@@ -119,6 +119,9 @@ class SpecBuilder:
         if movable:
             self._rejoin_model(model)
 
+    def _writer(self, record: ModelRecord) -> ModelWriter:
+        return ModelWriter(self.spec, self.assets, record, self.world, self.diagnostics)
+
     def _write_model(self, record: ModelRecord) -> None:
         """Writes a model, then those nested in it that have a specification of their own, then what joins them."""
         model = record.scene
@@ -128,15 +131,14 @@ class SpecBuilder:
         own = {joint.scoped for nested in attached for joint in nested.joints}
         rest = [j for j in joints if j.scoped not in own and {j.parent_link, j.child_link} & inside]
         record.scene = without_attached(model)
-        writer = ModelWriter(self.spec, self.assets, record, self.world, self.diagnostics)
-        writer.write([j for j in joints if j.scoped not in own and j not in rest])
+        self._writer(record).write([j for j in joints if j.scoped not in own and j not in rest])
         record.scene = model
         for nested in attached:
             done = attach_model(self.spec, record, nested, self.diagnostics, rest)
             rest = [j for j in rest if j not in done]
         if rest:
             links = dict(record.links)
-            ModelWriter(self.spec, self.assets, record, self.world, self.diagnostics).join(rest, links)
+            self._writer(record).join(rest, links)
             record.links.update(links)
 
     def remove_model(self, scoped: str) -> None:
@@ -178,8 +180,7 @@ class SpecBuilder:
         done = {name for r in self.records.values() for name in r.joints}
         rest = [j for j in self.world.joints if j.scoped not in done and (only is None or j.scoped in only)]
         if rest:
-            writer = ModelWriter(self.spec, self.assets, record, self.world, self.diagnostics)
-            writer.join(rest, {n: b for r in self.records.values() for n, b in r.links.items()})
+            self._writer(record).join(rest, {n: b for r in self.records.values() for n, b in r.links.items()})
             self._names = None
 
     def _rejoin_model(self, model: SceneModel) -> None:
@@ -332,9 +333,7 @@ class SpecBuilder:
         parent, child = self.names.link(parent_link), self.names.link(child_link)
         record = self.records[parent.model if parent.model == child.model else ""]
         links = {n: b for r in self.records.values() for n, b in r.links.items()}
-        ModelWriter(self.spec, self.assets, record, self.world, self.diagnostics).weld(
-            name, parent_link, child_link, links, active
-        )
+        self._writer(record).weld(name, parent_link, child_link, links, active)
         if record is self.records[""]:
             joint = SceneJoint(name, name, "fixed", parent_link, child_link, child.scene.pose_world)
             record.joints[name] = JointBinding(name, "fixed", joint, "", is_loop=True, equalities=(name,))

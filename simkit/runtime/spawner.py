@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import weakref
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from simkit.compiler.state_transfer import copy_fields_by_name, restore_compiled_fields
@@ -74,7 +75,7 @@ class Spawner:
 
     def spawn(self, wanted: Sequence[SpawnRequest]) -> list[str]:
         """Adds models, compiled once for all of them; returns their names. Where one fails, all is as before."""
-        engine, old = self._engine, self._engine.structure
+        old = self._engine.structure
         before, builder, found = self.snapshots.take(), old.builder.copy(), Diagnostics()
         models, parts, names = dict(old.models), dict(old.parts), []
         for source, name, pose in wanted:
@@ -85,8 +86,7 @@ class Spawner:
             builder.add_model(scene)
             models[scene.name], parts[scene.name] = scene, self._make(scene, builder, found)
             names.append(scene.name)
-        compiled = builder.recompile(old.compiled, engine.mj_data)
-        self.switch(WorldStructure(builder, compiled, models, old.movable, parts))
+        self.switch(replace(self._recompiled(builder), models=models, parts=parts))
         self._start_or_restore([parts[name] for name in names], found, before)
         return names
 
@@ -96,7 +96,7 @@ class Spawner:
 
     def add_sensor(self, name: str, sensor: str | Mapping[str, object]) -> str:
         """Fits a sensor to a link or a joint; returns its scoped name. Where it fails, all is as before."""
-        engine, old = self._engine, self._engine.structure
+        old = self._engine.structure
         _, owner = sensor_attachment.find_owner(old, name)
         text = sensor_attachment.sensor_model_xml(sensor_attachment.sensor_xml(sensor), isinstance(owner, SceneJoint))
         found = Diagnostics()
@@ -107,10 +107,9 @@ class Spawner:
         parts = self._make(shell, builder, found)
         if not parts.sensors:
             raise LoadError(tuple(found))
-        compiled = builder.recompile(old.compiled, engine.mj_data)
         there = old.parts[top]
         joined = SensorsAndPlugins([*there.sensors, *parts.sensors], [*there.plugins, *parts.plugins])
-        self.switch(WorldStructure(builder, compiled, old.models, old.movable, {**old.parts, top: joined}))
+        self.switch(replace(self._recompiled(builder), parts={**old.parts, top: joined}))
         self._start_or_restore([parts], found, before)
         return scoped
 
@@ -150,10 +149,9 @@ class Spawner:
             raise InputError(f"{name!r} is not a top-level model; remove {name.split('::')[0]!r}", "SK-NAME-003")
         builder = old.builder.copy()
         builder.remove_model(name)
-        compiled = builder.recompile(old.compiled, self._engine.mj_data)
         models = {k: v for k, v in old.models.items() if k != name}
         parts = {k: v for k, v in old.parts.items() if k != name}
-        self.switch(WorldStructure(builder, compiled, models, old.movable - {name}, parts))
+        self.switch(replace(self._recompiled(builder), models=models, movable=old.movable - {name}, parts=parts))
 
     def forget_gone(self) -> None:
         """Closes what nothing brings back any more; within a step once that is done, for it may be at work."""
@@ -195,8 +193,7 @@ class Spawner:
         builder.add_model(old.models[name], movable=True)
         for sensor in old.parts[name].sensors:
             sensor.build(builder)
-        compiled = builder.recompile(old.compiled, self._engine.mj_data)
-        self.switch(WorldStructure(builder, compiled, old.models, old.movable | {name}, old.parts))
+        self.switch(replace(self._recompiled(builder), movable=old.movable | {name}))
         for light in self._handles.tables["light"].values():
             if light.scene.link.startswith(f"{name}::"):
                 light.draw()  # it was drawn in the world's body, and is in its link's own now
@@ -204,11 +201,14 @@ class Spawner:
 
     def add_weld(self, name: str, parent_link: str, child_link: str) -> None:
         """Adds a weld, let go at first, between two links."""
-        old = self._engine.structure
-        builder = old.builder.copy()
+        builder = self._engine.structure.builder.copy()
         builder.add_weld(name, parent_link, child_link, active=False)
-        compiled = builder.recompile(old.compiled, self._engine.mj_data)
-        self.switch(WorldStructure(builder, compiled, old.models, old.movable, old.parts))
+        self.switch(self._recompiled(builder))
+
+    def _recompiled(self, builder: SpecBuilder) -> WorldStructure:
+        """The present structure on the model of a changed builder."""
+        old = self._engine.structure
+        return replace(old, builder=builder, compiled=builder.recompile(old.compiled, self._engine.mj_data))
 
     def switch(self, structure: WorldStructure) -> None:
         """Goes on with another structure, the changed model fields carried over."""

@@ -142,9 +142,8 @@ class WorldContents:
         check_model_name(new_name)
         if new_name in self.handles.models:
             raise InputError(f"SK-LOAD-011 there is a model {new_name!r} already", "SK-LOAD-011")
-        return self.spawn_all([(copy_model(model.scene, new_name, model.pose if pose is None else pose), None, None)])[
-            0
-        ]
+        copied = copy_model(model.scene, new_name, model.pose if pose is None else pose)
+        return self.spawn_all([(copied, None, None)])[0]
 
     @contextmanager
     def all_or_none(self) -> Iterator[None]:

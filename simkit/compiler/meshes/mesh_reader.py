@@ -53,9 +53,8 @@ def load_mesh(mesh: Mesh, diagnostics: Diagnostics, where: Where) -> list[MeshPa
     for text in converted.notes:
         report_once(diagnostics, "warning", "SK-MESH-012", f"{mesh.uri}: {text}", where)
     if not all(math.isfinite(s) and s != 0.0 for s in mesh.scale):
-        report_once(
-            diagnostics, "error", "SK-MESH-002", f"{mesh.uri}: scale {mesh.scale} has a zero or is not finite", where
-        )
+        text = f"{mesh.uri}: scale {mesh.scale} has a zero or is not finite"
+        report_once(diagnostics, "error", "SK-MESH-002", text, where)
         return []
     if mesh.center and mesh.submesh:
         low = np.min([p.vertices.min(axis=0) for p in parts], axis=0)
@@ -127,14 +126,8 @@ def _convert(file: Path, content: bytes) -> ConvertedMesh:
 
 
 def _read(suffix: str, content: bytes, companions: Companions) -> list[MeshPart]:
-    if suffix == ".stl":
-        return read_stl(content, companions)
-    if suffix == ".obj":
-        return read_obj(content, companions)
-    if suffix == ".dae":
-        return read_collada(content, companions)
-    if suffix in (".gltf", ".glb"):
-        return read_gltf(content, companions)
+    if suffix in _READERS:
+        return _READERS[suffix](content, companions)
     if suffix in (".ply", ".off"):
         return _with_trimesh(suffix, content)
     near = closest(suffix, SUFFIXES)
@@ -235,3 +228,8 @@ def merge_corners(corners: Floats) -> tuple[Floats, Ints]:
     rank = np.empty_like(order)
     rank[order] = np.arange(len(order))
     return corners[first[order]], rank[np.asarray(inverse).reshape(-1)].reshape(-1, 3).astype(np.int32)
+
+
+_READERS: Final = {
+    ".stl": read_stl, ".obj": read_obj, ".dae": read_collada, ".gltf": read_gltf, ".glb": read_gltf
+}  # fmt: skip

@@ -20,9 +20,8 @@ SlippingContact = tuple[int, int, Pair]
 """A contact, the kinematic tree that slips, and its compliances along its two tangents [m/s/N]."""
 
 _STIFF_FACTOR = 4.0  # times what contacts yield: an R beside which they do not count
-_MIN_COMPLIANCE_SHARE = (
-    0.02  # of the larger of two compliances: so much both have, so that the softer one is not sluggish
-)
+# of the larger of two compliances: so much both have, so that the softer one is not sluggish
+_MIN_COMPLIANCE_SHARE = 0.02
 
 
 class ContactSlip:

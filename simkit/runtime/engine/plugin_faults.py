@@ -169,12 +169,10 @@ class PluginFaults:
             return
         self._disabled[id(plugin)] = plugin
         last = " ".join(traceback.format_exception_only(error)[-1].split())
-        message = (
-            f"plugin {plugin.name!r} raised in {hook} at t={engine.time:.6g} s and is left out from then on: {last}"
-        )
+        text = f"plugin {plugin.name!r} raised in {hook} at t={engine.time:.6g} s and is left out from then on: {last}"
         place = innermost_frame(error.__traceback__)
-        engine.reports.warning("SK-PLUGIN-020", message, plugin.where, f"raised at {place}" if place else "")
-        engine.log.warning("%s: %s (%s)", plugin.where, message, place)
+        engine.reports.warning("SK-PLUGIN-020", text, plugin.where, f"raised at {place}" if place else "")
+        engine.log.warning("%s: %s (%s)", plugin.where, text, place)
         self._apply()
         self.interfaces.abandon(plugin, f"plugin {plugin.name!r} is left out: {last}")
         release_servos(engine, plugin)
@@ -200,9 +198,7 @@ class PluginFaults:
 
 def release_servos(engine: EngineState, plugin: AttachedPlugin) -> None:
     """Lets go of the joints that a plugin's servos and motors hold; snapshots and reset bring them back."""
-    there = {
-        name for record in engine.structure.builder.records.values() for name in (r.name for r in record.actuators)
-    }
+    there = {ref.name for record in engine.structure.builder.records.values() for ref in record.actuators}
     refs = [ref for ref in plugin._actuators if ref.name in there]
     if refs:
         gains, biases = engine.touch("actuator_gainprm"), engine.touch("actuator_biasprm")

@@ -83,13 +83,12 @@ def _link_pose(engine: EngineState, scoped: str) -> Pose:
 
 def _joint_frames(engine: EngineState, binding: JointBinding) -> tuple[Pose, Pose]:
     """World poses of the parent-side and the child-side frame."""
-    found = []
-    for link, frame in (
-        (binding.scene.parent_link, binding.pose_parent),
-        (binding.scene.child_link, binding.pose_child),
-    ):
-        found.append(frame if link not in engine.names.links else _link_pose(engine, link) @ frame)
-    return found[0], found[1]
+    parent, child = binding.scene.parent_link, binding.scene.child_link
+    return _frame_on_link(engine, parent, binding.pose_parent), _frame_on_link(engine, child, binding.pose_child)
+
+
+def _frame_on_link(engine: EngineState, link: str, frame: Pose) -> Pose:
+    return frame if link not in engine.names.links else _link_pose(engine, link) @ frame
 
 
 def relative_pose(engine: EngineState, binding: JointBinding) -> Pose:
@@ -172,9 +171,8 @@ def update_loop_joints(engine: EngineState) -> None:
     for binding in loops:
         dofs, columns, spread = _loop_jacobian(engine, binding)
         data.qvel[dofs] = 0.0
-        wanted = _body_velocity(engine, engine.names.link(binding.carried).body) - _body_velocity(
-            engine, binding.moved_body
-        )
+        link = engine.names.link(binding.carried).body
+        wanted = _body_velocity(engine, link) - _body_velocity(engine, binding.moved_body)
         data.qvel[dofs] = spread @ np.linalg.lstsq(columns, wanted, rcond=None)[0]
         engine.physics.changed_body(STALE, binding.moved_body)
 

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import mujoco
 import numpy as np
 
 from simkit.errors import InputError
-from simkit.pose import IDENTITY, Pose, Vector, quat_conjugate, quat_rotate
+from simkit.pose import IDENTITY, Pose, Vector, VectorLike, quat_conjugate, quat_rotate
 from simkit.runtime.engine.physics_state import CONTROL, STALE, VELOCITY
 from simkit.runtime.handles.handle import Handle
 from simkit.runtime.handles.joint_mechanics import update_loop_joints
@@ -111,9 +110,7 @@ class Link(Handle):
         update_loop_joints(self._engine)
         self._physics.changed_body(STALE, self._body)
 
-    def set_velocity(
-        self, linear: Sequence[float] | Vector, angular: Sequence[float] | Vector = (0.0, 0.0, 0.0)
-    ) -> None:
+    def set_velocity(self, linear: VectorLike, angular: VectorLike = (0.0, 0.0, 0.0)) -> None:
         """Gives a link that nothing holds a twist about its origin, world frame [m/s, rad/s].
 
         Raises:
@@ -135,7 +132,7 @@ class Link(Handle):
         message = f"SK-SERVICE-003 link {self.scoped!r} is held by joints or the world; {instead}"
         return InputError(message, "SK-SERVICE-003")
 
-    def apply_wrench(self, force: Sequence[float] | Vector, torque: Sequence[float] | Vector = (0.0, 0.0, 0.0)) -> None:
+    def apply_wrench(self, force: VectorLike, torque: VectorLike = (0.0, 0.0, 0.0)) -> None:
         """Force [N] and torque [N·m], world frame, at the centre of mass, for the next step; several add up."""
         self._check()
         if not self._body:

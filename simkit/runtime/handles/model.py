@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from simkit.compiler import LinkBinding
-from simkit.pose import IDENTITY, Pose, Vector, quat_conjugate, quat_rotate
+from simkit.pose import IDENTITY, Pose, VectorLike, quat_conjugate, quat_rotate
 from simkit.runtime.engine.physics_state import STALE, VELOCITY
 from simkit.runtime.handles.handle import Handle, look_up
 from simkit.runtime.handles.joint import Joint
@@ -105,9 +105,7 @@ class Model(Handle):
             moved = shift @ Pose(positions[body], quaternions[body])
             positions[body], quaternions[body] = moved.position, moved.quaternion
 
-    def set_velocity(
-        self, linear: Sequence[float] | Vector, angular: Sequence[float] | Vector = (0.0, 0.0, 0.0)
-    ) -> None:
+    def set_velocity(self, linear: VectorLike, angular: VectorLike = (0.0, 0.0, 0.0)) -> None:
         """Gives every free part of the model this twist about the model's origin, world frame [m/s, rad/s]."""
         self._check()
         data, names, origin = self._physics.data, self._engine.names, self.pose.position
