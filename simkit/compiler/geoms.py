@@ -10,6 +10,7 @@ from typing import Any, Final
 import mujoco
 import numpy as np
 
+from simkit.compiler import shape_geometry
 from simkit.compiler.assets import Assets, geom_colours
 from simkit.compiler.contact_friction import contact_properties
 from simkit.compiler.geom_groups import COLLISION, COLLISION_CONTACT, COLLISION_RAY, DRAWN_COLLISION, VISUAL
@@ -18,15 +19,6 @@ from simkit.compiler.meshes.companion_files import Pixels
 from simkit.compiler.meshes.mesh_part import Colour, MeshFileError, MeshPart, has_area, join_parts
 from simkit.compiler.meshes.mesh_reader import load_mesh, report_once
 from simkit.compiler.name_map import GeomOwner, ModelRecord
-from simkit.compiler.shape_geometry import (
-    cone_triangles,
-    heightmap_rows,
-    polyline_pieces,
-    polyline_triangles,
-    primitive_of,
-    shape_sizes,
-    textured_triangles,
-)
 from simkit.compiler.wheel_cylinders import RoundMesh, TurningAxis, round_mesh
 from simkit.diagnostics import Diagnostics, Where
 from simkit.pose import Pose
@@ -95,7 +87,7 @@ class GeomWriter:
         contact = contact_properties(collision.surface, self.timestep, place.mass, self.diagnostics)
         solid: GeomSettings = {"group": COLLISION, **contact._asdict()}
         owner = GeomOwner(place.link, collision.scoped, False)
-        primitive = primitive_of(shape, False)
+        primitive = shape_geometry.primitive_of(shape, False)
         if isinstance(shape, Plane) and not place.fixed and primitive is not None:
             message = "a plane on a moving link collides as a 100 m × 100 m plate"
             self.diagnostics.warning("SK-PHYS-016", message, collision.where)
@@ -118,7 +110,7 @@ class GeomWriter:
     ) -> None:
         """Extruded outlines, which fall into convex pieces exactly."""
         try:
-            pieces = polyline_pieces(shape)
+            pieces = shape_geometry.polyline_pieces(shape)
         except ValueError as problem:
             self.diagnostics.error("SK-MESH-009", f"polyline: {problem}", collision.where)
             return
@@ -172,8 +164,8 @@ class GeomWriter:
         pixels = self._pixels(visual.material, visual.where)
         # the engine's own shapes, planes apart, have no inner side
         is_lined = visual.material is not None and visual.material.double_sided and not isinstance(shape, Plane)
-        worn = textured_triangles(shape) if pixels is not None or is_lined else None
-        primitive = primitive_of(shape, True) if worn is None else None
+        worn = shape_geometry.textured_triangles(shape) if pixels is not None or is_lined else None
+        primitive = shape_geometry.primitive_of(shape, True) if worn is None else None
         pose = visual.pose_link
         if isinstance(shape, Heightmap):
             self._heightmap(place, owner, pose, shape, visual.where, self._visual_settings(visual, None, pixels))
@@ -247,7 +239,7 @@ class GeomWriter:
     # ------------------------------------------------------------------ shared
 
     def _has_size(self, shape: Geometry, where: Where) -> bool:
-        if all(0.0 < s < math.inf for s in shape_sizes(shape)):
+        if all(0.0 < s < math.inf for s in shape_geometry.shape_sizes(shape)):
             return True
         message = f"a {type(shape).__name__.lower()} without size is left out: {shape}"
         self.diagnostics.warning("SK-PHYS-017", message, where)
@@ -257,10 +249,10 @@ class GeomWriter:
         if isinstance(shape, Mesh):
             return [] if shape.missing else load_mesh(shape, self.diagnostics, where)
         if isinstance(shape, Cone):
-            return [MeshPart("cone", *cone_triangles(shape))]
+            return [MeshPart("cone", *shape_geometry.cone_triangles(shape))]
         if isinstance(shape, Polyline):
             try:
-                return [MeshPart("polyline", *polyline_triangles(shape))]
+                return [MeshPart("polyline", *shape_geometry.polyline_triangles(shape))]
             except (ValueError, MeshFileError) as problem:
                 self.diagnostics.error("SK-MESH-009", f"polyline: {problem}", where)
         return []
@@ -272,7 +264,7 @@ class GeomWriter:
             self.diagnostics.error("SK-MESH-010", "a heightmap can only belong to a static model", where)
             return
         try:
-            rows = heightmap_rows(shape)
+            rows = shape_geometry.heightmap_rows(shape)
         except MeshFileError as problem:
             report_once(
                 self.diagnostics, "error", "SK-MESH-011", f"heightmap {shape.uri} {problem}", where, _HEIGHTS_HINT

@@ -13,22 +13,10 @@ from typing import Final
 
 import mujoco
 
+from simkit.compiler import mjcf_adaptation as adaptation
 from simkit.compiler.engine_options import CONTACT_LAW
 from simkit.compiler.geom_groups import COLLISION, COLLISION_CONTACT, DRAWN_COLLISION, VISUAL
 from simkit.compiler.kinematic_tree import WORLD
-from simkit.compiler.mjcf_adaptation import (
-    OPTIONS,
-    copy_settings,
-    drop_lights,
-    keep_only_model,
-    make_static,
-    match_settings,
-    rank_friction,
-    rename_lights,
-    report_settings,
-    set_base,
-    write_masses,
-)
 from simkit.compiler.name_map import GeomOwner, JointBinding, LightBinding, LinkBinding, ModelRecord
 from simkit.diagnostics import Diagnostics
 from simkit.mujoco_import import ignore_warning
@@ -46,9 +34,9 @@ def adopt_settings(spec: mujoco.MjSpec, world: SceneWorld) -> None:
     if world.mjcf is None:
         return
     source = world.mjcf()
-    copy_settings(source, spec)
+    adaptation.copy_settings(source, spec)
     option = spec.option
-    for name in OPTIONS:
+    for name in adaptation.OPTIONS:
         setattr(option, name, getattr(source.option, name))
     option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
     option.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)  # the runtime's business
@@ -74,13 +62,13 @@ def attach_world(spec: mujoco.MjSpec, records: Iterable[ModelRecord]) -> None:
     child = _mjcf_source(records[0].scene).document()
     for record in records:
         source = _mjcf_source(record.scene)
-        rename_lights(child, source)
+        adaptation.rename_lights(child, source)
         if child.compiler.settotalmass > 0.0:
-            write_masses(child, source)
+            adaptation.write_masses(child, source)
         record.root_bodies += source.roots
         _bind_elements(record, record.scene, "", "")
     child.compiler.settotalmass = -1.0
-    match_settings(child, spec)
+    adaptation.match_settings(child, spec)
     with silence_engine_warnings():
         spec.attach(child, prefix="", frame=spec.worldbody.add_frame(name=f"world{_MARK}"))
 
@@ -101,18 +89,18 @@ def attach_model(
     child = source.document()
     prefix = source.prefix or f"{model.scoped}::"
     if not source.prefix:  # a part of the world's own file that was taken out and comes back
-        keep_only_model(child, source)
+        adaptation.keep_only_model(child, source)
     else:
-        report_settings(child, spec, model, diagnostics)
-        drop_lights(child, model, diagnostics)
-        rank_friction(child, model, diagnostics)
+        adaptation.report_settings(child, spec, model, diagnostics)
+        adaptation.drop_lights(child, model, diagnostics)
+        adaptation.rank_friction(child, model, diagnostics)
     holder = None if model.static or record.movable else _holding_joint(record, model, source, joints)
-    rename_lights(child, source, prefix)
-    write_masses(child, source)
+    adaptation.rename_lights(child, source, prefix)
+    adaptation.write_masses(child, source)
     if model.static:
-        make_static(child, model, diagnostics)
-    set_base(child, source, fixed=holder is not None)
-    match_settings(child, spec)
+        adaptation.make_static(child, model, diagnostics)
+    adaptation.set_base(child, source, fixed=holder is not None)
+    adaptation.match_settings(child, spec)
     wrapper = f"{model.scoped}{_MARK}" if record.movable and WORLD in source.bodies.values() else ""
     with silence_engine_warnings():
         spec.attach(child, prefix=prefix, frame=_attachment_frame(spec, record, source, prefix, wrapper, holder))

@@ -9,6 +9,7 @@ import mujoco
 import numpy as np
 
 from simkit.compiler.engine_options import apply_size, choose_islands, set_extent
+from simkit.compiler.first_state import first_mass_matrix, first_state, inverse_inertia
 from simkit.compiler.lights import refine_for_lamps
 from simkit.compiler.mjcf_attachment import assign_geom_groups, silence_engine_warnings
 from simkit.compiler.name_map import JointBinding, ModelRecord, NameMap
@@ -52,11 +53,7 @@ def add_idle_armature(
     suspects = [(r, link, joint) for r in records for link, joint in r.massless.items()]
     if not suspects:
         return
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
-    mujoco.mj_comPos(model, data)
-    mujoco.mj_makeM(model, data)
-    mujoco.mj_factorM(model, data)
+    data = first_mass_matrix(model)
     steadied = False
     for record, link, joint in suspects:
         binding = record.links[link]
@@ -101,10 +98,7 @@ def _give_armature(spec: mujoco.MjSpec, model: mujoco.MjModel, body: int) -> str
 
 
 def _joint_inertia(model: mujoco.MjModel, data: mujoco.MjData, dof: int) -> float:
-    unit, solved = np.zeros((1, model.nv)), np.zeros((1, model.nv))
-    unit[0, dof] = 1.0
-    mujoco.mj_solveM(model, data, solved, unit)
-    inverse = float(solved[0, dof])
+    inverse = inverse_inertia(model, data, dof)
     return 1.0 / inverse if inverse > 0.0 else 0.0
 
 
@@ -124,9 +118,7 @@ _REPORTED_MOST: Final = 20
 
 def report_overlaps(model: mujoco.MjModel, names: NameMap, diagnostics: Diagnostics, where: Where) -> None:
     """Warns of each pair of collisions that overlap deeply in the first state; the deepest contact of a pair counts."""
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
-    mujoco.mj_comPos(model, data)
+    data = first_state(model)
     mujoco.mj_collision(model, data)
     deepest: dict[tuple[str, str], float] = {}
     for i in (data.contact.dist < -REPORTED_DEPTH).nonzero()[0] if data.ncon else ():

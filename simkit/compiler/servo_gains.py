@@ -11,6 +11,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from simkit.compiler.first_state import first_mass_matrix, first_state, inverse_inertia
 from simkit.compiler.name_map import ActuatorRef
 from simkit.diagnostics import Diagnostics, Where
 from simkit.pose import Vector
@@ -210,9 +211,7 @@ def servo_traits(
     """
     names = "actuator_gainprm", "actuator_forcerange", "actuator_forcelimited"
     strengths, ranges, limited = ((compiled or {}).get(name, getattr(model, name)) for name in names)
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
-    mujoco.mj_comPos(model, data)
+    data = first_state(model)
     mujoco.mj_makeM(model, data)
     ids = [mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_ACTUATOR, ref.name) for ref in refs]
     joints = [int(model.actuator_trnid[i, 0]) for i in ids]
@@ -249,18 +248,9 @@ def _joint_reach(model: mujoco.MjModel, data: mujoco.MjData, joint: int) -> floa
 
 def _felt_inertia(model: mujoco.MjModel, refs: list[ActuatorRef]) -> list[float]:
     """Inertia at each driven degree of freedom, all else free to move: 1 / (M⁻¹)_jj at the start."""
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
-    mujoco.mj_comPos(model, data)
-    mujoco.mj_makeM(model, data)
-    mujoco.mj_factorM(model, data)
-    felt = []
-    unit, solved = np.zeros((1, model.nv)), np.zeros((1, model.nv))
+    data, felt = first_mass_matrix(model), []
     for ref in refs:
         i = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_ACTUATOR, ref.name)
         dof = int(model.jnt_dofadr[model.actuator_trnid[i, 0]])
-        unit[:] = 0.0
-        unit[0, dof] = 1.0
-        mujoco.mj_solveM(model, data, solved, unit)
-        felt.append(float(1.0 / solved[0, dof]))
+        felt.append(1.0 / max(inverse_inertia(model, data, dof), 1e-300))
     return felt

@@ -10,20 +10,12 @@ from typing import Any
 
 import mujoco
 
+from simkit.compiler import mjcf_attachment
 from simkit.compiler.assets import Assets
 from simkit.compiler.bodies import remove_split_body
 from simkit.compiler.engine_options import apply_options
 from simkit.compiler.kinematic_tree import WORLD
 from simkit.compiler.lights import add_light, report_light, report_lights
-from simkit.compiler.mjcf_attachment import (
-    adopt_settings,
-    attach_model,
-    attach_world,
-    detach_model,
-    is_expected_warning,
-    models_of_own_file,
-    without_attached,
-)
 from simkit.compiler.model_compilation import compile_spec, finish_model, place_followers, report_overlaps
 from simkit.compiler.model_writer import FIRST_OWN_BIT, PAIRS_MOST, ModelWriter
 from simkit.compiler.name_map import ActuatorRef, JointBinding, LightBinding, ModelRecord, NameMap, lookup
@@ -79,8 +71,8 @@ class SpecBuilder:
         self._names: NameMap | None = None
         self._cut: list[tuple[SceneJoint, bool]] = []
         apply_options(self.spec, world, diagnostics)
-        own = models_of_own_file(world)
-        adopt_settings(self.spec, world)
+        own = mjcf_attachment.models_of_own_file(world)
+        mjcf_attachment.adopt_settings(self.spec, world)
         for light in world.lights:
             if not own:
                 add_light(self.spec.worldbody, light, light.pose_world, world.surroundings.shadows)
@@ -88,7 +80,7 @@ class SpecBuilder:
             self.records[""].lights[light.scoped] = LightBinding(light.scoped, light, "")
         if own:
             self.records.update({model.scoped: ModelRecord(model) for model in own})
-            attach_world(self.spec, [self.records[model.scoped] for model in own])
+            mjcf_attachment.attach_world(self.spec, [self.records[model.scoped] for model in own])
         for model in world.models:
             if model not in own:
                 self.add_model(model)
@@ -110,7 +102,7 @@ class SpecBuilder:
         self._names = None
         self.assets.used = record.assets
         if model.mjcf is not None:
-            attach_model(self.spec, record, model, self.diagnostics, ())
+            mjcf_attachment.attach_model(self.spec, record, model, self.diagnostics, ())
         else:
             links = len(list(model.all_links()))
             if links * (links - 1) // 2 > PAIRS_MOST:  # else nobody wants it, and there may be thousands of models
@@ -130,11 +122,11 @@ class SpecBuilder:
         inside = {link.scoped for nested in attached for link in nested.links}
         own = {joint.scoped for nested in attached for joint in nested.joints}
         rest = [j for j in joints if j.scoped not in own and {j.parent_link, j.child_link} & inside]
-        record.scene = without_attached(model)
+        record.scene = mjcf_attachment.without_attached(model)
         self._writer(record).write([j for j in joints if j.scoped not in own and j not in rest])
         record.scene = model
         for nested in attached:
-            done = attach_model(self.spec, record, nested, self.diagnostics, rest)
+            done = mjcf_attachment.attach_model(self.spec, record, nested, self.diagnostics, rest)
             rest = [j for j in rest if j not in done]
         if rest:
             links = dict(record.links)
@@ -162,7 +154,7 @@ class SpecBuilder:
                 spec.delete(spec.geom(name))
         for name in record.root_bodies:
             spec.delete(spec.body(name))
-        detach_model(spec, record)
+        mjcf_attachment.detach_model(spec, record)
         del self.records[scoped]
         still = set().union(*(r.assets for r in self.records.values()))
         self.assets.drop(record.assets - still)
@@ -354,7 +346,7 @@ class SpecBuilder:
             report_lights(model, self.diagnostics, self.world.where)
             report_overlaps(model, names, self.diagnostics, self.world.where)
         for text in dict.fromkeys(str(w.message) for w in said):
-            if not is_expected_warning(text):
+            if not mjcf_attachment.is_expected_warning(text):
                 self.diagnostics.warning("SK-PHYS-025", f"the engine warns: {text}", self.world.where)
         return Compiled(model, data, names, self)
 

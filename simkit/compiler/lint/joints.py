@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from typing import Final
 
 import mujoco
-import numpy as np
 
-from simkit.compiler.lint.links import first_state
+from simkit.compiler.first_state import first_mass_matrix, first_state, inverse_inertia
 from simkit.compiler.name_map import JointBinding
 from simkit.compiler.spec_builder import Compiled
 from simkit.diagnostics import Diagnostics, Where
@@ -60,15 +59,9 @@ class _JointInertia:
 
     def at(self, dof: int) -> float:
         if dof not in self._known:
-            model = self._model
             if self._data is None:
-                self._data = first_state(model)
-                mujoco.mj_makeM(model, self._data)
-                mujoco.mj_factorM(model, self._data)
-            unit, solved = np.zeros((1, model.nv)), np.zeros((1, model.nv))
-            unit[0, dof] = 1.0
-            mujoco.mj_solveM(model, self._data, solved, unit)
-            self._known[dof] = 1.0 / max(float(solved[0, dof]), 1e-300)
+                self._data = first_mass_matrix(self._model)
+            self._known[dof] = 1.0 / max(inverse_inertia(self._model, self._data, dof), 1e-300)
         return self._known[dof]
 
 

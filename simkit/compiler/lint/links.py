@@ -9,6 +9,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from simkit.compiler.first_state import first_state
 from simkit.compiler.name_map import LinkBinding
 from simkit.compiler.spec_builder import Compiled
 from simkit.diagnostics import Diagnostics
@@ -47,14 +48,6 @@ def check_links(world: SceneWorld, compiled: Compiled, found: Diagnostics) -> No
             _check_inertia(compiled.model, state, links, found)
     for link in compiled.names.links.values():
         _check_collision_size(compiled.model, state, link, found)
-
-
-def first_state(model: mujoco.MjModel) -> mujoco.MjData:
-    """Return the state with all poses at the start."""
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
-    mujoco.mj_comPos(model, data)
-    return data
 
 
 def _check_default_masses(top: SceneModel, found: Diagnostics) -> None:

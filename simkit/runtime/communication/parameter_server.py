@@ -239,29 +239,24 @@ _VALUE_FIELDS = {
 
 def offer_parameter_services(services: ServiceTable, parameters: ParameterTable, node: str) -> None:
     """Opens the six parameter services of a node."""
+
+    def find(name: str) -> AnyParameter | None:
+        return parameters.nodes().get(node, {}).get(name)
+
+    def set_all(wanted: list[Message]) -> dict[str, object]:
+        return _set_parameters(parameters, node, wanted)
+
     handlers: dict[str, ServiceHandler] = {
-        "GetParameters": lambda request: {
-            "values": [_value_message(_find_or_none(parameters, node, n)) for n in request.names]
-        },
-        "GetParameterTypes": lambda request: {
-            "types": [_value_message(_find_or_none(parameters, node, n))["type"] for n in request.names]
-        },
-        "SetParameters": lambda request: {
-            "results": [_set_parameters(parameters, node, [p]) for p in request.parameters]
-        },
-        "SetParametersAtomically": lambda request: {"result": _set_parameters(parameters, node, request.parameters)},
+        "GetParameters": lambda request: {"values": [_value_message(find(n)) for n in request.names]},
+        "GetParameterTypes": lambda request: {"types": [_value_message(find(n))["type"] for n in request.names]},
+        "SetParameters": lambda request: {"results": [set_all([one]) for one in request.parameters]},
+        "SetParametersAtomically": lambda request: {"result": set_all(request.parameters)},
         "ListParameters": lambda request: {"result": {"names": _list_names(parameters, node, request.prefixes)}},
-        "DescribeParameters": lambda request: {
-            "descriptors": [_descriptor(_find_or_none(parameters, node, n)) for n in request.names]
-        },
+        "DescribeParameters": lambda request: {"descriptors": [_descriptor(find(n)) for n in request.names]},
     }
     for name, handler in handlers.items():
         snake = "".join(f"_{c.lower()}" if c.isupper() else c for c in name).lstrip("_")
         services.offer(f"{node}/{snake}", f"rcl_interfaces/srv/{name}", handler)
-
-
-def _find_or_none(parameters: ParameterTable, node: str, name: str) -> AnyParameter | None:
-    return parameters.nodes().get(node, {}).get(name)
 
 
 def _list_names(parameters: ParameterTable, node: str, prefixes: list[str]) -> list[str]:

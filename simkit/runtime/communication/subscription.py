@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Final, Literal, Protocol
+from typing import Any, Final, Literal, Protocol
 
-if TYPE_CHECKING:
-    from simkit.runtime.communication.journal import Journal
+from simkit.runtime.communication.journal import JournalKeeper
 
 Message = Any
 """A message: an instance of a class of `simkit.msgs`, which are made as definitions are read."""
@@ -71,10 +70,8 @@ class SubscriptionFailures(Protocol):
         """Called when a subscription that keeps all has had more messages than it can keep."""
 
 
-class SubscribingBus(Protocol):
+class SubscribingBus(JournalKeeper, Protocol):
     """What a subscription asks of the topic bus."""
-
-    journal: Journal | None
 
     @property
     def failures(self) -> SubscriptionFailures:

@@ -295,6 +295,9 @@ def _lift(residual: Floats, mu: Floats, is_pyramid: bool) -> Floats:
     return lengths
 
 
+AnyContactCorrection = ContactCorrection | ArrayContactCorrection
+
+
 def find_array_correction(
     model: mujoco.MjModel, data: mujoco.MjData, around: ContactConditions, residual: Floats | None = None
 ) -> ArrayContactCorrection | None:

@@ -25,12 +25,7 @@ import numpy as np
 from simkit.compiler.engine_options import contact_time_constant, has_engine_contacts
 from simkit.runtime.contact.centripetal_friction import CentripetalFriction
 from simkit.runtime.contact.contact_conditions import ARRAY_THRESHOLD, DEEP_PENETRATION, ContactConditions
-from simkit.runtime.contact.contact_correction import (
-    ArrayContactCorrection,
-    ContactCorrection,
-    find_array_correction,
-    find_correction,
-)
+from simkit.runtime.contact.contact_correction import AnyContactCorrection, find_array_correction, find_correction
 from simkit.runtime.contact.height_field_contacts import HeightFieldContacts
 from simkit.runtime.contact.wheel_contacts import WheelContacts
 
@@ -212,7 +207,7 @@ class ContactLaw:
 
     def _find(
         self, data: mujoco.MjData, closing: list[float] | None, residual: Any = None
-    ) -> ContactCorrection | ArrayContactCorrection | None:
+    ) -> AnyContactCorrection | None:
         """Return the contacts whose normal reference has to be corrected."""
         gravity: list[float] = self._gravity.tolist()
         around = self._around
@@ -226,7 +221,7 @@ class ContactLaw:
             return find_array_correction(self.model, data, around, residual)
         return find_correction(data, around, residual)
 
-    def _repeat(self, data: mujoco.MjData, found: ContactCorrection | ArrayContactCorrection) -> None:
+    def _repeat(self, data: mujoco.MjData, found: AnyContactCorrection) -> None:
         """Solve, correct the normal references by the solution, and solve again until they stay."""
         model = self.model
         found.guess(self._multiplied(data, data.qacc_warmstart))

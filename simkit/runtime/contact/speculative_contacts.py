@@ -19,18 +19,9 @@ import numpy.typing as npt
 
 from simkit.compiler.engine_options import contact_time_constant, has_engine_contacts
 from simkit.diagnostics import NOWHERE
+from simkit.runtime.contact import travel_bounds
 from simkit.runtime.contact.contact_law import window_length
-from simkit.runtime.contact.travel_bounds import (
-    Floats,
-    Ints,
-    allowed_travel,
-    can_collide,
-    can_touch,
-    half_thickness,
-    is_filtered,
-    rotational_symmetries,
-    velocity_levers,
-)
+from simkit.runtime.contact.travel_bounds import Floats, Ints
 
 if TYPE_CHECKING:
     from simkit.compiler.name_map import NameMap
@@ -95,19 +86,19 @@ class FastBodyDetector:
         step = float(model.opt.timestep)
         self._window = window_length(step)
         # so long a body goes on into a soft contact, and twice as long into one that bounces
-        bounces = bool((model.geom_solref[can_collide(model), 0] < 0.0).any())
+        bounces = bool((model.geom_solref[travel_bounds.can_collide(model), 0] < 0.0).any())
         self._time = max(_GROWTH * step, contact_time_constant(step) / (1.0 if bounces else 2.0))
-        self._half = half_thickness(model)
+        self._half = travel_bounds.half_thickness(model)
         self.closing: list[float] = (_SAFE_SHARE / self._time * self._half).tolist()
         tree = model.body_treeid[model.geom_bodyid]
-        solid = can_collide(model)
+        solid = travel_bounds.can_collide(model)
         moving = np.flatnonzero(solid & (tree >= 0))
-        allowed = allowed_travel(model, self._half, moving)
+        allowed = travel_bounds.allowed_travel(model, self._half, moving)
         self._moving, self._allowed = moving[np.isfinite(allowed)], allowed[np.isfinite(allowed)]
         self._others = np.flatnonzero(solid & (model.geom_type != _PLANE))
         self._bodies = model.geom_bodyid[self._moving]
         self._roots = model.body_rootid[self._bodies]
-        self._is_ball, is_round = rotational_symmetries(model)
+        self._is_ball, is_round = travel_bounds.rotational_symmetries(model)
         self._spin_radius = np.where(self._is_ball, 0.0, model.geom_rbound)[self._moving]
         self._turns_freely = is_round[self._moving, None].astype(float)
         self._scratch: Any = None
@@ -118,7 +109,7 @@ class FastBodyDetector:
     def _weigh(self) -> None:
         """Compute the weights of velocities by which `wants` finds at once that nothing is fast."""
         model, nv = self.model, self.model.nv
-        rows, dofs, lever = velocity_levers(model, self._moving)
+        rows, dofs, lever = travel_bounds.velocity_levers(model, self._moving)
         share = lever * self._time / self._allowed[rows]
         weights = np.zeros(nv)
         np.maximum.at(weights, dofs, share)
@@ -177,7 +168,7 @@ class FastBodyDetector:
         one, other, both = one[keep], other[keep], both[keep]
         bodies = model.geom_bodyid
         cleared = {
-            pair: is_filtered(model, *pair)
+            pair: travel_bounds.is_filtered(model, *pair)
             for pair in set(zip(bodies[one].tolist(), bodies[other].tolist(), strict=True))
         }
         keep = np.array([not cleared[int(bodies[a]), int(bodies[b])] for a, b in zip(one, other, strict=True)], bool)
@@ -228,7 +219,7 @@ class FastBodyDetector:
         difference = places[fast, None] - places[None, others]
         distance = np.sqrt(np.einsum("ijk,ijk->ij", difference, difference))
         rows, columns = np.nonzero(
-            (distance <= reach + radius[None, others]) & can_touch(model, fast[:, None], others[None])
+            (distance <= reach + radius[None, others]) & travel_bounds.can_touch(model, fast[:, None], others[None])
         )
         one, other = fast[rows], others[columns]
         local = self._inside(places[one], other)

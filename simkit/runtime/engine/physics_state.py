@@ -72,6 +72,7 @@ FRESH, CONTROL, VELOCITY, STALE = range(4)
 
 INTEGRATION_STATE = int(mujoco.mjtState.mjSTATE_INTEGRATION)
 
+mj_check_pos, mj_check_vel = mujoco.mj_checkPos, mujoco.mj_checkVel  # looked up once
 _INTEGRATORS = {
     int(mujoco.mjtIntegrator.mjINT_IMPLICITFAST): mujoco.mj_implicit,
     int(mujoco.mjtIntegrator.mjINT_IMPLICIT): mujoco.mj_implicit,
@@ -268,6 +269,22 @@ class PhysicsState:
     def changed_contacts(self) -> None:
         """Says that contacts are to be found anew."""
         self.changed(STALE)
+
+    def check(self) -> None:
+        """Raises SimulationDiverged where the engine met a bad number since the last reset of its counters."""
+        if self.sleep.rests:  # found sound before
+            return
+        data = self.data
+        mj_check_pos(self.model, data)
+        mj_check_vel(self.model, data)
+        counts = self._warnings
+        if counts[BAD_POSITION] or counts[BAD_VELOCITY] or counts[BAD_ACCELERATION]:
+            raise divergence(self.model, data, self.clock, self.tick)
+
+    def clear_warnings(self) -> None:
+        """Forgets what the engine warned of (a restored state is sound)."""
+        self._warnings[:] = 0
+        ENGINE_WARNINGS.take_first()
 
     # ------------------------------------------------------------------ how the next steps are made
 

@@ -15,17 +15,7 @@ import numpy as np
 
 from simkit.runtime.engine.control_callback import call_before_forces
 from simkit.runtime.engine.forward_pass import SKIPPED_STAGE, ForwardPass
-from simkit.runtime.engine.physics_state import (
-    BAD_ACCELERATION,
-    BAD_POSITION,
-    BAD_VELOCITY,
-    CONTROL,
-    ENGINE_WARNINGS,
-    FRESH,
-    STALE,
-    VELOCITY,
-    divergence,
-)
+from simkit.runtime.engine.physics_state import CONTROL, FRESH, STALE, VELOCITY
 from simkit.runtime.engine.simulated_time import Clock
 
 __all__ = ["CONTROL", "FRESH", "STALE", "VELOCITY", "Physics"]
@@ -210,19 +200,3 @@ class Physics(ForwardPass):
 
     def _take_chunk(self, steps: int) -> None:
         self._chunk, self._short = steps, min(steps, _SHORT_RUN)
-
-    def check(self) -> None:
-        """Raises SimulationDiverged where the engine met a bad number since the last reset of its counters."""
-        if self.sleep.rests:  # found sound before
-            return
-        data = self.data
-        mj_check_pos(self.model, data)
-        mj_check_vel(self.model, data)
-        counts = self._warnings
-        if counts[BAD_POSITION] or counts[BAD_VELOCITY] or counts[BAD_ACCELERATION]:
-            raise divergence(self.model, data, self.clock, self.tick)
-
-    def clear_warnings(self) -> None:
-        """Forgets what the engine warned of (a restored state is sound)."""
-        self._warnings[:] = 0
-        ENGINE_WARNINGS.take_first()

@@ -12,18 +12,8 @@ import numpy as np
 from simkit.errors import InputError
 from simkit.pose import Pose, Vector, quat_conjugate, quat_rotate
 from simkit.runtime.engine.physics_state import CONTROL, STALE, VELOCITY
+from simkit.runtime.handles import joint_mechanics as mechanics
 from simkit.runtime.handles.handle import Handle
-from simkit.runtime.handles.joint_mechanics import (
-    ball_quaternion,
-    ball_rotation,
-    relative_pose,
-    relative_velocity,
-    set_relative_pose,
-    set_relative_velocity,
-    stored_quaternion,
-    transmitted_wrench,
-    update_loop_joints,
-)
 
 if TYPE_CHECKING:
     from simkit.compiler.name_map import NameMap
@@ -84,10 +74,10 @@ class Joint(Handle):
             return float(qpos[self._one_qpos])
         if self._is_ball:
             out = np.zeros(3)
-            mujoco.mju_quat2Vel(out, ball_quaternion(self._binding, self._ball_quat()), 1.0)
+            mujoco.mju_quat2Vel(out, mechanics.ball_quaternion(self._binding, self._ball_quat()), 1.0)
             return out
         if self._is_floating:
-            pose = relative_pose(self._engine, self._binding)
+            pose = mechanics.relative_pose(self._engine, self._binding)
             return np.concatenate([pose.position, pose.quaternion])
         return np.array(qpos[self._qpos])
 
@@ -103,7 +93,7 @@ class Joint(Handle):
         if self._one_dof >= 0:
             return float(qvel[self._one_dof])
         if self._is_floating:
-            return relative_velocity(self._engine, self._binding)
+            return mechanics.relative_velocity(self._engine, self._binding)
         return self._to_joint(np.array(qvel[self._dofs]))
 
     @property
@@ -138,7 +128,7 @@ class Joint(Handle):
         frame = binding.pose_child
         if child is not None:
             frame = Pose(data.xpos[child.body], data.xquat[child.body]) @ child.offset @ frame
-        force, torque = transmitted_wrench(self._physics.model, data, binding, frame.position)
+        force, torque = mechanics.transmitted_wrench(self._physics.model, data, binding, frame.position)
         back = quat_conjugate(frame.quaternion)
         return quat_rotate(back, force), quat_rotate(back, torque)
 
@@ -154,17 +144,17 @@ class Joint(Handle):
         qpos = self._physics.data.qpos
         values = self._shaped(position, 7 if self._is_floating else self.dof)
         if self._is_floating:
-            set_relative_pose(self._engine, self._binding, Pose(values[:3], values[3:]))
+            mechanics.set_relative_pose(self._engine, self._binding, Pose(values[:3], values[3:]))
         elif self._is_ball:
             quat = np.array((1.0, 0.0, 0.0, 0.0))
             mujoco.mju_quatIntegrate(quat, values, 1.0)
             start = int(self._qpos[0])
-            qpos[start : start + 4] = stored_quaternion(self._binding, quat)
+            qpos[start : start + 4] = mechanics.stored_quaternion(self._binding, quat)
         else:
             qpos[self._qpos] = values
         for f in self._binding.followers:
             qpos[f.qpos] = self._physics.model.qpos0[f.qpos] + f.offset + f.ratio * values[f.axis]
-        update_loop_joints(self._engine)
+        mechanics.update_loop_joints(self._engine)
         self._physics.changed_body(STALE, self._body)
 
     def set_velocity(self, velocity: float | Sequence[float] | Vector) -> None:
@@ -173,12 +163,12 @@ class Joint(Handle):
         self._check_settable()
         values = self._shaped(velocity, self.dof)
         if self._is_floating:
-            set_relative_velocity(self._engine, self._binding, values)
+            mechanics.set_relative_velocity(self._engine, self._binding, values)
         else:
             self._physics.data.qvel[self._dofs] = self._from_joint(values)
         for follower in self._binding.followers:
             self._physics.data.qvel[follower.dof] = follower.ratio * values[follower.axis]
-        update_loop_joints(self._engine)
+        mechanics.update_loop_joints(self._engine)
         self._physics.changed_body(VELOCITY, self._body)
 
     def set_effort(self, effort: float | Sequence[float] | Vector) -> None:
@@ -287,10 +277,10 @@ class Joint(Handle):
 
     def _to_joint(self, stored: Vector) -> Vector:
         """Velocities or efforts of the engine in the joint's own frame; only a ball joint's differ."""
-        return ball_rotation(self._binding, self._ball_quat()) @ stored if self._is_ball else stored
+        return mechanics.ball_rotation(self._binding, self._ball_quat()) @ stored if self._is_ball else stored
 
     def _from_joint(self, values: Vector) -> Vector:
-        return ball_rotation(self._binding, self._ball_quat()).T @ values if self._is_ball else values
+        return mechanics.ball_rotation(self._binding, self._ball_quat()).T @ values if self._is_ball else values
 
     def _ball_quat(self) -> Vector:
         start = int(self._qpos[0])

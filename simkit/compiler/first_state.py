@@ -1,0 +1,30 @@
+"""The first state of a compiled model, and the inertia that a joint feels in it."""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+
+
+def first_state(model: mujoco.MjModel) -> mujoco.MjData:
+    """Return the state with all poses at the start."""
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    mujoco.mj_comPos(model, data)
+    return data
+
+
+def first_mass_matrix(model: mujoco.MjModel) -> mujoco.MjData:
+    """Return the first state with the mass matrix M and its factors."""
+    data = first_state(model)
+    mujoco.mj_makeM(model, data)
+    mujoco.mj_factorM(model, data)
+    return data
+
+
+def inverse_inertia(model: mujoco.MjModel, data: mujoco.MjData, dof: int) -> float:
+    """Return (M⁻¹)_jj [1/(kg·m²) or 1/kg] of a degree of freedom, all else free to move; data with the factors of M."""
+    unit, solved = np.zeros((1, model.nv)), np.zeros((1, model.nv))
+    unit[0, dof] = 1.0
+    mujoco.mj_solveM(model, data, solved, unit)
+    return float(solved[0, dof])
