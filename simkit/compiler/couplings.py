@@ -53,12 +53,10 @@ class Couplings:
         equality.solref = (equality.solref[0], damping)
         equality.active = active
 
-    def _equality(
-        self, name: str, kind: mujoco.mjtEq, of: mujoco.mjtObj, first: str, second: str
-    ) -> mujoco.MjsEquality:
+    def _equality(self, name: str, kind: mujoco.mjtEq, of: mujoco.mjtObj, one: str, other: str) -> mujoco.MjsEquality:
         equality = self.spec.add_equality(name=name)
         equality.type, equality.objtype = kind, of
-        equality.name1, equality.name2 = first, second
+        equality.name1, equality.name2 = one, other
         equality.solref = (max(2.0 * self.timestep, 0.002), 1.0)
         equality.solimp = STIFF_SOLIMP
         self.record.equalities.append(name)

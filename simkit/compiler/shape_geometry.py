@@ -88,9 +88,8 @@ def turn_z_to(normal: tuple[float, float, float]) -> tuple[float, float, float, 
 def cone_triangles(shape: Cone) -> tuple[Floats, Ints]:
     """Triangles of a cone with 48 sides."""
     angle = np.linspace(0.0, 2.0 * np.pi, _SIDES, endpoint=False)
-    ring = np.column_stack(
-        [shape.radius * np.cos(angle), shape.radius * np.sin(angle), np.full(_SIDES, -shape.length / 2)]
-    )
+    bottom = np.full(_SIDES, -shape.length / 2)
+    ring = np.column_stack([shape.radius * np.cos(angle), shape.radius * np.sin(angle), bottom])
     vertices = np.vstack([ring, [(0.0, 0.0, -shape.length / 2), (0.0, 0.0, shape.length / 2)]])
     i = np.arange(_SIDES)
     after = (i + 1) % _SIDES

@@ -27,9 +27,8 @@ def check_time_step(world: SceneWorld, compiled: Compiled, found: Diagnostics) -
 
 def _check_step(world: SceneWorld, compiled: Compiled, found: Diagnostics) -> None:
     step = world.physics.max_step_size
-    moving = [
-        b for b in compiled.names.links.values() if not b.static and b.geoms and compiled.model.body_weldid[b.body] != 0
-    ]
+    weld = compiled.model.body_weldid  # 0 where a body cannot move
+    moving = [b for b in compiled.names.links.values() if not b.static and b.geoms and weld[b.body] != 0]
     if step > LONGEST_STEP and moving:
         found.warning(
             "SK-LINT-001",

@@ -226,9 +226,8 @@ class _SkinFile(ColladaFile):
             inputs = {e.get("semantic"): self._target(e, "source") for e in sampler.iterfind("{*}input")}
             times, values = self._source(inputs["INPUT"])[:, 0], self._source(inputs["OUTPUT"])
             if values.shape[1] != 16 or len(times) != len(values) or not 0 < len(times) <= _MOST_FRAMES:
-                self.companions.note(
-                    f"moves {channel.get('target', '')[:80]!r} by other than matrices, which is left out"
-                )
+                text = f"moves {channel.get('target', '')[:80]!r} by other than matrices, which is left out"
+                self.companions.note(text)
                 continue
             found[by_id[target]] = times, values.reshape(-1, 4, 4)
         if not found:

@@ -264,9 +264,8 @@ class _Gltf:
         if image.get("bufferView") is not None:
             view = _entry(self.tree["bufferViews"], image["bufferView"])
             start, length = int(view.get("byteOffset", 0)), int(view["byteLength"])
-            return self.companions.picture_in(
-                self._buffer(view["buffer"])[max(0, start) : max(0, start) + length], name
-            )
+            data = self._buffer(view["buffer"])
+            return self.companions.picture_in(data[max(0, start) : max(0, start) + length], name)
         uri = str(image.get("uri", ""))
         if uri.startswith("data:"):
             content = self._bytes(uri)

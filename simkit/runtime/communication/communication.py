@@ -17,6 +17,10 @@ if TYPE_CHECKING:
     from simkit.runtime.engine.scheduler import Phase, Scheduler, Task
 
 
+MessageMaker = Callable[[str], "Message"]
+"""Makes the message of a topic."""
+
+
 class OnDemandTasks:
     """Tasks of a simulation that are due only while they are wanted.
 
@@ -46,13 +50,7 @@ class OnDemandTasks:
         self.look()
 
     def broadcast(
-        self,
-        topics: dict[str, str],
-        rate: float,
-        make: Callable[[str], Message],
-        *,
-        is_aside: bool = True,
-        is_listed: bool = False,
+        self, topics: dict[str, str], rate: float, make: MessageMaker, *, is_aside: bool = True, is_listed: bool = False
     ) -> dict[str, Publisher]:
         """Publishes on topics at a rate while somebody listens.
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from simkit.diagnostics import NOWHERE, Diagnostics, Where
@@ -64,9 +64,7 @@ def find_conflict(sides: Iterable[Side], topic: str, end: Publisher | Listener) 
     return ""
 
 
-def _report_conflicts(
-    topic: str, ends: Sequence[TopicEndpoint], diagnostics: Diagnostics, new: set[int] | None
-) -> None:
+def _report_conflicts(topic: str, ends: list[TopicEndpoint], diagnostics: Diagnostics, new: set[int] | None) -> None:
     told: set[tuple[int, int]] = set()
     for number, end in enumerate(ends):
         for other in ends[:number]:

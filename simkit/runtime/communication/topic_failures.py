@@ -54,6 +54,5 @@ class TopicFailures:
     def report_dropped(self, topic: str, depth: int) -> None:
         """Warns of more messages for one step than an input takes."""
         message = f"more than {depth} messages on {topic!r} came for one step: the oldest are dropped from now on"
-        self._reports.warning(
-            "SK-TOPIC-004", message, hint="send less often; sim.communication.bus.dropped counts them"
-        )
+        hint = "send less often; sim.communication.bus.dropped counts them"
+        self._reports.warning("SK-TOPIC-004", message, hint=hint)

@@ -347,9 +347,8 @@ def find_array_correction(
     pressed = (depth > MIN_PENETRATION).nonzero()[0]
     if pressed.size:
         impedance = data.efc_KBIP[rows[pressed], 2]
-        tolerances[pressed] = np.minimum(
-            around.tolerance, LIFT_FACTOR * around.tolerance * (1.0 - impedance) / impedance
-        )
+        bearable = LIFT_FACTOR * around.tolerance * (1.0 - impedance) / impedance
+        tolerances[pressed] = np.minimum(around.tolerance, bearable)
     slides: npt.NDArray[np.bool_] = _lift((aref if residual is None else residual)[places], mu, is_pyramid) > tolerances
     slides &= goals != NO_FORCE
     chosen = slides | ~np.isnan(goals)

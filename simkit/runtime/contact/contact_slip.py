@@ -56,9 +56,7 @@ class ContactSlip:
                 damping = resistance[tangent] / one if one > 0.0 else math.inf
                 terms[first + 1 + tangent, 1] = min(damping, most[tangent])
 
-    def _yields(
-        self, data: mujoco.MjData, soft: Sequence[SlippingContact], firsts: Sequence[int]
-    ) -> dict[int, Numbers]:
+    def _yields(self, data: mujoco.MjData, soft: Sequence[SlippingContact], firsts: list[int]) -> dict[int, Numbers]:
         """How much all contacts of a tree yield to forces along their two tangents at most, summed [1/kg].
 
         A sum of diagonal elements is no less than any eigenvalue.

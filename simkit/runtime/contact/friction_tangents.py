@@ -17,7 +17,7 @@ from simkit.runtime.contact.friction_contacts import (
     FrictionContacts,
     Ints,
 )
-from simkit.runtime.contact.moving_surface import AnyBeltContacts, rotate_frames, rotate_surface_velocities
+from simkit.runtime.contact.moving_surface import BeltFlow, rotate_frames, rotate_surface_velocities
 
 Numbers = list[float]
 Pair = tuple[float, float]
@@ -90,9 +90,7 @@ class FrictionTangents:
                 places.append((place, row, first))
         return places
 
-    def turn(
-        self, data: mujoco.MjData, found: AnyFrictionContacts, places: RowContacts, flow: AnyBeltContacts | None
-    ) -> None:
+    def turn(self, data: mujoco.MjData, found: AnyFrictionContacts, places: RowContacts, flow: BeltFlow | None) -> None:
         """Turns the tangents of contacts and sets their coefficients; the frames of the touches are turned as well.
 
         Args:
@@ -107,7 +105,7 @@ class FrictionTangents:
             self._turn_many(data, found, places, flow)
 
     def _turn(
-        self, data: mujoco.MjData, found: FrictionContacts, places: list[RowContact], flow: AnyBeltContacts | None
+        self, data: mujoco.MjData, found: FrictionContacts, places: list[RowContact], flow: BeltFlow | None
     ) -> None:
         """Turns the tangents of contacts and sets their coefficients; the frames of the touches are turned as well."""
         contact, ground, least = data.contact, self._model.geom_friction, mujoco.mjMINMU
@@ -147,9 +145,7 @@ class FrictionTangents:
         if flows is not None:
             contact.surfacevel[which] = flows
 
-    def _turn_many(
-        self, data: mujoco.MjData, found: FrictionContactArrays, asked: Ints, flow: AnyBeltContacts | None
-    ) -> None:
+    def _turn_many(self, data: mujoco.MjData, found: FrictionContactArrays, asked: Ints, flow: BeltFlow | None) -> None:
         """The same on arrays, with the same bits."""
         contact, least = data.contact, mujoco.mjMINMU
         places, rows, others = asked.T

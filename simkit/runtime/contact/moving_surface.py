@@ -46,6 +46,10 @@ class BeltMotion:
     centre: Point | None = None
 
 
+BeltMotions = Sequence[BeltMotion | None]
+"""How each of several belts runs now; None for one that stands still."""
+
+
 @dataclass(frozen=True, slots=True)
 class Belt:
     """A surface that can run, in one compiled model.
@@ -90,7 +94,7 @@ class BeltContactArrays(NamedTuple):
     velocities: Floats
 
 
-AnyBeltContacts = BeltContacts | BeltContactArrays
+BeltFlow = BeltContacts | BeltContactArrays
 
 
 class MovingSurfaces:
@@ -106,7 +110,7 @@ class MovingSurfaces:
         self._owner = [-1] * (model.ngeom + 1)
         self.concerns = [False] * (model.ngeom + 1)
         self._owners: Ints = np.array(self._owner)
-        self._flow: AnyBeltContacts | None = None
+        self._flow: BeltFlow | None = None
 
     def add(self, belt: Belt) -> None:
         """A belt more."""
@@ -127,9 +131,7 @@ class MovingSurfaces:
 
     # ------------------------------------------------------------------ contacts
 
-    def look(
-        self, data: mujoco.MjData, found: AnyFrictionContacts | None, runs: Sequence[BeltMotion | None]
-    ) -> AnyBeltContacts | None:
+    def look(self, data: mujoco.MjData, found: AnyFrictionContacts | None, runs: BeltMotions) -> BeltFlow | None:
         """Finds the contacts with belts that run; also for `carry`.
 
         Args:
@@ -146,7 +148,7 @@ class MovingSurfaces:
         return self._flow
 
     def _found_many(
-        self, data: mujoco.MjData, found: FrictionContactArrays, runs: Sequence[BeltMotion | None]
+        self, data: mujoco.MjData, found: FrictionContactArrays, runs: BeltMotions
     ) -> BeltContactArrays | None:
         axles = [
             ZERO_VECTOR if run is None else _world_axle(data, one) for one, run in zip(self._belts, runs, strict=True)
@@ -157,9 +159,7 @@ class MovingSurfaces:
         )
         return BeltContactArrays(found.numbers[places], places, directions, velocities) if places.size else None
 
-    def _found(
-        self, data: mujoco.MjData, found: FrictionContacts, runs: Sequence[BeltMotion | None]
-    ) -> BeltContacts | None:
+    def _found(self, data: mujoco.MjData, found: FrictionContacts, runs: BeltMotions) -> BeltContacts | None:
         owner, flow = self._owner, BeltContacts([], [], [], [])
         axles: dict[int, Point] = {}
         known: dict[Any, tuple[Point, Point]] = {}  # what lies flat on a straight belt has one normal
@@ -272,7 +272,7 @@ MIN_SINE = 1e-6
 
 
 def find_belt_contacts(
-    belts: Ints, frames: Floats, points: Floats, runs: Sequence[BeltMotion | None], axles: Sequence[Point]
+    belts: Ints, frames: Floats, points: Floats, runs: BeltMotions, axles: Sequence[Point]
 ) -> tuple[Ints, Floats, Floats]:
     """Which of some contacts are with belts that run, the directions of their friction, and their velocities [m/s].
 

@@ -115,9 +115,7 @@ def is_filtered(model: mujoco.MjModel, one: int, other: int) -> bool:
             return True
     low, high = sorted((one, other))
     signatures = model.exclude_signature
-    return bool(len(signatures)) and bool(
-        ((signatures == (low << 16) + high) | (signatures == (high << 16) + low)).any()
-    )
+    return bool(((signatures == (low << 16) + high) | (signatures == (high << 16) + low)).any())
 
 
 def velocity_levers(model: mujoco.MjModel, geoms: Ints) -> tuple[Ints, Ints, Floats]:

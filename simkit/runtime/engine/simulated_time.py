@@ -10,6 +10,10 @@ from fractions import Fraction
 _MAX_DENOMINATOR = 1_000_000  # greatest denominator of a rate that is taken for a fraction
 
 
+Jitter = Callable[[int], float]
+"""Deviation of the k-th sample from its time, from -1 to 1."""
+
+
 def exact_fraction(value: float | int | str | Fraction) -> Fraction:
     """The decimal number as written: 0.001 is 1/1000, not the nearest binary fraction."""
     return value if isinstance(value, Fraction) else Fraction(str(value))
@@ -33,7 +37,7 @@ class SampleTiming:
     period: Fraction
     phase: Fraction = Fraction(0)
     spread: Fraction = Fraction(0)
-    jitter: Callable[[int], float] | None = None
+    jitter: Jitter | None = None
 
 
 class Clock:
@@ -136,9 +140,7 @@ class ShiftedTickGrid:
 
     __slots__ = ("_den", "_jitter", "_most", "_num", "_phase", "_spread")
 
-    def __init__(
-        self, period: Fraction, phase: Fraction, spread: Fraction, jitter: Callable[[int], float] | None
-    ) -> None:
+    def __init__(self, period: Fraction, phase: Fraction, spread: Fraction, jitter: Jitter | None) -> None:
         self._den = math.lcm(period.denominator, phase.denominator)
         self._num, self._phase = int(period * self._den), int(phase * self._den)
         # two neighbours are at least floor(period) apart

@@ -161,10 +161,8 @@ class VisualProperty(MutableMapping[str, Value], abc.ABC):
 
     def _change(self, values: dict[str, Value]) -> None:
         """Samples that wait to be looked at are measured with the values of their time."""
-        cameras: list[Any] = [
-            s for s in self._handles.engine.structure.all_sensors() if getattr(s, self.read_by, False)
-        ]
-        for camera in cameras:
+        found: list[Any] = [s for s in self._handles.engine.structure.all_sensors() if getattr(s, self.read_by, False)]
+        for camera in found:
             camera.finish_samples()
         self.state = MappingProxyType(values)
 
