@@ -8,7 +8,6 @@ import pytest
 
 import simkit
 from simkit.cli.run_options import load_options, scenario_spec
-from simkit.cli.terminal.shared_options import source_arguments
 from simkit.run_spec import Check, Recording, RunSpec
 from simkit.testing.bundles import keep, open_bundle, write_bundle
 from simkit.testing.scenarios.scenario_file import read_scenario
@@ -49,9 +48,9 @@ def test_a_simulation_has_the_one_that_it_was_loaded_from(world: Path) -> None:
 def test_options_of_a_command_go_over_those_of_a_scenario_file(world: Path) -> None:
     file = world.with_name("fall.yaml")
     file.write_text("world: ball.sdf\nduration: 0.3\nseed: 5\nset: [ball::l.inertial.mass=2]\nbase: fixed\n")
-    found = scenario_spec(str(file), load_options(source_arguments((), (), ())))
+    found = scenario_spec(str(file), load_options((), (), (), "auto"))
     assert found == read_scenario(file)
-    options = load_options(source_arguments((), (), ("a=1",)), (Path("plugins"),))
+    options = load_options((), (), ("a=1",), "auto", (Path("plugins"),))
     over = scenario_spec(str(file), options, duration=0.1, overrides=["gravity=0 0 0"], cmd_vel="1,0")
     assert (over.duration, over.seed, over.velocity) == (0.1, 5, "1,0")
     assert over.overrides == ("ball::l.inertial.mass=2", "gravity=0 0 0")

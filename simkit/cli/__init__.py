@@ -11,6 +11,7 @@ import sys
 from typing import Annotated
 
 import typer
+from typer import Option
 
 from simkit.cli.lazy_command import Commands, defer
 from simkit.version import __version__
@@ -65,7 +66,7 @@ def _print_version(wanted: bool) -> None:
 @app.callback()
 def _options(
     version: Annotated[
-        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Prints the version.")
+        bool, Option("--version", callback=_print_version, is_eager=True, help="Prints the version.")
     ] = False,
 ) -> None:
     """A robot simulator: Gazebo worlds and robots, stepped by MuJoCo, answering with ROS 2 messages."""

@@ -6,9 +6,9 @@ import sys
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from typer import Argument, Option
 
-from simkit.cli.terminal import completion
-from simkit.cli.terminal.live_options import Ros2Command, ShowTypes, Sim
+from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.message_arguments import check_type, make_message, parse_fields, split_type_and_values
 from simkit.cli.terminal.output import (
     absolute_name,
@@ -17,7 +17,6 @@ from simkit.cli.terminal.output import (
     print_names_and_types,
     report_errors_quietly,
 )
-from simkit.cli.terminal.shared_options import Json
 from simkit.cli.terminal.topic_sources import connect_to_simulation, interface_type
 
 if TYPE_CHECKING:
@@ -26,8 +25,7 @@ if TYPE_CHECKING:
 _PATIENCE = 5.0  # [s] of wall time in which a goal that is called off should end
 action = typer.Typer(help="Actions of a running simulation.", no_args_is_help=True)
 Name = Annotated[
-    str,
-    typer.Argument(help="Name of an action.", metavar="ACTION", show_default=False, autocompletion=completion.actions),
+    str, Argument(help="Name of an action.", metavar="ACTION", show_default=False, autocompletion=completion.actions)
 ]
 
 
@@ -36,13 +34,13 @@ def _group() -> None:
     """Actions of a running simulation."""
 
 
-@action.command("list", cls=Ros2Command)
+@action.command("list", cls=options.Ros2Command)
 @report_errors_quietly
 def list_(
-    show_types: ShowTypes = False,
-    count: Annotated[bool, typer.Option("--count-actions", "-c", help="Says only how many.")] = False,
-    sim: Sim = None,
-    json_: Json = False,
+    show_types: options.ShowTypes = False,
+    count: Annotated[bool, Option("--count-actions", "-c", help="Says only how many.")] = False,
+    sim: options.Sim = None,
+    json_: options.Json = False,
 ) -> int:
     """Lists the actions."""
     with connect_to_simulation(sim) as client:
@@ -51,9 +49,9 @@ def list_(
     return 0
 
 
-@action.command("type", cls=Ros2Command)
+@action.command("type", cls=options.Ros2Command)
 @report_errors_quietly
-def type_(action: Name, sim: Sim = None, json_: Json = False) -> int:
+def type_(action: Name, sim: options.Sim = None, json_: options.Json = False) -> int:
     """Prints an action's type."""
     with connect_to_simulation(sim) as client:
         found = interface_type(client, "action", client.actions(), action)
@@ -64,14 +62,14 @@ def type_(action: Name, sim: Sim = None, json_: Json = False) -> int:
     return 0
 
 
-@action.command(cls=Ros2Command)
+@action.command(cls=options.Ros2Command)
 @report_errors_quietly
 def info(
     action: Name,
-    show_types: ShowTypes = False,
-    count: Annotated[bool, typer.Option("--count", "-c", help="Says only how many.")] = False,
-    sim: Sim = None,
-    json_: Json = False,
+    show_types: options.ShowTypes = False,
+    count: Annotated[bool, Option("--count", "-c", help="Says only how many.")] = False,
+    sim: options.Sim = None,
+    json_: options.Json = False,
 ) -> int:
     """Says who serves an action."""
     with connect_to_simulation(sim) as client:
@@ -92,7 +90,7 @@ def send_goal(
     action: Name,
     action_type: Annotated[
         str | None,
-        typer.Argument(
+        Argument(
             help="Its type, which need not be said.",
             metavar="[TYPE]",
             show_default=False,
@@ -101,20 +99,20 @@ def send_goal(
     ] = None,
     goal: Annotated[
         str | None,
-        typer.Argument(
+        Argument(
             help="The goal as YAML: '{order: 5}'.",
             metavar="[GOAL]",
             show_default=False,
             autocompletion=completion.goal_values,
         ),
     ] = None,
-    stdin: Annotated[bool, typer.Option("--stdin", help="Reads the goal from standard input.")] = False,
-    feedback: Annotated[bool, typer.Option("--feedback", "-f", help="Prints the feedback.")] = False,
+    stdin: Annotated[bool, Option("--stdin", help="Reads the goal from standard input.")] = False,
+    feedback: Annotated[bool, Option("--feedback", "-f", help="Prints the feedback.")] = False,
     timeout: Annotated[
-        float | None, typer.Option("--timeout", help="Calls it off after so long (wall time).", metavar="S", min=0)
+        float | None, Option("--timeout", help="Calls it off after so long (wall time).", metavar="S", min=0)
     ] = None,
-    sim: Sim = None,
-    json_: Json = False,
+    sim: options.Sim = None,
+    json_: options.Json = False,
 ) -> int:
     """Sends a goal and waits for its end; Ctrl-C calls it off."""
     action_type, goal = split_type_and_values(action_type, goal)
@@ -126,8 +124,8 @@ def send_goal(
     return 0
 
 
-action.command("send_goal", cls=Ros2Command)(report_errors_quietly(send_goal))
-action.command("send", cls=Ros2Command, help="The same as send_goal.")(report_errors_quietly(send_goal))
+action.command("send_goal", cls=options.Ros2Command)(report_errors_quietly(send_goal))
+action.command("send", cls=options.Ros2Command, help="The same as send_goal.")(report_errors_quietly(send_goal))
 
 
 class _GoalRun:

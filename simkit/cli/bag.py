@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from typer import Argument, Option
 
 from simkit.cli.bag_record import record
 from simkit.cli.plot_sources import (
@@ -20,7 +21,7 @@ from simkit.cli.plot_sources import (
     is_bag,
     split_sources_and_fields,
 )
-from simkit.cli.terminal.live_options import Recording, Sim
+from simkit.cli.terminal import options
 from simkit.cli.terminal.output import (
     absolute_name,
     print_json,
@@ -30,7 +31,6 @@ from simkit.cli.terminal.output import (
     report_errors_quietly,
     stdout_console,
 )
-from simkit.cli.terminal.shared_options import Force, Json
 from simkit.cli.terminal.topic_sources import SimClock, connect_to_simulation
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 def plot(
     words: Annotated[
         list[str],
-        typer.Argument(
+        Argument(
             help="A bag, or several to compare; then fields: /odom.pose.pose.position.x, /scan.ranges[0].",
             metavar="BAG... FIELD...",
             show_default=False,
@@ -55,7 +55,7 @@ def plot(
     start: Start = None,
     end: End = None,
     title: Title = "",
-    json_: Json = False,
+    json_: options.Json = False,
 ) -> int:
     """Draws fields of a recording over time; several recordings come into one chart."""
     from simkit.recording.bags.reader import open_bag_to_read
@@ -69,24 +69,21 @@ def plot(
 
 @report_errors_quietly
 def export(
-    recording: Recording,
+    recording: options.Recording,
     output: Annotated[
-        Path | None,
-        typer.Option("--output", "-o", help="The folder; NAME_export beside the bag's name where not given."),
+        Path | None, Option("--output", "-o", help="The folder; NAME_export beside the bag's name where not given.")
     ] = None,
-    topic: Annotated[list[str], typer.Option(help="Only topics of this pattern; repeatable.", metavar="PATTERN")] = [],
-    skip: Annotated[
-        list[str], typer.Option(help="All but topics of this pattern; repeatable.", metavar="PATTERN")
-    ] = [],
+    topic: Annotated[list[str], Option(help="Only topics of this pattern; repeatable.", metavar="PATTERN")] = [],
+    skip: Annotated[list[str], Option(help="All but topics of this pattern; repeatable.", metavar="PATTERN")] = [],
     format_: Annotated[
-        str, typer.Option("--format", help="Of tables; parquet is the extra of that name.", metavar="csv|npz|parquet")
+        str, Option("--format", help="Of tables; parquet is the extra of that name.", metavar="csv|npz|parquet")
     ] = "csv",
-    images: Annotated[str, typer.Option(help="What becomes of pictures.", metavar="png|mp4|npz|none")] = "png",
-    clouds: Annotated[str, typer.Option(help="What becomes of point clouds.", metavar="npz|ply|none")] = "npz",
+    images: Annotated[str, Option(help="What becomes of pictures.", metavar="png|mp4|npz|none")] = "png",
+    clouds: Annotated[str, Option(help="What becomes of point clouds.", metavar="npz|ply|none")] = "npz",
     start: Start = None,
     end: End = None,
-    force: Force = False,
-    json_: Json = False,
+    force: options.Force = False,
+    json_: options.Json = False,
 ) -> int:
     """Writes a recording as tables, a file a topic, with pictures and point clouds beside them."""
     from simkit.recording.export import CLOUDS, FORMATS, IMAGES, ExportOptions, export_bag
@@ -101,8 +98,8 @@ def export(
             text = f"SK-CLI-018 {option}: found {word!r}, allowed is {', '.join(allowed)}"
             raise InputError(text + (f"; {hint}" if hint else ""), "SK-CLI-018")
     target = output or Path(f"{recording.resolve().stem}_export")
-    options = ExportOptions(tuple(topic), tuple(skip), format_, images, clouds, start, end, force)
-    found = export_bag(recording, target, options)
+    wanted = ExportOptions(tuple(topic), tuple(skip), format_, images, clouds, start, end, force)
+    found = export_bag(recording, target, wanted)
     if json_:
         print_json({"output": str(target), "topics": [asdict(one) for one in found]})
         return 0
@@ -119,22 +116,18 @@ def export(
 
 @report_errors_quietly
 def play(
-    recording: Recording,
+    recording: options.Recording,
     topics: Annotated[
-        list[str], typer.Option("--topics", help="Only this one; repeatable. Else all that the world takes.")
+        list[str], Option("--topics", help="Only this one; repeatable. Else all that the world takes.")
     ] = [],
     rate: Annotated[
-        float, typer.Option("--rate", "-r", help="Times as fast, of simulated time.", metavar="N", min=1e-3)
+        float, Option("--rate", "-r", help="Times as fast, of simulated time.", metavar="N", min=1e-3)
     ] = 1.0,
-    start: Annotated[
-        float, typer.Option("--start-offset", help="Begins so far into the bag.", metavar="S", min=0)
-    ] = 0.0,
-    remap: Annotated[
-        list[str], typer.Option("--remap", "-m", help="Plays OLD on NEW; repeatable.", metavar="OLD:=NEW")
-    ] = [],
-    loop: Annotated[bool, typer.Option("--loop", "-l", help="Again and again until Ctrl-C.")] = False,
-    sim: Sim = None,
-    json_: Json = False,
+    start: Annotated[float, Option("--start-offset", help="Begins so far into the bag.", metavar="S", min=0)] = 0.0,
+    remap: Annotated[list[str], Option("--remap", "-m", help="Plays OLD on NEW; repeatable.", metavar="OLD:=NEW")] = [],
+    loop: Annotated[bool, Option("--loop", "-l", help="Again and again until Ctrl-C.")] = False,
+    sim: options.Sim = None,
+    json_: options.Json = False,
 ) -> int:
     """Plays the messages of a bag into a running simulation, by its clock."""
     from simkit.recording.bags.reader import open_bag_to_read
@@ -207,11 +200,9 @@ def _group() -> None:
 @bag.command()
 @report_errors_quietly
 def info(
-    recording: Recording,
-    topic_name: Annotated[
-        bool, typer.Option("--topic-name", "-t", help="Prints the names of the topics only.")
-    ] = False,
-    json_: Json = False,
+    recording: options.Recording,
+    topic_name: Annotated[bool, Option("--topic-name", "-t", help="Prints the names of the topics only.")] = False,
+    json_: options.Json = False,
 ) -> int:
     """Says what is in a recording."""
     from simkit.recording.bags.reader import open_bag_to_read
@@ -240,14 +231,13 @@ bag.command()(export)
 @report_errors
 def recover(
     broken: Annotated[
-        Path,
-        typer.Argument(help="The recording that was cut off: an MCAP file or a rosbag2 folder.", show_default=False),
+        Path, Argument(help="The recording that was cut off: an MCAP file or a rosbag2 folder.", show_default=False)
     ],
     mended: Annotated[
-        Path | None, typer.Argument(help="Where the whole one goes; beside it where not given.", show_default=False)
+        Path | None, Argument(help="Where the whole one goes; beside it where not given.", show_default=False)
     ] = None,
-    output: Annotated[Path | None, typer.Option("--output", "-o", help="The same.", metavar="MENDED")] = None,
-    force: Force = False,
+    output: Annotated[Path | None, Option("--output", "-o", help="The same.", metavar="MENDED")] = None,
+    force: options.Force = False,
 ) -> int:
     """Copies what is readable of a recording into a whole one; the broken one stays as it is."""
     from simkit.recording.bags.recovery import recover_bag

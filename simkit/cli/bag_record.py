@@ -7,14 +7,12 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
+from typer import Argument, Option
 
 from simkit.cli.run_loop import Interrupts
-from simkit.cli.terminal import completion
-from simkit.cli.terminal.live_options import Sim
+from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.message_arguments import compile_pattern
 from simkit.cli.terminal.output import absolute_name, is_hidden, print_json, print_note, report_errors_quietly
-from simkit.cli.terminal.shared_options import Force, Json
 from simkit.cli.terminal.topic_sources import LiveSource, connect_to_simulation
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
@@ -32,35 +30,31 @@ _NEW = 1.0  # [s] of wall time between two looks for new topics
 def record(
     topics: Annotated[
         list[str] | None,
-        typer.Argument(
-            help="Topics to record.", metavar="[TOPIC]...", show_default=False, autocompletion=completion.topics
-        ),
+        Argument(help="Topics to record.", metavar="[TOPIC]...", show_default=False, autocompletion=completion.topics),
     ] = None,
-    all_: Annotated[bool, typer.Option("--all", "-a", help="All topics, those that come later too.")] = False,
+    all_: Annotated[bool, Option("--all", "-a", help="All topics, those that come later too.")] = False,
     regex: Annotated[
-        str | None, typer.Option("--regex", "-e", help="Topics that this fits.", metavar="REGEX", show_default=False)
+        str | None, Option("--regex", "-e", help="Topics that this fits.", metavar="REGEX", show_default=False)
     ] = None,
     exclude: Annotated[
         str | None,
-        typer.Option("--exclude-regex", "--exclude", "-x", help="But not these.", metavar="REGEX", show_default=False),
+        Option("--exclude-regex", "--exclude", "-x", help="But not these.", metavar="REGEX", show_default=False),
     ] = None,
     topics_too: Annotated[
-        list[str], typer.Option("--topics", help="The same as arguments; repeatable.", metavar="TOPIC")
+        list[str], Option("--topics", help="The same as arguments; repeatable.", metavar="TOPIC")
     ] = [],
     output: Annotated[
         Path | None,
-        typer.Option(
-            "--output", "-o", help="x.mcap one file, else a rosbag2 folder.", metavar="OUT", show_default=False
-        ),
+        Option("--output", "-o", help="x.mcap one file, else a rosbag2 folder.", metavar="OUT", show_default=False),
     ] = None,
     duration: Annotated[
-        float | None, typer.Option("--duration", "-d", help="Ends after so long (simulated).", metavar="S", min=0)
+        float | None, Option("--duration", "-d", help="Ends after so long (simulated).", metavar="S", min=0)
     ] = None,
-    hidden: Annotated[bool, typer.Option("--include-hidden-topics", help="Hidden ones too.")] = False,
-    storage: Annotated[str, typer.Option("--storage", "-s", help="mcap is all there is.", metavar="mcap")] = "mcap",
-    force: Force = False,
-    sim: Sim = None,
-    json_: Json = False,
+    hidden: Annotated[bool, Option("--include-hidden-topics", help="Hidden ones too.")] = False,
+    storage: Annotated[str, Option("--storage", "-s", help="mcap is all there is.", metavar="mcap")] = "mcap",
+    force: options.Force = False,
+    sim: options.Sim = None,
+    json_: options.Json = False,
 ) -> int:
     """Records topics of a running simulation until Ctrl-C; `simkit run --record` loses nothing at any speed."""
     from simkit.recording.bags.recorder import open_bag

@@ -4,19 +4,11 @@ from __future__ import annotations
 
 from typing import Annotated
 
-import typer
+from typer import Option
 
 from simkit.cli.run_options import load_options
+from simkit.cli.terminal import options
 from simkit.cli.terminal.output import report_errors, stdout_console
-from simkit.cli.terminal.shared_options import (
-    Base,
-    PackagePaths,
-    PluginPaths,
-    ResourcePaths,
-    World,
-    XacroArgs,
-    source_arguments,
-)
 from simkit.run_spec import RunSpec
 
 _HOUR = 3600.0
@@ -24,14 +16,14 @@ _HOUR = 3600.0
 
 @report_errors
 def bench(
-    world: World,
-    rounds: Annotated[int, typer.Option(help="Timings of each side.", metavar="N", min=1)] = 9,
-    full: Annotated[bool, typer.Option("--full", help="Memory over a whole simulated hour, not a minute.")] = False,
-    resource_path: ResourcePaths = [],
-    plugin_path: PluginPaths = [],
-    package_path: PackagePaths = [],
-    xacro_arg: XacroArgs = [],
-    base: Base = "auto",
+    world: options.World,
+    rounds: Annotated[int, Option(help="Timings of each side.", metavar="N", min=1)] = 9,
+    full: Annotated[bool, Option("--full", help="Memory over a whole simulated hour, not a minute.")] = False,
+    resource_path: options.ResourcePaths = [],
+    plugin_path: options.PluginPaths = [],
+    package_path: options.PackagePaths = [],
+    xacro_arg: options.XacroArgs = [],
+    base: options.Base = "auto",
 ) -> int:
     """Times a world and, in the same run, bare MuJoCo on the same compiled model."""
     from simkit.mujoco_import import import_mujoco
@@ -41,9 +33,7 @@ def bench(
     from simkit.cli.bench_figures import compare_with_bare_mujoco, measure_import_time, measure_memory_growth
 
     stdout_console().print(f"{'':<52}{'simkit':>12}{'bare':>12}{'ratio':>8}{'aim':>8}")
-    spec = RunSpec(
-        world, options=load_options(source_arguments(resource_path, package_path, xacro_arg, base), plugin_path)
-    )
+    spec = RunSpec(world, options=load_options(resource_path, package_path, xacro_arg, base, plugin_path))
     for figure in compare_with_bare_mujoco(spec, rounds=rounds):
         bare = "" if figure.bare is None else f"{figure.bare * 1e6:.1f} µs"
         ratio = "" if figure.ratio is None else f"{figure.ratio:.2f}"

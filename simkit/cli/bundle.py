@@ -5,25 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-import typer
+from typer import Argument, Option
 
 from simkit.cli.run_options import load_options, scenario_spec
+from simkit.cli.terminal import options
 from simkit.cli.terminal.output import print_diagnostics, print_status, report_errors, stdout_console
-from simkit.cli.terminal.shared_options import (
-    Base,
-    CmdVel,
-    Force,
-    Overrides,
-    PackagePaths,
-    ParamsFiles,
-    PluginPaths,
-    ResourcePaths,
-    Script,
-    Seed,
-    Spawns,
-    XacroArgs,
-    source_arguments,
-)
 from simkit.errors import InputError, SimkitError
 from simkit.writers.atomic_output import check_file
 
@@ -31,30 +17,30 @@ from simkit.writers.atomic_output import check_file
 @report_errors
 def bundle(
     world: Annotated[
-        str, typer.Argument(help="A world, a model, or the file of a scenario.", show_default=False, metavar="WORLD")
+        str, Argument(help="A world, a model, or the file of a scenario.", show_default=False, metavar="WORLD")
     ],
-    output: Annotated[Path, typer.Option("--output", "-o", help="The file to write.", metavar="FILE.zip")],
+    output: Annotated[Path, Option("--output", "-o", help="The file to write.", metavar="FILE.zip")],
     duration: Annotated[
-        float | None, typer.Option(help="Simulated seconds to run; 10, or the scenario's.", metavar="S", min=0)
+        float | None, Option(help="Simulated seconds to run; 10, or the scenario's.", metavar="S", min=0)
     ] = None,
-    seed: Seed = None,
-    cmd_vel: CmdVel = None,
-    script: Script = None,
-    set_: Overrides = [],
-    spawn: Spawns = [],
-    params_file: ParamsFiles = [],
-    last: Annotated[float, typer.Option(help="Keeps the messages of so many last seconds.", metavar="S", min=0)] = 10.0,
+    seed: options.Seed = None,
+    cmd_vel: options.CmdVel = None,
+    script: options.Script = None,
+    set_: options.Overrides = [],
+    spawn: options.Spawns = [],
+    params_file: options.ParamsFiles = [],
+    last: Annotated[float, Option(help="Keeps the messages of so many last seconds.", metavar="S", min=0)] = 10.0,
     topic: Annotated[
         list[str],
-        typer.Option(help="Keeps topics of this pattern although they are pictures; repeatable.", metavar="PATTERN"),
+        Option(help="Keeps topics of this pattern although they are pictures; repeatable.", metavar="PATTERN"),
     ] = [],
-    no_code: Annotated[bool, typer.Option("--no-code", help="Leaves the code of plugins out.")] = False,
-    force: Force = False,
-    resource_path: ResourcePaths = [],
-    package_path: PackagePaths = [],
-    plugin_path: PluginPaths = [],
-    xacro_arg: XacroArgs = [],
-    base: Base = "auto",
+    no_code: Annotated[bool, Option("--no-code", help="Leaves the code of plugins out.")] = False,
+    force: options.Force = False,
+    resource_path: options.ResourcePaths = [],
+    package_path: options.PackagePaths = [],
+    plugin_path: options.PluginPaths = [],
+    xacro_arg: options.XacroArgs = [],
+    base: options.Base = "auto",
 ) -> int:
     """Runs a world or a scenario, and packs it into one file that repeats it anywhere.
 
@@ -67,7 +53,7 @@ def bundle(
 
     check_file(output, overwrite=force)
     scenario = scenario_spec(
-        world, load_options(source_arguments(resource_path, package_path, xacro_arg, base), plugin_path, params_file),
+        world, load_options(resource_path, package_path, xacro_arg, base, plugin_path, params_file),
         duration=duration, seed=seed, overrides=set_, spawn=spawn, cmd_vel=cmd_vel, script=script,
     )  # fmt: skip
     with open_scenario(scenario) as sim:

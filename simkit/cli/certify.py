@@ -6,25 +6,11 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
+from typer import Argument, Option
 
 from simkit.cli.run_options import load_options, scenario_spec
+from simkit.cli.terminal import options
 from simkit.cli.terminal.output import print_json, print_status, report_errors, stdout_console
-from simkit.cli.terminal.shared_options import (
-    Base,
-    CmdVel,
-    Json,
-    Overrides,
-    PackagePaths,
-    ParamsFiles,
-    PluginPaths,
-    ResourcePaths,
-    Script,
-    Seed,
-    Spawns,
-    XacroArgs,
-    source_arguments,
-)
 from simkit.writers.atomic_output import check_writable, write_atomically
 
 if TYPE_CHECKING:
@@ -37,40 +23,39 @@ _SECONDS = 5.0  # of a world that no scenario gives a length
 @report_errors
 def certify(
     world: Annotated[
-        str, typer.Argument(help="A world, or a scenario (.yaml, .py).", metavar="WORLD|SCENARIO", show_default=False)
+        str, Argument(help="A world, or a scenario (.yaml, .py).", metavar="WORLD|SCENARIO", show_default=False)
     ],
     duration: Annotated[
-        float | None,
-        typer.Option(help="Simulated seconds; the scenario's, or 5, where not given.", metavar="S", min=0),
+        float | None, Option(help="Simulated seconds; the scenario's, or 5, where not given.", metavar="S", min=0)
     ] = None,
-    seed: Seed = None,
-    runs: Annotated[int, typer.Option(help="How many runs, each in a fresh process.", metavar="N")] = 6,
-    jobs: Annotated[int, typer.Option("--jobs", "-j", help="Processes at a time.", metavar="N", min=1)] = 1,
+    seed: options.Seed = None,
+    runs: Annotated[int, Option(help="How many runs, each in a fresh process.", metavar="N")] = 6,
+    jobs: Annotated[int, Option("--jobs", "-j", help="Processes at a time.", metavar="N", min=1)] = 1,
     wall_timeout: Annotated[
         float | None,
-        typer.Option(
+        Option(
             help="Wall time of each run; ten times the first one's, at least 60, where not given.", metavar="S", min=0.1
         ),
     ] = None,
     topic: Annotated[
-        list[str], typer.Option(help="Compares only topics of this pattern; repeatable.", metavar="PATTERN")
+        list[str], Option(help="Compares only topics of this pattern; repeatable.", metavar="PATTERN")
     ] = [],
     skip: Annotated[
-        list[str], typer.Option(help="Compares all but topics of this pattern; repeatable.", metavar="PATTERN")
+        list[str], Option(help="Compares all but topics of this pattern; repeatable.", metavar="PATTERN")
     ] = [],
-    cmd_vel: CmdVel = None,
-    script: Script = None,
-    set_: Overrides = [],
-    spawn: Spawns = [],
-    params_file: ParamsFiles = [],
-    resource_path: ResourcePaths = [],
-    package_path: PackagePaths = [],
-    plugin_path: PluginPaths = [],
-    xacro_arg: XacroArgs = [],
-    base: Base = "auto",
-    json_: Json = False,
+    cmd_vel: options.CmdVel = None,
+    script: options.Script = None,
+    set_: options.Overrides = [],
+    spawn: options.Spawns = [],
+    params_file: options.ParamsFiles = [],
+    resource_path: options.ResourcePaths = [],
+    package_path: options.PackagePaths = [],
+    plugin_path: options.PluginPaths = [],
+    xacro_arg: options.XacroArgs = [],
+    base: options.Base = "auto",
+    json_: options.Json = False,
     output: Annotated[
-        Path | None, typer.Option("--out", "-o", help="Writes the certificate, as JSON.", metavar="FILE.json")
+        Path | None, Option("--out", "-o", help="Writes the certificate, as JSON.", metavar="FILE.json")
     ] = None,
 ) -> int:
     """Runs a world in fresh processes with other surroundings, and shows that the bits are the same."""
@@ -80,7 +65,7 @@ def certify(
 
     check_writable(output)
     scenario = scenario_spec(
-        world, load_options(source_arguments(resource_path, package_path, xacro_arg, base), plugin_path, params_file),
+        world, load_options(resource_path, package_path, xacro_arg, base, plugin_path, params_file),
         duration=duration, seed=seed, topics=topic, skip=skip, overrides=set_, spawn=spawn, cmd_vel=cmd_vel,
         script=script, usual_duration=_SECONDS,
     )  # fmt: skip

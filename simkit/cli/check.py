@@ -8,21 +8,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
-import typer
+from typer import Option
 
+from simkit.cli.terminal import options
 from simkit.cli.terminal.output import print_diagnostics, report_errors, stdout_console
-from simkit.cli.terminal.shared_options import (
-    Base,
-    File,
-    Force,
-    Json,
-    PackagePaths,
-    PluginPaths,
-    ResourcePaths,
-    Strict,
-    XacroArgs,
-    source_arguments,
-)
 from simkit.diagnostics import Diagnostic
 from simkit.errors import InputError
 from simkit.writers.atomic_output import check_file
@@ -30,22 +19,22 @@ from simkit.writers.atomic_output import check_file
 
 @report_errors
 def check(
-    file: File,
-    json_: Json = False,
-    strict: Strict = False,
-    every: Annotated[bool, typer.Option("--all", help="Lists repeats one by one.")] = False,
+    file: options.File,
+    json_: options.Json = False,
+    strict: options.Strict = False,
+    every: Annotated[bool, Option("--all", help="Lists repeats one by one.")] = False,
     fix_inertia: Annotated[
-        bool, typer.Option("--fix-inertia", help="Shows new numbers for inertias that no solid has.")
+        bool, Option("--fix-inertia", help="Shows new numbers for inertias that no solid has.")
     ] = False,
     output: Annotated[
-        Path | None, typer.Option("--output", "-o", help="With --fix-inertia: the file with them.", metavar="OUT")
+        Path | None, Option("--output", "-o", help="With --fix-inertia: the file with them.", metavar="OUT")
     ] = None,
-    force: Force = False,
-    resource_path: ResourcePaths = [],
-    package_path: PackagePaths = [],
-    plugin_path: PluginPaths = [],
-    xacro_arg: XacroArgs = [],
-    base: Base = "auto",
+    force: options.Force = False,
+    resource_path: options.ResourcePaths = [],
+    package_path: options.PackagePaths = [],
+    plugin_path: options.PluginPaths = [],
+    xacro_arg: options.XacroArgs = [],
+    base: options.Base = "auto",
 ) -> int:
     """Prints every problem of a file, not only the first; runs nothing."""
     from simkit.build import check as check_file
@@ -54,9 +43,8 @@ def check(
         return _fix_inertia(file, output, force, resource_path, json_)
     if output is not None:
         raise InputError("SK-CLI-018 check writes a file only with --fix-inertia", "SK-CLI-018")
-    found = list(
-        check_file(file, plugin_paths=plugin_path, **source_arguments(resource_path, package_path, xacro_arg, base))
-    )
+    source = options.source_arguments(resource_path, package_path, xacro_arg, base)
+    found = list(check_file(file, plugin_paths=plugin_path, **source))
     if json_:
         stdout_console().file.write(json.dumps([d.as_dict() for d in found], indent=2) + "\n")
     else:

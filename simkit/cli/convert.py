@@ -5,20 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-import typer
+from typer import Option
 
+from simkit.cli.terminal import options
 from simkit.cli.terminal.output import print_diagnostics, print_status, report_errors, stdout_console
-from simkit.cli.terminal.shared_options import (
-    Base,
-    File,
-    Force,
-    PackagePaths,
-    ResourcePaths,
-    Strict,
-    Verbose,
-    XacroArgs,
-    source_arguments,
-)
 from simkit.diagnostics import Diagnostics
 from simkit.errors import InputError
 from simkit.run_spec import SourceOptions
@@ -27,10 +17,10 @@ from simkit.writers.atomic_output import check_target
 
 @report_errors
 def convert(
-    file: File,
+    file: options.File,
     output: Annotated[
         Path,
-        typer.Option(
+        Option(
             "--output",
             "-o",
             help="OUT.xml is MJCF, OUT.sdf (or .world) SDF; meshes and pictures go beside it.",
@@ -39,34 +29,34 @@ def convert(
         ),
     ],
     keep_uris: Annotated[
-        bool, typer.Option("--keep-uris", help="SDF: writes model:// and package:// as they are, copies nothing.")
+        bool, Option("--keep-uris", help="SDF: writes model:// and package:// as they are, copies nothing.")
     ] = False,
-    strict: Strict = False,
-    resource_path: ResourcePaths = [],
-    package_path: PackagePaths = [],
-    xacro_arg: XacroArgs = [],
-    base: Base = "auto",
-    force: Force = False,
-    verbose: Verbose = False,
+    strict: options.Strict = False,
+    resource_path: options.ResourcePaths = [],
+    package_path: options.PackagePaths = [],
+    xacro_arg: options.XacroArgs = [],
+    base: options.Base = "auto",
+    force: options.Force = False,
+    verbose: options.Verbose = False,
 ) -> int:
     """Writes a world or model as MJCF, to be opened by MuJoCo alone, or as SDF in one file."""
-    options = source_arguments(resource_path, package_path, xacro_arg, base)
+    source = options.source_arguments(resource_path, package_path, xacro_arg, base)
     if output.suffix.lower() in (".sdf", ".world"):
-        return _to_sdf(file, output, options, keep_uris=keep_uris, strict=strict, force=force, verbose=verbose)
+        return _to_sdf(file, output, source, keep_uris=keep_uris, strict=strict, force=force, verbose=verbose)
     if output.suffix.lower() not in (".xml", ".mjcf"):
         raise InputError(
             f"SK-CLI-018 --output {output}: found the ending {output.suffix!r}, allowed is .xml, .mjcf, .sdf or .world",
             "SK-CLI-018",
         )
-    return _to_mjcf(file, output, options, strict=strict, force=force, verbose=verbose)
+    return _to_mjcf(file, output, source, strict=strict, force=force, verbose=verbose)
 
 
-def _to_mjcf(file: str, output: Path, options: SourceOptions, *, strict: bool, force: bool, verbose: bool) -> int:
+def _to_mjcf(file: str, output: Path, source: SourceOptions, *, strict: bool, force: bool, verbose: bool) -> int:
     from simkit.build import load
     from simkit.writers.mjcf import write_mjcf
 
     check_target(output, f"{output.stem}_assets", overwrite=force)
-    with load(file, strict=strict, **options) as sim:
+    with load(file, strict=strict, **source) as sim:
         print_diagnostics(sim.diagnostics, verbose=verbose)
         written = write_mjcf(sim.engine.compiled.builder, output, overwrite=force)
     if written.balanced:
@@ -81,12 +71,12 @@ def _to_mjcf(file: str, output: Path, options: SourceOptions, *, strict: bool, f
 
 
 def _to_sdf(
-    file: str, output: Path, options: SourceOptions, *, keep_uris: bool, strict: bool, force: bool, verbose: bool
+    file: str, output: Path, source: SourceOptions, *, keep_uris: bool, strict: bool, force: bool, verbose: bool
 ) -> int:
     from simkit.build import read_scene
     from simkit.writers.asset_folder import write_sdf
 
-    scene, found = read_scene(file, missing_meshes=keep_uris, **options)
+    scene, found = read_scene(file, missing_meshes=keep_uris, **source)
     lost = Diagnostics(found)
     lost.raise_if_errors(strict)
     written = write_sdf(scene, output, lost, keep_uris=keep_uris, overwrite=force)

@@ -6,20 +6,18 @@ import json
 from dataclasses import asdict
 from typing import Annotated
 
-import typer
+from typer import Argument
 
+from simkit.cli.terminal import options
 from simkit.cli.terminal.output import report_errors, stdout_console
-from simkit.cli.terminal.shared_options import Json
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
 
 
 @report_errors
 def explain(
-    code: Annotated[
-        str, typer.Argument(help="A code such as SK-SDF-004, or the beginning of several.", show_default=False)
-    ],
-    json_: Json = False,
+    code: Annotated[str, Argument(help="A code such as SK-SDF-004, or the beginning of several.", show_default=False)],
+    json_: options.Json = False,
 ) -> int:
     """Says what a code means, what helps, and shows an input that brings it about."""
     from simkit.cli.diagnostic_catalogue import catalogue, code_text

@@ -12,8 +12,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from typer import Argument, Option
 
 from simkit.cli.run_options import load_options, scenario_spec
+from simkit.cli.terminal import options
 from simkit.cli.terminal.output import (
     JsonObject,
     JsonValue,
@@ -22,22 +24,6 @@ from simkit.cli.terminal.output import (
     print_status,
     report_errors,
     stdout_console,
-)
-from simkit.cli.terminal.shared_options import (
-    Base,
-    CmdVel,
-    Force,
-    Json,
-    Overrides,
-    PackagePaths,
-    ParamsFiles,
-    PluginPaths,
-    ResourcePaths,
-    Script,
-    Seed,
-    Spawns,
-    XacroArgs,
-    source_arguments,
 )
 from simkit.errors import InputError, RegressionError
 from simkit.testing.golden.parallel_check import CheckResult
@@ -218,40 +204,36 @@ def _group() -> None:
 @golden.command()
 @report_errors
 def record(
-    world: Annotated[
-        str, typer.Argument(help="A scenario (.yaml, .py), a world, or a bare name.", metavar="WORLD|SCENARIO")
-    ],
-    out_: Annotated[Path, typer.Option("--out", "-o", help="The folder that it goes into.", metavar="DIR")],
+    world: Annotated[str, Argument(help="A scenario (.yaml, .py), a world, or a bare name.", metavar="WORLD|SCENARIO")],
+    out_: Annotated[Path, Option("--out", "-o", help="The folder that it goes into.", metavar="DIR")],
     duration: Annotated[
-        float | None, typer.Option(help="Simulated seconds; 10 where nothing says it.", metavar="S", min=0)
+        float | None, Option(help="Simulated seconds; 10 where nothing says it.", metavar="S", min=0)
     ] = None,
-    seed: Seed = None,
-    topic: Annotated[
-        list[str], typer.Option(help="Keeps only topics of this pattern; repeatable.", metavar="PATTERN")
-    ] = [],
+    seed: options.Seed = None,
+    topic: Annotated[list[str], Option(help="Keeps only topics of this pattern; repeatable.", metavar="PATTERN")] = [],
     skip: Annotated[
-        list[str], typer.Option(help="Keeps all but topics of this pattern; repeatable.", metavar="PATTERN")
+        list[str], Option(help="Keeps all but topics of this pattern; repeatable.", metavar="PATTERN")
     ] = [],
-    set_: Overrides = [],
-    spawn: Spawns = [],
-    params_file: ParamsFiles = [],
-    cmd_vel: CmdVel = None,
-    script: Script = None,
-    resource_path: ResourcePaths = [],
-    package_path: PackagePaths = [],
-    plugin_path: PluginPaths = [],
-    xacro_arg: XacroArgs = [],
-    base: Base = "auto",
-    force: Force = False,
+    set_: options.Overrides = [],
+    spawn: options.Spawns = [],
+    params_file: options.ParamsFiles = [],
+    cmd_vel: options.CmdVel = None,
+    script: options.Script = None,
+    resource_path: options.ResourcePaths = [],
+    package_path: options.PackagePaths = [],
+    plugin_path: options.PluginPaths = [],
+    xacro_arg: options.XacroArgs = [],
+    base: options.Base = "auto",
+    force: options.Force = False,
 ) -> int:
     """Runs a scenario and keeps what it gives as a golden run."""
-    options = load_options(source_arguments(resource_path, package_path, xacro_arg, base), plugin_path, params_file)
+    given = load_options(resource_path, package_path, xacro_arg, base, plugin_path, params_file)
     spec = scenario_spec(
-        world, options, duration=duration, seed=seed, topics=topic, skip=skip, overrides=set_, spawn=spawn,
+        world, given, duration=duration, seed=seed, topics=topic, skip=skip, overrides=set_, spawn=spawn,
         cmd_vel=cmd_vel, script=script,
     )  # fmt: skip
     is_changed = duration is not None or seed is not None
-    if is_changed or any((topic, skip, set_, spawn, cmd_vel, script, options)):
+    if is_changed or any((topic, skip, set_, spawn, cmd_vel, script, given)):
         spec = replace(spec, file=None)  # what differs from the file is kept in the golden run itself
     found = record_golden(spec, out_, force=force)
     if found.simulation is not None:
@@ -270,26 +252,23 @@ def record(
 @report_errors
 def check(
     folders: Annotated[
-        list[Path], typer.Argument(help="Golden runs, or folders that hold some.", metavar="DIR...", show_default=False)
+        list[Path], Argument(help="Golden runs, or folders that hold some.", metavar="DIR...", show_default=False)
     ],
     bless: Annotated[
-        str | None,
-        typer.Option(help="Makes what differs golden, and keeps why that is right.", metavar="REASON"),
+        str | None, Option(help="Makes what differs golden, and keeps why that is right.", metavar="REASON")
     ] = None,
     bless_other_renderer: Annotated[
-        bool, typer.Option("--bless-other-renderer", help="Also where pictures were drawn by another renderer.")
+        bool, Option("--bless-other-renderer", help="Also where pictures were drawn by another renderer.")
     ] = False,
     html: Annotated[
-        Path | None, typer.Option(help="Writes the report as one page with plots and pictures.", metavar="OUT.html")
+        Path | None, Option(help="Writes the report as one page with plots and pictures.", metavar="OUT.html")
     ] = None,
-    junit: Annotated[Path | None, typer.Option(help="Writes JUnit XML.", metavar="OUT.xml")] = None,
-    jobs: Annotated[int, typer.Option("--jobs", "-n", help="So many at once.", metavar="N", min=1)] = 1,
-    causes: Annotated[bool, typer.Option("--causes/--no-causes", help="Looks for where differences come from.")] = True,
-    budget: Annotated[
-        float, typer.Option(help="Wall time that this may take for one of them.", metavar="S", min=0)
-    ] = 60.0,
-    json_: Json = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Says nothing of what passes.")] = False,
+    junit: Annotated[Path | None, Option(help="Writes JUnit XML.", metavar="OUT.xml")] = None,
+    jobs: Annotated[int, Option("--jobs", "-n", help="So many at once.", metavar="N", min=1)] = 1,
+    causes: Annotated[bool, Option("--causes/--no-causes", help="Looks for where differences come from.")] = True,
+    budget: Annotated[float, Option(help="Wall time that this may take for one of them.", metavar="S", min=0)] = 60.0,
+    json_: options.Json = False,
+    quiet: Annotated[bool, Option("--quiet", "-q", help="Says nothing of what passes.")] = False,
 ) -> int:
     """Runs golden runs again and compares; says what differs first, and why. Exit code 5 where something does."""
     from simkit.testing.golden.parallel_check import CheckOptions, check_goldens

@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-import typer
+from typer import Argument, Option
 
+from simkit.cli.terminal import options
 from simkit.cli.terminal.output import print_json, report_errors, stdout_console
-from simkit.cli.terminal.shared_options import Json
 from simkit.errors import InputError
 from simkit.writers.atomic_output import check_writable
 
@@ -17,19 +17,15 @@ _FAILED = 5
 
 @report_errors
 def grade(
-    exercise: Annotated[
-        Path, typer.Argument(help="The exercise's YAML file.", metavar="EXERCISE.yaml", show_default=False)
-    ],
+    exercise: Annotated[Path, Argument(help="The exercise's YAML file.", metavar="EXERCISE.yaml", show_default=False)],
     hand_ins: Annotated[
         list[Path] | None,
-        typer.Argument(help="Plugins that were handed in; that of the exercise where not given.", metavar="PLUGIN.py"),
+        Argument(help="Plugins that were handed in; that of the exercise where not given.", metavar="PLUGIN.py"),
     ] = None,
-    junit: Annotated[Path | None, typer.Option(help="Writes the results for CI.", metavar="OUT.xml")] = None,
-    pictures: Annotated[
-        Path | None, typer.Option(help="Draws the path of each run into a folder.", metavar="DIR")
-    ] = None,
-    jobs: Annotated[int, typer.Option(help="Processes at a time.", metavar="N", min=1, max=256)] = 1,
-    json_: Json = False,
+    junit: Annotated[Path | None, Option(help="Writes the results for CI.", metavar="OUT.xml")] = None,
+    pictures: Annotated[Path | None, Option(help="Draws the path of each run into a folder.", metavar="DIR")] = None,
+    jobs: Annotated[int, Option(help="Processes at a time.", metavar="N", min=1, max=256)] = 1,
+    json_: options.Json = False,
 ) -> int:
     """Runs an exercise with plugins that were handed in, and says what each got and why."""
     from simkit.testing.scenarios.exercise import read_exercise

@@ -5,31 +5,23 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 
+from simkit.cli.terminal import options
 from simkit.cli.terminal.output import JsonObject, report_errors, stdout_console
-from simkit.cli.terminal.shared_options import (
-    Base,
-    File,
-    Json,
-    PackagePaths,
-    ResourcePaths,
-    XacroArgs,
-    source_arguments,
-)
 
 
 @report_errors
 def inspect(
-    file: File,
-    json_: Json = False,
-    resource_path: ResourcePaths = [],
-    package_path: PackagePaths = [],
-    xacro_arg: XacroArgs = [],
-    base: Base = "auto",
+    file: options.File,
+    json_: options.Json = False,
+    resource_path: options.ResourcePaths = [],
+    package_path: options.PackagePaths = [],
+    xacro_arg: options.XacroArgs = [],
+    base: options.Base = "auto",
 ) -> int:
     """Shows what a file means once it is resolved."""
     from simkit.build import describe
 
-    found = describe(file, **source_arguments(resource_path, package_path, xacro_arg, base))
+    found = describe(file, **options.source_arguments(resource_path, package_path, xacro_arg, base))
     if json_:
         stdout_console().file.write(json.dumps(found, indent=2) + "\n")
     else:

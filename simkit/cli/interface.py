@@ -6,18 +6,17 @@ import sys
 from typing import Annotated
 
 import typer
+from typer import Argument, Option
 
-from simkit.cli.terminal import completion
-from simkit.cli.terminal.live_options import Bag
+from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.output import not_found_error, print_json, print_line, report_errors_quietly
-from simkit.cli.terminal.shared_options import Json
 from simkit.errors import InputError, MessageError
 
 _KINDS = (("msg", "Messages"), ("srv", "Services"), ("action", "Actions"))
 interface = typer.Typer(help="Types of messages, services and actions.", no_args_is_help=True)
 TypeName = Annotated[
     str,
-    typer.Argument(
+    Argument(
         help="Such as geometry_msgs/msg/Twist; - reads it from standard input.",
         metavar="TYPE",
         show_default=False,
@@ -34,10 +33,10 @@ def _group() -> None:
 @interface.command("list")
 @report_errors_quietly
 def list_(
-    only_msgs: Annotated[bool, typer.Option("--only-msgs", "-m", help="Message types only.")] = False,
-    only_srvs: Annotated[bool, typer.Option("--only-srvs", "-s", help="Service types only.")] = False,
-    only_actions: Annotated[bool, typer.Option("--only-actions", "-a", help="Action types only.")] = False,
-    json_: Json = False,
+    only_msgs: Annotated[bool, Option("--only-msgs", "-m", help="Message types only.")] = False,
+    only_srvs: Annotated[bool, Option("--only-srvs", "-s", help="Service types only.")] = False,
+    only_actions: Annotated[bool, Option("--only-actions", "-a", help="Action types only.")] = False,
+    json_: options.Json = False,
 ) -> int:
     """Lists the types that simkit knows."""
     from simkit.msgs.interface_definitions import interface_names
@@ -56,7 +55,7 @@ def list_(
 
 @interface.command()
 @report_errors_quietly
-def packages(json_: Json = False) -> int:
+def packages(json_: options.Json = False) -> int:
     """Lists the packages that the types are of."""
     from simkit.msgs.interface_definitions import interface_names
 
@@ -71,7 +70,7 @@ def packages(json_: Json = False) -> int:
 
 @interface.command()
 @report_errors_quietly
-def package(name: Annotated[str, typer.Argument(metavar="PACKAGE", show_default=False)], json_: Json = False) -> int:
+def package(name: Annotated[str, Argument(metavar="PACKAGE", show_default=False)], json_: options.Json = False) -> int:
     """Lists the types of a package."""
     from simkit.msgs.interface_definitions import interface_names
 
@@ -91,10 +90,10 @@ def package(name: Annotated[str, typer.Argument(metavar="PACKAGE", show_default=
 @report_errors_quietly
 def show(
     type_: TypeName,
-    all_comments: Annotated[bool, typer.Option("--all-comments", help="With comments, those of parts too.")] = False,
-    no_comments: Annotated[bool, typer.Option("--no-comments", help="Without comments.")] = False,
-    bag: Bag = None,
-    json_: Json = False,
+    all_comments: Annotated[bool, Option("--all-comments", help="With comments, those of parts too.")] = False,
+    no_comments: Annotated[bool, Option("--no-comments", help="Without comments.")] = False,
+    bag: options.Bag = None,
+    json_: options.Json = False,
 ) -> int:
     """Prints the definition of a type, with those of its parts below."""
     from simkit.msgs.interface_definitions import interface_text
@@ -129,8 +128,8 @@ def _of_bag(name: str, bag: object, *, comments: bool, all_comments: bool) -> st
 @report_errors_quietly
 def proto(
     type_: TypeName,
-    no_quotes: Annotated[bool, typer.Option("--no-quotes", help="Without quotes around it.")] = False,
-    json_: Json = False,
+    no_quotes: Annotated[bool, Option("--no-quotes", help="Without quotes around it.")] = False,
+    json_: options.Json = False,
 ) -> int:
     """Prints a message with every field, to be filled in."""
     from simkit.msgs.interface_definitions import prototype

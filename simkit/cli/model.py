@@ -6,11 +6,10 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from typer import Argument, Option
 
-from simkit.cli.terminal import completion
-from simkit.cli.terminal.live_options import Sim
+from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.output import JsonObject, not_found_error, print_json, print_line, report_errors_quietly
-from simkit.cli.terminal.shared_options import Json
 from simkit.cli.terminal.topic_sources import connect_to_simulation, connection_name
 
 if TYPE_CHECKING:
@@ -19,7 +18,7 @@ if TYPE_CHECKING:
 model = typer.Typer(help="Models of a running simulation.", no_args_is_help=True)
 Model = Annotated[
     str,
-    typer.Argument(
+    Argument(
         help="Name of a model; nested ones with ::.",
         metavar="MODEL",
         show_default=False,
@@ -36,9 +35,9 @@ def _group() -> None:
 @model.command("list")
 @report_errors_quietly
 def list_(
-    verbose: Annotated[bool, typer.Option("--verbose", "-v", help="With poses, links and joints.")] = False,
-    sim: Sim = None,
-    json_: Json = False,
+    verbose: Annotated[bool, Option("--verbose", "-v", help="With poses, links and joints.")] = False,
+    sim: options.Sim = None,
+    json_: options.Json = False,
 ) -> int:
     """Lists the models."""
     with connect_to_simulation(sim) as client:
@@ -67,11 +66,11 @@ def pose(
     model: Model,
     link: Annotated[
         str | None,
-        typer.Argument(help="One of its links.", metavar="[LINK]", show_default=False, autocompletion=completion.links),
+        Argument(help="One of its links.", metavar="[LINK]", show_default=False, autocompletion=completion.links),
     ] = None,
-    links: Annotated[bool, typer.Option("--links", "-l", help="All its links too.")] = False,
-    sim: Sim = None,
-    json_: Json = False,
+    links: Annotated[bool, Option("--links", "-l", help="All its links too.")] = False,
+    sim: options.Sim = None,
+    json_: options.Json = False,
 ) -> int:
     """Prints a pose in the world: x y z [m], roll pitch yaw [rad]."""
     with connect_to_simulation(sim) as client:
@@ -105,15 +104,15 @@ def joint(
     model: Model,
     joint: Annotated[
         str | None,
-        typer.Argument(
+        Argument(
             help="One of its joints; all where not given.",
             metavar="[JOINT]",
             show_default=False,
             autocompletion=completion.joints,
         ),
     ] = None,
-    sim: Sim = None,
-    json_: Json = False,
+    sim: options.Sim = None,
+    json_: options.Json = False,
 ) -> int:
     """Prints the state of joints: position, velocity, effort [rad, rad/s, N·m or m, m/s, N]."""
     with connect_to_simulation(sim) as client:

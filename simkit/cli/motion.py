@@ -10,19 +10,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from typer import Argument, Option
 
+from simkit.cli.terminal import options
 from simkit.cli.terminal.output import print_diagnostics, print_status, report_errors, stdout_console
-from simkit.cli.terminal.shared_options import (
-    Force,
-    Json,
-    PackagePaths,
-    ParamsFiles,
-    PluginPaths,
-    ResourcePaths,
-    Verbose,
-    XacroArgs,
-    source_arguments,
-)
 from simkit.diagnostics import Diagnostics
 from simkit.errors import InputError, RenderError
 
@@ -35,9 +26,9 @@ motion = typer.Typer(help="Lists the motions that a robot knows by name, and pla
 ROBOT = "tiago"
 Motions = Annotated[
     list[Path],
-    typer.Option("--motions", help="One more file of motions, play_motion's or play_motion2's.", metavar="FILE.yaml"),
+    Option("--motions", help="One more file of motions, play_motion's or play_motion2's.", metavar="FILE.yaml"),
 ]
-OfModel = Annotated[str | None, typer.Option("--model", help="Which robot, where several play.", metavar="NAME")]
+OfModel = Annotated[str | None, Option("--model", help="Which robot, where several play.", metavar="NAME")]
 
 
 @motion.callback()
@@ -48,16 +39,14 @@ def _group() -> None:
 @motion.command("list")
 @report_errors
 def list_motions(
-    file: Annotated[
-        str, typer.Argument(help="A robot, a world with one, or a file of motions.", metavar="[FILE]")
-    ] = ROBOT,
+    file: Annotated[str, Argument(help="A robot, a world with one, or a file of motions.", metavar="[FILE]")] = ROBOT,
     motions: Motions = [],
     model: OfModel = None,
-    json_: Json = False,
-    resource_path: ResourcePaths = [],
-    package_path: PackagePaths = [],
-    plugin_path: PluginPaths = [],
-    xacro_arg: XacroArgs = [],
+    json_: options.Json = False,
+    resource_path: options.ResourcePaths = [],
+    package_path: options.PackagePaths = [],
+    plugin_path: options.PluginPaths = [],
+    xacro_arg: options.XacroArgs = [],
 ) -> int:
     """Lists motions: joints, points, how long each takes, and what it is for."""
     if Path(file).suffix.lower() in (".yaml", ".yml"):
@@ -65,8 +54,8 @@ def list_motions(
     else:
         from simkit.plugins.play_motion.motion_session import choose_player, motion_players
 
-        options = source_arguments(resource_path, package_path, xacro_arg)
-        with _open_world(file, None, motions, 0, plugin_path, options, verbose=False) as sim:
+        source = options.source_arguments(resource_path, package_path, xacro_arg)
+        with _open_world(file, None, motions, 0, plugin_path, source, verbose=False) as sim:
             found = list(choose_player(motion_players(sim), model).motions.values())
     if json_:
         shown = [{**one.as_message(), "duration": one.duration, "file": one.where.file} for one in found]
@@ -92,33 +81,32 @@ def list_motions(
 @report_errors
 def play(
     names: Annotated[
-        list[str], typer.Argument(help="Motions, played one after another.", metavar="MOTION...", show_default=False)
+        list[str], Argument(help="Motions, played one after another.", metavar="MOTION...", show_default=False)
     ],
     world: Annotated[
-        str | None, typer.Option(help="Where: a file or a bare name; level ground otherwise.", metavar="WORLD")
+        str | None, Option(help="Where: a file or a bare name; level ground otherwise.", metavar="WORLD")
     ] = None,
     robot: Annotated[
-        str | None,
-        typer.Option(help=f"Who: a file or a bare name; {ROBOT} where no world is given.", metavar="MODEL"),
+        str | None, Option(help=f"Who: a file or a bare name; {ROBOT} where no world is given.", metavar="MODEL")
     ] = None,
     motions: Motions = [],
     model: OfModel = None,
     skip_planning: Annotated[
-        bool, typer.Option("--skip-planning", help="Does not look whether anything is in the way.")
+        bool, Option("--skip-planning", help="Does not look whether anything is in the way.")
     ] = False,
-    seed: Annotated[int, typer.Option(help="Seed of all noise.", metavar="N", min=0)] = 0,
+    seed: Annotated[int, Option(help="Seed of all noise.", metavar="N", min=0)] = 0,
     record: Annotated[
-        Path | None, typer.Option(help="Writes all topics: x.mcap one file, else a rosbag2 folder.", metavar="OUT")
+        Path | None, Option(help="Writes all topics: x.mcap one file, else a rosbag2 folder.", metavar="OUT")
     ] = None,
-    force: Force = False,
-    picture: Annotated[Path | None, typer.Option(help="Draws the scene at the end.", metavar="OUT.png")] = None,
-    json_: Json = False,
-    verbose: Verbose = False,
-    resource_path: ResourcePaths = [],
-    package_path: PackagePaths = [],
-    plugin_path: PluginPaths = [],
-    xacro_arg: XacroArgs = [],
-    params_file: ParamsFiles = [],
+    force: options.Force = False,
+    picture: Annotated[Path | None, Option(help="Draws the scene at the end.", metavar="OUT.png")] = None,
+    json_: options.Json = False,
+    verbose: options.Verbose = False,
+    resource_path: options.ResourcePaths = [],
+    package_path: options.PackagePaths = [],
+    plugin_path: options.PluginPaths = [],
+    xacro_arg: options.XacroArgs = [],
+    params_file: options.ParamsFiles = [],
 ) -> int:
     """Plays motions: the way to the first point no faster than is safe, then as the file has it."""
     from simkit.plugins.play_motion.motion_session import choose_player, motion_players, play_motions
@@ -129,10 +117,10 @@ def play(
         pictures.check_target(picture)
     if record is not None:
         recorder.check_target(record, overwrite=force)
-    options: Any = {**source_arguments(resource_path, package_path, xacro_arg), "params_files": params_file}
+    source: Any = {**options.source_arguments(resource_path, package_path, xacro_arg), "params_files": params_file}
     shown = []
     with ExitStack() as stack:
-        sim = stack.enter_context(_open_world(world, robot, motions, seed, plugin_path, options, verbose=verbose))
+        sim = stack.enter_context(_open_world(world, robot, motions, seed, plugin_path, source, verbose=verbose))
         if record is not None:
             stack.enter_context(recorder.Recorder(sim, record, overwrite=force))
         for played in play_motions(sim, choose_player(motion_players(sim), model), names, skip_planning=skip_planning):
@@ -154,7 +142,7 @@ def _open_world(
     motions: Sequence[Path],
     seed: int,
     plugin_paths: Sequence[Path],
-    options: Any,
+    source: Any,
     *,
     verbose: bool,
 ) -> Simulation:
@@ -167,8 +155,8 @@ def _open_world(
     text = world
     if text is None:
         text, folders = empty_world_with(robot or ROBOT)
-        options = {**options, "resource_paths": [*options["resource_paths"], *folders]}
-    sim = load(text, seed=seed, plugin_paths=plugin_paths, **options)
+        source = {**source, "resource_paths": [*source["resource_paths"], *folders]}
+    sim = load(text, seed=seed, plugin_paths=plugin_paths, **source)
     spawned = _spawn_robot(sim, robot) if world is not None and robot is not None else None
     there = motion_players(sim)
     for player in there.values():
@@ -182,7 +170,7 @@ def _open_world(
             message = f"SK-MOTION-010 --motions is for the one robot that a controller manager moves; {what}"
             raise InputError(message, "SK-MOTION-010")
         made = PlayMotion(motions=[str(path.resolve()) for path in motions])
-        sim = load(text, seed=seed, plugin_paths=plugin_paths, plugins=[(hosts[0], made)], **options)
+        sim = load(text, seed=seed, plugin_paths=plugin_paths, plugins=[(hosts[0], made)], **source)
     print_diagnostics(sim.diagnostics, verbose=verbose)
     return sim
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Annotated
 
 import typer
+from typer import Argument, Option
 
-from simkit.cli.terminal import completion
-from simkit.cli.terminal.live_options import Ros2Command, Sim
+from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.output import (
     JsonObject,
     absolute_name,
@@ -18,11 +18,10 @@ from simkit.cli.terminal.output import (
     print_names,
     report_errors_quietly,
 )
-from simkit.cli.terminal.shared_options import Json
 from simkit.cli.terminal.topic_sources import connect_to_simulation, connection_name, node_names
 
 node = typer.Typer(help="Nodes of a running simulation: its plugins, sensors and clients.", no_args_is_help=True)
-Hidden = Annotated[bool, typer.Option("--all", "-a", "--include-hidden", help="Shows hidden ones too.")]
+Hidden = Annotated[bool, Option("--all", "-a", "--include-hidden", help="Shows hidden ones too.")]
 
 
 @node.callback()
@@ -30,13 +29,13 @@ def _group() -> None:
     """Nodes of a running simulation: its plugins, sensors and clients."""
 
 
-@node.command("list", cls=Ros2Command)
+@node.command("list", cls=options.Ros2Command)
 @report_errors_quietly
 def list_(
     hidden: Hidden = False,
-    count: Annotated[bool, typer.Option("--count-nodes", "-c", help="Says only how many.")] = False,
-    sim: Sim = None,
-    json_: Json = False,
+    count: Annotated[bool, Option("--count-nodes", "-c", help="Says only how many.")] = False,
+    sim: options.Sim = None,
+    json_: options.Json = False,
 ) -> int:
     """Lists the nodes."""
     with connect_to_simulation(sim) as client:
@@ -45,16 +44,15 @@ def list_(
     return 0
 
 
-@node.command(cls=Ros2Command)
+@node.command(cls=options.Ros2Command)
 @report_errors_quietly
 def info(
     node: Annotated[
-        str,
-        typer.Argument(help="Name of a node.", metavar="NODE", show_default=False, autocompletion=completion.all_nodes),
+        str, Argument(help="Name of a node.", metavar="NODE", show_default=False, autocompletion=completion.all_nodes)
     ],
     hidden: Hidden = False,
-    sim: Sim = None,
-    json_: Json = False,
+    sim: options.Sim = None,
+    json_: options.Json = False,
 ) -> int:
     """Says what a node publishes, takes and offers."""
     with connect_to_simulation(sim) as client:

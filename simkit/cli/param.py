@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from typer import Argument, Option
 
-from simkit.cli.terminal import completion
-from simkit.cli.terminal.live_options import Ros2Command, Sim
+from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.message_arguments import compile_pattern
 from simkit.cli.terminal.output import (
     JsonObject,
@@ -20,7 +20,6 @@ from simkit.cli.terminal.output import (
     report_errors_quietly,
 )
 from simkit.cli.terminal.parameter_values import KINDS, parse_parameter_value, plain_value, read_parameter_file
-from simkit.cli.terminal.shared_options import Json
 from simkit.cli.terminal.topic_sources import LIST_PARAMETERS, connect_to_simulation, connection_name, parameter_nodes
 from simkit.errors import InputError
 
@@ -30,19 +29,14 @@ if TYPE_CHECKING:
 
 param = typer.Typer(help="Live parameters of a running simulation.", no_args_is_help=True)
 Node = Annotated[
-    str, typer.Argument(help="Name of a node.", metavar="NODE", show_default=False, autocompletion=completion.nodes)
+    str, Argument(help="Name of a node.", metavar="NODE", show_default=False, autocompletion=completion.nodes)
 ]
 Names = Annotated[
     list[str],
-    typer.Argument(
-        help="Names of parameters.", metavar="NAME...", show_default=False, autocompletion=completion.parameters
-    ),
+    Argument(help="Names of parameters.", metavar="NAME...", show_default=False, autocompletion=completion.parameters),
 ]
 Name = Annotated[
-    str,
-    typer.Argument(
-        help="Name of a parameter.", metavar="NAME", show_default=False, autocompletion=completion.parameters
-    ),
+    str, Argument(help="Name of a parameter.", metavar="NAME", show_default=False, autocompletion=completion.parameters)
 ]
 
 
@@ -51,22 +45,22 @@ def _group() -> None:
     """Live parameters of a running simulation."""
 
 
-@param.command("list", cls=Ros2Command)
+@param.command("list", cls=options.Ros2Command)
 @report_errors_quietly
 def list_(
     node: Annotated[
         str | None,
-        typer.Argument(help="Only of this one.", metavar="[NODE]", autocompletion=completion.nodes, show_default=False),
+        Argument(help="Only of this one.", metavar="[NODE]", autocompletion=completion.nodes, show_default=False),
     ] = None,
-    param_type: Annotated[bool, typer.Option("--param-type", help="Shows the types too.")] = False,
+    param_type: Annotated[bool, Option("--param-type", help="Shows the types too.")] = False,
     prefix: Annotated[
-        list[str], typer.Option("--param-prefixes", help="Only names that begin so; repeatable.", metavar="PREFIX")
+        list[str], Option("--param-prefixes", help="Only names that begin so; repeatable.", metavar="PREFIX")
     ] = [],
     filter_: Annotated[
-        str | None, typer.Option("--filter", help="Only names this regular expression fits.", metavar="REGEX")
+        str | None, Option("--filter", help="Only names this regular expression fits.", metavar="REGEX")
     ] = None,
-    sim: Sim = None,
-    json_: Json = False,
+    sim: options.Sim = None,
+    json_: options.Json = False,
 ) -> int:
     """Lists nodes with parameters and these."""
     wanted = compile_pattern(filter_, "--filter")
@@ -88,14 +82,14 @@ def list_(
     return 0
 
 
-@param.command(cls=Ros2Command)
+@param.command(cls=options.Ros2Command)
 @report_errors_quietly
 def get(
     node: Node,
     name: Name,
-    hide_type: Annotated[bool, typer.Option("--hide-type", help="The value alone.")] = False,
-    sim: Sim = None,
-    json_: Json = False,
+    hide_type: Annotated[bool, Option("--hide-type", help="The value alone.")] = False,
+    sim: options.Sim = None,
+    json_: options.Json = False,
 ) -> int:
     """Prints the value of a parameter."""
     with connect_to_simulation(sim) as client:
@@ -118,22 +112,22 @@ def _value_text(value: object, kind: str) -> str:
     return f"array('{code}', {value!r})" if code and value else f"array('{code}')" if code else str(value)
 
 
-@param.command("set", cls=Ros2Command, context_settings={"ignore_unknown_options": True})
+@param.command("set", cls=options.Ros2Command, context_settings={"ignore_unknown_options": True})
 @report_errors_quietly
 def set_(
     node: Node,
     pairs: Annotated[
         list[str],
-        typer.Argument(
+        Argument(
             help="Names and values: p_gain 12.5.",
             metavar="NAME VALUE...",
             show_default=False,
             autocompletion=completion.parameters,
         ),
     ],
-    atomic: Annotated[bool, typer.Option("--atomic", help="All of them or none.")] = False,
-    sim: Sim = None,
-    json_: Json = False,
+    atomic: Annotated[bool, Option("--atomic", help="All of them or none.")] = False,
+    sim: options.Sim = None,
+    json_: options.Json = False,
 ) -> int:
     """Changes parameters; exit code 2 where one is refused."""
     if len(pairs) % 2:
@@ -163,9 +157,9 @@ def _set_values(client: Client, node: str, values: list[tuple[str, JsonObject]],
     return 0 if all(r.successful for r in results) else 2
 
 
-@param.command(cls=Ros2Command)
+@param.command(cls=options.Ros2Command)
 @report_errors_quietly
-def delete(node: Node, name: Name, sim: Sim = None, json_: Json = False) -> int:
+def delete(node: Node, name: Name, sim: options.Sim = None, json_: options.Json = False) -> int:
     """Deletes a parameter, which no node here allows."""
     with connect_to_simulation(sim) as client:
         full = _resolve_node(client, node)
@@ -178,9 +172,9 @@ def delete(node: Node, name: Name, sim: Sim = None, json_: Json = False) -> int:
     return 2
 
 
-@param.command(cls=Ros2Command)
+@param.command(cls=options.Ros2Command)
 @report_errors_quietly
-def describe(node: Node, names: Names, sim: Sim = None, json_: Json = False) -> int:
+def describe(node: Node, names: Names, sim: options.Sim = None, json_: options.Json = False) -> int:
     """Says what parameters are, and what they take."""
     from simkit.msgs.message_text import message_to_dict
 
@@ -207,9 +201,9 @@ def describe(node: Node, names: Names, sim: Sim = None, json_: Json = False) -> 
     return 0
 
 
-@param.command(cls=Ros2Command)
+@param.command(cls=options.Ros2Command)
 @report_errors_quietly
-def dump(node: Node, sim: Sim = None, json_: Json = False) -> int:
+def dump(node: Node, sim: options.Sim = None, json_: options.Json = False) -> int:
     """Prints all parameters of a node as a parameter file."""
     from simkit.msgs.message_text import to_yaml as as_yaml
 
@@ -232,16 +226,14 @@ def dump(node: Node, sim: Sim = None, json_: Json = False) -> int:
     return 0
 
 
-@param.command(cls=Ros2Command)
+@param.command(cls=options.Ros2Command)
 @report_errors_quietly
 def load(
     node: Node,
-    file: Annotated[Path, typer.Argument(help="A parameter file.", metavar="FILE.yaml", show_default=False)],
-    no_wildcard: Annotated[
-        bool, typer.Option("--no-use-wildcard", help="Leaves out what stands for all: /**.")
-    ] = False,
-    sim: Sim = None,
-    json_: Json = False,
+    file: Annotated[Path, Argument(help="A parameter file.", metavar="FILE.yaml", show_default=False)],
+    no_wildcard: Annotated[bool, Option("--no-use-wildcard", help="Leaves out what stands for all: /**.")] = False,
+    sim: options.Sim = None,
+    json_: options.Json = False,
 ) -> int:
     """Takes the values of a parameter file for a node; exit code 2 where one is refused."""
     with connect_to_simulation(sim) as client:

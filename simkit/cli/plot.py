@@ -6,7 +6,7 @@ from functools import partial
 from pathlib import Path
 from typing import Annotated
 
-import typer
+from typer import Argument, Option
 
 from simkit.cli.plot_sources import (
     Against,
@@ -19,27 +19,15 @@ from simkit.cli.plot_sources import (
     split_sources_and_fields,
 )
 from simkit.cli.run_options import load_options, scenario_spec
+from simkit.cli.terminal import options
 from simkit.cli.terminal.output import report_errors_quietly
-from simkit.cli.terminal.shared_options import (
-    Base,
-    CmdVel,
-    Json,
-    Overrides,
-    PackagePaths,
-    PluginPaths,
-    ResourcePaths,
-    Script,
-    Seed,
-    XacroArgs,
-    source_arguments,
-)
 
 
 @report_errors_quietly
 def plot(
     words: Annotated[
         list[str],
-        typer.Argument(
+        Argument(
             help="A world, scenario or bag, or several; then fields: /odom.pose.pose.position.x, /scan.ranges[0].",
             metavar="WORLD-or-BAG... FIELD...",
             show_default=False,
@@ -51,24 +39,23 @@ def plot(
     end: End = None,
     title: Title = "",
     duration: Annotated[
-        float | None,
-        typer.Option(help="Simulated seconds that a world is run for; 10 where not given.", metavar="S", min=0),
+        float | None, Option(help="Simulated seconds that a world is run for; 10 where not given.", metavar="S", min=0)
     ] = None,
-    seed: Seed = None,
-    set_: Overrides = [],
-    cmd_vel: CmdVel = None,
-    script: Script = None,
-    resource_path: ResourcePaths = [],
-    package_path: PackagePaths = [],
-    plugin_path: PluginPaths = [],
-    xacro_arg: XacroArgs = [],
-    base: Base = "auto",
-    json_: Json = False,
+    seed: options.Seed = None,
+    set_: options.Overrides = [],
+    cmd_vel: options.CmdVel = None,
+    script: options.Script = None,
+    resource_path: options.ResourcePaths = [],
+    package_path: options.PackagePaths = [],
+    plugin_path: options.PluginPaths = [],
+    xacro_arg: options.XacroArgs = [],
+    base: options.Base = "auto",
+    json_: options.Json = False,
 ) -> int:
     """Draws fields of topics over time: of bags, and of worlds that are run for it."""
     sources, fields = split_sources_and_fields(words)
-    options = load_options(source_arguments(resource_path, package_path, xacro_arg, base), plugin_path)
+    given = load_options(resource_path, package_path, xacro_arg, base, plugin_path)
     run = partial(
-        scenario_spec, options=options, duration=duration, seed=seed, overrides=set_, cmd_vel=cmd_vel, script=script
+        scenario_spec, options=given, duration=duration, seed=seed, overrides=set_, cmd_vel=cmd_vel, script=script
     )
     return draw_chart(sources, fields, PlotRequest(output, against, start, end, title, run), json_=json_)

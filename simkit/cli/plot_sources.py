@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Final
 
-import typer
+from typer import Option
 
 from simkit.cli.run_options import scenario_spec
 from simkit.cli.terminal.output import print_diagnostics, print_json, print_line, print_note
@@ -24,15 +24,13 @@ if TYPE_CHECKING:
     from simkit.recording.charts.series import Series
 
 
-Output = Annotated[
-    Path, typer.Option("--output", "-o", help="The file: .svg or .png.", metavar="OUT", show_default=True)
-]
+Output = Annotated[Path, Option("--output", "-o", help="The file: .svg or .png.", metavar="OUT", show_default=True)]
 Against = Annotated[
-    str | None, typer.Option(help="Draws over this field in place of time.", metavar="FIELD", show_default=False)
+    str | None, Option(help="Draws over this field in place of time.", metavar="FIELD", show_default=False)
 ]
-Start = Annotated[float | None, typer.Option("--start", help="Leaves out what was before.", metavar="S")]
-End = Annotated[float | None, typer.Option("--end", help="Leaves out what was after.", metavar="S")]
-Title = Annotated[str, typer.Option(help="Above the chart.", metavar="TEXT", show_default=False)]
+Start = Annotated[float | None, Option("--start", help="Leaves out what was before.", metavar="S")]
+End = Annotated[float | None, Option("--end", help="Leaves out what was after.", metavar="S")]
+Title = Annotated[str, Option(help="Above the chart.", metavar="TEXT", show_default=False)]
 
 
 _BAGS: Final = (".mcap", ".db3")

@@ -8,17 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from typer import Argument, Option
 
+from simkit.cli.terminal import options
 from simkit.cli.terminal.output import JsonObject, print_diagnostics, print_status, report_errors, stdout_console
-from simkit.cli.terminal.shared_options import (
-    Force,
-    Json,
-    PackagePaths,
-    PluginPaths,
-    ResourcePaths,
-    XacroArgs,
-    source_arguments,
-)
 from simkit.diagnostics import Diagnostics
 from simkit.errors import InputError
 
@@ -40,10 +33,10 @@ def _group() -> None:
 @report_errors
 def list_plugins(
     words: Annotated[
-        list[str] | None, typer.Argument(help="Only names that contain one of these.", show_default=False)
+        list[str] | None, Argument(help="Only names that contain one of these.", show_default=False)
     ] = None,
-    plugin_path: PluginPaths = [],
-    json_: Json = False,
+    plugin_path: options.PluginPaths = [],
+    json_: options.Json = False,
 ) -> int:
     """Lists every name that a world may give a plugin, with what it hangs on."""
     from simkit.plugins.authoring.catalogue import known_plugins
@@ -81,10 +74,10 @@ def _matching(entry: Entry, wanted: list[str]) -> list[str]:
 @report_errors
 def show_info(
     name: Annotated[
-        str, typer.Argument(help="A name in any spelling, a class, MODULE:CLASS or FILE.py.", show_default=False)
+        str, Argument(help="A name in any spelling, a class, MODULE:CLASS or FILE.py.", show_default=False)
     ],
-    plugin_path: PluginPaths = [],
-    json_: Json = False,
+    plugin_path: options.PluginPaths = [],
+    json_: options.Json = False,
 ) -> int:
     """Says which parameters a plugin reads, and which topics and services it opens."""
     from simkit.plugins.authoring.catalogue import common_facts, facts_of, find_entry
@@ -116,19 +109,18 @@ def show_info(
 @report_errors
 def new_plugin(
     name: Annotated[
-        str | None, typer.Argument(help="wheel_brake, WheelBrake or libwheel_brake.so.", show_default=False)
+        str | None, Argument(help="wheel_brake, WheelBrake or libwheel_brake.so.", show_default=False)
     ] = None,
     from_: Annotated[
-        str | None,
-        typer.Option("--from", help="One for each library of a world that nothing stands for.", metavar="WORLD"),
+        str | None, Option("--from", help="One for each library of a world that nothing stands for.", metavar="WORLD")
     ] = None,
-    on: Annotated[str, typer.Option(help="What it hangs on: world, model, visual or sensor.")] = "model",
-    folder: Annotated[Path, typer.Option(help="Where the files go.", metavar="DIR")] = Path(),
-    force: Force = False,
-    resource_path: ResourcePaths = [],
-    package_path: PackagePaths = [],
-    plugin_path: PluginPaths = [],
-    xacro_arg: XacroArgs = [],
+    on: Annotated[str, Option(help="What it hangs on: world, model, visual or sensor.")] = "model",
+    folder: Annotated[Path, Option(help="Where the files go.", metavar="DIR")] = Path(),
+    force: options.Force = False,
+    resource_path: options.ResourcePaths = [],
+    package_path: options.PackagePaths = [],
+    plugin_path: options.PluginPaths = [],
+    xacro_arg: options.XacroArgs = [],
 ) -> int:
     """Writes a plugin with typed parameters, and a test that passes."""
     from simkit.plugins.authoring.new_plugins import plugin_named, plugins_missing_in
@@ -142,8 +134,8 @@ def new_plugin(
     else:
         from simkit.build import read_scene
 
-        options = source_arguments(resource_path, package_path, xacro_arg)
-        scene, _ = read_scene(from_, missing_meshes=True, **options)
+        source = options.source_arguments(resource_path, package_path, xacro_arg)
+        scene, _ = read_scene(from_, missing_meshes=True, **source)
         wanted = plugins_missing_in(scene, plugin_path)
         if not wanted:
             print_status("every plugin of this file is known; nothing to write")

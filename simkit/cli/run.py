@@ -8,30 +8,15 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
+from typer import Option
 from typer.core import TyperCommand
 
 from simkit.cli.failure_bundle import DEFAULT_FOLDER as BUNDLES
 from simkit.cli.failure_bundle import FailureBundle
 from simkit.cli.run_options import RunDisplay, load_options
+from simkit.cli.terminal import options
 from simkit.cli.terminal.blocked_plugins import BlockedPlugins
 from simkit.cli.terminal.output import print_diagnostics, print_status, report_errors
-from simkit.cli.terminal.shared_options import (
-    Base,
-    CmdVel,
-    Force,
-    Overrides,
-    PackagePaths,
-    ParamsFiles,
-    PluginPaths,
-    ResourcePaths,
-    Script,
-    Spawns,
-    Strict,
-    Verbose,
-    World,
-    XacroArgs,
-    source_arguments,
-)
 from simkit.cli.terminal.teleop import KEY_TIMEOUT
 from simkit.run_spec import Check, PluginErrorPolicy, Recording, RunSpec
 
@@ -81,95 +66,90 @@ def _seconds(text: str) -> float:
 
 @report_errors
 def run(
-    world: World,
+    world: options.World,
     duration: Annotated[
-        float | None, typer.Option(help="Simulated seconds; until Ctrl-C where not given.", metavar="S", min=0)
+        float | None, Option(help="Simulated seconds; until Ctrl-C where not given.", metavar="S", min=0)
     ] = None,
-    seed: Annotated[int, typer.Option(help="Seed of all noise.", metavar="N", min=0)] = 0,
+    seed: Annotated[int, Option(help="Seed of all noise.", metavar="N", min=0)] = 0,
     record: Annotated[
-        Path | None, typer.Option(help="Writes all topics: x.mcap one file, else a rosbag2 folder.", metavar="OUT")
+        Path | None, Option(help="Writes all topics: x.mcap one file, else a rosbag2 folder.", metavar="OUT")
     ] = None,
     topic: Annotated[
-        list[str], typer.Option(help="Records only topics of this pattern; repeatable.", metavar="PATTERN")
+        list[str], Option(help="Records only topics of this pattern; repeatable.", metavar="PATTERN")
     ] = [],
     skip: Annotated[
-        list[str], typer.Option(help="Records all but topics of this pattern; repeatable.", metavar="PATTERN")
+        list[str], Option(help="Records all but topics of this pattern; repeatable.", metavar="PATTERN")
     ] = [],
-    force: Force = False,
+    force: options.Force = False,
     rtf: Annotated[
         float | None,
-        typer.Option(help="No faster than X times real time; 1 with --teleop and --view.", metavar="X", min=1e-3),
+        Option(help="No faster than X times real time; 1 with --teleop and --view.", metavar="X", min=1e-3),
     ] = None,
     teleop: Annotated[
-        str | None, typer.Option(help="Drives with the keyboard: who takes velocities there.", metavar="[TOPIC]")
+        str | None, Option(help="Drives with the keyboard: who takes velocities there.", metavar="[TOPIC]")
     ] = None,
     key_timeout: Annotated[
-        float,
-        typer.Option(help="--teleop stops after so many simulated seconds without a key; inf: never.", metavar="S"),
+        float, Option(help="--teleop stops after so many simulated seconds without a key; inf: never.", metavar="S")
     ] = KEY_TIMEOUT,
-    paused: Annotated[bool, typer.Option("--paused", help="Begins paused; space or a service lets it go on.")] = False,
-    step: Annotated[int | None, typer.Option(help="Does N steps, then is paused.", metavar="N", min=0)] = None,
+    paused: Annotated[bool, Option("--paused", help="Begins paused; space or a service lets it go on.")] = False,
+    step: Annotated[int | None, Option(help="Does N steps, then is paused.", metavar="N", min=0)] = None,
     name: Annotated[
-        str | None,
-        typer.Option(help="What other terminals call this run; else the world's or file's name.", metavar="NAME"),
+        str | None, Option(help="What other terminals call this run; else the world's or file's name.", metavar="NAME")
     ] = None,
-    set_: Overrides = [],
-    spawn: Spawns = [],
-    params_file: ParamsFiles = [],
-    strict: Strict = False,
-    view: Annotated[bool, typer.Option("--view", help="Opens a viewer.")] = False,
+    set_: options.Overrides = [],
+    spawn: options.Spawns = [],
+    params_file: options.ParamsFiles = [],
+    strict: options.Strict = False,
+    view: Annotated[bool, Option("--view", help="Opens a viewer.")] = False,
     picture: Annotated[
-        Path | None, typer.Option(help="Draws the scene at the end, with path and last scan.", metavar="OUT.png")
+        Path | None, Option(help="Draws the scene at the end, with path and last scan.", metavar="OUT.png")
     ] = None,
-    cmd_vel: CmdVel = None,
-    script: Script = None,
+    cmd_vel: options.CmdVel = None,
+    script: options.Script = None,
     play: Annotated[
-        Path | None, typer.Option(help="Commands of a recording, at their ticks; runs as long.", metavar="BAG")
+        Path | None, Option(help="Commands of a recording, at their ticks; runs as long.", metavar="BAG")
     ] = None,
     play_topic: Annotated[
         list[str],
-        typer.Option(
-            "--play-topic", help="Plays only this topic, or it on another one; repeatable.", metavar="TOPIC[:=NEW]"
-        ),
+        Option("--play-topic", help="Plays only this topic, or it on another one; repeatable.", metavar="TOPIC[:=NEW]"),
     ] = [],
-    resource_path: ResourcePaths = [],
-    package_path: PackagePaths = [],
-    plugin_path: PluginPaths = [],
-    watch: Annotated[bool, typer.Option("--watch", help="Reloads a plugin whose file is edited, and goes on.")] = False,
-    xacro_arg: XacroArgs = [],
-    base: Base = "auto",
+    resource_path: options.ResourcePaths = [],
+    package_path: options.PackagePaths = [],
+    plugin_path: options.PluginPaths = [],
+    watch: Annotated[bool, Option("--watch", help="Reloads a plugin whose file is edited, and goes on.")] = False,
+    xacro_arg: options.XacroArgs = [],
+    base: options.Base = "auto",
     on_plugin_error: Annotated[
         str | None,
-        typer.Option(
+        Option(
             help="What becomes of a plugin that raises: stop ends the run (exit 4), disable goes on without it.",
             metavar="stop|disable",
         ),
     ] = None,
     bundle_on_failure: Annotated[
         Path | None,
-        typer.Option(
+        Option(
             help="Where the run fails: writes it into one file there, which simkit replay repeats; else bundles/.",
             metavar="[DIR]",
         ),
     ] = None,
-    verbose: Verbose = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="One line at the end, no table of topics.")] = False,
+    verbose: options.Verbose = False,
+    quiet: Annotated[bool, Option("--quiet", "-q", help="One line at the end, no table of topics.")] = False,
     until: Annotated[
-        str | None, typer.Option(help="Ends as soon as this holds: \"pose('tb3').x > 2\".", metavar="EXPR")
+        str | None, Option(help="Ends as soon as this holds: \"pose('tb3').x > 2\".", metavar="EXPR")
     ] = None,
     timeout: Annotated[
         float | None,
-        typer.Option(help="Simulated time by which --until must hold, else exit 5.", metavar="S", parser=_seconds),
+        Option(help="Simulated time by which --until must hold, else exit 5.", metavar="S", parser=_seconds),
     ] = None,
     wall_timeout: Annotated[
-        float | None,
-        typer.Option(help="Wall time after which the run is given up, exit 5.", metavar="S", parser=_seconds),
+        float | None, Option(help="Wall time after which the run is given up, exit 5.", metavar="S", parser=_seconds)
     ] = None,
     assert_: Annotated[
-        list[str], typer.Option("--assert", help="Must hold at the end, else exit 5; repeatable.", metavar="EXPR")
+        list[str], Option("--assert", help="Must hold at the end, else exit 5; repeatable.", metavar="EXPR")
     ] = [],
     junit: Annotated[
-        Path | None, typer.Option(help="Writes what held and what did not, for a CI.", metavar="FILE.xml")
+        Path | None, Option(help="Writes what held and what did not, for a CI.", metavar="FILE.xml")
     ] = None,
 ) -> int:
     """Runs a world headless, as fast as it goes."""
@@ -187,7 +167,10 @@ def run(
         wall_timeout=wall_timeout,
         checks=tuple(Check("final", expression=expression, where="--assert") for expression in assert_),
         options=load_options(
-            source_arguments(resource_path, package_path, xacro_arg, base),
+            resource_path,
+            package_path,
+            xacro_arg,
+            base,
             plugin_path,
             params_file,
             on_error=_on_error(on_plugin_error),

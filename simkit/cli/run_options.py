@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import cast
 
+from simkit.cli.terminal.options import source_arguments
 from simkit.cli.terminal.teleop import KEY_TIMEOUT
-from simkit.run_spec import LoadOptions, PluginErrorPolicy, RunSpec, SourceOptions
+from simkit.run_spec import LoadOptions, PluginErrorPolicy, RunSpec
 
 
 @dataclass(frozen=True)
@@ -39,7 +40,10 @@ class RunDisplay:
 
 
 def load_options(
-    source: SourceOptions,
+    resource_paths: Sequence[Path],
+    package_paths: Sequence[str],
+    xacro_args: Sequence[str],
+    base: str,
     plugin_paths: Sequence[Path] = (),
     params_files: Sequence[str] = (),
     *,
@@ -47,10 +51,13 @@ def load_options(
     strict: bool = False,
 ) -> LoadOptions:
     """Return the options of a command that say how a world is loaded; those that were not given are not in it."""
-    options = LoadOptions(
-        plugin_paths=tuple(plugin_paths), params_files=tuple(params_files), on_error=on_error, strict=strict
-    )
-    given = {**source, **options}
+    given = {
+        **source_arguments(resource_paths, package_paths, xacro_args, base),
+        "plugin_paths": tuple(plugin_paths),
+        "params_files": tuple(params_files),
+        "on_error": on_error,
+        "strict": strict,
+    }
     return cast(LoadOptions, {name: value for name, value in given.items() if value and value != "auto"})
 
 

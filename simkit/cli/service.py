@@ -7,9 +7,9 @@ import time
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from typer import Argument, Option
 
-from simkit.cli.terminal import completion
-from simkit.cli.terminal.live_options import Ros2Command, ShowTypes, Sim
+from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.message_arguments import (
     check_type,
     is_same_type,
@@ -26,7 +26,6 @@ from simkit.cli.terminal.output import (
     print_names_and_types,
     report_errors_quietly,
 )
-from simkit.cli.terminal.shared_options import Json
 from simkit.cli.terminal.topic_sources import connect_to_simulation, interface_type
 
 if TYPE_CHECKING:
@@ -34,12 +33,9 @@ if TYPE_CHECKING:
 
 service = typer.Typer(help="Services of a running simulation.", no_args_is_help=True)
 Name = Annotated[
-    str,
-    typer.Argument(
-        help="Name of a service.", metavar="SERVICE", show_default=False, autocompletion=completion.services
-    ),
+    str, Argument(help="Name of a service.", metavar="SERVICE", show_default=False, autocompletion=completion.services)
 ]
-Count = Annotated[bool, typer.Option("--count-services", "--count", "-c", help="Says only how many.")]
+Count = Annotated[bool, Option("--count-services", "--count", "-c", help="Says only how many.")]
 
 
 @service.callback()
@@ -47,16 +43,14 @@ def _group() -> None:
     """Services of a running simulation."""
 
 
-@service.command("list", cls=Ros2Command)
+@service.command("list", cls=options.Ros2Command)
 @report_errors_quietly
 def list_(
-    show_types: ShowTypes = False,
+    show_types: options.ShowTypes = False,
     count: Count = False,
-    hidden: Annotated[
-        bool, typer.Option("--include-hidden-services", "-a", "--all", help="Shows hidden ones too.")
-    ] = False,
-    sim: Sim = None,
-    json_: Json = False,
+    hidden: Annotated[bool, Option("--include-hidden-services", "-a", "--all", help="Shows hidden ones too.")] = False,
+    sim: options.Sim = None,
+    json_: options.Json = False,
 ) -> int:
     """Lists the services."""
     with connect_to_simulation(sim) as client:
@@ -65,9 +59,9 @@ def list_(
     return 0
 
 
-@service.command("type", cls=Ros2Command)
+@service.command("type", cls=options.Ros2Command)
 @report_errors_quietly
-def type_(service: Name, sim: Sim = None, json_: Json = False) -> int:
+def type_(service: Name, sim: options.Sim = None, json_: options.Json = False) -> int:
     """Prints a service's type."""
     with connect_to_simulation(sim) as client:
         found = interface_type(client, "service", client.services(), service)
@@ -78,9 +72,9 @@ def type_(service: Name, sim: Sim = None, json_: Json = False) -> int:
     return 0
 
 
-@service.command(cls=Ros2Command)
+@service.command(cls=options.Ros2Command)
 @report_errors_quietly
-def info(service: Name, sim: Sim = None, json_: Json = False) -> int:
+def info(service: Name, sim: options.Sim = None, json_: options.Json = False) -> int:
     """Says of what type a service is."""
     with connect_to_simulation(sim) as client:
         found = interface_type(client, "service", client.services(), service)
@@ -91,12 +85,12 @@ def info(service: Name, sim: Sim = None, json_: Json = False) -> int:
     return 0
 
 
-@service.command(cls=Ros2Command)
+@service.command(cls=options.Ros2Command)
 @report_errors_quietly
 def find(
     service_type: Annotated[
         str,
-        typer.Argument(
+        Argument(
             help="Such as std_srvs/srv/Empty.",
             metavar="TYPE",
             show_default=False,
@@ -104,8 +98,8 @@ def find(
         ),
     ],
     count: Count = False,
-    sim: Sim = None,
-    json_: Json = False,
+    sim: options.Sim = None,
+    json_: options.Json = False,
 ) -> int:
     """Lists the services of a type."""
     with connect_to_simulation(sim) as client:
@@ -114,13 +108,13 @@ def find(
     return 0
 
 
-@service.command(cls=Ros2Command)
+@service.command(cls=options.Ros2Command)
 @report_errors_quietly
 def call(
     service: Name,
     service_type: Annotated[
         str | None,
-        typer.Argument(
+        Argument(
             help="Its type, which need not be said.",
             metavar="[TYPE]",
             show_default=False,
@@ -129,20 +123,19 @@ def call(
     ] = None,
     values: Annotated[
         str | None,
-        typer.Argument(
+        Argument(
             help="The request as YAML: '{data: true}'.",
             metavar="[VALUES]",
             show_default=False,
             autocompletion=completion.service_values,
         ),
     ] = None,
-    stdin: Annotated[bool, typer.Option("--stdin", help="Reads the request from standard input.")] = False,
+    stdin: Annotated[bool, Option("--stdin", help="Reads the request from standard input.")] = False,
     rate: Annotated[
-        float | None,
-        typer.Option("--rate", "-r", help="Calls it again N times a second (wall time).", metavar="N", min=1e-3),
+        float | None, Option("--rate", "-r", help="Calls it again N times a second (wall time).", metavar="N", min=1e-3)
     ] = None,
-    sim: Sim = None,
-    json_: Json = False,
+    sim: options.Sim = None,
+    json_: options.Json = False,
 ) -> int:
     """Calls a service and prints the response."""
     service_type, values = split_type_and_values(service_type, values)

@@ -8,12 +8,11 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from typer import Argument, Option
 
-from simkit.cli.terminal import completion
+from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.frame_tree import FrameTree, receive_transforms
-from simkit.cli.terminal.live_options import Bag, Sim
 from simkit.cli.terminal.output import not_found_error, print_json, print_line, report_errors_quietly
-from simkit.cli.terminal.shared_options import Json
 from simkit.cli.terminal.topic_sources import open_source
 from simkit.errors import InputError
 
@@ -24,7 +23,7 @@ _LISTENED = 1.0  # [s] of wall time in which frames are collected
 tf = typer.Typer(help="Frames of a running simulation, or of a bag.", no_args_is_help=True)
 Topics = Annotated[
     list[str],
-    typer.Option("--topic", help="Where transforms come, other than /tf and /tf_static; repeatable.", metavar="TOPIC"),
+    Option("--topic", help="Where transforms come, other than /tf and /tf_static; repeatable.", metavar="TOPIC"),
 ]
 
 
@@ -37,12 +36,10 @@ def _group() -> None:
 @report_errors_quietly
 def tree(
     topic: Topics = [],
-    listened: Annotated[
-        float, typer.Option("--time", help="Listens so long (wall time).", metavar="S", min=0)
-    ] = _LISTENED,
-    sim: Sim = None,
-    bag: Bag = None,
-    json_: Json = False,
+    listened: Annotated[float, Option("--time", help="Listens so long (wall time).", metavar="S", min=0)] = _LISTENED,
+    sim: options.Sim = None,
+    bag: options.Bag = None,
+    json_: options.Json = False,
 ) -> int:
     """Prints which frame hangs on which."""
     frames = FrameTree()
@@ -63,19 +60,15 @@ def tree(
 @tf.command()
 @report_errors_quietly
 def echo(
-    source_frame: Annotated[
-        str, typer.Argument(metavar="SOURCE", show_default=False, autocompletion=completion.frames)
-    ],
-    target_frame: Annotated[
-        str, typer.Argument(metavar="TARGET", show_default=False, autocompletion=completion.frames)
-    ],
-    rate: Annotated[float, typer.Argument(help="Times a second (wall time).", metavar="[RATE]", min=1e-3)] = 1.0,
-    once: Annotated[bool, typer.Option("--once", help="Ends behind the first one.")] = False,
-    precision: Annotated[int, typer.Option("--precision", "-p", help="Digits.", metavar="N", min=0, max=15)] = 3,
+    source_frame: Annotated[str, Argument(metavar="SOURCE", show_default=False, autocompletion=completion.frames)],
+    target_frame: Annotated[str, Argument(metavar="TARGET", show_default=False, autocompletion=completion.frames)],
+    rate: Annotated[float, Argument(help="Times a second (wall time).", metavar="[RATE]", min=1e-3)] = 1.0,
+    once: Annotated[bool, Option("--once", help="Ends behind the first one.")] = False,
+    precision: Annotated[int, Option("--precision", "-p", help="Digits.", metavar="N", min=0, max=15)] = 3,
     topic: Topics = [],
-    sim: Sim = None,
-    bag: Bag = None,
-    json_: Json = False,
+    sim: options.Sim = None,
+    bag: options.Bag = None,
+    json_: options.Json = False,
 ) -> int:
     """Prints where TARGET is, as seen from SOURCE; of a bag, at its end."""
     frames = FrameTree()

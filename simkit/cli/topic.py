@@ -6,12 +6,11 @@ import hashlib
 from typing import Annotated
 
 import typer
+from typer import Argument, Option
 
-from simkit.cli.terminal import completion
-from simkit.cli.terminal.live_options import Bag, Ros2Command, ShowTypes, Sim, Topic
+from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.message_arguments import is_same_type
 from simkit.cli.terminal.output import JsonObject, is_hidden, print_json, print_line, print_names, report_errors_quietly
-from simkit.cli.terminal.shared_options import Json
 from simkit.cli.terminal.topic_sources import TopicEndpoint, TopicEntry, find_topic, open_source
 from simkit.cli.topic_echo import echo
 from simkit.cli.topic_pub import pub
@@ -26,22 +25,22 @@ def _group() -> None:
     """Topics of a running simulation, or of a bag."""
 
 
-Count = Annotated[bool, typer.Option("--count-topics", "--count", "-c", help="Says only how many.")]
+Count = Annotated[bool, Option("--count-topics", "--count", "-c", help="Says only how many.")]
 Hidden = Annotated[
-    bool, typer.Option("--include-hidden-topics", "-a", "--all", help="Shows those with a part that begins with _ too.")
+    bool, Option("--include-hidden-topics", "-a", "--all", help="Shows those with a part that begins with _ too.")
 ]
 
 
-@topic.command("list", cls=Ros2Command)
+@topic.command("list", cls=options.Ros2Command)
 @report_errors_quietly
 def list_(
-    show_types: ShowTypes = False,
-    verbose: Annotated[bool, typer.Option("--verbose", "-v", help="Says who publishes and who takes.")] = False,
+    show_types: options.ShowTypes = False,
+    verbose: Annotated[bool, Option("--verbose", "-v", help="Says who publishes and who takes.")] = False,
     count: Count = False,
     hidden: Hidden = False,
-    sim: Sim = None,
-    bag: Bag = None,
-    json_: Json = False,
+    sim: options.Sim = None,
+    bag: options.Bag = None,
+    json_: options.Json = False,
 ) -> int:
     """Lists the topics."""
     with open_source(sim, bag) as source:
@@ -79,14 +78,14 @@ def _endpoint_dict(end: TopicEndpoint) -> JsonObject:
     return {"node": end.node, "types": list(end.types), "latched": end.latched}
 
 
-@topic.command(cls=Ros2Command)
+@topic.command(cls=options.Ros2Command)
 @report_errors_quietly
 def info(
-    topic: Topic,
-    verbose: Annotated[bool, typer.Option("--verbose", "-v", help="Says who they are, with their quality.")] = False,
-    sim: Sim = None,
-    bag: Bag = None,
-    json_: Json = False,
+    topic: options.Topic,
+    verbose: Annotated[bool, Option("--verbose", "-v", help="Says who they are, with their quality.")] = False,
+    sim: options.Sim = None,
+    bag: options.Bag = None,
+    json_: options.Json = False,
 ) -> int:
     """Says of what type a topic is, and how many publish it and take it."""
     with open_source(sim, bag) as source:
@@ -139,9 +138,9 @@ def _endpoint_text(topic_name: str, end: TopicEndpoint, type_name: str, kind: st
     )
 
 
-@topic.command("type", cls=Ros2Command)
+@topic.command("type", cls=options.Ros2Command)
 @report_errors_quietly
-def type_(topic: Topic, sim: Sim = None, bag: Bag = None, json_: Json = False) -> int:
+def type_(topic: options.Topic, sim: options.Sim = None, bag: options.Bag = None, json_: options.Json = False) -> int:
     """Prints a topic's type."""
     with open_source(sim, bag) as source:
         entry = find_topic(source, topic)
@@ -153,12 +152,12 @@ def type_(topic: Topic, sim: Sim = None, bag: Bag = None, json_: Json = False) -
     return 0
 
 
-@topic.command(cls=Ros2Command)
+@topic.command(cls=options.Ros2Command)
 @report_errors_quietly
 def find(
     topic_type: Annotated[
         str,
-        typer.Argument(
+        Argument(
             help="Such as geometry_msgs/msg/Twist.",
             metavar="TYPE",
             show_default=False,
@@ -167,9 +166,9 @@ def find(
     ],
     count: Count = False,
     hidden: Hidden = False,
-    sim: Sim = None,
-    bag: Bag = None,
-    json_: Json = False,
+    sim: options.Sim = None,
+    bag: options.Bag = None,
+    json_: options.Json = False,
 ) -> int:
     """Lists the topics of a type."""
     with open_source(sim, bag) as source:
@@ -185,8 +184,8 @@ def _all_types(entry: TopicEntry) -> set[str]:
     return {*entry.types, *(t for end in (*entry.publishers, *entry.subscribers) for t in end.types)}
 
 
-topic.command(cls=Ros2Command)(echo)
-topic.command(cls=Ros2Command)(hz)
-topic.command(cls=Ros2Command)(bw)
-topic.command(cls=Ros2Command)(delay)
-topic.command(cls=Ros2Command)(pub)
+topic.command(cls=options.Ros2Command)(echo)
+topic.command(cls=options.Ros2Command)(hz)
+topic.command(cls=options.Ros2Command)(bw)
+topic.command(cls=options.Ros2Command)(delay)
+topic.command(cls=options.Ros2Command)(pub)

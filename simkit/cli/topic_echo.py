@@ -6,13 +6,11 @@ import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Annotated
 
-import typer
+from typer import Argument, Option
 
-from simkit.cli.terminal import completion
-from simkit.cli.terminal.live_options import Bag, Sim, Topic
+from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.message_arguments import check_type
 from simkit.cli.terminal.output import print_json, print_line, print_note, report_errors_quietly
-from simkit.cli.terminal.shared_options import Json
 from simkit.cli.terminal.topic_sources import Feed, ReceivedMessage, Source, find_topic, open_source, wait_for_topic
 from simkit.errors import InputError, MessageError
 from simkit.msgs.message_types import FieldNode, FieldValue, Message
@@ -29,47 +27,46 @@ _SEPARATOR = "---"
 
 @report_errors_quietly
 def echo(
-    topic: Topic,
+    topic: options.Topic,
     message_type: Annotated[
         str | None,
-        typer.Argument(
+        Argument(
             help="The topic's type, which need not be said.",
             metavar="[TYPE]",
             show_default=False,
             autocompletion=completion.topic_types,
         ),
     ] = None,
-    once: Annotated[bool, typer.Option("--once", help="Ends behind the first message.")] = False,
+    once: Annotated[bool, Option("--once", help="Ends behind the first message.")] = False,
     field: Annotated[
         str | None,
-        typer.Option(
+        Option(
             "--field",
             help="Only this part: pose.pose.position, ranges[0].",
             metavar="FIELD",
             autocompletion=completion.fields,
         ),
     ] = None,
-    csv: Annotated[bool, typer.Option("--csv", help="All numbers with commas between, a message a line.")] = False,
-    no_arr: Annotated[bool, typer.Option("--no-arr", help="Arrays by type and length only.")] = False,
-    no_str: Annotated[bool, typer.Option("--no-str", help="Texts by length only.")] = False,
-    flow_style: Annotated[bool, typer.Option("--flow-style", help="A message a line.")] = False,
-    full_length: Annotated[bool, typer.Option("--full-length", "-f", help="Cuts no long arrays and texts.")] = False,
+    csv: Annotated[bool, Option("--csv", help="All numbers with commas between, a message a line.")] = False,
+    no_arr: Annotated[bool, Option("--no-arr", help="Arrays by type and length only.")] = False,
+    no_str: Annotated[bool, Option("--no-str", help="Texts by length only.")] = False,
+    flow_style: Annotated[bool, Option("--flow-style", help="A message a line.")] = False,
+    full_length: Annotated[bool, Option("--full-length", "-f", help="Cuts no long arrays and texts.")] = False,
     truncate_length: Annotated[
-        int, typer.Option("--truncate-length", "-l", help="Cuts longer ones.", metavar="N", min=0)
+        int, Option("--truncate-length", "-l", help="Cuts longer ones.", metavar="N", min=0)
     ] = TRUNCATE,
-    raw: Annotated[bool, typer.Option("--raw", help="The bytes.")] = False,
+    raw: Annotated[bool, Option("--raw", help="The bytes.")] = False,
     filter_: Annotated[
-        str | None,
-        typer.Option("--filter", help="Only those m for which this Python is true: m.data > 2.", metavar="EXPR"),
+        str | None, Option("--filter", help="Only those m for which this Python is true: m.data > 2.", metavar="EXPR")
     ] = None,
-    info: Annotated[bool, typer.Option("--include-message-info", help="With the time of each.")] = False,
-    no_lost: Annotated[bool, typer.Option("--no-lost-messages", help="Does not tell of lost messages.")] = False,
+    info: Annotated[bool, Option("--include-message-info", help="With the time of each.")] = False,
+    no_lost: Annotated[bool, Option("--no-lost-messages", help="Does not tell of lost messages.")] = False,
     timeout: Annotated[
-        float | None, typer.Option("--timeout", help="Ends after so long (wall time).", metavar="S", min=0)
+        float | None, Option("--timeout", help="Ends after so long (wall time).", metavar="S", min=0)
     ] = None,
-    sim: Sim = None,
-    bag: Bag = None,
-    json_: Json = False,
+    sim: options.Sim = None,
+    bag: options.Bag = None,
+    json_: options.Json = False,
 ) -> int:
     """Prints the messages of a topic; of a bag, all that were recorded."""
     from simkit.msgs.message_text import TextStyle

@@ -7,10 +7,9 @@ import time
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Annotated
 
-import typer
+from typer import Argument, Option
 
-from simkit.cli.terminal import completion
-from simkit.cli.terminal.live_options import Sim, Topic
+from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.message_arguments import make_message, parse_fields, split_type_and_values
 from simkit.cli.terminal.output import (
     JsonObject,
@@ -21,7 +20,6 @@ from simkit.cli.terminal.output import (
     print_note,
     report_errors_quietly,
 )
-from simkit.cli.terminal.shared_options import Json
 from simkit.cli.terminal.topic_sources import LONGEST_WAIT, LiveSource, SimClock, connect_to_simulation, find_topic
 from simkit.errors import InputError, MessageError
 
@@ -31,10 +29,10 @@ if TYPE_CHECKING:
 
 @report_errors_quietly
 def pub(
-    topic: Topic,
+    topic: options.Topic,
     message_type: Annotated[
         str | None,
-        typer.Argument(
+        Argument(
             help="Such as geometry_msgs/msg/Twist; where it is left out, the topic's.",
             metavar="[TYPE]",
             show_default=False,
@@ -43,27 +41,27 @@ def pub(
     ] = None,
     values: Annotated[
         str | None,
-        typer.Argument(
+        Argument(
             help="YAML: '{linear: {x: 0.2}}'; `header: auto` and `stamp: now` are the time of sending.",
             metavar="[VALUES]",
             show_default=False,
             autocompletion=completion.message_values,
         ),
     ] = None,
-    stdin: Annotated[bool, typer.Option("--stdin", help="Reads the values from standard input.")] = False,
+    stdin: Annotated[bool, Option("--stdin", help="Reads the values from standard input.")] = False,
     rate: Annotated[
-        float, typer.Option("--rate", "-r", help="Messages a second of simulated time.", metavar="N", min=1e-3)
+        float, Option("--rate", "-r", help="Messages a second of simulated time.", metavar="N", min=1e-3)
     ] = 1.0,
     every: Annotated[
-        int, typer.Option("--print", "-p", help="Prints every Nth message only; 0 for none.", metavar="N", min=0)
+        int, Option("--print", "-p", help="Prints every Nth message only; 0 for none.", metavar="N", min=0)
     ] = 1,
-    once: Annotated[bool, typer.Option("--once", "-1", help="Sends one.")] = False,
+    once: Annotated[bool, Option("--once", "-1", help="Sends one.")] = False,
     times: Annotated[
-        int | None, typer.Option("--times", "-t", help="Sends N.", metavar="N", min=0, show_default=False)
+        int | None, Option("--times", "-t", help="Sends N.", metavar="N", min=0, show_default=False)
     ] = None,
     wait: Annotated[
         int | None,
-        typer.Option(
+        Option(
             "--wait-matching-subscriptions",
             "-w",
             help="Waits until so many take it; 1 with --once and --times, else 0.",
@@ -73,11 +71,11 @@ def pub(
         ),
     ] = None,
     keep_alive: Annotated[
-        float, typer.Option("--keep-alive", help="Stays so long behind the last one.", metavar="S", min=0)
+        float, Option("--keep-alive", help="Stays so long behind the last one.", metavar="S", min=0)
     ] = 0.1,
-    wall_time: Annotated[bool, typer.Option("--wall-time", help="The rate is by the clock on the wall.")] = False,
-    sim: Sim = None,
-    json_: Json = False,
+    wall_time: Annotated[bool, Option("--wall-time", help="The rate is by the clock on the wall.")] = False,
+    sim: options.Sim = None,
+    json_: options.Json = False,
 ) -> int:
     """Publishes a message, again and again until Ctrl-C."""
     from simkit.live import LiveClosed

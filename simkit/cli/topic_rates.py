@@ -12,11 +12,10 @@ from collections import deque
 from collections.abc import Callable, Collection
 from typing import Annotated
 
-import typer
+from typer import Option
 
-from simkit.cli.terminal.live_options import Bag, Sim, Topic
+from simkit.cli.terminal import options
 from simkit.cli.terminal.output import JsonObject, print_json, print_line, print_note, report_errors_quietly
-from simkit.cli.terminal.shared_options import Json
 from simkit.cli.terminal.topic_sources import Feed, ReceivedMessage, Source, find_topic, open_source
 from simkit.cli.topic_echo import compile_filter
 from simkit.errors import InputError
@@ -25,11 +24,9 @@ _PRINT_PERIOD = 1.0  # [s] of wall time between two lines
 _DEPTH = 10_000  # messages that wait while a line is printed
 Window = Annotated[
     int | None,
-    typer.Option(
-        "--window", "-w", help="Counts the last N messages.", metavar="N", min=1, max=10**9, show_default=False
-    ),
+    Option("--window", "-w", help="Counts the last N messages.", metavar="N", min=1, max=10**9, show_default=False),
 ]
-WallTime = Annotated[bool, typer.Option("--wall-time", help="By the clock on the wall, not the simulation's.")]
+WallTime = Annotated[bool, Option("--wall-time", help="By the clock on the wall, not the simulation's.")]
 
 
 class Rates:
@@ -147,23 +144,21 @@ def _check_clock(source: Source, by_wall: bool) -> None:
         raise InputError("SK-CLI-018 --wall-time: a bag has the clock of the simulation only", "SK-CLI-018")
 
 
-Duration = Annotated[
-    float | None, typer.Option("--duration", help="Ends after so long (wall time).", metavar="S", min=0)
-]
+Duration = Annotated[float | None, Option("--duration", help="Ends after so long (wall time).", metavar="S", min=0)]
 
 
 @report_errors_quietly
 def hz(
-    topic: Topic,
+    topic: options.Topic,
     window: Window = None,
     filter_: Annotated[
-        str | None, typer.Option("--filter", help="Only those m for which this Python is true.", metavar="EXPR")
+        str | None, Option("--filter", help="Only those m for which this Python is true.", metavar="EXPR")
     ] = None,
     wall_time: WallTime = False,
     duration: Duration = None,
-    sim: Sim = None,
-    bag: Bag = None,
-    json_: Json = False,
+    sim: options.Sim = None,
+    bag: options.Bag = None,
+    json_: options.Json = False,
 ) -> int:
     """Prints how often messages come, by the clock of the simulation."""
     wanted = compile_filter(filter_)
@@ -187,13 +182,13 @@ def rate_text(found: JsonObject) -> str:
 
 @report_errors_quietly
 def bw(
-    topic: Topic,
+    topic: options.Topic,
     window: Window = None,
     wall_time: WallTime = False,
     duration: Duration = None,
-    sim: Sim = None,
-    bag: Bag = None,
-    json_: Json = False,
+    sim: options.Sim = None,
+    bag: options.Bag = None,
+    json_: options.Json = False,
 ) -> int:
     """Prints how many bytes a second come, by the clock of the simulation."""
     with open_source(sim, bag) as source:
@@ -223,12 +218,12 @@ _SIZES = ("mean", "min", "max")
 
 @report_errors_quietly
 def delay(
-    topic: Topic,
+    topic: options.Topic,
     window: Window = None,
     duration: Duration = None,
-    sim: Sim = None,
-    bag: Bag = None,
-    json_: Json = False,
+    sim: options.Sim = None,
+    bag: options.Bag = None,
+    json_: options.Json = False,
 ) -> int:
     """Prints how much later than its stamp a message is published, by the clock of the simulation."""
     from simkit import msgs

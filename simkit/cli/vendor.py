@@ -5,25 +5,26 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-import typer
+from typer import Argument
 
+from simkit.cli.terminal import options
 from simkit.cli.terminal.output import report_errors, stdout_console
-from simkit.cli.terminal.shared_options import Base, File, PackagePaths, ResourcePaths, XacroArgs, source_arguments
 
 
 @report_errors
 def vendor(
-    file: File,
-    folder: Annotated[Path, typer.Argument(help="A folder that does not exist yet, or is empty.", show_default=False)],
-    resource_path: ResourcePaths = [],
-    package_path: PackagePaths = [],
-    xacro_arg: XacroArgs = [],
-    base: Base = "auto",
+    file: options.File,
+    folder: Annotated[Path, Argument(help="A folder that does not exist yet, or is empty.", show_default=False)],
+    resource_path: options.ResourcePaths = [],
+    package_path: options.PackagePaths = [],
+    xacro_arg: options.XacroArgs = [],
+    base: options.Base = "auto",
 ) -> int:
     """Writes a folder that holds a world and everything it names, and that opens anywhere."""
     from simkit.build import describe
     from simkit.writers.vendored_folder import vendor as write
 
-    main, count = write(file, folder, describe, **source_arguments(resource_path, package_path, xacro_arg, base))
+    source = options.source_arguments(resource_path, package_path, xacro_arg, base)
+    main, count = write(file, folder, describe, **source)
     stdout_console().print(f"{folder / main} and {count - 1} files that it needs")
     return 0
