@@ -6,10 +6,11 @@ import sys
 from typing import TYPE_CHECKING, Annotated
 
 import typer
-from typer import Argument, Option
+from typer import Option
 
 from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.message_arguments import check_type, make_message, parse_fields, split_type_and_values
+from simkit.cli.terminal.options import argument, option
 from simkit.cli.terminal.output import (
     absolute_name,
     print_json,
@@ -24,9 +25,7 @@ if TYPE_CHECKING:
 
 _PATIENCE = 5.0  # [s] of wall time in which a goal that is called off should end
 action = typer.Typer(help="Actions of a running simulation.", no_args_is_help=True)
-Name = Annotated[
-    str, Argument(help="Name of an action.", metavar="ACTION", show_default=False, autocompletion=completion.actions)
-]
+Name = Annotated[str, argument("Name of an action.", "ACTION", completion.actions)]
 
 
 @action.callback()
@@ -89,28 +88,12 @@ def info(
 def send_goal(
     action: Name,
     action_type: Annotated[
-        str | None,
-        Argument(
-            help="Its type, which need not be said.",
-            metavar="[TYPE]",
-            show_default=False,
-            autocompletion=completion.action_types,
-        ),
+        str | None, argument("Its type, which need not be said.", "[TYPE]", completion.action_types)
     ] = None,
-    goal: Annotated[
-        str | None,
-        Argument(
-            help="The goal as YAML: '{order: 5}'.",
-            metavar="[GOAL]",
-            show_default=False,
-            autocompletion=completion.goal_values,
-        ),
-    ] = None,
+    goal: Annotated[str | None, argument("The goal as YAML: '{order: 5}'.", "[GOAL]", completion.goal_values)] = None,
     stdin: Annotated[bool, Option("--stdin", help="Reads the goal from standard input.")] = False,
     feedback: Annotated[bool, Option("--feedback", "-f", help="Prints the feedback.")] = False,
-    timeout: Annotated[
-        float | None, Option("--timeout", help="Calls it off after so long (wall time).", metavar="S", min=0)
-    ] = None,
+    timeout: Annotated[float | None, option("Calls it off after so long (wall time).", "S", "--timeout", min=0)] = None,
     sim: options.Sim = None,
     json_: options.Json = False,
 ) -> int:

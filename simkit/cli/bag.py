@@ -7,21 +7,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
-from typer import Argument, Option
+from typer import Option
 
 from simkit.cli.bag_record import record
-from simkit.cli.plot_sources import (
-    Against,
-    End,
-    Output,
-    PlotRequest,
-    Start,
-    Title,
-    draw_chart,
-    is_bag,
-    split_sources_and_fields,
-)
+from simkit.cli.plot_sources import PlotRequest, draw_chart, is_bag, split_sources_and_fields
 from simkit.cli.terminal import options
+from simkit.cli.terminal.options import argument, option
 from simkit.cli.terminal.output import (
     absolute_name,
     print_json,
@@ -44,17 +35,15 @@ if TYPE_CHECKING:
 def plot(
     words: Annotated[
         list[str],
-        Argument(
-            help="A bag, or several to compare; then fields: /odom.pose.pose.position.x, /scan.ranges[0].",
-            metavar="BAG... FIELD...",
-            show_default=False,
+        argument(
+            "A bag, or several to compare; then fields: /odom.pose.pose.position.x, /scan.ranges[0].", "BAG... FIELD..."
         ),
     ],
-    output: Output = Path("plot.svg"),
-    against: Against = None,
-    start: Start = None,
-    end: End = None,
-    title: Title = "",
+    output: options.ChartFile = Path("plot.svg"),
+    against: options.Against = None,
+    start: options.Start = None,
+    end: options.End = None,
+    title: options.Title = "",
     json_: options.Json = False,
 ) -> int:
     """Draws fields of a recording over time; several recordings come into one chart."""
@@ -73,29 +62,29 @@ def export(
     output: Annotated[
         Path | None, Option("--output", "-o", help="The folder; NAME_export beside the bag's name where not given.")
     ] = None,
-    topic: Annotated[list[str], Option(help="Only topics of this pattern; repeatable.", metavar="PATTERN")] = [],
-    skip: Annotated[list[str], Option(help="All but topics of this pattern; repeatable.", metavar="PATTERN")] = [],
+    topic: Annotated[list[str], option("Only topics of this pattern; repeatable.", "PATTERN")] = [],
+    skip: Annotated[list[str], option("All but topics of this pattern; repeatable.", "PATTERN")] = [],
     format_: Annotated[
-        str, Option("--format", help="Of tables; parquet is the extra of that name.", metavar="csv|npz|parquet")
+        str, option("Of tables; parquet is the extra of that name.", "csv|npz|parquet", "--format")
     ] = "csv",
-    images: Annotated[str, Option(help="What becomes of pictures.", metavar="png|mp4|npz|none")] = "png",
-    clouds: Annotated[str, Option(help="What becomes of point clouds.", metavar="npz|ply|none")] = "npz",
-    start: Start = None,
-    end: End = None,
+    images: Annotated[str, option("What becomes of pictures.", "png|mp4|npz|none")] = "png",
+    clouds: Annotated[str, option("What becomes of point clouds.", "npz|ply|none")] = "npz",
+    start: options.Start = None,
+    end: options.End = None,
     force: options.Force = False,
     json_: options.Json = False,
 ) -> int:
     """Writes a recording as tables, a file a topic, with pictures and point clouds beside them."""
     from simkit.recording.export import CLOUDS, FORMATS, IMAGES, ExportOptions, export_bag
 
-    for option, word, allowed in (
+    for name, word, allowed in (
         ("--format", format_, FORMATS),
         ("--images", images, IMAGES),
         ("--clouds", clouds, CLOUDS),
     ):
         if word not in allowed:
             hint = did_you_mean(word, allowed)
-            text = f"SK-CLI-018 {option}: found {word!r}, allowed is {', '.join(allowed)}"
+            text = f"SK-CLI-018 {name}: found {word!r}, allowed is {', '.join(allowed)}"
             raise InputError(text + (f"; {hint}" if hint else ""), "SK-CLI-018")
     target = output or Path(f"{recording.resolve().stem}_export")
     wanted = ExportOptions(tuple(topic), tuple(skip), format_, images, clouds, start, end, force)
@@ -120,11 +109,9 @@ def play(
     topics: Annotated[
         list[str], Option("--topics", help="Only this one; repeatable. Else all that the world takes.")
     ] = [],
-    rate: Annotated[
-        float, Option("--rate", "-r", help="Times as fast, of simulated time.", metavar="N", min=1e-3)
-    ] = 1.0,
-    start: Annotated[float, Option("--start-offset", help="Begins so far into the bag.", metavar="S", min=0)] = 0.0,
-    remap: Annotated[list[str], Option("--remap", "-m", help="Plays OLD on NEW; repeatable.", metavar="OLD:=NEW")] = [],
+    rate: Annotated[float, option("Times as fast, of simulated time.", "N", "--rate", "-r", min=1e-3)] = 1.0,
+    start: Annotated[float, option("Begins so far into the bag.", "S", "--start-offset", min=0)] = 0.0,
+    remap: Annotated[list[str], option("Plays OLD on NEW; repeatable.", "OLD:=NEW", "--remap", "-m")] = [],
     loop: Annotated[bool, Option("--loop", "-l", help="Again and again until Ctrl-C.")] = False,
     sim: options.Sim = None,
     json_: options.Json = False,
@@ -230,13 +217,9 @@ bag.command()(export)
 @bag.command()
 @report_errors
 def recover(
-    broken: Annotated[
-        Path, Argument(help="The recording that was cut off: an MCAP file or a rosbag2 folder.", show_default=False)
-    ],
-    mended: Annotated[
-        Path | None, Argument(help="Where the whole one goes; beside it where not given.", show_default=False)
-    ] = None,
-    output: Annotated[Path | None, Option("--output", "-o", help="The same.", metavar="MENDED")] = None,
+    broken: Annotated[Path, argument("The recording that was cut off: an MCAP file or a rosbag2 folder.")],
+    mended: Annotated[Path | None, argument("Where the whole one goes; beside it where not given.")] = None,
+    output: Annotated[Path | None, option("The same.", "MENDED", "--output", "-o")] = None,
     force: options.Force = False,
 ) -> int:
     """Copies what is readable of a recording into a whole one; the broken one stays as it is."""

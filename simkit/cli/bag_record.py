@@ -7,11 +7,12 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-from typer import Argument, Option
+from typer import Option
 
 from simkit.cli.run_loop import Interrupts
 from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.message_arguments import compile_pattern
+from simkit.cli.terminal.options import argument, option
 from simkit.cli.terminal.output import absolute_name, is_hidden, print_json, print_note, report_errors_quietly
 from simkit.cli.terminal.topic_sources import LiveSource, connect_to_simulation
 from simkit.diagnostics import did_you_mean
@@ -28,30 +29,19 @@ _NEW = 1.0  # [s] of wall time between two looks for new topics
 
 @report_errors_quietly
 def record(
-    topics: Annotated[
-        list[str] | None,
-        Argument(help="Topics to record.", metavar="[TOPIC]...", show_default=False, autocompletion=completion.topics),
-    ] = None,
+    topics: Annotated[list[str] | None, argument("Topics to record.", "[TOPIC]...", completion.topics)] = None,
     all_: Annotated[bool, Option("--all", "-a", help="All topics, those that come later too.")] = False,
-    regex: Annotated[
-        str | None, Option("--regex", "-e", help="Topics that this fits.", metavar="REGEX", show_default=False)
-    ] = None,
+    regex: Annotated[str | None, option("Topics that this fits.", "REGEX", "--regex", "-e", show_default=False)] = None,
     exclude: Annotated[
-        str | None,
-        Option("--exclude-regex", "--exclude", "-x", help="But not these.", metavar="REGEX", show_default=False),
+        str | None, option("But not these.", "REGEX", "--exclude-regex", "--exclude", "-x", show_default=False)
     ] = None,
-    topics_too: Annotated[
-        list[str], Option("--topics", help="The same as arguments; repeatable.", metavar="TOPIC")
-    ] = [],
+    topics_too: Annotated[list[str], option("The same as arguments; repeatable.", "TOPIC", "--topics")] = [],
     output: Annotated[
-        Path | None,
-        Option("--output", "-o", help="x.mcap one file, else a rosbag2 folder.", metavar="OUT", show_default=False),
+        Path | None, option("x.mcap one file, else a rosbag2 folder.", "OUT", "--output", "-o", show_default=False)
     ] = None,
-    duration: Annotated[
-        float | None, Option("--duration", "-d", help="Ends after so long (simulated).", metavar="S", min=0)
-    ] = None,
+    duration: Annotated[float | None, option("Ends after so long (simulated).", "S", "--duration", "-d", min=0)] = None,
     hidden: Annotated[bool, Option("--include-hidden-topics", help="Hidden ones too.")] = False,
-    storage: Annotated[str, Option("--storage", "-s", help="mcap is all there is.", metavar="mcap")] = "mcap",
+    storage: Annotated[str, option("mcap is all there is.", "mcap", "--storage", "-s")] = "mcap",
     force: options.Force = False,
     sim: options.Sim = None,
     json_: options.Json = False,

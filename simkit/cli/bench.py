@@ -8,6 +8,7 @@ from typer import Option
 
 from simkit.cli.run_options import load_options
 from simkit.cli.terminal import options
+from simkit.cli.terminal.options import option
 from simkit.cli.terminal.output import report_errors, stdout_console
 from simkit.run_spec import RunSpec
 
@@ -17,7 +18,7 @@ _HOUR = 3600.0
 @report_errors
 def bench(
     world: options.World,
-    rounds: Annotated[int, Option(help="Timings of each side.", metavar="N", min=1)] = 9,
+    rounds: Annotated[int, option("Timings of each side.", "N", min=1)] = 9,
     full: Annotated[bool, Option("--full", help="Memory over a whole simulated hour, not a minute.")] = False,
     resource_path: options.ResourcePaths = [],
     plugin_path: options.PluginPaths = [],

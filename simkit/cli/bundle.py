@@ -5,10 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-from typer import Argument, Option
+from typer import Option
 
 from simkit.cli.run_options import load_options, scenario_spec
 from simkit.cli.terminal import options
+from simkit.cli.terminal.options import argument, option
 from simkit.cli.terminal.output import print_diagnostics, print_status, report_errors, stdout_console
 from simkit.errors import InputError, SimkitError
 from simkit.writers.atomic_output import check_file
@@ -16,23 +17,18 @@ from simkit.writers.atomic_output import check_file
 
 @report_errors
 def bundle(
-    world: Annotated[
-        str, Argument(help="A world, a model, or the file of a scenario.", show_default=False, metavar="WORLD")
-    ],
-    output: Annotated[Path, Option("--output", "-o", help="The file to write.", metavar="FILE.zip")],
-    duration: Annotated[
-        float | None, Option(help="Simulated seconds to run; 10, or the scenario's.", metavar="S", min=0)
-    ] = None,
+    world: Annotated[str, argument("A world, a model, or the file of a scenario.", "WORLD")],
+    output: Annotated[Path, option("The file to write.", "FILE.zip", "--output", "-o")],
+    duration: Annotated[float | None, option("Simulated seconds to run; 10, or the scenario's.", "S", min=0)] = None,
     seed: options.Seed = None,
     cmd_vel: options.CmdVel = None,
     script: options.Script = None,
     set_: options.Overrides = [],
     spawn: options.Spawns = [],
     params_file: options.ParamsFiles = [],
-    last: Annotated[float, Option(help="Keeps the messages of so many last seconds.", metavar="S", min=0)] = 10.0,
+    last: Annotated[float, option("Keeps the messages of so many last seconds.", "S", min=0)] = 10.0,
     topic: Annotated[
-        list[str],
-        Option(help="Keeps topics of this pattern although they are pictures; repeatable.", metavar="PATTERN"),
+        list[str], option("Keeps topics of this pattern although they are pictures; repeatable.", "PATTERN")
     ] = [],
     no_code: Annotated[bool, Option("--no-code", help="Leaves the code of plugins out.")] = False,
     force: options.Force = False,

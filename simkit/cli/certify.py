@@ -6,10 +6,9 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-from typer import Argument, Option
-
 from simkit.cli.run_options import load_options, scenario_spec
 from simkit.cli.terminal import options
+from simkit.cli.terminal.options import argument, option
 from simkit.cli.terminal.output import print_json, print_status, report_errors, stdout_console
 from simkit.writers.atomic_output import check_writable, write_atomically
 
@@ -22,27 +21,19 @@ _SECONDS = 5.0  # of a world that no scenario gives a length
 
 @report_errors
 def certify(
-    world: Annotated[
-        str, Argument(help="A world, or a scenario (.yaml, .py).", metavar="WORLD|SCENARIO", show_default=False)
-    ],
+    world: Annotated[str, argument("A world, or a scenario (.yaml, .py).", "WORLD|SCENARIO")],
     duration: Annotated[
-        float | None, Option(help="Simulated seconds; the scenario's, or 5, where not given.", metavar="S", min=0)
+        float | None, option("Simulated seconds; the scenario's, or 5, where not given.", "S", min=0)
     ] = None,
     seed: options.Seed = None,
-    runs: Annotated[int, Option(help="How many runs, each in a fresh process.", metavar="N")] = 6,
-    jobs: Annotated[int, Option("--jobs", "-j", help="Processes at a time.", metavar="N", min=1)] = 1,
+    runs: Annotated[int, option("How many runs, each in a fresh process.", "N")] = 6,
+    jobs: Annotated[int, option("Processes at a time.", "N", "--jobs", "-j", min=1)] = 1,
     wall_timeout: Annotated[
         float | None,
-        Option(
-            help="Wall time of each run; ten times the first one's, at least 60, where not given.", metavar="S", min=0.1
-        ),
+        option("Wall time of each run; ten times the first one's, at least 60, where not given.", "S", min=0.1),
     ] = None,
-    topic: Annotated[
-        list[str], Option(help="Compares only topics of this pattern; repeatable.", metavar="PATTERN")
-    ] = [],
-    skip: Annotated[
-        list[str], Option(help="Compares all but topics of this pattern; repeatable.", metavar="PATTERN")
-    ] = [],
+    topic: Annotated[list[str], option("Compares only topics of this pattern; repeatable.", "PATTERN")] = [],
+    skip: Annotated[list[str], option("Compares all but topics of this pattern; repeatable.", "PATTERN")] = [],
     cmd_vel: options.CmdVel = None,
     script: options.Script = None,
     set_: options.Overrides = [],
@@ -54,9 +45,7 @@ def certify(
     xacro_arg: options.XacroArgs = [],
     base: options.Base = "auto",
     json_: options.Json = False,
-    output: Annotated[
-        Path | None, Option("--out", "-o", help="Writes the certificate, as JSON.", metavar="FILE.json")
-    ] = None,
+    output: Annotated[Path | None, option("Writes the certificate, as JSON.", "FILE.json", "--out", "-o")] = None,
 ) -> int:
     """Runs a world in fresh processes with other surroundings, and shows that the bits are the same."""
     from simkit.testing.certify import certificate

@@ -11,6 +11,7 @@ from typing import Annotated
 from typer import Option
 
 from simkit.cli.terminal import options
+from simkit.cli.terminal.options import option
 from simkit.cli.terminal.output import print_diagnostics, report_errors, stdout_console
 from simkit.diagnostics import Diagnostic
 from simkit.errors import InputError
@@ -26,9 +27,7 @@ def check(
     fix_inertia: Annotated[
         bool, Option("--fix-inertia", help="Shows new numbers for inertias that no solid has.")
     ] = False,
-    output: Annotated[
-        Path | None, Option("--output", "-o", help="With --fix-inertia: the file with them.", metavar="OUT")
-    ] = None,
+    output: Annotated[Path | None, option("With --fix-inertia: the file with them.", "OUT", "--output", "-o")] = None,
     force: options.Force = False,
     resource_path: options.ResourcePaths = [],
     package_path: options.PackagePaths = [],

@@ -8,6 +8,7 @@ from typing import Annotated
 from typer import Option
 
 from simkit.cli.terminal import options
+from simkit.cli.terminal.options import option
 from simkit.cli.terminal.output import print_diagnostics, print_status, report_errors, stdout_console
 from simkit.diagnostics import Diagnostics
 from simkit.errors import InputError
@@ -20,11 +21,11 @@ def convert(
     file: options.File,
     output: Annotated[
         Path,
-        Option(
+        option(
+            "OUT.xml is MJCF, OUT.sdf (or .world) SDF; meshes and pictures go beside it.",
+            "OUT",
             "--output",
             "-o",
-            help="OUT.xml is MJCF, OUT.sdf (or .world) SDF; meshes and pictures go beside it.",
-            metavar="OUT",
             show_default=False,
         ),
     ],

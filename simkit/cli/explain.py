@@ -6,9 +6,8 @@ import json
 from dataclasses import asdict
 from typing import Annotated
 
-from typer import Argument
-
 from simkit.cli.terminal import options
+from simkit.cli.terminal.options import argument
 from simkit.cli.terminal.output import report_errors, stdout_console
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
@@ -16,7 +15,7 @@ from simkit.errors import InputError
 
 @report_errors
 def explain(
-    code: Annotated[str, Argument(help="A code such as SK-SDF-004, or the beginning of several.", show_default=False)],
+    code: Annotated[str, argument("A code such as SK-SDF-004, or the beginning of several.")],
     json_: options.Json = False,
 ) -> int:
     """Says what a code means, what helps, and shows an input that brings it about."""

@@ -16,6 +16,7 @@ from typer import Argument, Option
 
 from simkit.cli.run_options import load_options, scenario_spec
 from simkit.cli.terminal import options
+from simkit.cli.terminal.options import argument, option
 from simkit.cli.terminal.output import (
     JsonObject,
     JsonValue,
@@ -205,15 +206,11 @@ def _group() -> None:
 @report_errors
 def record(
     world: Annotated[str, Argument(help="A scenario (.yaml, .py), a world, or a bare name.", metavar="WORLD|SCENARIO")],
-    out_: Annotated[Path, Option("--out", "-o", help="The folder that it goes into.", metavar="DIR")],
-    duration: Annotated[
-        float | None, Option(help="Simulated seconds; 10 where nothing says it.", metavar="S", min=0)
-    ] = None,
+    out_: Annotated[Path, option("The folder that it goes into.", "DIR", "--out", "-o")],
+    duration: Annotated[float | None, option("Simulated seconds; 10 where nothing says it.", "S", min=0)] = None,
     seed: options.Seed = None,
-    topic: Annotated[list[str], Option(help="Keeps only topics of this pattern; repeatable.", metavar="PATTERN")] = [],
-    skip: Annotated[
-        list[str], Option(help="Keeps all but topics of this pattern; repeatable.", metavar="PATTERN")
-    ] = [],
+    topic: Annotated[list[str], option("Keeps only topics of this pattern; repeatable.", "PATTERN")] = [],
+    skip: Annotated[list[str], option("Keeps all but topics of this pattern; repeatable.", "PATTERN")] = [],
     set_: options.Overrides = [],
     spawn: options.Spawns = [],
     params_file: options.ParamsFiles = [],
@@ -251,22 +248,16 @@ def record(
 @golden.command()
 @report_errors
 def check(
-    folders: Annotated[
-        list[Path], Argument(help="Golden runs, or folders that hold some.", metavar="DIR...", show_default=False)
-    ],
-    bless: Annotated[
-        str | None, Option(help="Makes what differs golden, and keeps why that is right.", metavar="REASON")
-    ] = None,
+    folders: Annotated[list[Path], argument("Golden runs, or folders that hold some.", "DIR...")],
+    bless: Annotated[str | None, option("Makes what differs golden, and keeps why that is right.", "REASON")] = None,
     bless_other_renderer: Annotated[
         bool, Option("--bless-other-renderer", help="Also where pictures were drawn by another renderer.")
     ] = False,
-    html: Annotated[
-        Path | None, Option(help="Writes the report as one page with plots and pictures.", metavar="OUT.html")
-    ] = None,
-    junit: Annotated[Path | None, Option(help="Writes JUnit XML.", metavar="OUT.xml")] = None,
-    jobs: Annotated[int, Option("--jobs", "-n", help="So many at once.", metavar="N", min=1)] = 1,
+    html: Annotated[Path | None, option("Writes the report as one page with plots and pictures.", "OUT.html")] = None,
+    junit: Annotated[Path | None, option("Writes JUnit XML.", "OUT.xml")] = None,
+    jobs: Annotated[int, option("So many at once.", "N", "--jobs", "-n", min=1)] = 1,
     causes: Annotated[bool, Option("--causes/--no-causes", help="Looks for where differences come from.")] = True,
-    budget: Annotated[float, Option(help="Wall time that this may take for one of them.", metavar="S", min=0)] = 60.0,
+    budget: Annotated[float, option("Wall time that this may take for one of them.", "S", min=0)] = 60.0,
     json_: options.Json = False,
     quiet: Annotated[bool, Option("--quiet", "-q", help="Says nothing of what passes.")] = False,
 ) -> int:

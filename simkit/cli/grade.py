@@ -5,9 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-from typer import Argument, Option
+from typer import Argument
 
 from simkit.cli.terminal import options
+from simkit.cli.terminal.options import argument, option
 from simkit.cli.terminal.output import print_json, report_errors, stdout_console
 from simkit.errors import InputError
 from simkit.writers.atomic_output import check_writable
@@ -17,14 +18,14 @@ _FAILED = 5
 
 @report_errors
 def grade(
-    exercise: Annotated[Path, Argument(help="The exercise's YAML file.", metavar="EXERCISE.yaml", show_default=False)],
+    exercise: Annotated[Path, argument("The exercise's YAML file.", "EXERCISE.yaml")],
     hand_ins: Annotated[
         list[Path] | None,
         Argument(help="Plugins that were handed in; that of the exercise where not given.", metavar="PLUGIN.py"),
     ] = None,
-    junit: Annotated[Path | None, Option(help="Writes the results for CI.", metavar="OUT.xml")] = None,
-    pictures: Annotated[Path | None, Option(help="Draws the path of each run into a folder.", metavar="DIR")] = None,
-    jobs: Annotated[int, Option(help="Processes at a time.", metavar="N", min=1, max=256)] = 1,
+    junit: Annotated[Path | None, option("Writes the results for CI.", "OUT.xml")] = None,
+    pictures: Annotated[Path | None, option("Draws the path of each run into a folder.", "DIR")] = None,
+    jobs: Annotated[int, option("Processes at a time.", "N", min=1, max=256)] = 1,
     json_: options.Json = False,
 ) -> int:
     """Runs an exercise with plugins that were handed in, and says what each got and why."""

@@ -9,19 +9,14 @@ import typer
 from typer import Argument, Option
 
 from simkit.cli.terminal import completion, options
+from simkit.cli.terminal.options import argument
 from simkit.cli.terminal.output import not_found_error, print_json, print_line, report_errors_quietly
 from simkit.errors import InputError, MessageError
 
 _KINDS = (("msg", "Messages"), ("srv", "Services"), ("action", "Actions"))
 interface = typer.Typer(help="Types of messages, services and actions.", no_args_is_help=True)
 TypeName = Annotated[
-    str,
-    Argument(
-        help="Such as geometry_msgs/msg/Twist; - reads it from standard input.",
-        metavar="TYPE",
-        show_default=False,
-        autocompletion=completion.interfaces,
-    ),
+    str, argument("Such as geometry_msgs/msg/Twist; - reads it from standard input.", "TYPE", completion.interfaces)
 ]
 
 

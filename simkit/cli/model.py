@@ -6,9 +6,10 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated
 
 import typer
-from typer import Argument, Option
+from typer import Option
 
 from simkit.cli.terminal import completion, options
+from simkit.cli.terminal.options import argument
 from simkit.cli.terminal.output import JsonObject, not_found_error, print_json, print_line, report_errors_quietly
 from simkit.cli.terminal.topic_sources import connect_to_simulation, connection_name
 
@@ -16,15 +17,7 @@ if TYPE_CHECKING:
     from simkit.live import Client
 
 model = typer.Typer(help="Models of a running simulation.", no_args_is_help=True)
-Model = Annotated[
-    str,
-    Argument(
-        help="Name of a model; nested ones with ::.",
-        metavar="MODEL",
-        show_default=False,
-        autocompletion=completion.models,
-    ),
-]
+Model = Annotated[str, argument("Name of a model; nested ones with ::.", "MODEL", completion.models)]
 
 
 @model.callback()
@@ -64,10 +57,7 @@ def _count_text(found: Sequence[object], what: str) -> str:
 @report_errors_quietly
 def pose(
     model: Model,
-    link: Annotated[
-        str | None,
-        Argument(help="One of its links.", metavar="[LINK]", show_default=False, autocompletion=completion.links),
-    ] = None,
+    link: Annotated[str | None, argument("One of its links.", "[LINK]", completion.links)] = None,
     links: Annotated[bool, Option("--links", "-l", help="All its links too.")] = False,
     sim: options.Sim = None,
     json_: options.Json = False,
@@ -103,13 +93,7 @@ def _pose_text(pose: JsonObject) -> str:
 def joint(
     model: Model,
     joint: Annotated[
-        str | None,
-        Argument(
-            help="One of its joints; all where not given.",
-            metavar="[JOINT]",
-            show_default=False,
-            autocompletion=completion.joints,
-        ),
+        str | None, argument("One of its joints; all where not given.", "[JOINT]", completion.joints)
     ] = None,
     sim: options.Sim = None,
     json_: options.Json = False,

@@ -13,6 +13,7 @@ import typer
 from typer import Argument, Option
 
 from simkit.cli.terminal import options
+from simkit.cli.terminal.options import argument, option
 from simkit.cli.terminal.output import print_diagnostics, print_status, report_errors, stdout_console
 from simkit.diagnostics import Diagnostics
 from simkit.errors import InputError, RenderError
@@ -25,10 +26,9 @@ motion = typer.Typer(help="Lists the motions that a robot knows by name, and pla
 
 ROBOT = "tiago"
 Motions = Annotated[
-    list[Path],
-    Option("--motions", help="One more file of motions, play_motion's or play_motion2's.", metavar="FILE.yaml"),
+    list[Path], option("One more file of motions, play_motion's or play_motion2's.", "FILE.yaml", "--motions")
 ]
-OfModel = Annotated[str | None, Option("--model", help="Which robot, where several play.", metavar="NAME")]
+OfModel = Annotated[str | None, option("Which robot, where several play.", "NAME", "--model")]
 
 
 @motion.callback()
@@ -80,26 +80,20 @@ def list_motions(
 @motion.command("play")
 @report_errors
 def play(
-    names: Annotated[
-        list[str], Argument(help="Motions, played one after another.", metavar="MOTION...", show_default=False)
-    ],
-    world: Annotated[
-        str | None, Option(help="Where: a file or a bare name; level ground otherwise.", metavar="WORLD")
-    ] = None,
+    names: Annotated[list[str], argument("Motions, played one after another.", "MOTION...")],
+    world: Annotated[str | None, option("Where: a file or a bare name; level ground otherwise.", "WORLD")] = None,
     robot: Annotated[
-        str | None, Option(help=f"Who: a file or a bare name; {ROBOT} where no world is given.", metavar="MODEL")
+        str | None, option(f"Who: a file or a bare name; {ROBOT} where no world is given.", "MODEL")
     ] = None,
     motions: Motions = [],
     model: OfModel = None,
     skip_planning: Annotated[
         bool, Option("--skip-planning", help="Does not look whether anything is in the way.")
     ] = False,
-    seed: Annotated[int, Option(help="Seed of all noise.", metavar="N", min=0)] = 0,
-    record: Annotated[
-        Path | None, Option(help="Writes all topics: x.mcap one file, else a rosbag2 folder.", metavar="OUT")
-    ] = None,
+    seed: Annotated[int, option("Seed of all noise.", "N", min=0)] = 0,
+    record: Annotated[Path | None, option("Writes all topics: x.mcap one file, else a rosbag2 folder.", "OUT")] = None,
     force: options.Force = False,
-    picture: Annotated[Path | None, Option(help="Draws the scene at the end.", metavar="OUT.png")] = None,
+    picture: Annotated[Path | None, option("Draws the scene at the end.", "OUT.png")] = None,
     json_: options.Json = False,
     verbose: options.Verbose = False,
     resource_path: options.ResourcePaths = [],

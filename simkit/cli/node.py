@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import Annotated
 
 import typer
-from typer import Argument, Option
+from typer import Option
 
 from simkit.cli.terminal import completion, options
+from simkit.cli.terminal.options import argument
 from simkit.cli.terminal.output import (
     JsonObject,
     absolute_name,
@@ -47,9 +48,7 @@ def list_(
 @node.command(cls=options.Ros2Command)
 @report_errors_quietly
 def info(
-    node: Annotated[
-        str, Argument(help="Name of a node.", metavar="NODE", show_default=False, autocompletion=completion.all_nodes)
-    ],
+    node: Annotated[str, argument("Name of a node.", "NODE", completion.all_nodes)],
     hidden: Hidden = False,
     sim: options.Sim = None,
     json_: options.Json = False,

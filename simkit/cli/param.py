@@ -6,10 +6,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
-from typer import Argument, Option
+from typer import Option
 
 from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.message_arguments import compile_pattern
+from simkit.cli.terminal.options import argument, option
 from simkit.cli.terminal.output import (
     JsonObject,
     absolute_name,
@@ -28,16 +29,9 @@ if TYPE_CHECKING:
     from simkit.msgs import ParameterValue
 
 param = typer.Typer(help="Live parameters of a running simulation.", no_args_is_help=True)
-Node = Annotated[
-    str, Argument(help="Name of a node.", metavar="NODE", show_default=False, autocompletion=completion.nodes)
-]
-Names = Annotated[
-    list[str],
-    Argument(help="Names of parameters.", metavar="NAME...", show_default=False, autocompletion=completion.parameters),
-]
-Name = Annotated[
-    str, Argument(help="Name of a parameter.", metavar="NAME", show_default=False, autocompletion=completion.parameters)
-]
+Node = Annotated[str, argument("Name of a node.", "NODE", completion.nodes)]
+Names = Annotated[list[str], argument("Names of parameters.", "NAME...", completion.parameters)]
+Name = Annotated[str, argument("Name of a parameter.", "NAME", completion.parameters)]
 
 
 @param.callback()
@@ -48,17 +42,10 @@ def _group() -> None:
 @param.command("list", cls=options.Ros2Command)
 @report_errors_quietly
 def list_(
-    node: Annotated[
-        str | None,
-        Argument(help="Only of this one.", metavar="[NODE]", autocompletion=completion.nodes, show_default=False),
-    ] = None,
+    node: Annotated[str | None, argument("Only of this one.", "[NODE]", completion.nodes)] = None,
     param_type: Annotated[bool, Option("--param-type", help="Shows the types too.")] = False,
-    prefix: Annotated[
-        list[str], Option("--param-prefixes", help="Only names that begin so; repeatable.", metavar="PREFIX")
-    ] = [],
-    filter_: Annotated[
-        str | None, Option("--filter", help="Only names this regular expression fits.", metavar="REGEX")
-    ] = None,
+    prefix: Annotated[list[str], option("Only names that begin so; repeatable.", "PREFIX", "--param-prefixes")] = [],
+    filter_: Annotated[str | None, option("Only names this regular expression fits.", "REGEX", "--filter")] = None,
     sim: options.Sim = None,
     json_: options.Json = False,
 ) -> int:
@@ -116,15 +103,7 @@ def _value_text(value: object, kind: str) -> str:
 @report_errors_quietly
 def set_(
     node: Node,
-    pairs: Annotated[
-        list[str],
-        Argument(
-            help="Names and values: p_gain 12.5.",
-            metavar="NAME VALUE...",
-            show_default=False,
-            autocompletion=completion.parameters,
-        ),
-    ],
+    pairs: Annotated[list[str], argument("Names and values: p_gain 12.5.", "NAME VALUE...", completion.parameters)],
     atomic: Annotated[bool, Option("--atomic", help="All of them or none.")] = False,
     sim: options.Sim = None,
     json_: options.Json = False,
@@ -230,7 +209,7 @@ def dump(node: Node, sim: options.Sim = None, json_: options.Json = False) -> in
 @report_errors_quietly
 def load(
     node: Node,
-    file: Annotated[Path, Argument(help="A parameter file.", metavar="FILE.yaml", show_default=False)],
+    file: Annotated[Path, argument("A parameter file.", "FILE.yaml")],
     no_wildcard: Annotated[bool, Option("--no-use-wildcard", help="Leaves out what stands for all: /**.")] = False,
     sim: options.Sim = None,
     json_: options.Json = False,

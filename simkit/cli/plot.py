@@ -6,20 +6,10 @@ from functools import partial
 from pathlib import Path
 from typing import Annotated
 
-from typer import Argument, Option
-
-from simkit.cli.plot_sources import (
-    Against,
-    End,
-    Output,
-    PlotRequest,
-    Start,
-    Title,
-    draw_chart,
-    split_sources_and_fields,
-)
+from simkit.cli.plot_sources import PlotRequest, draw_chart, split_sources_and_fields
 from simkit.cli.run_options import load_options, scenario_spec
 from simkit.cli.terminal import options
+from simkit.cli.terminal.options import argument, option
 from simkit.cli.terminal.output import report_errors_quietly
 
 
@@ -27,19 +17,18 @@ from simkit.cli.terminal.output import report_errors_quietly
 def plot(
     words: Annotated[
         list[str],
-        Argument(
-            help="A world, scenario or bag, or several; then fields: /odom.pose.pose.position.x, /scan.ranges[0].",
-            metavar="WORLD-or-BAG... FIELD...",
-            show_default=False,
+        argument(
+            "A world, scenario or bag, or several; then fields: /odom.pose.pose.position.x, /scan.ranges[0].",
+            "WORLD-or-BAG... FIELD...",
         ),
     ],
-    output: Output = Path("plot.svg"),
-    against: Against = None,
-    start: Start = None,
-    end: End = None,
-    title: Title = "",
+    output: options.ChartFile = Path("plot.svg"),
+    against: options.Against = None,
+    start: options.Start = None,
+    end: options.End = None,
+    title: options.Title = "",
     duration: Annotated[
-        float | None, Option(help="Simulated seconds that a world is run for; 10 where not given.", metavar="S", min=0)
+        float | None, option("Simulated seconds that a world is run for; 10 where not given.", "S", min=0)
     ] = None,
     seed: options.Seed = None,
     set_: options.Overrides = [],

@@ -6,9 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Final
-
-from typer import Option
+from typing import TYPE_CHECKING, Final
 
 from simkit.cli.run_options import scenario_spec
 from simkit.cli.terminal.output import print_diagnostics, print_json, print_line, print_note
@@ -22,15 +20,6 @@ if TYPE_CHECKING:
     from simkit.recording.charts.chart import Chart, Style
     from simkit.recording.charts.fields import Curve
     from simkit.recording.charts.series import Series
-
-
-Output = Annotated[Path, Option("--output", "-o", help="The file: .svg or .png.", metavar="OUT", show_default=True)]
-Against = Annotated[
-    str | None, Option(help="Draws over this field in place of time.", metavar="FIELD", show_default=False)
-]
-Start = Annotated[float | None, Option("--start", help="Leaves out what was before.", metavar="S")]
-End = Annotated[float | None, Option("--end", help="Leaves out what was after.", metavar="S")]
-Title = Annotated[str, Option(help="Above the chart.", metavar="TEXT", show_default=False)]
 
 
 _BAGS: Final = (".mcap", ".db3")

@@ -8,9 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
-from typer import Argument, Option
+from typer import Option
 
 from simkit.cli.terminal import options
+from simkit.cli.terminal.options import argument, option
 from simkit.cli.terminal.output import JsonObject, print_diagnostics, print_status, report_errors, stdout_console
 from simkit.diagnostics import Diagnostics
 from simkit.errors import InputError
@@ -32,9 +33,7 @@ def _group() -> None:
 @plugin.command("list")
 @report_errors
 def list_plugins(
-    words: Annotated[
-        list[str] | None, Argument(help="Only names that contain one of these.", show_default=False)
-    ] = None,
+    words: Annotated[list[str] | None, argument("Only names that contain one of these.")] = None,
     plugin_path: options.PluginPaths = [],
     json_: options.Json = False,
 ) -> int:
@@ -73,9 +72,7 @@ def _matching(entry: Entry, wanted: list[str]) -> list[str]:
 @plugin.command("info")
 @report_errors
 def show_info(
-    name: Annotated[
-        str, Argument(help="A name in any spelling, a class, MODULE:CLASS or FILE.py.", show_default=False)
-    ],
+    name: Annotated[str, argument("A name in any spelling, a class, MODULE:CLASS or FILE.py.")],
     plugin_path: options.PluginPaths = [],
     json_: options.Json = False,
 ) -> int:
@@ -108,14 +105,12 @@ def show_info(
 @plugin.command("new")
 @report_errors
 def new_plugin(
-    name: Annotated[
-        str | None, Argument(help="wheel_brake, WheelBrake or libwheel_brake.so.", show_default=False)
-    ] = None,
+    name: Annotated[str | None, argument("wheel_brake, WheelBrake or libwheel_brake.so.")] = None,
     from_: Annotated[
-        str | None, Option("--from", help="One for each library of a world that nothing stands for.", metavar="WORLD")
+        str | None, option("One for each library of a world that nothing stands for.", "WORLD", "--from")
     ] = None,
     on: Annotated[str, Option(help="What it hangs on: world, model, visual or sensor.")] = "model",
-    folder: Annotated[Path, Option(help="Where the files go.", metavar="DIR")] = Path(),
+    folder: Annotated[Path, option("Where the files go.", "DIR")] = Path(),
     force: options.Force = False,
     resource_path: options.ResourcePaths = [],
     package_path: options.PackagePaths = [],

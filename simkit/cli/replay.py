@@ -8,9 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
-from typer import Argument, Option
+from typer import Option
 
 from simkit.cli.terminal import options
+from simkit.cli.terminal.options import argument, option
 from simkit.cli.terminal.output import JsonObject, report_errors, stdout_console
 from simkit.errors import InputError
 
@@ -23,15 +24,13 @@ _DIFFERENT = 5
 
 @report_errors
 def replay(
-    bundle: Annotated[Path, Argument(help="A bundle.", show_default=False)],
+    bundle: Annotated[Path, argument("A bundle.")],
     allow_code: Annotated[
         bool, Option("--allow-code", help="Lets the code of plugins in it run; it may do all that you may.")
     ] = False,
     list_: Annotated[bool, Option("--list", help="Prints what is in it; runs nothing.")] = False,
-    extract: Annotated[
-        Path | None, Option(help="Writes its files into a new folder; runs nothing.", metavar="DIR")
-    ] = None,
-    record: Annotated[Path | None, Option(help="Records all topics of the replay: OUT.mcap.", metavar="OUT")] = None,
+    extract: Annotated[Path | None, option("Writes its files into a new folder; runs nothing.", "DIR")] = None,
+    record: Annotated[Path | None, option("Records all topics of the replay: OUT.mcap.", "OUT")] = None,
     as_json: options.Json = False,
 ) -> int:
     """Repeats the run in a bundle: exit 0 if it came out the same, bit by bit, exit 5 if not.

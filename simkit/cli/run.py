@@ -16,6 +16,7 @@ from simkit.cli.failure_bundle import FailureBundle
 from simkit.cli.run_options import RunDisplay, load_options
 from simkit.cli.terminal import options
 from simkit.cli.terminal.blocked_plugins import BlockedPlugins
+from simkit.cli.terminal.options import option
 from simkit.cli.terminal.output import print_diagnostics, print_status, report_errors
 from simkit.cli.terminal.teleop import KEY_TIMEOUT
 from simkit.run_spec import Check, PluginErrorPolicy, Recording, RunSpec
@@ -67,51 +68,35 @@ def _seconds(text: str) -> float:
 @report_errors
 def run(
     world: options.World,
-    duration: Annotated[
-        float | None, Option(help="Simulated seconds; until Ctrl-C where not given.", metavar="S", min=0)
-    ] = None,
-    seed: Annotated[int, Option(help="Seed of all noise.", metavar="N", min=0)] = 0,
-    record: Annotated[
-        Path | None, Option(help="Writes all topics: x.mcap one file, else a rosbag2 folder.", metavar="OUT")
-    ] = None,
-    topic: Annotated[
-        list[str], Option(help="Records only topics of this pattern; repeatable.", metavar="PATTERN")
-    ] = [],
-    skip: Annotated[
-        list[str], Option(help="Records all but topics of this pattern; repeatable.", metavar="PATTERN")
-    ] = [],
+    duration: Annotated[float | None, option("Simulated seconds; until Ctrl-C where not given.", "S", min=0)] = None,
+    seed: Annotated[int, option("Seed of all noise.", "N", min=0)] = 0,
+    record: Annotated[Path | None, option("Writes all topics: x.mcap one file, else a rosbag2 folder.", "OUT")] = None,
+    topic: Annotated[list[str], option("Records only topics of this pattern; repeatable.", "PATTERN")] = [],
+    skip: Annotated[list[str], option("Records all but topics of this pattern; repeatable.", "PATTERN")] = [],
     force: options.Force = False,
     rtf: Annotated[
-        float | None,
-        Option(help="No faster than X times real time; 1 with --teleop and --view.", metavar="X", min=1e-3),
+        float | None, option("No faster than X times real time; 1 with --teleop and --view.", "X", min=1e-3)
     ] = None,
-    teleop: Annotated[
-        str | None, Option(help="Drives with the keyboard: who takes velocities there.", metavar="[TOPIC]")
-    ] = None,
+    teleop: Annotated[str | None, option("Drives with the keyboard: who takes velocities there.", "[TOPIC]")] = None,
     key_timeout: Annotated[
-        float, Option(help="--teleop stops after so many simulated seconds without a key; inf: never.", metavar="S")
+        float, option("--teleop stops after so many simulated seconds without a key; inf: never.", "S")
     ] = KEY_TIMEOUT,
     paused: Annotated[bool, Option("--paused", help="Begins paused; space or a service lets it go on.")] = False,
-    step: Annotated[int | None, Option(help="Does N steps, then is paused.", metavar="N", min=0)] = None,
+    step: Annotated[int | None, option("Does N steps, then is paused.", "N", min=0)] = None,
     name: Annotated[
-        str | None, Option(help="What other terminals call this run; else the world's or file's name.", metavar="NAME")
+        str | None, option("What other terminals call this run; else the world's or file's name.", "NAME")
     ] = None,
     set_: options.Overrides = [],
     spawn: options.Spawns = [],
     params_file: options.ParamsFiles = [],
     strict: options.Strict = False,
     view: Annotated[bool, Option("--view", help="Opens a viewer.")] = False,
-    picture: Annotated[
-        Path | None, Option(help="Draws the scene at the end, with path and last scan.", metavar="OUT.png")
-    ] = None,
+    picture: Annotated[Path | None, option("Draws the scene at the end, with path and last scan.", "OUT.png")] = None,
     cmd_vel: options.CmdVel = None,
     script: options.Script = None,
-    play: Annotated[
-        Path | None, Option(help="Commands of a recording, at their ticks; runs as long.", metavar="BAG")
-    ] = None,
+    play: Annotated[Path | None, option("Commands of a recording, at their ticks; runs as long.", "BAG")] = None,
     play_topic: Annotated[
-        list[str],
-        Option("--play-topic", help="Plays only this topic, or it on another one; repeatable.", metavar="TOPIC[:=NEW]"),
+        list[str], option("Plays only this topic, or it on another one; repeatable.", "TOPIC[:=NEW]", "--play-topic")
     ] = [],
     resource_path: options.ResourcePaths = [],
     package_path: options.PackagePaths = [],
@@ -121,36 +106,28 @@ def run(
     base: options.Base = "auto",
     on_plugin_error: Annotated[
         str | None,
-        Option(
-            help="What becomes of a plugin that raises: stop ends the run (exit 4), disable goes on without it.",
-            metavar="stop|disable",
+        option(
+            "What becomes of a plugin that raises: stop ends the run (exit 4), disable goes on without it.",
+            "stop|disable",
         ),
     ] = None,
     bundle_on_failure: Annotated[
         Path | None,
-        Option(
-            help="Where the run fails: writes it into one file there, which simkit replay repeats; else bundles/.",
-            metavar="[DIR]",
+        option(
+            "Where the run fails: writes it into one file there, which simkit replay repeats; else bundles/.", "[DIR]"
         ),
     ] = None,
     verbose: options.Verbose = False,
     quiet: Annotated[bool, Option("--quiet", "-q", help="One line at the end, no table of topics.")] = False,
-    until: Annotated[
-        str | None, Option(help="Ends as soon as this holds: \"pose('tb3').x > 2\".", metavar="EXPR")
-    ] = None,
+    until: Annotated[str | None, option("Ends as soon as this holds: \"pose('tb3').x > 2\".", "EXPR")] = None,
     timeout: Annotated[
-        float | None,
-        Option(help="Simulated time by which --until must hold, else exit 5.", metavar="S", parser=_seconds),
+        float | None, option("Simulated time by which --until must hold, else exit 5.", "S", parser=_seconds)
     ] = None,
     wall_timeout: Annotated[
-        float | None, Option(help="Wall time after which the run is given up, exit 5.", metavar="S", parser=_seconds)
+        float | None, option("Wall time after which the run is given up, exit 5.", "S", parser=_seconds)
     ] = None,
-    assert_: Annotated[
-        list[str], Option("--assert", help="Must hold at the end, else exit 5; repeatable.", metavar="EXPR")
-    ] = [],
-    junit: Annotated[
-        Path | None, Option(help="Writes what held and what did not, for a CI.", metavar="FILE.xml")
-    ] = None,
+    assert_: Annotated[list[str], option("Must hold at the end, else exit 5; repeatable.", "EXPR", "--assert")] = [],
+    junit: Annotated[Path | None, option("Writes what held and what did not, for a CI.", "FILE.xml")] = None,
 ) -> int:
     """Runs a world headless, as fast as it goes."""
     spec = RunSpec(

@@ -7,7 +7,7 @@ import time
 from typing import TYPE_CHECKING, Annotated
 
 import typer
-from typer import Argument, Option
+from typer import Option
 
 from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.message_arguments import (
@@ -17,6 +17,7 @@ from simkit.cli.terminal.message_arguments import (
     parse_fields,
     split_type_and_values,
 )
+from simkit.cli.terminal.options import argument, option
 from simkit.cli.terminal.output import (
     absolute_name,
     is_hidden,
@@ -32,9 +33,7 @@ if TYPE_CHECKING:
     from simkit.live import Client
 
 service = typer.Typer(help="Services of a running simulation.", no_args_is_help=True)
-Name = Annotated[
-    str, Argument(help="Name of a service.", metavar="SERVICE", show_default=False, autocompletion=completion.services)
-]
+Name = Annotated[str, argument("Name of a service.", "SERVICE", completion.services)]
 Count = Annotated[bool, Option("--count-services", "--count", "-c", help="Says only how many.")]
 
 
@@ -88,15 +87,7 @@ def info(service: Name, sim: options.Sim = None, json_: options.Json = False) ->
 @service.command(cls=options.Ros2Command)
 @report_errors_quietly
 def find(
-    service_type: Annotated[
-        str,
-        Argument(
-            help="Such as std_srvs/srv/Empty.",
-            metavar="TYPE",
-            show_default=False,
-            autocompletion=completion.service_types,
-        ),
-    ],
+    service_type: Annotated[str, argument("Such as std_srvs/srv/Empty.", "TYPE", completion.service_types)],
     count: Count = False,
     sim: options.Sim = None,
     json_: options.Json = False,
@@ -113,26 +104,14 @@ def find(
 def call(
     service: Name,
     service_type: Annotated[
-        str | None,
-        Argument(
-            help="Its type, which need not be said.",
-            metavar="[TYPE]",
-            show_default=False,
-            autocompletion=completion.service_types,
-        ),
+        str | None, argument("Its type, which need not be said.", "[TYPE]", completion.service_types)
     ] = None,
     values: Annotated[
-        str | None,
-        Argument(
-            help="The request as YAML: '{data: true}'.",
-            metavar="[VALUES]",
-            show_default=False,
-            autocompletion=completion.service_values,
-        ),
+        str | None, argument("The request as YAML: '{data: true}'.", "[VALUES]", completion.service_values)
     ] = None,
     stdin: Annotated[bool, Option("--stdin", help="Reads the request from standard input.")] = False,
     rate: Annotated[
-        float | None, Option("--rate", "-r", help="Calls it again N times a second (wall time).", metavar="N", min=1e-3)
+        float | None, option("Calls it again N times a second (wall time).", "N", "--rate", "-r", min=1e-3)
     ] = None,
     sim: options.Sim = None,
     json_: options.Json = False,

@@ -12,6 +12,7 @@ from typer import Argument, Option
 
 from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.frame_tree import FrameTree, receive_transforms
+from simkit.cli.terminal.options import option
 from simkit.cli.terminal.output import not_found_error, print_json, print_line, report_errors_quietly
 from simkit.cli.terminal.topic_sources import open_source
 from simkit.errors import InputError
@@ -22,8 +23,7 @@ if TYPE_CHECKING:
 _LISTENED = 1.0  # [s] of wall time in which frames are collected
 tf = typer.Typer(help="Frames of a running simulation, or of a bag.", no_args_is_help=True)
 Topics = Annotated[
-    list[str],
-    Option("--topic", help="Where transforms come, other than /tf and /tf_static; repeatable.", metavar="TOPIC"),
+    list[str], option("Where transforms come, other than /tf and /tf_static; repeatable.", "TOPIC", "--topic")
 ]
 
 
@@ -36,7 +36,7 @@ def _group() -> None:
 @report_errors_quietly
 def tree(
     topic: Topics = [],
-    listened: Annotated[float, Option("--time", help="Listens so long (wall time).", metavar="S", min=0)] = _LISTENED,
+    listened: Annotated[float, option("Listens so long (wall time).", "S", "--time", min=0)] = _LISTENED,
     sim: options.Sim = None,
     bag: options.Bag = None,
     json_: options.Json = False,
@@ -64,7 +64,7 @@ def echo(
     target_frame: Annotated[str, Argument(metavar="TARGET", show_default=False, autocompletion=completion.frames)],
     rate: Annotated[float, Argument(help="Times a second (wall time).", metavar="[RATE]", min=1e-3)] = 1.0,
     once: Annotated[bool, Option("--once", help="Ends behind the first one.")] = False,
-    precision: Annotated[int, Option("--precision", "-p", help="Digits.", metavar="N", min=0, max=15)] = 3,
+    precision: Annotated[int, option("Digits.", "N", "--precision", "-p", min=0, max=15)] = 3,
     topic: Topics = [],
     sim: options.Sim = None,
     bag: options.Bag = None,

@@ -6,10 +6,11 @@ import hashlib
 from typing import Annotated
 
 import typer
-from typer import Argument, Option
+from typer import Option
 
 from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.message_arguments import is_same_type
+from simkit.cli.terminal.options import argument
 from simkit.cli.terminal.output import JsonObject, is_hidden, print_json, print_line, print_names, report_errors_quietly
 from simkit.cli.terminal.topic_sources import TopicEndpoint, TopicEntry, find_topic, open_source
 from simkit.cli.topic_echo import echo
@@ -155,15 +156,7 @@ def type_(topic: options.Topic, sim: options.Sim = None, bag: options.Bag = None
 @topic.command(cls=options.Ros2Command)
 @report_errors_quietly
 def find(
-    topic_type: Annotated[
-        str,
-        Argument(
-            help="Such as geometry_msgs/msg/Twist.",
-            metavar="TYPE",
-            show_default=False,
-            autocompletion=completion.message_types,
-        ),
-    ],
+    topic_type: Annotated[str, argument("Such as geometry_msgs/msg/Twist.", "TYPE", completion.message_types)],
     count: Count = False,
     hidden: Hidden = False,
     sim: options.Sim = None,

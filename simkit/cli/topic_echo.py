@@ -6,10 +6,11 @@ import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Annotated
 
-from typer import Argument, Option
+from typer import Option
 
 from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.message_arguments import check_type
+from simkit.cli.terminal.options import argument, option
 from simkit.cli.terminal.output import print_json, print_line, print_note, report_errors_quietly
 from simkit.cli.terminal.topic_sources import Feed, ReceivedMessage, Source, find_topic, open_source, wait_for_topic
 from simkit.errors import InputError, MessageError
@@ -29,41 +30,26 @@ _SEPARATOR = "---"
 def echo(
     topic: options.Topic,
     message_type: Annotated[
-        str | None,
-        Argument(
-            help="The topic's type, which need not be said.",
-            metavar="[TYPE]",
-            show_default=False,
-            autocompletion=completion.topic_types,
-        ),
+        str | None, argument("The topic's type, which need not be said.", "[TYPE]", completion.topic_types)
     ] = None,
     once: Annotated[bool, Option("--once", help="Ends behind the first message.")] = False,
     field: Annotated[
         str | None,
-        Option(
-            "--field",
-            help="Only this part: pose.pose.position, ranges[0].",
-            metavar="FIELD",
-            autocompletion=completion.fields,
-        ),
+        option("Only this part: pose.pose.position, ranges[0].", "FIELD", "--field", complete=completion.fields),
     ] = None,
     csv: Annotated[bool, Option("--csv", help="All numbers with commas between, a message a line.")] = False,
     no_arr: Annotated[bool, Option("--no-arr", help="Arrays by type and length only.")] = False,
     no_str: Annotated[bool, Option("--no-str", help="Texts by length only.")] = False,
     flow_style: Annotated[bool, Option("--flow-style", help="A message a line.")] = False,
     full_length: Annotated[bool, Option("--full-length", "-f", help="Cuts no long arrays and texts.")] = False,
-    truncate_length: Annotated[
-        int, Option("--truncate-length", "-l", help="Cuts longer ones.", metavar="N", min=0)
-    ] = TRUNCATE,
+    truncate_length: Annotated[int, option("Cuts longer ones.", "N", "--truncate-length", "-l", min=0)] = TRUNCATE,
     raw: Annotated[bool, Option("--raw", help="The bytes.")] = False,
     filter_: Annotated[
-        str | None, Option("--filter", help="Only those m for which this Python is true: m.data > 2.", metavar="EXPR")
+        str | None, option("Only those m for which this Python is true: m.data > 2.", "EXPR", "--filter")
     ] = None,
     info: Annotated[bool, Option("--include-message-info", help="With the time of each.")] = False,
     no_lost: Annotated[bool, Option("--no-lost-messages", help="Does not tell of lost messages.")] = False,
-    timeout: Annotated[
-        float | None, Option("--timeout", help="Ends after so long (wall time).", metavar="S", min=0)
-    ] = None,
+    timeout: Annotated[float | None, option("Ends after so long (wall time).", "S", "--timeout", min=0)] = None,
     sim: options.Sim = None,
     bag: options.Bag = None,
     json_: options.Json = False,

@@ -7,10 +7,11 @@ import time
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Annotated
 
-from typer import Argument, Option
+from typer import Option
 
 from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.message_arguments import make_message, parse_fields, split_type_and_values
+from simkit.cli.terminal.options import argument, option
 from simkit.cli.terminal.output import (
     JsonObject,
     JsonValue,
@@ -32,47 +33,35 @@ def pub(
     topic: options.Topic,
     message_type: Annotated[
         str | None,
-        Argument(
-            help="Such as geometry_msgs/msg/Twist; where it is left out, the topic's.",
-            metavar="[TYPE]",
-            show_default=False,
-            autocompletion=completion.topic_types,
+        argument(
+            "Such as geometry_msgs/msg/Twist; where it is left out, the topic's.", "[TYPE]", completion.topic_types
         ),
     ] = None,
     values: Annotated[
         str | None,
-        Argument(
-            help="YAML: '{linear: {x: 0.2}}'; `header: auto` and `stamp: now` are the time of sending.",
-            metavar="[VALUES]",
-            show_default=False,
-            autocompletion=completion.message_values,
+        argument(
+            "YAML: '{linear: {x: 0.2}}'; `header: auto` and `stamp: now` are the time of sending.",
+            "[VALUES]",
+            completion.message_values,
         ),
     ] = None,
     stdin: Annotated[bool, Option("--stdin", help="Reads the values from standard input.")] = False,
-    rate: Annotated[
-        float, Option("--rate", "-r", help="Messages a second of simulated time.", metavar="N", min=1e-3)
-    ] = 1.0,
-    every: Annotated[
-        int, Option("--print", "-p", help="Prints every Nth message only; 0 for none.", metavar="N", min=0)
-    ] = 1,
+    rate: Annotated[float, option("Messages a second of simulated time.", "N", "--rate", "-r", min=1e-3)] = 1.0,
+    every: Annotated[int, option("Prints every Nth message only; 0 for none.", "N", "--print", "-p", min=0)] = 1,
     once: Annotated[bool, Option("--once", "-1", help="Sends one.")] = False,
-    times: Annotated[
-        int | None, Option("--times", "-t", help="Sends N.", metavar="N", min=0, show_default=False)
-    ] = None,
+    times: Annotated[int | None, option("Sends N.", "N", "--times", "-t", min=0, show_default=False)] = None,
     wait: Annotated[
         int | None,
-        Option(
+        option(
+            "Waits until so many take it; 1 with --once and --times, else 0.",
+            "N",
             "--wait-matching-subscriptions",
             "-w",
-            help="Waits until so many take it; 1 with --once and --times, else 0.",
-            metavar="N",
             min=0,
             show_default=False,
         ),
     ] = None,
-    keep_alive: Annotated[
-        float, Option("--keep-alive", help="Stays so long behind the last one.", metavar="S", min=0)
-    ] = 0.1,
+    keep_alive: Annotated[float, option("Stays so long behind the last one.", "S", "--keep-alive", min=0)] = 0.1,
     wall_time: Annotated[bool, Option("--wall-time", help="The rate is by the clock on the wall.")] = False,
     sim: options.Sim = None,
     json_: options.Json = False,

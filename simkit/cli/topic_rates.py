@@ -15,6 +15,7 @@ from typing import Annotated
 from typer import Option
 
 from simkit.cli.terminal import options
+from simkit.cli.terminal.options import option
 from simkit.cli.terminal.output import JsonObject, print_json, print_line, print_note, report_errors_quietly
 from simkit.cli.terminal.topic_sources import Feed, ReceivedMessage, Source, find_topic, open_source
 from simkit.cli.topic_echo import compile_filter
@@ -23,8 +24,7 @@ from simkit.errors import InputError
 _PRINT_PERIOD = 1.0  # [s] of wall time between two lines
 _DEPTH = 10_000  # messages that wait while a line is printed
 Window = Annotated[
-    int | None,
-    Option("--window", "-w", help="Counts the last N messages.", metavar="N", min=1, max=10**9, show_default=False),
+    int | None, option("Counts the last N messages.", "N", "--window", "-w", min=1, max=10**9, show_default=False)
 ]
 WallTime = Annotated[bool, Option("--wall-time", help="By the clock on the wall, not the simulation's.")]
 
@@ -144,16 +144,14 @@ def _check_clock(source: Source, by_wall: bool) -> None:
         raise InputError("SK-CLI-018 --wall-time: a bag has the clock of the simulation only", "SK-CLI-018")
 
 
-Duration = Annotated[float | None, Option("--duration", help="Ends after so long (wall time).", metavar="S", min=0)]
+Duration = Annotated[float | None, option("Ends after so long (wall time).", "S", "--duration", min=0)]
 
 
 @report_errors_quietly
 def hz(
     topic: options.Topic,
     window: Window = None,
-    filter_: Annotated[
-        str | None, Option("--filter", help="Only those m for which this Python is true.", metavar="EXPR")
-    ] = None,
+    filter_: Annotated[str | None, option("Only those m for which this Python is true.", "EXPR", "--filter")] = None,
     wall_time: WallTime = False,
     duration: Duration = None,
     sim: options.Sim = None,

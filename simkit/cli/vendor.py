@@ -5,16 +5,15 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-from typer import Argument
-
 from simkit.cli.terminal import options
+from simkit.cli.terminal.options import argument
 from simkit.cli.terminal.output import report_errors, stdout_console
 
 
 @report_errors
 def vendor(
     file: options.File,
-    folder: Annotated[Path, Argument(help="A folder that does not exist yet, or is empty.", show_default=False)],
+    folder: Annotated[Path, argument("A folder that does not exist yet, or is empty.")],
     resource_path: options.ResourcePaths = [],
     package_path: options.PackagePaths = [],
     xacro_arg: options.XacroArgs = [],

@@ -2,65 +2,103 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
-from typer import Argument, Option
+from typer import Argument, Context, Option
 from typer.core import TyperCommand
+from typer.models import ArgumentInfo, OptionInfo
 
 from simkit.cli.terminal import completion
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
 from simkit.run_spec import SourceOptions
 
-World = Annotated[
-    str, Argument(help="A file, or the bare name of a world or model that comes with simkit.", show_default=False)
-]
-File = Annotated[str, Argument(help="A world or model file, or a bare name.", show_default=False)]
+Completer = Callable[[Context, str], list[str]]
+"""Gives the words that fit what was written so far, as the functions of `completion` do."""
+
+
+def option(
+    help: str,
+    metavar: str,
+    *names: str,
+    min: float | None = None,
+    max: float | None = None,
+    show_default: bool = True,
+    complete: Completer | None = None,
+    parser: Callable[[str], float] | None = None,
+) -> OptionInfo:
+    """Declare an option with a value.
+
+    Args:
+        help: what it does.
+        metavar: stands for the value.
+        names: the option's names; the parameter's where none is given.
+        min, max: bounds of a number.
+        show_default: whether the help names the default.
+        complete: gives the words that the shell offers.
+        parser: converts the text.
+    """
+    made: OptionInfo = Option(
+        *names,
+        help=help,
+        metavar=metavar,
+        min=min,
+        max=max,
+        show_default=show_default,
+        autocompletion=complete,
+        parser=parser,
+    )
+    return made
+
+
+def argument(help: str, metavar: str | None = None, complete: Completer | None = None) -> ArgumentInfo:
+    """Declare an argument whose default the help does not name.
+
+    Args:
+        help: what it means.
+        metavar: stands for it; the parameter's name where none is given.
+        complete: gives the words that the shell offers.
+    """
+    made: ArgumentInfo = Argument(help=help, metavar=metavar, show_default=False, autocompletion=complete)
+    return made
+
+
+World = Annotated[str, argument("A file, or the bare name of a world or model that comes with simkit.")]
+File = Annotated[str, argument("A world or model file, or a bare name.")]
 ResourcePaths = Annotated[
     list[Path],
-    Option(
-        "--resource-path", help="One more folder for model://, package:// and relative URIs; repeatable.", metavar="DIR"
-    ),
+    option("One more folder for model://, package:// and relative URIs; repeatable.", "DIR", "--resource-path"),
 ]
 PackagePaths = Annotated[
-    list[str], Option("--package-path", help="Where the ROS package NAME lies; repeatable.", metavar="NAME=DIR")
+    list[str], option("Where the ROS package NAME lies; repeatable.", "NAME=DIR", "--package-path")
 ]
-XacroArgs = Annotated[
-    list[str], Option("--xacro-arg", help="An argument of a xacro file; repeatable.", metavar="NAME=VALUE")
-]
+XacroArgs = Annotated[list[str], option("An argument of a xacro file; repeatable.", "NAME=VALUE", "--xacro-arg")]
 Base = Annotated[
     str,
-    Option(
-        "--base",
-        help="A bare model stands: fixed, floating, or auto (floating unless joined to the world).",
-        metavar="BASE",
-    ),
+    option("A bare model stands: fixed, floating, or auto (floating unless joined to the world).", "BASE", "--base"),
 ]
 PluginPaths = Annotated[
-    list[Path], Option("--plugin-path", help="Allows the Python plugins in that folder; repeatable.", metavar="DIR")
+    list[Path], option("Allows the Python plugins in that folder; repeatable.", "DIR", "--plugin-path")
 ]
 ParamsFiles = Annotated[
     list[str],
-    Option(
+    option(
+        "Controllers and their parameters, for all control plugins or for those of one model; repeatable.",
+        "[MODEL=]FILE.yaml",
         "--params-file",
-        help="Controllers and their parameters, for all control plugins or for those of one model; repeatable.",
-        metavar="[MODEL=]FILE.yaml",
     ),
 ]
 Overrides = Annotated[
-    list[str], Option("--set", help="Changes one value: scoped::name.element=VALUE; repeatable.", metavar="PATH=VALUE")
+    list[str], option("Changes one value: scoped::name.element=VALUE; repeatable.", "PATH=VALUE", "--set")
 ]
 Spawns = Annotated[
-    list[str],
-    Option("--spawn", help="Puts a model into the world, by name or file; repeatable.", metavar="MODEL:x,y,yaw[:name]"),
+    list[str], option("Puts a model into the world, by name or file; repeatable.", "MODEL:x,y,yaw[:name]", "--spawn")
 ]
-CmdVel = Annotated[
-    str | None, Option("--cmd-vel", help="Sends one velocity: m/s forward, rad/s to the left.", metavar="V,W")
-]
-Script = Annotated[Path | None, Option("--script", help="Commands over time.", metavar="FILE.yaml")]
-Seed = Annotated[int | None, Option("--seed", help="Seed of all noise.", metavar="N", min=0)]
+CmdVel = Annotated[str | None, option("Sends one velocity: m/s forward, rad/s to the left.", "V,W", "--cmd-vel")]
+Script = Annotated[Path | None, option("Commands over time.", "FILE.yaml", "--script")]
+Seed = Annotated[int | None, option("Seed of all noise.", "N", "--seed", min=0)]
 Strict = Annotated[bool, Option("--strict", help="Warnings are errors.")]
 Json = Annotated[bool, Option("--json", help="For programs: one JSON value.")]
 Verbose = Annotated[bool, Option("--verbose", "-v", help="Shows every note, not only how many there are.")]
@@ -76,19 +114,15 @@ Sim = Annotated[
         autocompletion=completion.simulations,
     ),
 ]
-Bag = Annotated[
-    Path | None, Option("--bag", help="Reads a bag instead: an .mcap file or a folder of rosbag2.", metavar="BAG")
-]
-Recording = Annotated[
-    Path, Argument(help="An .mcap or .db3 file, or a folder of rosbag2.", metavar="BAG", show_default=False)
-]
+Bag = Annotated[Path | None, option("Reads a bag instead: an .mcap file or a folder of rosbag2.", "BAG", "--bag")]
+Recording = Annotated[Path, argument("An .mcap or .db3 file, or a folder of rosbag2.", "BAG")]
 ShowTypes = Annotated[bool, Option("--show-types", "-t", help="Shows the types too.")]
-Topic = Annotated[
-    str,
-    Argument(
-        help="Name of a topic, such as /odom.", show_default=False, metavar="TOPIC", autocompletion=completion.topics
-    ),
-]
+Topic = Annotated[str, argument("Name of a topic, such as /odom.", "TOPIC", completion.topics)]
+ChartFile = Annotated[Path, option("The file: .svg or .png.", "OUT", "--output", "-o")]
+Against = Annotated[str | None, option("Draws over this field in place of time.", "FIELD", show_default=False)]
+Start = Annotated[float | None, option("Leaves out what was before.", "S", "--start")]
+End = Annotated[float | None, option("Leaves out what was after.", "S", "--end")]
+Title = Annotated[str, option("Above the chart.", "TEXT", show_default=False)]
 _BASES = ("auto", "fixed", "floating")
 
 
