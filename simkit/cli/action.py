@@ -28,11 +28,6 @@ action = typer.Typer(help="Actions of a running simulation.", no_args_is_help=Tr
 Name = Annotated[str, argument("Name of an action.", "ACTION", completion.actions)]
 
 
-@action.callback()
-def _group() -> None:
-    """Actions of a running simulation."""
-
-
 @action.command("list", cls=options.Ros2Command)
 @report_errors_quietly
 def list_(

@@ -179,11 +179,6 @@ def _play_once(
 bag = typer.Typer(help="Recordings: what is in them, new ones, and broken ones mended.", no_args_is_help=True)
 
 
-@bag.callback()
-def _group() -> None:
-    """Recordings: what is in them, new ones, and broken ones mended."""
-
-
 @bag.command()
 @report_errors_quietly
 def info(

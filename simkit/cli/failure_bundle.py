@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from types import TracebackType
 from typing import TYPE_CHECKING, Final
 
 from simkit.cli.terminal.output import print_status
@@ -51,9 +50,7 @@ class FailureBundle:
     def __enter__(self) -> FailureBundle:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, kind: object, error: BaseException | None, trace: object) -> None:
         if self._folder is None:
             return
         failure = self._failure(error)

@@ -197,11 +197,6 @@ def _json_number(value: JsonValue) -> object:
 golden = typer.Typer(help="Golden runs: sensor outputs kept, and compared with today's.", no_args_is_help=True)
 
 
-@golden.callback()
-def _group() -> None:
-    """Golden runs: sensor outputs kept, and compared with today's."""
-
-
 @golden.command()
 @report_errors
 def record(

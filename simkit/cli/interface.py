@@ -20,11 +20,6 @@ TypeName = Annotated[
 ]
 
 
-@interface.callback()
-def _group() -> None:
-    """Types of messages, services and actions."""
-
-
 @interface.command("list")
 @report_errors_quietly
 def list_(

@@ -20,11 +20,6 @@ model = typer.Typer(help="Models of a running simulation.", no_args_is_help=True
 Model = Annotated[str, argument("Name of a model; nested ones with ::.", "MODEL", completion.models)]
 
 
-@model.callback()
-def _group() -> None:
-    """Models of a running simulation."""
-
-
 @model.command("list")
 @report_errors_quietly
 def list_(

@@ -31,11 +31,6 @@ Motions = Annotated[
 OfModel = Annotated[str | None, option("Which robot, where several play.", "NAME", "--model")]
 
 
-@motion.callback()
-def _group() -> None:
-    """Lists the motions that a robot knows by name, and plays them."""
-
-
 @motion.command("list")
 @report_errors
 def list_motions(

@@ -25,11 +25,6 @@ node = typer.Typer(help="Nodes of a running simulation: its plugins, sensors and
 Hidden = Annotated[bool, Option("--all", "-a", "--include-hidden", help="Shows hidden ones too.")]
 
 
-@node.callback()
-def _group() -> None:
-    """Nodes of a running simulation: its plugins, sensors and clients."""
-
-
 @node.command("list", cls=options.Ros2Command)
 @report_errors_quietly
 def list_(

@@ -34,11 +34,6 @@ Names = Annotated[list[str], argument("Names of parameters.", "NAME...", complet
 Name = Annotated[str, argument("Name of a parameter.", "NAME", completion.parameters)]
 
 
-@param.callback()
-def _group() -> None:
-    """Live parameters of a running simulation."""
-
-
 @param.command("list", cls=options.Ros2Command)
 @report_errors_quietly
 def list_(

@@ -25,11 +25,6 @@ plugin = typer.Typer(
 )
 
 
-@plugin.callback()
-def _group() -> None:
-    """Lists plugins, says what one reads and publishes, and begins new ones."""
-
-
 @plugin.command("list")
 @report_errors
 def list_plugins(

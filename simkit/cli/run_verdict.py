@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from pathlib import Path
-from types import TracebackType
 from typing import TYPE_CHECKING, Final
 
 from simkit.cli.terminal.output import print_status, stdout_console
@@ -52,11 +51,9 @@ class RunVerdict:
         self._wall.__enter__()
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> bool:
+    def __exit__(self, kind: object, error: BaseException | None, trace: object) -> bool:
         """Writes the file for the CI; a run that was interrupted for its wall time has failed, no more."""
-        self._wall.__exit__(kind, error, trace)
+        self._wall.__exit__()
         if error is not None and not self.reason:
             self._conclude(error)
         if isinstance(error, WallTimeExceeded):

@@ -37,11 +37,6 @@ Name = Annotated[str, argument("Name of a service.", "SERVICE", completion.servi
 Count = Annotated[bool, Option("--count-services", "--count", "-c", help="Says only how many.")]
 
 
-@service.callback()
-def _group() -> None:
-    """Services of a running simulation."""
-
-
 @service.command("list", cls=options.Ros2Command)
 @report_errors_quietly
 def list_(

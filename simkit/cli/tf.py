@@ -27,11 +27,6 @@ Topics = Annotated[
 ]
 
 
-@tf.callback()
-def _group() -> None:
-    """Frames of a running simulation, or of a bag."""
-
-
 @tf.command()
 @report_errors_quietly
 def tree(

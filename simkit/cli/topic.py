@@ -21,11 +21,6 @@ from simkit.errors import MessageError
 topic = typer.Typer(help="Topics of a running simulation, or of a bag.", no_args_is_help=True)
 
 
-@topic.callback()
-def _group() -> None:
-    """Topics of a running simulation, or of a bag."""
-
-
 Count = Annotated[bool, Option("--count-topics", "--count", "-c", help="Says only how many.")]
 Hidden = Annotated[
     bool, Option("--include-hidden-topics", "-a", "--all", help="Shows those with a part that begins with _ too.")

@@ -8,7 +8,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable
-from types import FrameType, TracebackType
+from types import FrameType
 from typing import Final
 
 from simkit.cli.terminal.blocked_plugins import describe_blocking_plugin
@@ -54,9 +54,7 @@ class WallTimeLimit:
             threading.Thread(target=self._watch, name="simkit wall time", daemon=True).start()
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.end()
         if self.seconds is not None and self._may_alarm:
             signal.signal(_ALARM, self._before)  # type: ignore[arg-type]

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Mapping
-from pathlib import Path
-from types import TracebackType
 
 from simkit import msgs
 from simkit.bridges.live.client_handles import LiveGoal, LivePublisher, LiveSubscription
@@ -41,7 +39,7 @@ def connect(name: str | None = None, timeout: float = 10.0, node: str | None = N
         time.sleep(CONNECT_PERIOD)
 
 
-class Client:
+class Client(ServerLink):
     """A connection to a running simulation; a context manager. For one thread at a time.
 
     Args:
@@ -53,25 +51,6 @@ class Client:
         info: `name`, `world`, `pid` and `version` of the simulation, and `node`, what it calls this client.
     """
 
-    def __init__(self, path: Path, timeout: float = 10.0, node: str | None = None) -> None:
-        self._link = ServerLink(path, timeout, node)
-
-    @property
-    def path(self) -> Path:
-        return self._link.path
-
-    @property
-    def timeout(self) -> float:
-        return self._link.timeout
-
-    @timeout.setter
-    def timeout(self, seconds: float) -> None:
-        self._link.timeout = seconds
-
-    @property
-    def info(self) -> JsonObject:
-        return self._link.info
-
     # ------------------------------------------------------------------ asking
 
     def ask(self, question: str, **args: object) -> JsonValue:
@@ -81,7 +60,7 @@ class Client:
             LiveError: the simulation cannot answer it; with the code and the words of its error.
             LiveClosed: it has ended.
         """
-        return self._link.request(question, args)[0]
+        return self.request(question, args)[0]
 
     def flush(self) -> None:
         """Returns once everything that was sent has been taken."""
@@ -135,19 +114,19 @@ class Client:
         """Receives topics, asked for at once: a simulation with slow steps answers once a step."""
         opened, asked = [], []
         for topic in topics:
-            number = self._link.next_number()
-            subscription = LiveSubscription(self._link, number, topic if topic.startswith("/") else "/" + topic, depth)
-            self._link.subscriptions[number] = subscription  # its first messages may come with the answer
+            number = self.next_number()
+            subscription = LiveSubscription(self, number, topic if topic.startswith("/") else "/" + topic, depth)
+            self.subscriptions[number] = subscription.take  # its first messages may come with the answer
             opened.append(subscription)
-            asked.append(self._link.send_request("subscribe", {"number": number, "topic": topic, "depth": depth}))
+            asked.append(self.send_request("subscribe", {"number": number, "topic": topic, "depth": depth}))
         failed: LiveError | None = None
         for subscription, number in zip(opened, asked, strict=True):
             try:
-                self._link.answer(number)
+                self.answer(number)
             except LiveClosed:
                 raise
             except LiveError as error:
-                del self._link.subscriptions[subscription.number]
+                del self.subscriptions[subscription.number]
                 failed = failed or error
         if failed is not None:
             raise failed
@@ -163,24 +142,9 @@ class Client:
         Raises:
             LiveError: the topic is of another type, or there is no such type.
         """
-        number = self._link.next_number()
+        number = self.next_number()
         found = self.ask("advertise", number=number, topic=topic, type=type_name)
-        return LivePublisher(self._link, number, found["topic"], found["type"])
-
-    def receive(self, timeout: float | None = 0.0) -> bool:
-        """Takes in what has come, into subscriptions and goals; whether anything came.
-
-        Args:
-            timeout: how long to wait for something [s]; None for as long as it takes.
-
-        Raises:
-            LiveClosed: the simulation has ended.
-        """
-        return self._link.receive(timeout)
-
-    def fileno(self) -> int:
-        """Return the socket's file number, to wait for together with others."""
-        return self._link.fileno()
+        return LivePublisher(self, number, found["topic"], found["type"])
 
     # ------------------------------------------------------------------ services and actions
 
@@ -217,13 +181,13 @@ class Client:
             goal: a dict of fields, a message, or None for all zero.
             on_feedback: called with each feedback message, while something is received.
         """
-        number = self._link.next_number()
-        made = LiveGoal(self._link, number, on_feedback)
-        self._link.goals[number] = made
+        number = self.next_number()
+        made = LiveGoal(self, number, on_feedback)
+        self.goals[number] = made.take
         try:
             made.action, made.id = self._request_with_message("goal", name, goal, number=number)[0]
         except LiveError:
-            del self._link.goals[number]
+            del self.goals[number]
             raise
         return made
 
@@ -231,23 +195,12 @@ class Client:
         self, question: str, name: str, message: object, **more: object
     ) -> tuple[JsonValue, bytes, str]:
         if message is None or isinstance(message, Mapping):
-            return self._link.request(question, {"name": name, "fields": dict(message or {}), **more})
+            return self.request(question, {"name": name, "fields": dict(message or {}), **more})
         content = {"name": name, "type": msgs.type_name(message), **more}
-        return self._link.request(question, content, msgs.serialize(message))
-
-    @property
-    def is_closed(self) -> bool:
-        """Whether the connection has ended."""
-        return self._link.is_closed
-
-    def close(self) -> None:
-        """Hangs up; does nothing the second time."""
-        self._link.close()
+        return self.request(question, content, msgs.serialize(message))
 
     def __enter__(self) -> Client:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()

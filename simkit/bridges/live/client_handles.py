@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, NamedTuple
 
 from simkit import msgs
-from simkit.bridges.live.protocol import JsonObject, LiveClosed, LiveError, message_frame
+from simkit.bridges.live.protocol import JsonObject, LiveClosed, message_frame
 from simkit.bridges.live.server_link import ServerLink
 from simkit.msgs.message_types import Message
 
@@ -67,15 +67,7 @@ class LiveSubscription:
             LiveClosed: the simulation has ended.
         """
         if not self.waiting and not self._closed:
-            if timeout is not None:
-                try:
-                    self._link.wait(lambda: bool(self.waiting), timeout)
-                except LiveClosed:
-                    raise
-                except LiveError:
-                    return None
-            else:
-                self._link.wait(lambda: bool(self.waiting), None)
+            self._link.wait(lambda: bool(self.waiting), timeout)
         return self.waiting.popleft() if self.waiting else None
 
     def __iter__(self) -> Iterator[Received]:
@@ -171,23 +163,15 @@ class LiveGoal:
 
     def wait(self, timeout: float | None = None) -> bool:
         """Waits for its end; False where it does not come in time [s, wall time]."""
-        return self._wait_for(lambda: self.is_done, timeout)
+        return self._link.wait(lambda: self.is_done, timeout)
 
     def wait_accepted(self, timeout: float | None = None) -> bool:
         """Waits until it is accepted or rejected; False where that does not come in time [s, wall time]."""
-        return self._wait_for(lambda: self.status.name != "UNKNOWN", timeout)
+        return self._link.wait(lambda: self.status.name != "UNKNOWN", timeout)
 
     def cancel(self) -> None:
         """Asks for it to be called off; the action may go on."""
         self._link.request("cancel", {"number": self.number})
-
-    def _wait_for(self, condition: Callable[[], bool], timeout: float | None) -> bool:
-        try:
-            return self._link.wait(condition, timeout)
-        except LiveClosed:
-            raise
-        except LiveError:
-            return False
 
     def take(self, words: JsonObject, data: bytes) -> None:
         """Take feedback, a status or a result."""

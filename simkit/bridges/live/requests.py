@@ -116,10 +116,6 @@ class Response:
 RequestHandler = Callable[[Request], object]
 
 
-def ping(_: Request) -> object:
-    return "pong"
-
-
 def node(request: Request) -> object:
     """Gives the client its name, or the first of `name_2`, `name_3`, … that no other one has."""
     wanted = "/" + (re.sub(r"[^A-Za-z0-9_/]+", "_", request.arg("name", str))[:100].strip("/") or "client")
@@ -163,10 +159,6 @@ def control(request: Request) -> object:
 
 
 # ---------------------------------------------------------------------- topics
-
-
-def topics(request: Request) -> object:
-    return topic_list(request.sim, request.server.peers.values())
 
 
 def subscribe(request: Request) -> object:
@@ -225,18 +217,6 @@ def unadvertise(request: Request) -> object:
 # ---------------------------------------------------------------------- services, actions, parameters
 
 
-def services(request: Request) -> object:
-    return request.sim.communication.services.names()
-
-
-def call(request: Request) -> object:
-    return Response(request.sim.call(request.arg("name", str), request.message()))
-
-
-def actions(request: Request) -> object:
-    return request.sim.communication.actions.names()
-
-
 def goal(request: Request) -> object:
     number = request.new_number(request.peer.goals)
 
@@ -257,10 +237,6 @@ def cancel(request: Request) -> object:
     return found is not None
 
 
-def parameters(request: Request) -> object:
-    return parameter_list(request.sim)
-
-
 def set_parameter(request: Request) -> object:
     value = request.args.get("value")
     found = tuple(value) if isinstance(value, list) else value
@@ -268,42 +244,27 @@ def set_parameter(request: Request) -> object:
     return None
 
 
-def nodes(request: Request) -> object:
-    return node_list(request.sim, request.server.peers.values())
-
-
-# ---------------------------------------------------------------------- models
-
-
-def models(request: Request) -> object:
-    return list(request.sim.models)
-
-
-def model(request: Request) -> object:
-    return model_state(request.sim, request.arg("name", str))
-
-
 REQUESTS: Final[Mapping[str, RequestHandler]] = MappingProxyType(
     {
-        "ping": ping,
+        "ping": lambda _: "pong",
         "node": node,
         "state": state,
         "control": control,
-        "topics": topics,
+        "topics": lambda request: topic_list(request.sim, request.server.peers.values()),
         "subscribe": subscribe,
         "unsubscribe": unsubscribe,
         "advertise": advertise,
         "unadvertise": unadvertise,
-        "services": services,
-        "call": call,
-        "actions": actions,
+        "services": lambda request: request.sim.communication.services.names(),
+        "call": lambda request: Response(request.sim.call(request.arg("name", str), request.message())),
+        "actions": lambda request: request.sim.communication.actions.names(),
         "goal": goal,
         "cancel": cancel,
-        "parameters": parameters,
+        "parameters": lambda request: parameter_list(request.sim),
         "set_parameter": set_parameter,
-        "nodes": nodes,
-        "models": models,
-        "model": model,
+        "nodes": lambda request: node_list(request.sim, request.server.peers.values()),
+        "models": lambda request: list(request.sim.models),
+        "model": lambda request: model_state(request.sim, request.arg("name", str)),
     }
 )
 """What answers each request, by the word that a client sends."""

@@ -12,7 +12,6 @@ import socket
 import time
 from collections import deque
 from contextlib import suppress
-from types import TracebackType
 from typing import TYPE_CHECKING, Final
 
 from simkit import msgs
@@ -366,9 +365,7 @@ class Server:
     def __enter__(self) -> Server:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, kind: object, error: BaseException | None, trace: object) -> None:
         self.close(f"simulation {self.name!r} has ended: {error}" if isinstance(error, SimkitError) else "")
 
 

@@ -11,7 +11,6 @@ import time
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from pathlib import Path
-from typing import Protocol
 
 from simkit.bridges.live.protocol import (
     ANSWER,
@@ -38,18 +37,10 @@ CONNECT_PERIOD = 0.05
 """[s] of wall time between two attempts to connect to a simulation that has not started or lets nobody in yet."""
 
 
-class MessageReceiver(Protocol):
-    """Receives the messages of one subscription."""
-
-    def take(self, time_ns: int, type_name: str, data: bytes, lost: int) -> None:
-        """Take a message: its time [ns], type and CDR, and how many were dropped so far."""
-
-
-class GoalListener(Protocol):
-    """Learns how far one goal is."""
-
-    def take(self, words: JsonObject, data: bytes) -> None:
-        """Take feedback, a status or a result."""
+MessageReceiver = Callable[[int, str, bytes, int], None]
+"""Takes a message: its time [ns], type and CDR, and how many were dropped so far."""
+GoalListener = Callable[[JsonObject, bytes], None]
+"""Takes feedback, a status or a result of a goal."""
 
 
 class ServerLink:
@@ -65,7 +56,7 @@ class ServerLink:
         subscriptions, goals: what messages and news of goals are handed to, by number.
     """
 
-    def __init__(self, path: Path, timeout: float, node: str | None) -> None:
+    def __init__(self, path: Path, timeout: float = 10.0, node: str | None = None) -> None:
         self.path, self.timeout = path, timeout
         self.info: JsonObject = {}
         self.subscriptions: dict[int, MessageReceiver] = {}
@@ -95,7 +86,7 @@ class ServerLink:
             raise self._no_answer() from None
         except OSError as error:
             raise LiveError(f"simulation {name!r} cannot be reached: {error.strerror}", "SK-LIVE-003") from None
-        self.wait(lambda: bool(self.info), self.timeout)
+        self._wait_for_answer(lambda: bool(self.info))
         if self.info.pop("protocol", None) != PROTOCOL:
             found = self.info.get("version")
             raise LiveError(f"simulation {name!r} is of simkit {found}, which speaks another protocol", "SK-LIVE-006")
@@ -130,7 +121,7 @@ class ServerLink:
 
     def answer(self, number: int) -> tuple[JsonValue, bytes, str]:
         """Wait for the answer of that number."""
-        self.wait(lambda: number in self._answers, self.timeout)
+        self._wait_for_answer(lambda: number in self._answers)
         words, found = self._answers.pop(number)
         if "error" in words:
             raise LiveError(str(words["error"]), str(words.get("code", "SK-LIVE-008")))
@@ -185,14 +176,18 @@ class ServerLink:
             raise
 
     def wait(self, condition: Callable[[], bool], timeout: float | None) -> bool:
-        """Receives until something holds; False, or SK-LIVE-004 within an ask, when it does not in time."""
+        """Receives until something holds; False when it does not in time [s, wall time]."""
         end = None if timeout is None else time.monotonic() + timeout
         while not condition():
             left = None if end is None else end - time.monotonic()
             if left is not None and left <= 0:
-                raise self._no_answer()
+                return False
             self.receive(left)
         return True
+
+    def _wait_for_answer(self, condition: Callable[[], bool]) -> None:
+        if not self.wait(condition, self.timeout):
+            raise self._no_answer()
 
     def _receive_piece(self) -> None:
         try:
@@ -213,7 +208,7 @@ class ServerLink:
             number, type_number, time_ns, lost = MESSAGE_HEAD.unpack_from(body)
             subscription = self.subscriptions.get(number)
             if subscription is not None:
-                subscription.take(time_ns, self._types[type_number], body[MESSAGE_HEAD.size :], lost)
+                subscription(time_ns, self._types[type_number], body[MESSAGE_HEAD.size :], lost)
             return
         words, data = read_json_frame(body)
         if kind == ANSWER:
@@ -221,7 +216,7 @@ class ServerLink:
         elif words["tell"] == "type":
             self._types[int(words["number"])] = str(words["type"])
         elif words["tell"] == "goal" and int(words["number"]) in self.goals:
-            self.goals[int(words["number"])].take(words, data)
+            self.goals[int(words["number"])](words, data)
         elif words["tell"] == "hello":
             self.info = {k: v for k, v in words.items() if k != "tell"}
         elif words["tell"] == "bye":

@@ -8,7 +8,7 @@ import signal
 import sys
 import threading
 from collections.abc import Callable
-from types import FrameType, TracebackType
+from types import FrameType
 from typing import IO, Any, Final
 
 UP, DOWN, LEFT, RIGHT = "up", "down", "left", "right"
@@ -124,9 +124,7 @@ class Keyboard:
         self._enter_key_mode()
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         for number, handler in self._handlers.items():
             signal.signal(number, handler)
         self._handlers.clear()
@@ -222,9 +220,7 @@ class WindowsKeyboard:
     def __enter__(self) -> WindowsKeyboard:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         pass
 
     def read(self) -> list[str]:
