@@ -80,12 +80,7 @@ class _TopicSelection:
     """Which topics are recorded."""
 
     def __init__(
-        self,
-        named: list[str],
-        all_: bool,
-        regex: re.Pattern[str] | None,
-        exclude: re.Pattern[str] | None,
-        hidden: bool,
+        self, named: list[str], all_: bool, regex: re.Pattern[str] | None, exclude: re.Pattern[str] | None, hidden: bool
     ) -> None:
         if not named and not all_ and regex is None:
             text = "no topics to record; name them, or --all, or --regex"

@@ -81,12 +81,7 @@ def time_interleaved(
     return [statistics.median(times) for times in taken]
 
 
-def compare_with_bare_mujoco(
-    spec: RunSpec,
-    *,
-    rounds: int = 9,
-    what: str = "all",
-) -> Iterator[Figure]:
+def compare_with_bare_mujoco(spec: RunSpec, *, rounds: int = 9, what: str = "all") -> Iterator[Figure]:
     """Yield each figure of a world as soon as it is known.
 
     Args:

@@ -111,11 +111,7 @@ def _engine() -> list[str]:
 def _renderer() -> list[str]:
     try:
         probe = subprocess.run(
-            [sys.executable, "-P", "-c", _DRAW],
-            capture_output=True,
-            text=True,
-            check=False,
-            timeout=_RENDERER_TIMEOUT,
+            [sys.executable, "-P", "-c", _DRAW], capture_output=True, text=True, check=False, timeout=_RENDERER_TIMEOUT
         )
     except subprocess.TimeoutExpired:
         _line("renderer", "hangs")

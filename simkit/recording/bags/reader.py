@@ -304,22 +304,27 @@ class _TruncatedBag:
     """A recording whose end is missing; it is read record by record, once for what it holds and once for each use."""
 
     def __init__(self, path: Path, files: list[Path]) -> None:
-        self._bag_files = files
-        self._definitions: dict[str, str] = {}
+        self._records = McapRecords(files)
         self.broken = ""
-        self.has_begun = False
         counts: Counter[tuple[str, str, bool]] = Counter()
         self._span = (0, 0)
-        for time_ns, topic, type_name, _, latched in self._records():
-            first, last = self._span if counts else (time_ns, time_ns)
-            self._span = (min(first, time_ns), max(last, time_ns))
-            counts[topic, type_name, latched] += 1
-        self._topics = [BagTopic(t, k, n, self._definitions[k], kept) for (t, k, kept), n in counts.items()]
+        for record in self._records.messages():
+            first, last = self._span if counts else (record.time_ns, record.time_ns)
+            self._span = (min(first, record.time_ns), max(last, record.time_ns))
+            counts[record.topic, record.type_name, record.latched] += 1
+        definitions, reason = self._records.definitions, self._records.reason
+        self._topics = [BagTopic(t, k, n, definitions[k], kept) for (t, k, kept), n in counts.items()]
         if self._topics:
             hint = f"simkit bag recover {path} mends it"
-            self.broken = f"the recording was cut off ({self.broken or 'its end is missing'}); {hint}"
+            self.broken = f"the recording was cut off ({reason or 'its end is missing'}); {hint}"
         elif self.has_begun:
             self.broken = "the recording was cut off before anything was written"
+        else:
+            self.broken = reason
+
+    @property
+    def has_begun(self) -> bool:
+        return self._records.has_begun
 
     def topics(self) -> list[BagTopic]:
         return self._topics
@@ -328,19 +333,46 @@ class _TruncatedBag:
         return self._span
 
     def messages(self, topics: frozenset[str], start: int | None) -> Iterator[BagMessage]:
-        for time_ns, topic, type_name, data, _ in self._records():
-            if (not topics or topic in topics) and (start is None or time_ns >= start):
-                yield BagMessage(time_ns, topic, type_name, data)
+        for record in self._records.messages():
+            if (not topics or record.topic in topics) and (start is None or record.time_ns >= start):
+                yield BagMessage(record.time_ns, record.topic, record.type_name, record.data)
 
     def close(self) -> None:
         """Nothing is open between two uses."""
 
-    def _records(self) -> Iterator[tuple[int, str, str, bytes, bool]]:
+
+class RecordedMessage(NamedTuple):
+    """Message of an MCAP file, with whether its publisher kept the last one for those who come later."""
+
+    time_ns: int
+    topic: str
+    type_name: str
+    data: bytes
+    latched: bool
+
+
+class McapRecords:
+    """Reads MCAP files record by record, each up to where it breaks off.
+
+    Attributes:
+        definitions: of the types that were met so far.
+        has_begun: whether any record was met.
+        reason: why a file breaks off; empty where none does.
+    """
+
+    def __init__(self, files: list[Path]) -> None:
+        self._files = files
+        self.definitions: dict[str, str] = {}
+        self.has_begun = False
+        self.reason = ""
+
+    def messages(self) -> Iterator[RecordedMessage]:
+        """Yield the messages of all files."""
         from mcap.exceptions import McapError
         from mcap.records import Channel, Message, Schema
         from mcap.stream_reader import StreamReader
 
-        for path in self._bag_files:
+        for path in self._files:
             schemas: dict[int, Schema] = {}
             channels: dict[int, Channel] = {}
             with path.open("rb") as file:
@@ -349,13 +381,13 @@ class _TruncatedBag:
                         self.has_begun = True
                         if isinstance(record, Schema):
                             schemas[record.id] = record
-                            self._definitions[record.name] = bytes(record.data).decode(errors="replace")
+                            self.definitions[record.name] = bytes(record.data).decode(errors="replace")
                         elif isinstance(record, Channel):
                             channels[record.id] = record
                         elif isinstance(record, Message):
                             channel = channels[record.channel_id]
                             latched = "transient_local" in channel.metadata.get("offered_qos_profiles", "")
                             name = schemas[channel.schema_id].name
-                            yield record.log_time, channel.topic, name, bytes(record.data), latched
+                            yield RecordedMessage(record.log_time, channel.topic, name, bytes(record.data), latched)
                 except (McapError, struct.error, ValueError, KeyError, EOFError, MemoryError) as error:
-                    self.broken = f"{type(error).__name__} {error}".strip()
+                    self.reason = f"{type(error).__name__} {error}".strip()

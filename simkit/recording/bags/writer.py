@@ -195,12 +195,7 @@ class Rosbag2Folder(McapBag):
             "compression_mode": "",
             "relative_file_paths": [self.path.name],
             "files": [
-                {
-                    "path": self.path.name,
-                    "starting_time": start,
-                    "duration": duration,
-                    "message_count": self.span.count,
-                }
+                {"path": self.path.name, "starting_time": start, "duration": duration, "message_count": self.span.count}
             ],
             "custom_data": None,
             "ros_distro": "jazzy",

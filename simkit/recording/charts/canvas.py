@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 from html import escape
-from typing import Final, Literal, Protocol
+from typing import Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,24 +19,6 @@ _PNG_SCALE = 2  # [px] of a picture for one of the sheet
 _SUBPIXEL_BITS = 2  # times larger is it drawn, so that thin lines come out smooth
 _INK: Final = "#222222"
 _UNPRINTABLE = dict.fromkeys((*range(32), 0xFFFE, 0xFFFF), " ")  # what XML has no word for
-
-
-class Canvas(Protocol):
-    """A sheet; places and sizes in pixels from its upper left corner."""
-
-    def line(self, points: Points, colour: str, width: float = 1.0, dash: tuple[float, ...] = ()) -> None:
-        """A line through points, shape (n, 2)."""
-
-    def dots(self, points: Points, colour: str, radius: float) -> None:
-        """A disc at each of some points, shape (n, 2)."""
-
-    def text(
-        self, x: float, y: float, text: str, size: float, anchor: Anchor = "start", *, upright: bool = False
-    ) -> None:
-        """A text whose letters stand on (x, y); `upright` reads from below to above."""
-
-    def result(self) -> bytes:
-        """The file."""
 
 
 def printable(text: str) -> str:
@@ -143,6 +125,10 @@ class PngCanvas:
         file = io.BytesIO()
         self._image.resize(size, Image.Resampling.BOX).save(file, "PNG")
         return file.getvalue()
+
+
+Canvas = SvgCanvas | PngCanvas
+"""A sheet; places and sizes in pixels from its upper left corner."""
 
 
 def _dash(points: Points, dash: tuple[float, ...]) -> list[Points]:

@@ -83,11 +83,7 @@ def _no_unit(_type_name: str, _path: str) -> str:
 
 
 def curves_of(
-    text: str,
-    topics: Mapping[str, str],
-    store_of: Callable[[str], Typestore],
-    where: str,
-    unit_of: Unit = _no_unit,
+    text: str, topics: Mapping[str, str], store_of: Callable[[str], Typestore], where: str, unit_of: Unit = _no_unit
 ) -> list[Curve]:
     """The curves that a field stands for: several, where it is a vector or a part of an array.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, Protocol
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import numpy.typing as npt
@@ -37,20 +37,40 @@ _LONGEST_STILL: Final = 600  # times that a picture is repeated at most where no
 _CODECS: Final = ("vp09", "mp4v")  # the first plays in browsers, the second is built in nearly everywhere
 
 
-class MessageWriter(Protocol):
+class MessageWriter:
     """Writes the images or point clouds of one topic.
 
     Attributes:
         notes: what is other than one would think, in words.
     """
 
-    notes: list[str]
+    def __init__(self) -> None:
+        self.notes: list[str] = []
 
     def take(self, time_ns: int, message: Message) -> str:
         """Writes one; the name of its file, relative to the export."""
+        raise NotImplementedError
 
     def close(self) -> None:
         """Behind the last."""
+
+
+class NumberedFiles(MessageWriter):
+    """A file for each message, in a folder that is made for them."""
+
+    def __init__(self, folder: Path) -> None:
+        super().__init__()
+        self._folder, self._count = folder, 0
+        folder.mkdir()
+
+    def take(self, time_ns: int, message: Message) -> str:
+        target = self._write(self._folder / f"{self._count:06d}", message)
+        self._count += 1
+        return f"{self._folder.name}/{target.name}"
+
+    def _write(self, target: Path, message: Message) -> Path:
+        """Write a message to a file of that name with an ending of its own; return which."""
+        raise NotImplementedError
 
 
 def read_pixels(message: ImageMessage) -> tuple[Pixels, str]:
@@ -111,23 +131,15 @@ def is_depth(message: ImageMessage) -> bool:
     return str(getattr(message, "encoding", "")) in ("32FC1", "64FC1")
 
 
-class PngFiles:
+class PngFiles(NumberedFiles):
     """A file for each picture; compressed ones as they are."""
 
-    def __init__(self, folder: Path) -> None:
-        self._folder, self._count = folder, 0
-        self.notes: list[str] = []
-        folder.mkdir()
-
-    def take(self, time_ns: int, message: Message) -> str:
-        """Writes one; the name of its file, relative to the export."""
+    def _write(self, target: Path, message: Message) -> Path:
         import cv2
 
         if not hasattr(message, "encoding"):
             data = bytes(message.data)
             ending = ".jpg" if data[:2] == b"\xff\xd8" else ".png" if data[:4] == b"\x89PNG" else ".bin"
-            target = self._folder / f"{self._count:06d}{ending}"
-            target.write_bytes(data)
         else:
             if not self._count and is_depth(message):
                 self.notes.append(
@@ -136,43 +148,30 @@ class PngFiles:
             written, coded = cv2.imencode(".png", png_pixels(message))
             if not written:
                 raise ValueError(f"PNG cannot hold a picture of {message.encoding}")
-            target = self._folder / f"{self._count:06d}.png"
-            target.write_bytes(coded.tobytes())
-        self._count += 1
-        return f"{self._folder.name}/{target.name}"
-
-    def close(self) -> None:
-        """Do nothing: every image is written when it comes."""
+            data, ending = coded.tobytes(), ".png"
+        target = target.with_suffix(ending)
+        target.write_bytes(data)
+        return target
 
 
-class NpzFile:
+class NpzFile(NumberedFiles):
     """An array for each picture."""
 
-    def __init__(self, folder: Path) -> None:
-        self._folder, self._count = folder, 0
-        self.notes: list[str] = []
-        folder.mkdir()
-
-    def take(self, time_ns: int, message: Message) -> str:
-        """Writes one; the name of its file, relative to the export."""
-        target = self._folder / f"{self._count:06d}.npz"
+    def _write(self, target: Path, message: Message) -> Path:
+        target = target.with_suffix(".npz")
         with target.open("wb") as file:
             np.savez_compressed(
                 file, pixels=read_pixels(message)[0] if hasattr(message, "encoding") else _decode_compressed(message)
             )
-        self._count += 1
-        return f"{self._folder.name}/{target.name}"
-
-    def close(self) -> None:
-        """Do nothing: every image is written when it comes."""
+        return target
 
 
-class VideoFile:
+class VideoFile(MessageWriter):
     """One MP4 video; an image stays until the next one, so that the video keeps the bag's times."""
 
     def __init__(self, path: Path) -> None:
+        super().__init__()
         self._path = path
-        self.notes: list[str] = []
         self._early: list[tuple[int, Pixels]] = []
         self._writer: Any = None
         self._rate, self._start, self._frames = _RATE, 0, 0

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import numpy.typing as npt
 
+from simkit.recording.export.images import NumberedFiles
+
 if TYPE_CHECKING:
     from simkit.msgs import PointCloud2
 
@@ -59,25 +61,20 @@ def read_points(message: PointCloud2) -> PointArray:
     return np.ascontiguousarray(rows).reshape(-1).view(layout)
 
 
-class CloudFiles:
+class CloudFiles(NumberedFiles):
     """A file for each cloud.
 
     Args:
         folder: made for them.
         ending: `npz`, an array a field; or `ply`, binary, with colours where there is a field `rgb`.
-
-    Attributes:
-        notes: what is other than one would think.
     """
 
     def __init__(self, folder: Path, ending: str) -> None:
-        self._folder, self._ending, self._count = folder, ending, 0
-        self.notes: list[str] = []
-        folder.mkdir()
+        super().__init__(folder)
+        self._ending = ending
 
-    def take(self, time_ns: int, message: PointCloud2) -> str:
-        """Writes one; the name of its file, relative to the export."""
-        target = self._folder / f"{self._count:06d}.{self._ending}"
+    def _write(self, target: Path, message: PointCloud2) -> Path:
+        target = target.with_suffix(f".{self._ending}")
         found = read_points(message)
         with target.open("wb") as file:
             if self._ending == "ply":
@@ -85,11 +82,7 @@ class CloudFiles:
             else:
                 arrays = {name: np.ascontiguousarray(found[name]) for name in found.dtype.names or ()}
                 np.savez_compressed(file, allow_pickle=False, **arrays)
-        self._count += 1
-        return f"{self._folder.name}/{target.name}"
-
-    def close(self) -> None:
-        """Do nothing: every cloud is written when it comes."""
+        return target
 
 
 def _ply_bytes(found: PointArray) -> bytes:
