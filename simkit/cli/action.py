@@ -10,11 +10,12 @@ from typer import Option
 
 from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.message_arguments import check_type, make_message, parse_fields, split_type_and_values
-from simkit.cli.terminal.options import argument, option
+from simkit.cli.terminal.options import argument, live_command, option
 from simkit.cli.terminal.output import (
     absolute_name,
     print_json,
     print_line,
+    print_names,
     print_names_and_types,
     report_errors_quietly,
 )
@@ -28,8 +29,7 @@ action = typer.Typer(help="Actions of a running simulation.", no_args_is_help=Tr
 Name = Annotated[str, argument("Name of an action.", "ACTION", completion.actions)]
 
 
-@action.command("list", cls=options.Ros2Command)
-@report_errors_quietly
+@live_command(action, "list")
 def list_(
     show_types: options.ShowTypes = False,
     count: Annotated[bool, Option("--count-actions", "-c", help="Says only how many.")] = False,
@@ -43,21 +43,16 @@ def list_(
     return 0
 
 
-@action.command("type", cls=options.Ros2Command)
-@report_errors_quietly
+@live_command(action, "type")
 def type_(action: Name, sim: options.Sim = None, json_: options.Json = False) -> int:
     """Prints an action's type."""
     with connect_to_simulation(sim) as client:
         found = interface_type(client, "action", client.actions(), action)
-    if json_:
-        print_json([found])
-    else:
-        print_line(found)
+    print_names([found], json_=json_)
     return 0
 
 
-@action.command(cls=options.Ros2Command)
-@report_errors_quietly
+@live_command(action)
 def info(
     action: Name,
     show_types: options.ShowTypes = False,
@@ -102,7 +97,7 @@ def send_goal(
     return 0
 
 
-action.command("send_goal", cls=options.Ros2Command)(report_errors_quietly(send_goal))
+live_command(action, "send_goal")(send_goal)
 action.command("send", cls=options.Ros2Command, help="The same as send_goal.")(report_errors_quietly(send_goal))
 
 

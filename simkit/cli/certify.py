@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 from simkit.cli.run_options import load_options, scenario_spec
 from simkit.cli.terminal import options
 from simkit.cli.terminal.options import argument, option
 from simkit.cli.terminal.output import print_json, print_status, report_errors, stdout_console
 from simkit.writers.atomic_output import check_writable, write_atomically
-
-if TYPE_CHECKING:
-    pass
 
 _DIFFERENT = 5
 _SECONDS = 5.0  # of a world that no scenario gives a length

@@ -42,17 +42,20 @@ def convert(
 ) -> int:
     """Writes a world or model as MJCF, to be opened by MuJoCo alone, or as SDF in one file."""
     source = options.source_arguments(resource_path, package_path, xacro_arg, base)
-    if output.suffix.lower() in (".sdf", ".world"):
-        return _to_sdf(file, output, source, keep_uris=keep_uris, strict=strict, force=force, verbose=verbose)
-    if output.suffix.lower() not in (".xml", ".mjcf"):
-        raise InputError(
-            f"SK-CLI-018 --output {output}: found the ending {output.suffix!r}, allowed is .xml, .mjcf, .sdf or .world",
-            "SK-CLI-018",
-        )
-    return _to_mjcf(file, output, source, strict=strict, force=force, verbose=verbose)
+    ending = output.suffix.lower()
+    if ending in (".sdf", ".world"):
+        count = _to_sdf(file, output, source, keep_uris=keep_uris, strict=strict, force=force, verbose=verbose)
+    elif ending in (".xml", ".mjcf"):
+        count = _to_mjcf(file, output, source, strict=strict, force=force, verbose=verbose)
+    else:
+        found = f"found the ending {output.suffix!r}, allowed is .xml, .mjcf, .sdf or .world"
+        raise InputError(f"SK-CLI-018 --output {output}: {found}", "SK-CLI-018")
+    stdout_console().print(f"{output}" + (f" and {count} files in {output.stem}_assets" if count else ""))
+    return 0
 
 
 def _to_mjcf(file: str, output: Path, source: SourceOptions, *, strict: bool, force: bool, verbose: bool) -> int:
+    """Write MJCF; return the number of files beside it."""
     from simkit.build import load
     from simkit.writers.mjcf import write_mjcf
 
@@ -65,15 +68,13 @@ def _to_mjcf(file: str, output: Path, source: SourceOptions, *, strict: bool, fo
             f"MuJoCo's compiler refuses the inertia of {', '.join(written.balanced[:6])}"
             f"{' and others' if len(written.balanced) > 6 else ''}; the file has the nearest that it takes"
         )
-    stdout_console().print(
-        f"{output}" + (f" and {written.files} files in {output.stem}_assets" if written.files else "")
-    )
-    return 0
+    return written.files
 
 
 def _to_sdf(
     file: str, output: Path, source: SourceOptions, *, keep_uris: bool, strict: bool, force: bool, verbose: bool
 ) -> int:
+    """Write SDF; return the number of files beside it."""
     from simkit.build import read_scene
     from simkit.writers.asset_folder import write_sdf
 
@@ -82,7 +83,4 @@ def _to_sdf(
     lost.raise_if_errors(strict)
     written = write_sdf(scene, output, lost, keep_uris=keep_uris, overwrite=force)
     print_diagnostics(lost, verbose=verbose)
-    stdout_console().print(
-        f"{output}" + (f" and {written.files} files in {output.stem}_assets" if written.files else "")
-    )
-    return 0
+    return written.files

@@ -43,13 +43,9 @@ a test runs every example.
 _LAST = sys.maxsize
 _LANGUAGE_OF_KIND = {"xml": "xml", "command": "sh", "python": "python"}
 _LANGUAGE_OF_ENDING = {
-    "sdf": "xml",
-    "urdf": "xml",
-    "xacro": "xml",
-    "xml": "xml",
-    "config": "xml",
     "py": "python",
     "yaml": "yaml",
+    **dict.fromkeys(("sdf", "urdf", "xacro", "xml", "config"), "xml"),
 }
 
 

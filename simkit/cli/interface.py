@@ -10,7 +10,7 @@ from typer import Argument, Option
 
 from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.options import argument
-from simkit.cli.terminal.output import not_found_error, print_json, print_line, report_errors_quietly
+from simkit.cli.terminal.output import not_found_error, print_json, print_line, print_names, report_errors_quietly
 from simkit.errors import InputError, MessageError
 
 _KINDS = (("msg", "Messages"), ("srv", "Services"), ("action", "Actions"))
@@ -50,11 +50,7 @@ def packages(json_: options.Json = False) -> int:
     from simkit.msgs.interface_definitions import interface_names
 
     found = sorted({name.split("/")[0] for kind, _ in _KINDS for name in interface_names(kind)})
-    if json_:
-        print_json(found)
-    else:
-        for name in found:
-            print_line(name)
+    print_names(found, json_=json_)
     return 0
 
 
@@ -68,11 +64,7 @@ def package(name: Annotated[str, Argument(metavar="PACKAGE", show_default=False)
     found = [n for n in known if n.split("/")[0] == name]
     if not found:
         raise not_found_error("package", name, sorted({n.split("/")[0] for n in known}), "SK-CLI-032", "simkit")
-    if json_:
-        print_json(found)
-    else:
-        for one in found:
-            print_line(one)
+    print_names(found, json_=json_)
     return 0
 
 

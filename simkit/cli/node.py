@@ -8,7 +8,7 @@ import typer
 from typer import Option
 
 from simkit.cli.terminal import completion, options
-from simkit.cli.terminal.options import argument
+from simkit.cli.terminal.options import argument, live_command
 from simkit.cli.terminal.output import (
     JsonObject,
     absolute_name,
@@ -17,7 +17,6 @@ from simkit.cli.terminal.output import (
     print_json,
     print_line,
     print_names,
-    report_errors_quietly,
 )
 from simkit.cli.terminal.topic_sources import connect_to_simulation, connection_name, node_names
 
@@ -25,8 +24,7 @@ node = typer.Typer(help="Nodes of a running simulation: its plugins, sensors and
 Hidden = Annotated[bool, Option("--all", "-a", "--include-hidden", help="Shows hidden ones too.")]
 
 
-@node.command("list", cls=options.Ros2Command)
-@report_errors_quietly
+@live_command(node, "list")
 def list_(
     hidden: Hidden = False,
     count: Annotated[bool, Option("--count-nodes", "-c", help="Says only how many.")] = False,
@@ -40,8 +38,7 @@ def list_(
     return 0
 
 
-@node.command(cls=options.Ros2Command)
-@report_errors_quietly
+@live_command(node)
 def info(
     node: Annotated[str, argument("Name of a node.", "NODE", completion.all_nodes)],
     hidden: Hidden = False,

@@ -10,7 +10,7 @@ from typer import Option
 
 from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.message_arguments import compile_pattern
-from simkit.cli.terminal.options import argument, option
+from simkit.cli.terminal.options import argument, live_command, option
 from simkit.cli.terminal.output import (
     JsonObject,
     absolute_name,
@@ -34,8 +34,7 @@ Names = Annotated[list[str], argument("Names of parameters.", "NAME...", complet
 Name = Annotated[str, argument("Name of a parameter.", "NAME", completion.parameters)]
 
 
-@param.command("list", cls=options.Ros2Command)
-@report_errors_quietly
+@live_command(param, "list")
 def list_(
     node: Annotated[str | None, argument("Only of this one.", "[NODE]", completion.nodes)] = None,
     param_type: Annotated[bool, Option("--param-type", help="Shows the types too.")] = False,
@@ -64,8 +63,7 @@ def list_(
     return 0
 
 
-@param.command(cls=options.Ros2Command)
-@report_errors_quietly
+@live_command(param)
 def get(
     node: Node,
     name: Name,
@@ -131,8 +129,7 @@ def _set_values(client: Client, node: str, values: list[tuple[str, JsonObject]],
     return 0 if all(r.successful for r in results) else 2
 
 
-@param.command(cls=options.Ros2Command)
-@report_errors_quietly
+@live_command(param)
 def delete(node: Node, name: Name, sim: options.Sim = None, json_: options.Json = False) -> int:
     """Deletes a parameter, which no node here allows."""
     with connect_to_simulation(sim) as client:
@@ -146,8 +143,7 @@ def delete(node: Node, name: Name, sim: options.Sim = None, json_: options.Json 
     return 2
 
 
-@param.command(cls=options.Ros2Command)
-@report_errors_quietly
+@live_command(param)
 def describe(node: Node, names: Names, sim: options.Sim = None, json_: options.Json = False) -> int:
     """Says what parameters are, and what they take."""
     from simkit.msgs.message_text import message_to_dict
@@ -175,8 +171,7 @@ def describe(node: Node, names: Names, sim: options.Sim = None, json_: options.J
     return 0
 
 
-@param.command(cls=options.Ros2Command)
-@report_errors_quietly
+@live_command(param)
 def dump(node: Node, sim: options.Sim = None, json_: options.Json = False) -> int:
     """Prints all parameters of a node as a parameter file."""
     from simkit.msgs.message_text import to_yaml as as_yaml
@@ -200,8 +195,7 @@ def dump(node: Node, sim: options.Sim = None, json_: options.Json = False) -> in
     return 0
 
 
-@param.command(cls=options.Ros2Command)
-@report_errors_quietly
+@live_command(param)
 def load(
     node: Node,
     file: Annotated[Path, argument("A parameter file.", "FILE.yaml")],

@@ -17,7 +17,7 @@ from simkit.cli.terminal.message_arguments import (
     parse_fields,
     split_type_and_values,
 )
-from simkit.cli.terminal.options import argument, option
+from simkit.cli.terminal.options import argument, live_command, option
 from simkit.cli.terminal.output import (
     absolute_name,
     is_hidden,
@@ -25,7 +25,6 @@ from simkit.cli.terminal.output import (
     print_line,
     print_names,
     print_names_and_types,
-    report_errors_quietly,
 )
 from simkit.cli.terminal.topic_sources import connect_to_simulation, interface_type
 
@@ -37,8 +36,7 @@ Name = Annotated[str, argument("Name of a service.", "SERVICE", completion.servi
 Count = Annotated[bool, Option("--count-services", "--count", "-c", help="Says only how many.")]
 
 
-@service.command("list", cls=options.Ros2Command)
-@report_errors_quietly
+@live_command(service, "list")
 def list_(
     show_types: options.ShowTypes = False,
     count: Count = False,
@@ -53,21 +51,16 @@ def list_(
     return 0
 
 
-@service.command("type", cls=options.Ros2Command)
-@report_errors_quietly
+@live_command(service, "type")
 def type_(service: Name, sim: options.Sim = None, json_: options.Json = False) -> int:
     """Prints a service's type."""
     with connect_to_simulation(sim) as client:
         found = interface_type(client, "service", client.services(), service)
-    if json_:
-        print_json([found])
-    else:
-        print_line(found)
+    print_names([found], json_=json_)
     return 0
 
 
-@service.command(cls=options.Ros2Command)
-@report_errors_quietly
+@live_command(service)
 def info(service: Name, sim: options.Sim = None, json_: options.Json = False) -> int:
     """Says of what type a service is."""
     with connect_to_simulation(sim) as client:
@@ -79,8 +72,7 @@ def info(service: Name, sim: options.Sim = None, json_: options.Json = False) ->
     return 0
 
 
-@service.command(cls=options.Ros2Command)
-@report_errors_quietly
+@live_command(service)
 def find(
     service_type: Annotated[str, argument("Such as std_srvs/srv/Empty.", "TYPE", completion.service_types)],
     count: Count = False,
@@ -94,8 +86,7 @@ def find(
     return 0
 
 
-@service.command(cls=options.Ros2Command)
-@report_errors_quietly
+@live_command(service)
 def call(
     service: Name,
     service_type: Annotated[

@@ -10,8 +10,8 @@ from typer import Option
 
 from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.message_arguments import is_same_type
-from simkit.cli.terminal.options import argument
-from simkit.cli.terminal.output import JsonObject, is_hidden, print_json, print_line, print_names, report_errors_quietly
+from simkit.cli.terminal.options import argument, live_command
+from simkit.cli.terminal.output import JsonObject, is_hidden, print_json, print_line, print_names
 from simkit.cli.terminal.topic_sources import TopicEndpoint, TopicEntry, find_topic, open_source
 from simkit.cli.topic_echo import echo
 from simkit.cli.topic_pub import pub
@@ -27,8 +27,7 @@ Hidden = Annotated[
 ]
 
 
-@topic.command("list", cls=options.Ros2Command)
-@report_errors_quietly
+@live_command(topic, "list")
 def list_(
     show_types: options.ShowTypes = False,
     verbose: Annotated[bool, Option("--verbose", "-v", help="Says who publishes and who takes.")] = False,
@@ -74,8 +73,7 @@ def _endpoint_dict(end: TopicEndpoint) -> JsonObject:
     return {"node": end.node, "types": list(end.types), "latched": end.latched}
 
 
-@topic.command(cls=options.Ros2Command)
-@report_errors_quietly
+@live_command(topic)
 def info(
     topic: options.Topic,
     verbose: Annotated[bool, Option("--verbose", "-v", help="Says who they are, with their quality.")] = False,
@@ -134,22 +132,16 @@ def _endpoint_text(topic_name: str, end: TopicEndpoint, type_name: str, kind: st
     )
 
 
-@topic.command("type", cls=options.Ros2Command)
-@report_errors_quietly
+@live_command(topic, "type")
 def type_(topic: options.Topic, sim: options.Sim = None, bag: options.Bag = None, json_: options.Json = False) -> int:
     """Prints a topic's type."""
     with open_source(sim, bag) as source:
         entry = find_topic(source, topic)
-    if json_:
-        print_json(list(entry.types))
-    else:
-        for name in entry.types:
-            print_line(name)
+    print_names(entry.types, json_=json_)
     return 0
 
 
-@topic.command(cls=options.Ros2Command)
-@report_errors_quietly
+@live_command(topic)
 def find(
     topic_type: Annotated[str, argument("Such as geometry_msgs/msg/Twist.", "TYPE", completion.message_types)],
     count: Count = False,

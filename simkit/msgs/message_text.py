@@ -20,19 +20,10 @@ if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
 
 _EMPTY = "structure_needs_at_least_one_member"
-NUMBER_CODES = {
-    "float32": "f",
-    "float64": "d",
-    "int8": "b",
-    "uint8": "B",
-    "int16": "h",
-    "uint16": "H",
-    "int32": "i",
-    "uint32": "I",
-    "int64": "q",
-    "uint64": "Q",
-    "char": "B",
-    "octet": "B",
+NUMBER_CODES = {"float32": "f", "float64": "d", "char": "B", "octet": "B"} | {
+    name: letter
+    for bits, code in ((8, "b"), (16, "h"), (32, "i"), (64, "q"))
+    for name, letter in ((f"int{bits}", code), (f"uint{bits}", code.upper()))
 }
 """Letters of Python's `array` (in which rclpy keeps numbers) and `struct` for the numbers of messages."""
 _STEP = re.compile(r"([^.\[\]]+)|\[(-?\d*)(:?)(-?\d*)\]")

@@ -21,11 +21,13 @@ if TYPE_CHECKING:
     from simkit.cli.terminal.topic_sources import Source
     from simkit.live import Client
 
+Completer = Callable[[typer.Context, str], list[str]]
+"""Gives the words that fit what was written so far."""
 _PATIENCE = 1.0  # [s] of wall time that a shell is kept waiting
 _WORD_SO_FAR = __name__  # what was written of the word so far, in the meta of the context
 
 
-def _silent(complete: Callable[[typer.Context], Iterable[str]]) -> Callable[[typer.Context, str], list[str]]:
+def _silent(complete: Callable[[typer.Context], Iterable[str]]) -> Completer:
     """Nothing is offered where something goes wrong: an error in the middle of a prompt helps nobody."""
 
     def offered(ctx: typer.Context, incomplete: str) -> list[str]:
@@ -39,9 +41,16 @@ def _silent(complete: Callable[[typer.Context], Iterable[str]]) -> Callable[[typ
 
 
 @contextmanager
+def _client(ctx: typer.Context) -> Iterator[Client]:
+    from simkit.live import connect
+
+    with connect(ctx.params.get("sim") or os.environ.get("SIMKIT_SIM"), timeout=_PATIENCE) as client:
+        yield client
+
+
+@contextmanager
 def _source(ctx: typer.Context) -> Iterator[Source]:
     from simkit.cli.terminal.topic_sources import BagSource, LiveSource
-    from simkit.live import connect
     from simkit.recording.bags.reader import open_bag_to_read
 
     bag = ctx.params.get("bag")
@@ -49,7 +58,7 @@ def _source(ctx: typer.Context) -> Iterator[Source]:
         with open_bag_to_read(Path(bag)) as reader:
             yield BagSource(reader)
         return
-    with connect(_simulation_name(ctx), timeout=_PATIENCE) as client:
+    with _client(ctx) as client:
         yield LiveSource(client)
 
 
@@ -57,18 +66,6 @@ def _topic_before(ctx: typer.Context) -> str:
     """The topic that was written before; click leaves it aside while the value of an option is being written."""
     found = ctx.params.get("topic") or next((word for word in ctx.args if not word.startswith("-")), "")
     return absolute_name(found) if found else ""
-
-
-def _simulation_name(ctx: typer.Context) -> str | None:
-    return ctx.params.get("sim") or os.environ.get("SIMKIT_SIM")
-
-
-@contextmanager
-def _client(ctx: typer.Context) -> Iterator[Client]:
-    from simkit.live import connect
-
-    with connect(_simulation_name(ctx), timeout=_PATIENCE) as client:
-        yield client
 
 
 @_silent
@@ -144,49 +141,67 @@ def _full_type_name(type_name: str, store: Typestore | None) -> str:
     return type_name if store is not None else full_name(type_name)
 
 
-@_silent
-def message_values(ctx: typer.Context) -> Iterable[str]:
-    """A message of the type named before, to be filled in."""
-    return _prototype(str(ctx.params.get("message_type") or ""))
+def _prototype_of(parameter: str) -> Completer:
+    """Offer a message of the type that the parameter of that name has, to be filled in."""
+
+    def prototypes(ctx: typer.Context) -> list[str]:
+        from simkit.msgs.interface_definitions import prototype
+        from simkit.msgs.message_text import to_yaml
+
+        type_name = str(ctx.params.get(parameter) or "")
+        return [to_yaml(prototype(type_name), flow=True).strip()] if type_name else []
+
+    return _silent(prototypes)
 
 
-@_silent
-def service_values(ctx: typer.Context) -> Iterable[str]:
-    """A request of the type named before."""
-    return _prototype(str(ctx.params.get("service_type") or ""))
+message_values = _prototype_of("message_type")
+service_values = _prototype_of("service_type")
+goal_values = _prototype_of("action_type")
 
 
-@_silent
-def goal_values(ctx: typer.Context) -> Iterable[str]:
-    """A goal of the type named before."""
-    return _prototype(str(ctx.params.get("action_type") or ""))
+def _of_client(names: Callable[[Client, typer.Context], Iterable[str]]) -> Completer:
+    """Offer names that a running simulation tells."""
+
+    def told(ctx: typer.Context) -> Iterable[str]:
+        with _client(ctx) as client:
+            return list(names(client, ctx))
+
+    return _silent(told)
 
 
-def _prototype(type_name: str) -> list[str]:
-    from simkit.msgs.interface_definitions import prototype
-    from simkit.msgs.message_text import to_yaml
+def _nodes_with_parameters(client: Client, _: typer.Context) -> list[str]:
+    from simkit.cli.terminal.topic_sources import parameter_nodes
 
-    return [to_yaml(prototype(type_name), flow=True).strip()] if type_name else []
+    return parameter_nodes(client)
 
 
-@_silent
-def services(ctx: typer.Context) -> Iterable[str]:
-    """Services."""
-    with _client(ctx) as client:
-        return list(client.services())
+def _all_nodes(client: Client, _: typer.Context) -> list[str]:
+    from simkit.cli.terminal.topic_sources import node_names
+
+    return node_names(client)
+
+
+def _parameters_of_node(client: Client, ctx: typer.Context) -> Iterable[str]:
+    """Parameters of the node named before."""
+    name = absolute_name(str(ctx.params.get("node") or ""))
+    names: Iterable[str] = client.call(f"{name}/list_parameters", {}).result.names
+    return names
+
+
+services = _of_client(lambda client, _: client.services())
+actions = _of_client(lambda client, _: client.actions())
+nodes = _of_client(_nodes_with_parameters)
+all_nodes = _of_client(_all_nodes)
+parameters = _of_client(_parameters_of_node)
+models = _of_client(lambda client, _: client.models())
+links = _of_client(lambda client, ctx: client.model(str(ctx.params["model"]))["links"])
+joints = _of_client(lambda client, ctx: client.model(str(ctx.params["model"]))["joints"])
 
 
 @_silent
 def service_types(ctx: typer.Context) -> Iterable[str]:
     """The type of the service named before; all service types where there is none."""
     return _types_of_name(ctx, "service", "srv")
-
-
-@_silent
-def actions(ctx: typer.Context) -> Iterable[str]:
-    """Actions."""
-    with _client(ctx) as client:
-        return list(client.actions())
 
 
 @_silent
@@ -206,54 +221,6 @@ def _types_of_name(ctx: typer.Context, what: str, kind: str) -> list[str]:
         if absolute_name(name) in there:
             return [there[absolute_name(name)]]
     return interface_names(kind)
-
-
-@_silent
-def nodes(ctx: typer.Context) -> Iterable[str]:
-    """Nodes with parameters."""
-    from simkit.cli.terminal.topic_sources import parameter_nodes
-
-    with _client(ctx) as client:
-        return parameter_nodes(client)
-
-
-@_silent
-def all_nodes(ctx: typer.Context) -> Iterable[str]:
-    """Complete names of all nodes."""
-    from simkit.cli.terminal.topic_sources import node_names
-
-    with _client(ctx) as client:
-        return node_names(client)
-
-
-@_silent
-def parameters(ctx: typer.Context) -> Iterable[str]:
-    """Parameters of the node named before."""
-    node = str(ctx.params.get("node") or "")
-    with _client(ctx) as client:
-        found = client.call(f"{absolute_name(node)}/list_parameters", {})
-    return list(found.result.names)
-
-
-@_silent
-def models(ctx: typer.Context) -> Iterable[str]:
-    """Models."""
-    with _client(ctx) as client:
-        return [m if isinstance(m, str) else m["name"] for m in client.models()]
-
-
-@_silent
-def links(ctx: typer.Context) -> Iterable[str]:
-    """Links of the model named before."""
-    with _client(ctx) as client:
-        return list(client.model(str(ctx.params["model"]))["links"])
-
-
-@_silent
-def joints(ctx: typer.Context) -> Iterable[str]:
-    """Joints of the model named before."""
-    with _client(ctx) as client:
-        return list(client.model(str(ctx.params["model"]))["joints"])
 
 
 @_silent

@@ -6,17 +6,15 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
-from typer import Argument, Context, Option
+from typer import Argument, Option, Typer
 from typer.core import TyperCommand
 from typer.models import ArgumentInfo, OptionInfo
 
 from simkit.cli.terminal import completion
+from simkit.cli.terminal.output import P, report_errors_quietly
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
 from simkit.run_spec import SourceOptions
-
-Completer = Callable[[Context, str], list[str]]
-"""Gives the words that fit what was written so far, as the functions of `completion` do."""
 
 
 def option(
@@ -26,7 +24,7 @@ def option(
     min: float | None = None,
     max: float | None = None,
     show_default: bool = True,
-    complete: Completer | None = None,
+    complete: completion.Completer | None = None,
     parser: Callable[[str], float] | None = None,
 ) -> OptionInfo:
     """Declare an option with a value.
@@ -53,7 +51,7 @@ def option(
     return made
 
 
-def argument(help: str, metavar: str | None = None, complete: Completer | None = None) -> ArgumentInfo:
+def argument(help: str, metavar: str | None = None, complete: completion.Completer | None = None) -> ArgumentInfo:
     """Declare an argument whose default the help does not name.
 
     Args:
@@ -167,19 +165,8 @@ def source_arguments(
 
 
 _FLAGS = frozenset({"--no-daemon", "--use-sim-time"})
-_WITH_VALUE = frozenset(
-    {
-        "--spin-time",
-        "--node-name",
-        "--qos-profile",
-        "--qos-reliability",
-        "--qos-durability",
-        "--qos-history",
-        "--qos-depth",
-        "--qos-liveliness",
-        "--qos-liveliness-lease-duration-seconds",
-    }
-)
+_QOS = ("profile", "reliability", "durability", "history", "depth", "liveliness", "liveliness-lease-duration-seconds")
+_WITH_VALUE = frozenset({"--spin-time", "--node-name", *(f"--qos-{name}" for name in _QOS)})
 
 
 class Ros2Command(TyperCommand):
@@ -200,3 +187,17 @@ def _remove_ros2_flags(args: list[str]) -> Iterator[str]:
             next(words, None)
         elif word not in _FLAGS and word.partition("=")[0] not in _WITH_VALUE:
             yield word
+
+
+def live_command(group: Typer, name: str | None = None) -> Callable[[Callable[P, int | None]], Callable[P, None]]:
+    """Add a command to a group, as `ros2` has it: it takes and leaves out those options, and Ctrl-C ends it quietly.
+
+    Args:
+        group: of the commands.
+        name: the command's; the function's where none is given.
+    """
+
+    def add(command: Callable[P, int | None]) -> Callable[P, None]:
+        return group.command(name, cls=Ros2Command)(report_errors_quietly(command))
+
+    return add

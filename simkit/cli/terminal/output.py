@@ -208,7 +208,7 @@ def report_errors_quietly(command: Callable[P, int | None]) -> Callable[P, None]
     return report_errors(run)
 
 
-def print_names(names: Sequence[str], *, count: bool, json_: bool) -> None:
+def print_names(names: Sequence[str], *, count: bool = False, json_: bool) -> None:
     """Names, one a line, or how many there are."""
     if json_:
         print_json(len(names) if count else list(names))

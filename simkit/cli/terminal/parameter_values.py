@@ -24,18 +24,7 @@ KINDS: Final = (
     "double array",
     "string array",
 )
-_FIELDS = (
-    "",
-    "bool_value",
-    "integer_value",
-    "double_value",
-    "string_value",
-    "byte_array_value",
-    "bool_array_value",
-    "integer_array_value",
-    "double_array_value",
-    "string_array_value",
-)
+_FIELDS: Final = tuple(f"{kind.replace('boolean', 'bool').replace(' ', '_')}_value" for kind in KINDS)
 _KIND_BY_TYPE: Final[dict[type, int]] = {bool: 1, int: 2, float: 3, str: 4}
 
 

@@ -208,13 +208,12 @@ class Teleop:
         self._key_time = self._sim.time
 
     def _add(self, ahead: int, left: int, turn: int) -> None:
-        target, scale = self.target, self._scale
-        step = target.linear_step * scale
-        self.speeds = (
-            _clamp(self.speeds[0] + ahead * step, target.linear),
-            _clamp(self.speeds[1] + left * step, target.linear),
-            _clamp(self.speeds[2] + turn * target.angular_step * scale, target.angular),
-        )
+        step, turn_step = self.target.linear_step * self._scale, self.target.angular_step * self._scale
+        self._ask_for(self.speeds[0] + ahead * step, self.speeds[1] + left * step, self.speeds[2] + turn * turn_step)
+
+    def _ask_for(self, ahead: float, left: float, turn: float) -> None:
+        linear = self.target.linear
+        self.speeds = _clamp(ahead, linear), _clamp(left, linear), _clamp(turn, self.target.angular)
 
     def _multiply(self, factor: float) -> None:
         """Scale all speeds and steps alike, so that a curve stays the same curve; no speed exceeds its limit."""
@@ -223,11 +222,8 @@ class Teleop:
             if speed and factor > 1:
                 factor = max(1.0, min(factor, (most if speed > 0 else least) / speed))
         self._scale *= factor
-        self.speeds = (
-            _clamp(self.speeds[0] * factor, bounds[0]),
-            _clamp(self.speeds[1] * factor, bounds[1]),
-            _clamp(self.speeds[2] * factor, bounds[2]),
-        )
+        ahead, left, turn = self.speeds
+        self._ask_for(ahead * factor, left * factor, turn * factor)
 
     # ------------------------------------------------------------------ commands
 

@@ -17,17 +17,9 @@ if TYPE_CHECKING:
     from simkit.msgs import Image as ImageMessage
 
 Pixels = npt.NDArray[Any]
+_CHANNELS: Final = {"mono": 1, "rgb": 3, "bgr": 3, "rgba": 4, "bgra": 4}
 _ENCODINGS: Final = {
-    "mono8": ("u1", 1),
-    "mono16": ("u2", 1),
-    "rgb8": ("u1", 3),
-    "bgr8": ("u1", 3),
-    "rgba8": ("u1", 4),
-    "bgra8": ("u1", 4),
-    "rgb16": ("u2", 3),
-    "bgr16": ("u2", 3),
-    "rgba16": ("u2", 4),
-    "bgra16": ("u2", 4),
+    f"{order}{bits}": (f"u{bits // 8}", count) for order, count in _CHANNELS.items() for bits in (8, 16)
 }
 _SIZES: Final = {"8U": "u1", "8S": "i1", "16U": "u2", "16S": "i2", "32S": "i4", "32F": "f4", "64F": "f8"}
 _MM: Final = 1000.0
