@@ -35,21 +35,19 @@ def list_(
     count: Annotated[bool, Option("--count-actions", "-c", help="Says only how many.")] = False,
     sim: options.Sim = None,
     json_: options.Json = False,
-) -> int:
+) -> None:
     """Lists the actions."""
     with connect_to_simulation(sim) as client:
         found = dict(sorted(client.actions().items()))
     print_names_and_types(found, show_types=show_types, count=count, json_=json_)
-    return 0
 
 
 @live_command(action, "type")
-def type_(action: Name, sim: options.Sim = None, json_: options.Json = False) -> int:
+def type_(action: Name, sim: options.Sim = None, json_: options.Json = False) -> None:
     """Prints an action's type."""
     with connect_to_simulation(sim) as client:
         found = interface_type(client, "action", client.actions(), action)
     print_names([found], json_=json_)
-    return 0
 
 
 @live_command(action)
@@ -59,7 +57,7 @@ def info(
     count: Annotated[bool, Option("--count", "-c", help="Says only how many.")] = False,
     sim: options.Sim = None,
     json_: options.Json = False,
-) -> int:
+) -> None:
     """Says who serves an action."""
     with connect_to_simulation(sim) as client:
         found = interface_type(client, "action", client.actions(), action)
@@ -68,11 +66,10 @@ def info(
     node = next((n for n, has in nodes.items() if name in has["actions"]), name.rpartition("/")[0] or name)
     if json_:
         print_json({"name": name, "types": [found], "clients": [], "servers": [node]})
-        return 0
+        return
     print_line(f"Action: {name}\nAction clients: 0\nAction servers: 1")
     if not count:
         print_line(f"    {node} [{found}]" if show_types else f"    {node}")
-    return 0
 
 
 def send_goal(
@@ -86,7 +83,7 @@ def send_goal(
     timeout: Annotated[float | None, option("Calls it off after so long (wall time).", "S", "--timeout", min=0)] = None,
     sim: options.Sim = None,
     json_: options.Json = False,
-) -> int:
+) -> None:
     """Sends a goal and waits for its end; Ctrl-C calls it off."""
     action_type, goal = split_type_and_values(action_type, goal)
     fields = parse_fields(sys.stdin.read() if stdin else goal or "{}", "the goal")
@@ -94,7 +91,6 @@ def send_goal(
         found = interface_type(client, "action", client.actions(), action)
         check_type(action_type, [found], absolute_name(action))
         _GoalRun(client, json_, feedback).send(absolute_name(action), make_message(f"{found}_Goal", fields), timeout)
-    return 0
 
 
 live_command(action, "send_goal")(send_goal)

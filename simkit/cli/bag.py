@@ -23,7 +23,6 @@ from simkit.cli.terminal.output import (
     stdout_console,
 )
 from simkit.cli.terminal.topic_sources import SimClock, connect_to_simulation
-from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
 
 if TYPE_CHECKING:
@@ -45,7 +44,7 @@ def plot(
     end: options.End = None,
     title: options.Title = "",
     json_: options.Json = False,
-) -> int:
+) -> None:
     """Draws fields of a recording over time; several recordings come into one chart."""
     from simkit.recording.bags.reader import open_bag_to_read
 
@@ -53,7 +52,7 @@ def plot(
     for name in sources:
         if not is_bag(Path(name)):
             open_bag_to_read(name).close()  # says why not
-    return draw_chart(sources, fields, PlotRequest(output, against, start, end, title), json_=json_)
+    draw_chart(sources, fields, PlotRequest(output, against, start, end, title), json_=json_)
 
 
 @report_errors_quietly
@@ -73,25 +72,19 @@ def export(
     end: options.End = None,
     force: options.Force = False,
     json_: options.Json = False,
-) -> int:
+) -> None:
     """Writes a recording as tables, a file a topic, with pictures and point clouds beside them."""
     from simkit.recording.export import CLOUDS, FORMATS, IMAGES, ExportOptions, export_bag
 
-    for name, word, allowed in (
-        ("--format", format_, FORMATS),
-        ("--images", images, IMAGES),
-        ("--clouds", clouds, CLOUDS),
-    ):
-        if word not in allowed:
-            hint = did_you_mean(word, allowed)
-            text = f"SK-CLI-018 {name}: found {word!r}, allowed is {', '.join(allowed)}"
-            raise InputError(text + (f"; {hint}" if hint else ""), "SK-CLI-018")
+    options.validate_word("--format", format_, FORMATS)
+    options.validate_word("--images", images, IMAGES)
+    options.validate_word("--clouds", clouds, CLOUDS)
     target = output or Path(f"{recording.resolve().stem}_export")
     wanted = ExportOptions(tuple(topic), tuple(skip), format_, images, clouds, start, end, force)
     found = export_bag(recording, target, wanted)
     if json_:
         print_json({"output": str(target), "topics": [asdict(one) for one in found]})
-        return 0
+        return
     width = max(len(one.topic) for one in found)
     for one in found:
         beside = f" and {one.beside}" if one.beside else ""
@@ -100,7 +93,6 @@ def export(
         for note in one.notes:
             print_note(f"note: {one.topic}: {note}")
     print_line(f"{target}: {sum(one.count for one in found)} messages of {len(found)} topics")
-    return 0
 
 
 @report_errors_quietly
@@ -115,7 +107,7 @@ def play(
     loop: Annotated[bool, Option("--loop", "-l", help="Again and again until Ctrl-C.")] = False,
     sim: options.Sim = None,
     json_: options.Json = False,
-) -> int:
+) -> None:
     """Plays the messages of a bag into a running simulation, by its clock."""
     from simkit.recording.bags.reader import open_bag_to_read
 
@@ -139,7 +131,6 @@ def play(
         client.flush()
     if json_:
         print_json({"messages": count, "topics": list(publishers)})
-    return 0
 
 
 def _parse_remappings(pairs: list[str]) -> dict[str, str]:
@@ -185,7 +176,7 @@ def info(
     recording: options.Recording,
     topic_name: Annotated[bool, Option("--topic-name", "-t", help="Prints the names of the topics only.")] = False,
     json_: options.Json = False,
-) -> int:
+) -> None:
     """Says what is in a recording."""
     from simkit.recording.bags.reader import open_bag_to_read
     from simkit.recording.bags.summary import bag_summary, bag_text
@@ -200,7 +191,6 @@ def info(
                 print_line(name)
         else:
             print_line(bag_text(reader))
-    return 0
 
 
 bag.command()(record)
@@ -216,7 +206,7 @@ def recover(
     mended: Annotated[Path | None, argument("Where the whole one goes; beside it where not given.")] = None,
     output: Annotated[Path | None, option("The same.", "MENDED", "--output", "-o")] = None,
     force: options.Force = False,
-) -> int:
+) -> None:
     """Copies what is readable of a recording into a whole one; the broken one stays as it is."""
     from simkit.recording.bags.recovery import recover_bag
 
@@ -225,4 +215,3 @@ def recover(
     span = (found.end - found.start) * 1e-9
     state = "it was whole" if found.complete else "it was cut off"
     stdout_console().print(f"{target}: {found.messages} messages on {found.topics} topics over {span:.3f} s ({state})")
-    return 0

@@ -25,7 +25,7 @@ def bench(
     package_path: options.PackagePaths = [],
     xacro_arg: options.XacroArgs = [],
     base: options.Base = "auto",
-) -> int:
+) -> None:
     """Times a world and, in the same run, bare MuJoCo on the same compiled model."""
     from simkit.mujoco_import import import_mujoco
 
@@ -46,4 +46,3 @@ def bench(
     with load(spec.world, **spec.load_arguments()) as sim:
         growth = measure_memory_growth(sim, _HOUR if full else 60.0)
     stdout_console().print(f"{'memory':<52}{growth * _HOUR / 1e6:>9.2f} MB  a simulated hour")
-    return 0

@@ -37,7 +37,7 @@ def bundle(
     plugin_path: options.PluginPaths = [],
     xacro_arg: options.XacroArgs = [],
     base: options.Base = "auto",
-) -> int:
+) -> None:
     """Runs a world or a scenario, and packs it into one file that repeats it anywhere.
 
     In it are the world and everything it names, the code of plugins, the seed, the versions, every command that came in
@@ -72,4 +72,3 @@ def bundle(
         stdout_console().print(f"state {keeper.end().state}")
         size = output.stat().st_size
         stdout_console().print(f"{output}: {sim.time:g} s, {keeper.journal.count} commands, {size / 1000:.0f} kB")
-    return 0

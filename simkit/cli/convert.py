@@ -39,7 +39,7 @@ def convert(
     base: options.Base = "auto",
     force: options.Force = False,
     verbose: options.Verbose = False,
-) -> int:
+) -> None:
     """Writes a world or model as MJCF, to be opened by MuJoCo alone, or as SDF in one file."""
     source = options.source_arguments(resource_path, package_path, xacro_arg, base)
     ending = output.suffix.lower()
@@ -51,7 +51,6 @@ def convert(
         found = f"found the ending {output.suffix!r}, allowed is .xml, .mjcf, .sdf or .world"
         raise InputError(f"SK-CLI-018 --output {output}: {found}", "SK-CLI-018")
     stdout_console().print(f"{output}" + (f" and {count} files in {output.stem}_assets" if count else ""))
-    return 0
 
 
 def _to_mjcf(file: str, output: Path, source: SourceOptions, *, strict: bool, force: bool, verbose: bool) -> int:

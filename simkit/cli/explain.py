@@ -17,7 +17,7 @@ from simkit.errors import InputError
 def explain(
     code: Annotated[str, argument("A code such as SK-SDF-004, or the beginning of several.")],
     json_: options.Json = False,
-) -> int:
+) -> None:
     """Says what a code means, what helps, and shows an input that brings it about."""
     from simkit.cli.diagnostic_catalogue import catalogue, code_text
 
@@ -34,7 +34,6 @@ def explain(
     else:
         for entry in found:
             stdout_console().print(f"{entry.code}  {entry.severity:<14}  {entry.meaning}")
-    return 0
 
 
 def _text(value: object) -> str:

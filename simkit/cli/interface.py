@@ -27,7 +27,7 @@ def list_(
     only_srvs: Annotated[bool, Option("--only-srvs", "-s", help="Service types only.")] = False,
     only_actions: Annotated[bool, Option("--only-actions", "-a", help="Action types only.")] = False,
     json_: options.Json = False,
-) -> int:
+) -> None:
     """Lists the types that simkit knows."""
     from simkit.msgs.interface_definitions import interface_names
 
@@ -35,28 +35,26 @@ def list_(
     kinds = [(kind, title) for kind, title in _KINDS if wanted[kind] or not any(wanted.values())]
     if json_:
         print_json({kind: interface_names(kind) for kind, _ in kinds})
-        return 0
+        return
     for kind, title in kinds:
         print_line(f"{title}:")
         for name in interface_names(kind):
             print_line(f"    {name}")
-    return 0
 
 
 @interface.command()
 @report_errors_quietly
-def packages(json_: options.Json = False) -> int:
+def packages(json_: options.Json = False) -> None:
     """Lists the packages that the types are of."""
     from simkit.msgs.interface_definitions import interface_names
 
     found = sorted({name.split("/")[0] for kind, _ in _KINDS for name in interface_names(kind)})
     print_names(found, json_=json_)
-    return 0
 
 
 @interface.command()
 @report_errors_quietly
-def package(name: Annotated[str, Argument(metavar="PACKAGE", show_default=False)], json_: options.Json = False) -> int:
+def package(name: Annotated[str, Argument(metavar="PACKAGE", show_default=False)], json_: options.Json = False) -> None:
     """Lists the types of a package."""
     from simkit.msgs.interface_definitions import interface_names
 
@@ -65,7 +63,6 @@ def package(name: Annotated[str, Argument(metavar="PACKAGE", show_default=False)
     if not found:
         raise not_found_error("package", name, sorted({n.split("/")[0] for n in known}), "SK-CLI-032", "simkit")
     print_names(found, json_=json_)
-    return 0
 
 
 @interface.command()
@@ -76,7 +73,7 @@ def show(
     no_comments: Annotated[bool, Option("--no-comments", help="Without comments.")] = False,
     bag: options.Bag = None,
     json_: options.Json = False,
-) -> int:
+) -> None:
     """Prints the definition of a type, with those of its parts below."""
     from simkit.msgs.interface_definitions import interface_text
 
@@ -92,7 +89,6 @@ def show(
         print_json({"type": name, "definition": text})
     else:
         print_line(text)
-    return 0
 
 
 def _of_bag(name: str, bag: object, *, comments: bool, all_comments: bool) -> str:
@@ -112,7 +108,7 @@ def proto(
     type_: TypeName,
     no_quotes: Annotated[bool, Option("--no-quotes", help="Without quotes around it.")] = False,
     json_: options.Json = False,
-) -> int:
+) -> None:
     """Prints a message with every field, to be filled in."""
     from simkit.msgs.interface_definitions import prototype
     from simkit.msgs.message_text import to_yaml
@@ -126,7 +122,6 @@ def proto(
     else:
         text = to_yaml(found)
         print_line(text if no_quotes else f'"{text}"')
-    return 0
 
 
 def _read(type_name: str) -> str:

@@ -26,14 +26,14 @@ def list_(
     verbose: Annotated[bool, Option("--verbose", "-v", help="With poses, links and joints.")] = False,
     sim: options.Sim = None,
     json_: options.Json = False,
-) -> int:
+) -> None:
     """Lists the models."""
     with connect_to_simulation(sim) as client:
         names: list[str] = client.models()
         found = {name: client.model(name) for name in names} if verbose else {}
     if json_:
         print_json(list(found.values()) if verbose else names)
-        return 0
+        return
     for name in names:
         if not verbose:
             print_line(name)
@@ -41,7 +41,6 @@ def list_(
         one = found[name]
         counts = f"{_count_text(one['links'], 'link')}, {_count_text(one['joints'], 'joint')}"
         print_line(f"{name}: {_pose_text(one['pose'])} ({'static, ' if one.get('static') else ''}{counts})")
-    return 0
 
 
 def _count_text(found: Sequence[object], what: str) -> str:
@@ -56,7 +55,7 @@ def pose(
     links: Annotated[bool, Option("--links", "-l", help="All its links too.")] = False,
     sim: options.Sim = None,
     json_: options.Json = False,
-) -> int:
+) -> None:
     """Prints a pose in the world: x y z [m], roll pitch yaw [rad]."""
     with connect_to_simulation(sim) as client:
         found = _model_state(client, model)
@@ -70,11 +69,10 @@ def pose(
             rows |= {f"{model}::{n}": one["pose"] for n, one in found["links"].items()}
     if json_:
         print_json(rows if links else next(iter(rows.values())))
-        return 0
+        return
     width = max(map(len, rows))
     for name, at in rows.items():
         print_line(f"{name:<{width}}  {_pose_text(at)}" if links else _pose_text(at))
-    return 0
 
 
 def _pose_text(pose: JsonObject) -> str:
@@ -92,7 +90,7 @@ def joint(
     ] = None,
     sim: options.Sim = None,
     json_: options.Json = False,
-) -> int:
+) -> None:
     """Prints the state of joints: position, velocity, effort [rad, rad/s, N·m or m, m/s, N]."""
     with connect_to_simulation(sim) as client:
         found = _model_state(client, model)["joints"]
@@ -101,15 +99,14 @@ def joint(
     rows = found if joint is None else {joint: found[joint]}
     if json_:
         print_json(rows if joint is None else rows[joint])
-        return 0
+        return
     if not rows:
         print_line(f"{model} has no joints")
-        return 0
+        return
     width, kinds = max(map(len, rows)), max(len(str(r["type"])) for r in rows.values())
     for name, one in rows.items():
         state = "  ".join(f"{key} {_numbers(one[key])}" for key in ("position", "velocity", "effort"))
         print_line(f"{name:<{width}}  {one['type']:<{kinds}}  {state}")
-    return 0
 
 
 def _numbers(value: float | list[float]) -> str:

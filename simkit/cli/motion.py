@@ -42,7 +42,7 @@ def list_motions(
     package_path: options.PackagePaths = [],
     plugin_path: options.PluginPaths = [],
     xacro_arg: options.XacroArgs = [],
-) -> int:
+) -> None:
     """Lists motions: joints, points, how long each takes, and what it is for."""
     if Path(file).suffix.lower() in (".yaml", ".yml"):
         found = _read_motions([Path(file), *motions])
@@ -55,7 +55,7 @@ def list_motions(
     if json_:
         shown = [{**one.as_message(), "duration": one.duration, "file": one.where.file} for one in found]
         stdout_console().file.write(json.dumps(shown, indent=2) + "\n")
-        return 0
+        return
     rows = [
         (
             one.key,
@@ -69,7 +69,6 @@ def list_motions(
     for one, row in zip(found, rows, strict=True):
         columns = "  ".join(f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True))
         stdout_console().print(f"{columns}  {one.description}".rstrip())
-    return 0
 
 
 @motion.command("play")
@@ -96,7 +95,7 @@ def play(
     plugin_path: options.PluginPaths = [],
     xacro_arg: options.XacroArgs = [],
     params_file: options.ParamsFiles = [],
-) -> int:
+) -> None:
     """Plays motions: the way to the first point no faster than is safe, then as the file has it."""
     from simkit.plugins.play_motion.motion_session import choose_player, motion_players, play_motions
     from simkit.recording import run_picture as pictures
@@ -122,7 +121,6 @@ def play(
             _draw(sim, picture)
     if json_:
         stdout_console().file.write(json.dumps(shown, indent=2) + "\n")
-    return 0
 
 
 def _open_world(

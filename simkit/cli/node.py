@@ -30,12 +30,11 @@ def list_(
     count: Annotated[bool, Option("--count-nodes", "-c", help="Says only how many.")] = False,
     sim: options.Sim = None,
     json_: options.Json = False,
-) -> int:
+) -> None:
     """Lists the nodes."""
     with connect_to_simulation(sim) as client:
         found = node_names(client, hidden=hidden)
     print_names(found, count=count, json_=json_)
-    return 0
 
 
 @live_command(node)
@@ -44,7 +43,7 @@ def info(
     hidden: Hidden = False,
     sim: options.Sim = None,
     json_: options.Json = False,
-) -> int:
+) -> None:
     """Says what a node publishes, takes and offers."""
     with connect_to_simulation(sim) as client:
         nodes: dict[str, JsonObject] = client.ask("nodes")
@@ -56,7 +55,7 @@ def info(
     found = nodes[wanted]
     if json_:
         print_json({"name": wanted, **found})
-        return 0
+        return
     print_line(wanted)
     for title, key in (
         ("Subscribers", "subscribers"),
@@ -72,4 +71,3 @@ def info(
             print_line(f"    {name}: {', '.join(types)}")
         if not rows:
             print_line()
-    return 0

@@ -42,7 +42,7 @@ def list_(
     filter_: Annotated[str | None, option("Only names this regular expression fits.", "REGEX", "--filter")] = None,
     sim: options.Sim = None,
     json_: options.Json = False,
-) -> int:
+) -> None:
     """Lists nodes with parameters and these."""
     wanted = compile_pattern(filter_, "--filter")
     found: dict[str, dict[str, str]] = {}
@@ -54,13 +54,12 @@ def list_(
             found[name] = {n: KINDS[int(t)] for n, t in zip(names, types, strict=True)}
     if json_:
         print_json(found)
-        return 0
+        return
     for name, parameters in found.items():
         if node is None:
             print_line(f"{name}:")
         for parameter, kind in parameters.items():
             print_line(f"  {parameter} (type: {kind})" if param_type else f"  {parameter}")
-    return 0
 
 
 @live_command(param)
@@ -70,7 +69,7 @@ def get(
     hide_type: Annotated[bool, Option("--hide-type", help="The value alone.")] = False,
     sim: options.Sim = None,
     json_: options.Json = False,
-) -> int:
+) -> None:
     """Prints the value of a parameter."""
     with connect_to_simulation(sim) as client:
         full = _resolve_node(client, node)
@@ -84,7 +83,6 @@ def get(
         kind = KINDS[int(found.type)]
         label = kind.removesuffix(" array").capitalize()
         print_line(f"{label} {'values are' if kind.endswith('array') else 'value is'}: {_value_text(value, kind)}")
-    return 0
 
 
 def _value_text(value: object, kind: str) -> str:
@@ -144,7 +142,7 @@ def delete(node: Node, name: Name, sim: options.Sim = None, json_: options.Json 
 
 
 @live_command(param)
-def describe(node: Node, names: Names, sim: options.Sim = None, json_: options.Json = False) -> int:
+def describe(node: Node, names: Names, sim: options.Sim = None, json_: options.Json = False) -> None:
     """Says what parameters are, and what they take."""
     from simkit.msgs.message_text import message_to_dict
 
@@ -154,7 +152,7 @@ def describe(node: Node, names: Names, sim: options.Sim = None, json_: options.J
         found = client.call(f"{full}/describe_parameters", {"names": names}).descriptors
     if json_:
         print_json([message_to_dict(d) | {"type": KINDS[int(d.type)]} for d in found])
-        return 0
+        return
     for one in found:
         print_line(f"Parameter name: {one.name}\n  Type: {KINDS[int(one.type)]}")
         if one.description:
@@ -168,11 +166,10 @@ def describe(node: Node, names: Names, sim: options.Sim = None, json_: options.J
                 print_line(f"    Step: {bounds.step}")
         if one.additional_constraints:
             print_line(f"    Additional constraints: {one.additional_constraints}")
-    return 0
 
 
 @live_command(param)
-def dump(node: Node, sim: options.Sim = None, json_: options.Json = False) -> int:
+def dump(node: Node, sim: options.Sim = None, json_: options.Json = False) -> None:
     """Prints all parameters of a node as a parameter file."""
     from simkit.msgs.message_text import to_yaml as as_yaml
 
@@ -192,7 +189,6 @@ def dump(node: Node, sim: options.Sim = None, json_: options.Json = False) -> in
         print_json(found)
     else:
         print_line(as_yaml(found))
-    return 0
 
 
 @live_command(param)

@@ -40,11 +40,11 @@ def plot(
     xacro_arg: options.XacroArgs = [],
     base: options.Base = "auto",
     json_: options.Json = False,
-) -> int:
+) -> None:
     """Draws fields of topics over time: of bags, and of worlds that are run for it."""
     sources, fields = split_sources_and_fields(words)
     given = load_options(resource_path, package_path, xacro_arg, base, plugin_path)
     run = partial(
         scenario_spec, options=given, duration=duration, seed=seed, overrides=set_, cmd_vel=cmd_vel, script=script
     )
-    return draw_chart(sources, fields, PlotRequest(output, against, start, end, title, run), json_=json_)
+    draw_chart(sources, fields, PlotRequest(output, against, start, end, title, run), json_=json_)

@@ -71,7 +71,7 @@ def split_sources_and_fields(words: Sequence[str]) -> tuple[list[str], list[str]
     return sources, fields
 
 
-def draw_chart(sources: Sequence[str], fields: Sequence[str], request: PlotRequest, *, json_: bool) -> int:
+def draw_chart(sources: Sequence[str], fields: Sequence[str], request: PlotRequest, *, json_: bool) -> None:
     """Draws fields of sources to a file.
 
     Raises:
@@ -93,7 +93,6 @@ def draw_chart(sources: Sequence[str], fields: Sequence[str], request: PlotReque
         found.sort(key=lambda pair: pair[1].colour)
     write_atomically(request.output, render_chart(_chart(found, request), request.output.suffix))
     _summary(request.output, [one for one, _ in found], json_=json_)
-    return 0
 
 
 def _source_labels(sources: Sequence[str]) -> list[str]:

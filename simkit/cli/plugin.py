@@ -31,7 +31,7 @@ def list_plugins(
     words: Annotated[list[str] | None, argument("Only names that contain one of these.")] = None,
     plugin_path: options.PluginPaths = [],
     json_: options.Json = False,
-) -> int:
+) -> None:
     """Lists every name that a world may give a plugin, with what it hangs on."""
     from simkit.plugins.authoring.catalogue import known_plugins
 
@@ -42,20 +42,19 @@ def list_plugins(
     if json_:
         shown = [_as_dict(e) for e in entries if _matching(e, wanted) or not wanted]
         stdout_console().file.write(json.dumps(shown, indent=2) + "\n")
-        return 0
+        return
     rows = [
         (name, " or ".join(e.parents), e) for e in entries for name in (_matching(e, wanted) if wanted else e.names)
     ]
     if not rows:
         print_status(f"no name contains {' or '.join(words or ())}; simkit plugin list names them all")
-        return 0
+        return
     width = max(len(name) for name, _, _ in rows)
     places = max(len(parents) for _, parents, _ in rows)
     for name, parents, entry in rows:
         stdout_console().print(
             f"{name:<{width}}  {parents:<{places}}  {entry.cls.__name__}: {_first_sentence(entry.summary)}"
         )
-    return 0
 
 
 def _matching(entry: Entry, wanted: list[str]) -> list[str]:
@@ -70,7 +69,7 @@ def show_info(
     name: Annotated[str, argument("A name in any spelling, a class, MODULE:CLASS or FILE.py.")],
     plugin_path: options.PluginPaths = [],
     json_: options.Json = False,
-) -> int:
+) -> None:
     """Says which parameters a plugin reads, and which topics and services it opens."""
     from simkit.plugins.authoring.catalogue import common_facts, facts_of, find_entry
 
@@ -79,7 +78,7 @@ def show_info(
     if json_:
         found = {**_as_dict(entry), **_facts_as_dict(facts), "common": _facts_as_dict(common_facts())["parameters"]}
         stdout_console().file.write(json.dumps(found, indent=2) + "\n")
-        return 0
+        return
     first, *others = entry.names or (entry.cls.__name__,)
     stdout_console().print(
         f"{first}: {entry.cls.__name__}, on a {' or a '.join(entry.parents)}".replace("on a any", "anywhere")
@@ -94,7 +93,6 @@ def show_info(
     _print_table("listens to", [_topic_row(t) for t in facts.topics if not t.published])
     _print_table("services", [_service_row(s) for s in facts.services if not s.is_action])
     _print_table("actions", [_service_row(s) for s in facts.services if s.is_action])
-    return 0
 
 
 @plugin.command("new")
@@ -111,7 +109,7 @@ def new_plugin(
     package_path: options.PackagePaths = [],
     plugin_path: options.PluginPaths = [],
     xacro_arg: options.XacroArgs = [],
-) -> int:
+) -> None:
     """Writes a plugin with typed parameters, and a test that passes."""
     from simkit.plugins.authoring.new_plugins import plugin_named, plugins_missing_in
     from simkit.plugins.authoring.plugin_test_skeleton import write_plugins
@@ -129,11 +127,10 @@ def new_plugin(
         wanted = plugins_missing_in(scene, plugin_path)
         if not wanted:
             print_status("every plugin of this file is known; nothing to write")
-            return 0
+            return
     for path in write_plugins(wanted, folder, overwrite=force):
         stdout_console().print(str(path))
     print_status(f"run the tests: python -m pytest {folder}; a world finds the plugins with --plugin-path {folder}")
-    return 0
 
 
 # ---------------------------------------------------------------------- as text

@@ -3,25 +3,16 @@
 from __future__ import annotations
 
 from collections import deque
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 from simkit.cli.terminal.output import print_status
 
 if TYPE_CHECKING:
+    from simkit.cli.terminal.keyboard import Keyboard, WindowsKeyboard
     from simkit.cli.terminal.teleop import Teleop
     from simkit.runtime import Simulation
 
 HINT = "space goes on, n does one step, Ctrl-C ends"
-
-
-class KeySource(Protocol):
-    """Where keys come from; a `Keyboard`."""
-
-    is_lost: bool
-
-    def read(self) -> list[str]:
-        """Those pressed since it was last asked."""
-        ...
 
 
 class RunKeys:
@@ -33,7 +24,7 @@ class RunKeys:
         teleop: takes those that drive.
     """
 
-    def __init__(self, sim: Simulation, keyboard: KeySource, teleop: Teleop | None = None) -> None:
+    def __init__(self, sim: Simulation, keyboard: Keyboard | WindowsKeyboard, teleop: Teleop | None = None) -> None:
         self._sim, self._keyboard, self._teleop = sim, keyboard, teleop
         self._was_told = self._was_hinted = False
         self._left: deque[str] = deque()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import time
 from collections.abc import Callable
 from contextlib import ExitStack
 from functools import partial
@@ -130,7 +131,6 @@ class Session:
 
     def execute(self) -> int:
         """Runs it to its end; the exit code."""
-        from simkit.cli.terminal.progress import Stopwatch
         from simkit.recording.bags.recorder import Recorder
         from simkit.recording.command_script import Commands
         from simkit.recording.run_picture import DrivenPath
@@ -156,7 +156,7 @@ class Session:
                 )
             counter = TopicCounter(sim, RENDERED, recording.records if recording is not None else None)
             keyboard = self._keyboard()
-            watch = Stopwatch()
+            begun = time.perf_counter()
             progress = stack.enter_context(self._progress(counter, duration))
             watchers: list[Callable[[], None]] = [progress.update]
             if recording is not None:
@@ -184,7 +184,7 @@ class Session:
             else:
                 self.verdict.end(None, _interrupt_text(interrupts, loop))
             finally:
-                elapsed = watch.elapsed
+                elapsed = time.perf_counter() - begun
                 progress.__exit__(None, None, None)
                 if recording is not None:
                     recording.close()

@@ -43,25 +43,23 @@ def list_(
     hidden: Annotated[bool, Option("--include-hidden-services", "-a", "--all", help="Shows hidden ones too.")] = False,
     sim: options.Sim = None,
     json_: options.Json = False,
-) -> int:
+) -> None:
     """Lists the services."""
     with connect_to_simulation(sim) as client:
         found = {n: t for n, t in sorted(client.services().items()) if hidden or not is_hidden(n)}
     print_names_and_types(found, show_types=show_types, count=count, json_=json_)
-    return 0
 
 
 @live_command(service, "type")
-def type_(service: Name, sim: options.Sim = None, json_: options.Json = False) -> int:
+def type_(service: Name, sim: options.Sim = None, json_: options.Json = False) -> None:
     """Prints a service's type."""
     with connect_to_simulation(sim) as client:
         found = interface_type(client, "service", client.services(), service)
     print_names([found], json_=json_)
-    return 0
 
 
 @live_command(service)
-def info(service: Name, sim: options.Sim = None, json_: options.Json = False) -> int:
+def info(service: Name, sim: options.Sim = None, json_: options.Json = False) -> None:
     """Says of what type a service is."""
     with connect_to_simulation(sim) as client:
         found = interface_type(client, "service", client.services(), service)
@@ -69,7 +67,6 @@ def info(service: Name, sim: options.Sim = None, json_: options.Json = False) ->
         print_json({"name": absolute_name(service), "types": [found], "clients": 0, "services": 1})
     else:
         print_line(f"Type: {found}\nClients count: 0\nServices count: 1")
-    return 0
 
 
 @live_command(service)
@@ -78,12 +75,11 @@ def find(
     count: Count = False,
     sim: options.Sim = None,
     json_: options.Json = False,
-) -> int:
+) -> None:
     """Lists the services of a type."""
     with connect_to_simulation(sim) as client:
         found = [name for name, full in sorted(client.services().items()) if is_same_type(service_type, full)]
     print_names(found, count=count, json_=json_)
-    return 0
 
 
 @live_command(service)
@@ -101,7 +97,7 @@ def call(
     ] = None,
     sim: options.Sim = None,
     json_: options.Json = False,
-) -> int:
+) -> None:
     """Calls a service and prints the response."""
     service_type, values = split_type_and_values(service_type, values)
     fields = parse_fields(sys.stdin.read() if stdin else values or "{}", "the request")
@@ -114,7 +110,7 @@ def call(
             begun = time.monotonic()
             _call_once(client, name, request, json_)
             if rate is None:
-                return 0
+                return
             time.sleep(max(0.0, begun + 1.0 / rate - time.monotonic()))
 
 

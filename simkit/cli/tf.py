@@ -35,7 +35,7 @@ def tree(
     sim: options.Sim = None,
     bag: options.Bag = None,
     json_: options.Json = False,
-) -> int:
+) -> None:
     """Prints which frame hangs on which."""
     frames = FrameTree()
     with open_source(sim, bag) as source:
@@ -49,7 +49,6 @@ def tree(
             print_line(text)
     else:
         print_line("no transforms came")
-    return 0
 
 
 @tf.command()
@@ -64,7 +63,7 @@ def echo(
     sim: options.Sim = None,
     bag: options.Bag = None,
     json_: options.Json = False,
-) -> int:
+) -> None:
     """Prints where TARGET is, as seen from SOURCE; of a bag, at its end."""
     frames = FrameTree()
     with open_source(sim, bag) as source:
@@ -80,7 +79,7 @@ def echo(
                 raise _not_connected(frames, source_frame, target_frame, source.where)
             _print(*found, precision, json_)
             if once or not source.is_live:
-                return 0
+                return
 
 
 def _not_connected(frames: FrameTree, source: str, target: str, where: str) -> InputError:

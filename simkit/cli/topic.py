@@ -36,7 +36,7 @@ def list_(
     sim: options.Sim = None,
     bag: options.Bag = None,
     json_: options.Json = False,
-) -> int:
+) -> None:
     """Lists the topics."""
     with open_source(sim, bag) as source:
         found = [t for t in source.topics().values() if hidden or not is_hidden(t.name)]
@@ -56,7 +56,6 @@ def list_(
     else:
         for entry in found:
             print_line(f"{entry.name} [{', '.join(entry.types)}]" if show_types else entry.name)
-    return 0
 
 
 def _topic_dict(entry: TopicEntry, *, show_ends: bool) -> JsonObject:
@@ -80,13 +79,13 @@ def info(
     sim: options.Sim = None,
     bag: options.Bag = None,
     json_: options.Json = False,
-) -> int:
+) -> None:
     """Says of what type a topic is, and how many publish it and take it."""
     with open_source(sim, bag) as source:
         entry = find_topic(source, topic)
     if json_:
         print_json(_topic_dict(entry, show_ends=True))
-        return 0
+        return
     gap = "\n" if verbose else ""
     print_line(f"Type: {entry.types[0] if len(entry.types) == 1 else list(entry.types)}{gap}")
     for word, ends, kind in (
@@ -98,7 +97,6 @@ def info(
             for number, end in enumerate(ends):
                 for type_name in end.types:
                     print_line(_endpoint_text(entry.name, end, type_name, kind, number) + gap)
-    return 0
 
 
 def _endpoint_text(topic_name: str, end: TopicEndpoint, type_name: str, kind: str, number: int) -> str:
@@ -133,12 +131,11 @@ def _endpoint_text(topic_name: str, end: TopicEndpoint, type_name: str, kind: st
 
 
 @live_command(topic, "type")
-def type_(topic: options.Topic, sim: options.Sim = None, bag: options.Bag = None, json_: options.Json = False) -> int:
+def type_(topic: options.Topic, sim: options.Sim = None, bag: options.Bag = None, json_: options.Json = False) -> None:
     """Prints a topic's type."""
     with open_source(sim, bag) as source:
         entry = find_topic(source, topic)
     print_names(entry.types, json_=json_)
-    return 0
 
 
 @live_command(topic)
@@ -149,7 +146,7 @@ def find(
     sim: options.Sim = None,
     bag: options.Bag = None,
     json_: options.Json = False,
-) -> int:
+) -> None:
     """Lists the topics of a type."""
     with open_source(sim, bag) as source:
         found = [
@@ -157,15 +154,14 @@ def find(
         ]
     found = [name for name in found if hidden or not is_hidden(name)]
     print_names(found, count=count, json_=json_)
-    return 0
 
 
 def _all_types(entry: TopicEntry) -> set[str]:
     return {*entry.types, *(t for end in (*entry.publishers, *entry.subscribers) for t in end.types)}
 
 
-topic.command(cls=options.Ros2Command)(echo)
-topic.command(cls=options.Ros2Command)(hz)
-topic.command(cls=options.Ros2Command)(bw)
-topic.command(cls=options.Ros2Command)(delay)
-topic.command(cls=options.Ros2Command)(pub)
+live_command(topic)(echo)
+live_command(topic)(hz)
+live_command(topic)(bw)
+live_command(topic)(delay)
+live_command(topic)(pub)

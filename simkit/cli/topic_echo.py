@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
 from typer import Option
@@ -11,7 +12,7 @@ from typer import Option
 from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.message_arguments import check_type
 from simkit.cli.terminal.options import argument, option
-from simkit.cli.terminal.output import print_json, print_line, print_note, report_errors_quietly
+from simkit.cli.terminal.output import print_json, print_line, print_note
 from simkit.cli.terminal.topic_sources import Feed, ReceivedMessage, Source, find_topic, open_source, wait_for_topic
 from simkit.errors import InputError, MessageError
 from simkit.msgs.message_types import FieldNode, FieldValue, Message
@@ -26,7 +27,6 @@ MessageFilter = Callable[[Message], bool]
 _SEPARATOR = "---"
 
 
-@report_errors_quietly
 def echo(
     topic: options.Topic,
     message_type: Annotated[
@@ -53,7 +53,7 @@ def echo(
     sim: options.Sim = None,
     bag: options.Bag = None,
     json_: options.Json = False,
-) -> int:
+) -> None:
     """Prints the messages of a topic; of a bag, all that were recorded."""
     from simkit.msgs.message_text import TextStyle
 
@@ -64,17 +64,17 @@ def echo(
         check_type(message_type, entry.types, entry.name)
         show = _MessagePrinter(source, style, field, csv, raw, json_, info, compile_filter(filter_))
         source.prepare(entry)
-        return _echo_field(source.feed([entry.name]), show, once=once, until=until, tells_lost=not no_lost)
+        _echo_field(source.feed([entry.name]), show, once=once, until=until, tells_lost=not no_lost)
 
 
-def _echo_field(feed: Feed, show: _MessagePrinter, *, once: bool, until: float | None, tells_lost: bool) -> int:
+def _echo_field(feed: Feed, show: _MessagePrinter, *, once: bool, until: float | None, tells_lost: bool) -> None:
     lost = 0
     while True:
         received = feed.take(None if until is None else max(0.0, until - time.monotonic()))
         if received is None:
-            return 0
+            return
         if show(received) and once:
-            return 0
+            return
         if tells_lost and feed.lost > lost:
             print_note(f"A message was lost!!!\n\ttotal count change:{feed.lost - lost}\n\ttotal count: {feed.lost}")
             lost = feed.lost
@@ -105,41 +105,37 @@ def compile_filter(expression: str | None) -> MessageFilter | None:
     return wanted
 
 
+@dataclass(frozen=True)
 class _MessagePrinter:
     """Prints one message after the other; whether it did."""
 
-    def __init__(
-        self,
-        source: Source,
-        style: TextStyle,
-        field: str | None,
-        csv: bool,
-        raw: bool,
-        json_: bool,
-        info: bool,
-        wanted: MessageFilter | None,
-    ) -> None:
-        self._source, self._style, self._field, self._wanted = source, style, field, wanted
-        self._csv, self._raw, self._json, self._info = csv, raw, json_, info
+    source: Source
+    style: TextStyle
+    field: str | None
+    csv: bool
+    raw: bool
+    json: bool
+    info: bool
+    wanted: MessageFilter | None
 
     def __call__(self, received: ReceivedMessage) -> bool:
         from simkit.msgs.message_text import field_at_path
 
-        if self._raw:
-            if self._json:
+        if self.raw:
+            if self.json:
                 print_json(list(received.data))
             else:
                 print_line(str(received.data))
                 print_line(_SEPARATOR)
             return True
-        store = self._source.store(received.type_name)
-        message, node = self._source.decode(received), None
-        if self._field is not None:
+        store = self.source.store(received.type_name)
+        message, node = self.source.decode(received), None
+        if self.field is not None:
             try:
-                message, node = field_at_path(message, self._field, store)
+                message, node = field_at_path(message, self.field, store)
             except MessageError as error:
                 raise InputError(f"SK-CLI-033 --field: {error}", "SK-CLI-033") from None
-        if self._wanted is not None and not self._wanted(message):
+        if self.wanted is not None and not self.wanted(message):
             return False
         self._print(received, message, node, store)
         return True
@@ -149,23 +145,23 @@ class _MessagePrinter:
     ) -> None:
         from simkit.msgs.message_text import field_text, is_message, message_to_csv, message_to_yaml, to_plain_value
 
-        style = self._style
+        style = self.style
         seconds = received.time_ns * 1e-9
-        if self._json:
+        if self.json:
             value = to_plain_value(message, style, store)
-            print_json({"time": seconds, "message": value} if self._info else value)
+            print_json({"time": seconds, "message": value} if self.info else value)
             return
         if not is_message(message):
-            if self._info:
+            if self.info:
                 print_line(f"---Got new message, print info:---\n{{'received_timestamp': {received.time_ns}}}")
                 print_line("---Message data:---")
             print_line(field_text(message, node, store))
             print_line(_SEPARATOR)
-        elif self._csv:
+        elif self.csv:
             text = message_to_csv(message, style, store)
-            print_line(f"{received.time_ns},{text}" if self._info else text)
+            print_line(f"{received.time_ns},{text}" if self.info else text)
         else:
-            if self._info:
+            if self.info:
                 print_line(f"received_timestamp: {received.time_ns}")
                 print_line(_SEPARATOR)
             print_line(message_to_yaml(message, style, store).rstrip("\n"))

@@ -19,7 +19,6 @@ from simkit.cli.terminal.output import (
     print_json,
     print_line,
     print_note,
-    report_errors_quietly,
 )
 from simkit.cli.terminal.topic_sources import LONGEST_WAIT, LiveSource, SimClock, connect_to_simulation, find_topic
 from simkit.errors import InputError, MessageError
@@ -28,7 +27,6 @@ if TYPE_CHECKING:
     from simkit.live import Client
 
 
-@report_errors_quietly
 def pub(
     topic: options.Topic,
     message_type: Annotated[
@@ -65,7 +63,7 @@ def pub(
     wall_time: Annotated[bool, Option("--wall-time", help="The rate is by the clock on the wall.")] = False,
     sim: options.Sim = None,
     json_: options.Json = False,
-) -> int:
+) -> None:
     """Publishes a message, again and again until Ctrl-C."""
     from simkit.live import LiveClosed
 
@@ -94,11 +92,10 @@ def pub(
             if number or closed.code != "SK-LIVE-005":
                 raise  # not all of it has been sent
             print_note(f"note: {str(closed).removeprefix('SK-LIVE-005 ')}")
-            return 0
+            return
         client.flush()
         if keep_alive:
             time.sleep(min(keep_alive, LONGEST_WAIT))
-    return 0
 
 
 def _full_type_name(client: Client, topic: str, type_name: str | None) -> str:

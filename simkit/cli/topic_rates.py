@@ -16,7 +16,7 @@ from typer import Option
 
 from simkit.cli.terminal import options
 from simkit.cli.terminal.options import option
-from simkit.cli.terminal.output import JsonObject, print_json, print_line, print_note, report_errors_quietly
+from simkit.cli.terminal.output import JsonObject, print_json, print_line, print_note
 from simkit.cli.terminal.topic_sources import Feed, ReceivedMessage, Source, find_topic, open_source
 from simkit.cli.topic_echo import compile_filter
 from simkit.errors import InputError
@@ -110,7 +110,7 @@ def _listen(
     tell: Callable[[], None],
     by_wall: bool,
     duration: float | None,
-) -> int:
+) -> None:
     """Takes what comes and tells of it once a second; of a bag, once at its end."""
     begun = told = time.monotonic()
     lost, any_came = 0, False
@@ -136,7 +136,6 @@ def _listen(
             lost = feed.lost
     if any_came or not feed.is_live:
         tell()
-    return 0
 
 
 def _check_clock(source: Source, by_wall: bool) -> None:
@@ -147,7 +146,6 @@ def _check_clock(source: Source, by_wall: bool) -> None:
 Duration = Annotated[float | None, option("Ends after so long (wall time).", "S", "--duration", min=0)]
 
 
-@report_errors_quietly
 def hz(
     topic: options.Topic,
     window: Window = None,
@@ -157,7 +155,7 @@ def hz(
     sim: options.Sim = None,
     bag: options.Bag = None,
     json_: options.Json = False,
-) -> int:
+) -> None:
     """Prints how often messages come, by the clock of the simulation."""
     wanted = compile_filter(filter_)
     with open_source(sim, bag) as source:
@@ -170,7 +168,7 @@ def hz(
                 rates.add(seconds)
 
         feed = source.feed([entry.name], _DEPTH)
-        return _listen(feed, take, lambda: _print_rates(rates.found(), rate_text, json_), wall_time, duration)
+        _listen(feed, take, lambda: _print_rates(rates.found(), rate_text, json_), wall_time, duration)
 
 
 def rate_text(found: JsonObject) -> str:
@@ -178,7 +176,6 @@ def rate_text(found: JsonObject) -> str:
     return f"average rate: {found['rate']:.3f}\n\t{_statistics_text(found)}"
 
 
-@report_errors_quietly
 def bw(
     topic: options.Topic,
     window: Window = None,
@@ -187,7 +184,7 @@ def bw(
     sim: options.Sim = None,
     bag: options.Bag = None,
     json_: options.Json = False,
-) -> int:
+) -> None:
     """Prints how many bytes a second come, by the clock of the simulation."""
     with open_source(sim, bag) as source:
         entry = find_topic(source, topic)
@@ -200,7 +197,7 @@ def bw(
         def take(seconds: float, received: ReceivedMessage) -> None:
             amounts.add(seconds, len(received.data))
 
-        return _listen(feed, take, lambda: _print_rates(amounts.found(), amount_text, json_), wall_time, duration)
+        _listen(feed, take, lambda: _print_rates(amounts.found(), amount_text, json_), wall_time, duration)
 
 
 def amount_text(found: JsonObject) -> str:
@@ -214,7 +211,6 @@ def amount_text(found: JsonObject) -> str:
 _SIZES = ("mean", "min", "max")
 
 
-@report_errors_quietly
 def delay(
     topic: options.Topic,
     window: Window = None,
@@ -222,7 +218,7 @@ def delay(
     sim: options.Sim = None,
     bag: options.Bag = None,
     json_: options.Json = False,
-) -> int:
+) -> None:
     """Prints how much later than its stamp a message is published, by the clock of the simulation."""
     from simkit import msgs
 
@@ -243,7 +239,7 @@ def delay(
             return {"delay": mean, **spread}
 
         feed = source.feed([entry.name], _DEPTH)
-        return _listen(feed, take, lambda: _print_rates(found(), delay_text, json_), False, duration)
+        _listen(feed, take, lambda: _print_rates(found(), delay_text, json_), False, duration)
 
 
 def delay_text(found: JsonObject) -> str:

@@ -18,7 +18,7 @@ def vendor(
     package_path: options.PackagePaths = [],
     xacro_arg: options.XacroArgs = [],
     base: options.Base = "auto",
-) -> int:
+) -> None:
     """Writes a folder that holds a world and everything it names, and that opens anywhere."""
     from simkit.build import describe
     from simkit.writers.vendored_folder import vendor as write
@@ -26,4 +26,3 @@ def vendor(
     source = options.source_arguments(resource_path, package_path, xacro_arg, base)
     main, count = write(file, folder, describe, **source)
     stdout_console().print(f"{folder / main} and {count - 1} files that it needs")
-    return 0

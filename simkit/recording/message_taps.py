@@ -93,6 +93,13 @@ class MessageQueue(Generic[_Label]):
         while self._waiting:
             self._deliver_first()
 
+    def __len__(self) -> int:
+        return len(self._waiting)
+
+    def drop_oldest(self) -> None:
+        """Drop the message that has waited longest."""
+        self._waiting.popleft()
+
     def clear(self) -> None:
         """Drop what waits."""
         self._waiting.clear()

@@ -5,10 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from simkit.recording.message_taps import Receiver, TopicTaps
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection
 
-    from simkit.runtime import Simulation, Subscription
+    from simkit.runtime import Simulation
 
 # What has to be rendered for; counting it would make every frame be drawn only to be thrown away.
 RENDERED = frozenset({"sensor_msgs/msg/Image", "sensor_msgs/msg/CameraInfo", "sensor_msgs/msg/PointCloud2"})
@@ -53,8 +55,8 @@ class TopicCounter:
     ) -> None:
         self._sim, self._skip, self._is_read = sim, frozenset(skip), is_read
         self._rows: dict[str, TopicCount] = {}
-        self._taps: list[Subscription] = []
-        sim.communication.bus.on_topic(self._add)
+        self._taps = TopicTaps(sim, self._receiver_of)
+        self._taps.open()
 
     @property
     def rows(self) -> list[TopicCount]:
@@ -68,18 +70,14 @@ class TopicCounter:
 
     def close(self) -> None:
         """Stops counting."""
-        for tap in self._taps:
-            tap.close()
-        self._taps.clear()
+        self._taps.close()
 
-    def _add(self, topic: str, type_name: str) -> None:
+    def _receiver_of(self, topic: str, type_name: str) -> Receiver | None:
         is_read = self._is_read is not None and self._is_read(topic)
         if topic in self._rows or (topic in self._sim.communication.bus.aside and not is_read):
-            return
+            return None
         is_counted = type_name not in self._skip or is_read
         row = self._rows[topic] = TopicCount(topic, type_name, is_counted, self._sim.time_ns)
-        if not row.counted:
-            return
 
         def count(_: object) -> None:
             now = self._sim.time_ns
@@ -91,5 +89,4 @@ class TopicCounter:
             if row.count == 2:
                 row.second = now
 
-        # a picture that is still being drawn counts as well
-        self._taps.append(self._sim.communication.bus.tap(topic, count, takes_later=True))
+        return count if row.counted else None

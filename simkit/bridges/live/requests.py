@@ -13,7 +13,7 @@ from simkit.bridges.live.connection import MOST_OPEN, ClientConnection, ClientSu
 from simkit.bridges.live.introspection import model_state, node_list, parameter_list, topic_list
 from simkit.bridges.live.protocol import TELL, JsonObject
 from simkit.bridges.live.topic_feed import TopicFeeds
-from simkit.errors import SimkitError
+from simkit.errors import InputError, SimkitError
 
 if TYPE_CHECKING:
     from simkit.runtime.simulation import Simulation
@@ -23,12 +23,11 @@ _TOPIC = re.compile(r"[^\s\x00-\x1f]{1,255}")
 _NEW_TOPIC = re.compile(r"(/[A-Za-z0-9_.-]+)+")
 
 
-class RequestRefused(Exception):
+class RequestRefused(InputError):
     """A request that cannot be answered; says why."""
 
     def __init__(self, message: str, code: str = "SK-LIVE-008") -> None:
-        super().__init__(message)
-        self.code = code
+        super().__init__(message, code)
 
 
 class RequestHost(Protocol):

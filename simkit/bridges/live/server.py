@@ -225,8 +225,6 @@ class Server:
                 answer["type"], found = msgs.type_name(given.message), msgs.serialize(given.message)
             else:
                 answer["ok"] = given
-        except RequestRefused as error:
-            answer |= {"error": str(error), "code": error.code}
         except KeyError as error:
             answer |= {"error": str(error.args[0] if error.args else error), "code": "SK-LIVE-008"}
         except SimkitError as error:

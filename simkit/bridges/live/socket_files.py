@@ -60,28 +60,6 @@ def folder_fault(folder: Path) -> str:
     return ""
 
 
-def usable_folders() -> Iterator[Path]:
-    """Folders for a socket, made where they are not there, the preferred one first.
-
-    Raises:
-        NoSocketFolder: none can be used, or none but those that were tried.
-    """
-    if not is_possible():
-        raise NoSocketFolder("this system's Python has no local sockets")
-    faults = []
-    for folder in socket_folders():
-        with suppress(OSError):
-            folder.mkdir(0o700)
-        fault = folder_fault(folder)
-        if not fault and not os.access(folder, os.W_OK):
-            fault = f"{folder} is not writable"
-        if not fault:
-            yield folder
-        else:
-            faults.append(fault)
-    raise NoSocketFolder("; ".join(faults))
-
-
 def file_name(name: str) -> str:
     """A name as one that every file system takes."""
     return re.sub(r"[^A-Za-z0-9_.-]+", "_", name).strip(".")[:_LONGEST_NAME] or "simulation"
@@ -93,16 +71,22 @@ def bind(name: str) -> tuple[socket.socket, str, Path]:
     Raises:
         NoSocketFolder: there is no place for it.
     """
-    faults: list[str] = []
-    try:
-        for folder in usable_folders():
-            try:
-                return _bind_in(folder, file_name(name))
-            except OSError as error:
-                faults.append(f"{folder}: {error.strerror or error}")
-    except NoSocketFolder as fault:
-        faults += [str(fault)] if str(fault) else []
-    raise NoSocketFolder("; ".join(faults))
+    if not is_possible():
+        raise NoSocketFolder("this system's Python has no local sockets")
+    full: list[str] = []
+    unusable: list[str] = []
+    for folder in socket_folders():
+        with suppress(OSError):
+            folder.mkdir(0o700)
+        fault = folder_fault(folder)
+        if fault or not os.access(folder, os.W_OK):
+            unusable.append(fault or f"{folder} is not writable")
+            continue
+        try:
+            return _bind_in(folder, file_name(name))
+        except OSError as error:
+            full.append(f"{folder}: {error.strerror or error}")
+    raise NoSocketFolder("; ".join((*full, *unusable)))
 
 
 def _bind_in(folder: Path, wanted: str) -> tuple[socket.socket, str, Path]:

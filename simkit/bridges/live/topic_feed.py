@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections import deque
 from typing import TYPE_CHECKING
 
 from simkit import msgs
 from simkit.bridges.live.connection import ClientSubscription
 from simkit.errors import MessageError
 from simkit.msgs.message_types import Message
-from simkit.runtime.communication.subscription import NO_MESSAGE, LazyMessage
+from simkit.recording.message_taps import MessageQueue
 
 if TYPE_CHECKING:
-    from simkit.runtime.communication.subscription import Subscription
+    from simkit.runtime.communication.subscription import LazyMessage, Subscription
     from simkit.runtime.simulation import Simulation
 
 _MOST_WAITING = 100  # messages of a topic that are still being made
@@ -24,7 +23,8 @@ class TopicFeed:
     def __init__(self, sim: Simulation, topic: str) -> None:
         self._sim, self.topic = sim, topic
         self._readers: list[ClientSubscription] = []
-        self._waiting: deque[tuple[int, Message]] = deque()
+        # what is a message now may be written to after this: what waits behind a picture is serialised at once
+        self._queue = MessageQueue(self._deliver, _serialise)
         self._tap: Subscription | None = None
 
     def add(self, reader: ClientSubscription) -> None:
@@ -46,37 +46,23 @@ class TopicFeed:
         if not self._readers and self._tap is not None:
             self._tap.close()
             self._tap = None
-            self._waiting.clear()
+            self._queue.clear()
 
     @property
     def has_readers(self) -> bool:
         return bool(self._readers)
 
-    def deliver_ready(self) -> bool:
-        """Deliver the messages that are ready, in order; return whether anything still waits."""
-        waiting = self._waiting
-        while waiting:
-            time_ns, kept = waiting[0]
-            if type(kept) is LazyMessage:
-                if not kept.is_ready:
-                    return True
-                kept = _serialise(kept.get())
-            waiting.popleft()
-            self._deliver(time_ns, kept)
-        return False
+    def deliver_ready(self) -> None:
+        """Deliver the messages that are ready, in order."""
+        self._queue.deliver_ready()
 
-    def _take(self, message: object) -> None:
+    def _take(self, message: Message | LazyMessage) -> None:
         """A message that was published now."""
-        time_ns = self._sim.time_ns
-        if self._waiting or (type(message) is LazyMessage and not message.is_ready):
-            # what is a message now may be written to after this
-            self._waiting.append((time_ns, message if type(message) is LazyMessage else _serialise(message)))
-            if len(self._waiting) > _MOST_WAITING:
-                self._waiting.popleft()
-                for reader in self._readers:
-                    reader.lost += 1
-            return
-        self._deliver(time_ns, _serialise(message.get() if type(message) is LazyMessage else message))
+        self._queue.add(self._sim.time_ns, message)
+        if len(self._queue) > _MOST_WAITING:
+            self._queue.drop_oldest()
+            for reader in self._readers:
+                reader.lost += 1
 
     def _deliver(self, time_ns: int, written: tuple[str, bytes] | None) -> None:
         if written is not None:
@@ -85,9 +71,7 @@ class TopicFeed:
 
 
 def _serialise(message: object) -> tuple[str, bytes] | None:
-    """Type and CDR; None where there is no message, or one that cannot be written, which concerns its publisher."""
-    if message is NO_MESSAGE:
-        return None
+    """Type and CDR; None of a message that cannot be written, which concerns its publisher."""
     try:
         return msgs.type_name(message), msgs.serialize(message)
     except MessageError:
@@ -119,5 +103,4 @@ class TopicFeeds:
     def deliver_ready(self) -> None:
         """Deliver the messages that were not ready when they were published."""
         for feed in self._feeds.values():
-            if feed._waiting:
-                feed.deliver_ready()
+            feed.deliver_ready()

@@ -139,17 +139,17 @@ def parse_pairs(texts: Sequence[str], option: str) -> dict[str, str]:
     return found
 
 
-def validate_base(base: str) -> str:
-    """Validate `--base`: auto, fixed or floating.
+def validate_word(name: str, word: str, allowed: Sequence[str]) -> str:
+    """Validate the word that an option was given.
 
     Raises:
-        InputError: SK-CLI-018 it is something else.
+        InputError: SK-CLI-018 it is none of those that are allowed; names the closest.
     """
-    if base not in _BASES:
-        hint = did_you_mean(base, _BASES)
-        text = f"SK-CLI-018 --base: found {base!r}, allowed is {', '.join(_BASES)}"
+    if word not in allowed:
+        hint = did_you_mean(word, allowed)
+        text = f"SK-CLI-018 {name}: found {word!r}, allowed is {', '.join(allowed)}"
         raise InputError(text + (f"; {hint}" if hint else ""), "SK-CLI-018")
-    return base
+    return word
 
 
 def source_arguments(
@@ -160,7 +160,7 @@ def source_arguments(
         "resource_paths": resource_paths,
         "package_paths": parse_pairs(package_paths, "--package-path"),
         "xacro_args": parse_pairs(xacro_args, "--xacro-arg"),
-        "base": validate_base(base),
+        "base": validate_word("--base", base, _BASES),
     }
 
 

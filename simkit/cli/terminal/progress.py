@@ -18,17 +18,6 @@ _REFRESH_LINES = 0.1  # where somebody drives by it
 _FACTOR_WINDOW = 1.0  # [s] of wall time
 
 
-class Stopwatch:
-    """Wall time [s] since its making."""
-
-    def __init__(self) -> None:
-        self._start = time.perf_counter()
-
-    @property
-    def elapsed(self) -> float:
-        return time.perf_counter() - self._start
-
-
 def rate_text(row: TopicCount) -> str:
     """The true rate of a topic up to `now` [ns], or why there is none."""
     if not row.counted:
@@ -59,10 +48,8 @@ class Progress:
         self._sim, self._counter, self._duration, self._console = sim, counter, duration, console
         self._lines = lines
         self._refresh = _REFRESH if lines is None else _REFRESH_LINES
-        self._begin = sim.time
-        self._marks = [(0.0, sim.time)]
-        self._watch = Stopwatch()
-        self._drawn = 0.0
+        self._drawn = time.perf_counter()
+        self._marks = [(self._drawn, sim.time)]
         self._live: Live | None = None
 
     def __enter__(self) -> Progress:
@@ -84,9 +71,10 @@ class Progress:
 
     def update(self) -> None:
         """Draws anew when the last picture is old enough."""
-        if self._live is None or self._watch.elapsed - self._drawn < self._refresh:
+        now = time.perf_counter()
+        if self._live is None or now - self._drawn < self._refresh:
             return
-        self._drawn = self._watch.elapsed
+        self._drawn = now
         try:
             self._live.update(self._picture(), refresh=True)
         except OSError:  # the terminal is gone, and nobody wanted the run to end with it
@@ -94,13 +82,11 @@ class Progress:
 
     def _factor(self) -> float:
         """Simulated time by wall time: of the whole run, or where somebody drives of the last seconds."""
-        now, time = self._watch.elapsed, self._sim.time
-        if self._lines is None:
-            return (time - self._begin) / max(now, 1e-9)
-        if now - self._marks[-1][0] > _FACTOR_WINDOW:
-            self._marks = [self._marks[-1], (now, time)]
+        now, reached = time.perf_counter(), self._sim.time
+        if self._lines is not None and now - self._marks[-1][0] > _FACTOR_WINDOW:
+            self._marks = [self._marks[-1], (now, reached)]
         since, begun = self._marks[0]
-        return max(0.0, time - begun) / max(now - since, 1e-9)
+        return max(0.0, reached - begun) / max(now - since, 1e-9)
 
     def _picture(self) -> RenderableType:
         from rich.console import Group
