@@ -162,12 +162,9 @@ def run(
         paused=paused,
         steps=step,
     )
-    return execute(
-        spec,
-        RunDisplay(
-            view, picture, teleop, _timeout(key_timeout), verbose, quiet, watch, junit, bundles=bundle_on_failure
-        ),
-    )
+    key_timeout = _timeout(key_timeout)
+    display = RunDisplay(view, picture, teleop, key_timeout, verbose, quiet, watch, junit, bundle_on_failure)
+    return execute(spec, display)
 
 
 def _on_error(word: str | None) -> PluginErrorPolicy | None:

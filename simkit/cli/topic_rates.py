@@ -9,16 +9,16 @@ from __future__ import annotations
 import math
 import time
 from collections import deque
-from collections.abc import Callable, Collection
-from typing import Annotated
+from collections.abc import Collection
+from typing import Annotated, Protocol
 
 from typer import Option
 
 from simkit.cli.terminal import options
 from simkit.cli.terminal.options import option
 from simkit.cli.terminal.output import JsonObject, print_json, print_line, print_note
-from simkit.cli.terminal.topic_sources import Feed, ReceivedMessage, Source, find_topic, open_source
-from simkit.cli.topic_echo import compile_filter
+from simkit.cli.terminal.topic_sources import ReceivedMessage, Source, find_topic, open_source
+from simkit.cli.topic_echo import MessageFilter, compile_filter
 from simkit.errors import InputError
 
 _PRINT_PERIOD = 1.0  # [s] of wall time between two lines
@@ -29,19 +29,36 @@ Window = Annotated[
 WallTime = Annotated[bool, Option("--wall-time", help="By the clock on the wall, not the simulation's.")]
 
 
+class Meter(Protocol):
+    """Measures what arrives on a topic."""
+
+    def take(self, seconds: float, received: ReceivedMessage) -> None:
+        """Take a message and its time [s]."""
+
+    def found(self) -> JsonObject | None:
+        """Return what was measured; None before there is anything."""
+
+    def text(self, found: JsonObject) -> str:
+        """Format what was measured as `ros2 topic` does."""
+
+
 class Rates:
-    """Rate of what arrives, over a window of messages.
+    """Rate of what arrives, over a window of messages; a clock that goes back begins anew.
 
     Args:
+        source: decodes the messages.
         window: how many messages it spans at most.
+        wanted: says which messages count; None for all.
     """
 
-    def __init__(self, window: int) -> None:
+    def __init__(self, source: Source, window: int, wanted: MessageFilter | None) -> None:
+        self._source, self._wanted = source, wanted
         self._gaps: deque[float] = deque(maxlen=window)
         self._last: float | None = None
 
-    def add(self, seconds: float) -> None:
-        """Takes the time of a message [s]; a clock that goes back begins anew."""
+    def take(self, seconds: float, received: ReceivedMessage) -> None:
+        if self._wanted is not None and not self._wanted(self._source.decode(received)):
+            return
         if self._last is not None and seconds < self._last:
             self._gaps.clear()
         elif self._last is not None:
@@ -54,6 +71,9 @@ class Rates:
             return None
         mean, spread = _statistics(self._gaps)
         return {"rate": 1.0 / mean if mean > 0.0 else 0.0, **spread}
+
+    def text(self, found: JsonObject) -> str:
+        return f"average rate: {found['rate']:.3f}\n\t{_statistics_text(found)}"
 
 
 def _statistics(seconds: Collection[float]) -> tuple[float, JsonObject]:
@@ -68,17 +88,19 @@ def _statistics_text(found: JsonObject) -> str:
     return f"{ends} window: {found['window']}"
 
 
+_SIZES = ("mean", "min", "max")
+
+
 class Amounts:
-    """Bytes a second, over a window of messages."""
+    """Bytes a second, over a window of messages; a clock that goes back begins anew."""
 
     def __init__(self, window: int) -> None:
         self._sizes: deque[tuple[float, int]] = deque(maxlen=window)
 
-    def add(self, seconds: float, size: int) -> None:
-        """Takes the time [s] and the size [bytes] of a message; a clock that goes back begins anew."""
+    def take(self, seconds: float, received: ReceivedMessage) -> None:
         if self._sizes and seconds < self._sizes[-1][0]:
             self._sizes.clear()
-        self._sizes.append((seconds, size))
+        self._sizes.append((seconds, len(received.data)))
 
     def found(self) -> JsonObject | None:
         """`bytes_per_second`, `messages`, `mean`, `min` and `max` size; None before there are two messages."""
@@ -86,32 +108,49 @@ class Amounts:
             return None
         sizes = [size for _, size in self._sizes]
         per_second = sum(sizes) / (self._sizes[-1][0] - self._sizes[0][0])
-        mean = sum(sizes) / len(sizes)
-        return {
-            "bytes_per_second": per_second,
-            "messages": len(sizes),
-            "mean": mean,
-            "min": min(sizes),
-            "max": max(sizes),
-        }
+        spread = {"mean": sum(sizes) / len(sizes), "min": min(sizes), "max": max(sizes)}
+        return {"bytes_per_second": per_second, "messages": len(sizes), **spread}
+
+    def text(self, found: JsonObject) -> str:
+        """All numbers are in the unit that fits the rate."""
+        per_second = found["bytes_per_second"]
+        unit, size, digits = (
+            ("B", 1.0, 0) if per_second < 1e3 else ("KB", 1e3, 2) if per_second < 1e6 else ("MB", 1e6, 2)
+        )
+        rate, mean, low, high = (f"{n / size:.{digits}f} {unit}" for n in (per_second, *(found[k] for k in _SIZES)))
+        return f"{rate}/s from {found['messages']} messages\n\tMessage size mean: {mean} min: {low} max: {high}"
 
 
-def _print_rates(found: JsonObject | None, text: Callable[[JsonObject], str], json_: bool) -> None:
-    if found is not None:
-        if json_:
-            print_json(found)
-        else:
-            print_line(text(found))
+class Delays:
+    """How much later than their stamps messages are published, over a window of messages."""
+
+    def __init__(self, source: Source, type_name: str, window: int) -> None:
+        self._source, self._type_name = source, type_name
+        self._late: deque[float] = deque(maxlen=window)
+
+    def take(self, seconds: float, received: ReceivedMessage) -> None:
+        from simkit import msgs
+
+        header = getattr(self._source.decode(received), "header", None)
+        if header is None:
+            raise InputError(f"SK-CLI-033 {self._type_name} has no header, so no stamp", "SK-CLI-033")
+        self._late.append(seconds - msgs.stamp_ns(header.stamp) * 1e-9)
+
+    def found(self) -> JsonObject | None:
+        if not self._late:
+            return None
+        mean, spread = _statistics(self._late)
+        return {"delay": mean, **spread}
+
+    def text(self, found: JsonObject) -> str:
+        return f"average delay: {found['delay']:.3f}\n\t{_statistics_text(found)}"
 
 
 def _listen(
-    feed: Feed,
-    take: Callable[[float, ReceivedMessage], None],
-    tell: Callable[[], None],
-    by_wall: bool,
-    duration: float | None,
+    source: Source, topic: str, meter: Meter, *, by_wall: bool = False, duration: float | None, json_: bool
 ) -> None:
     """Takes what comes and tells of it once a second; of a bag, once at its end."""
+    feed = source.feed([topic], _DEPTH)
     begun = told = time.monotonic()
     lost, any_came = 0, False
     while True:
@@ -122,20 +161,28 @@ def _listen(
         received = feed.take(wait if duration is None else min(wait, begun + duration - now))
         if received is not None:
             any_came = True
-            take(time.monotonic() if by_wall else received.time_ns * 1e-9, received)
+            meter.take(time.monotonic() if by_wall else received.time_ns * 1e-9, received)
         if feed.is_over:
             break
-        if time.monotonic() - told >= _PRINT_PERIOD and any_came and feed.is_live:
+        if time.monotonic() - told >= _PRINT_PERIOD:
             told = time.monotonic()
-            tell()
-            any_came = False
-        elif time.monotonic() - told >= _PRINT_PERIOD:
-            told = time.monotonic()
+            if any_came and feed.is_live:
+                _tell(meter, json_)
+                any_came = False
         if feed.lost > lost:
             print_note(f"note: {feed.lost - lost} messages came faster than they could be counted")
             lost = feed.lost
     if any_came or not feed.is_live:
-        tell()
+        _tell(meter, json_)
+
+
+def _tell(meter: Meter, json_: bool) -> None:
+    found = meter.found()
+    if found is not None:
+        if json_:
+            print_json(found)
+        else:
+            print_line(meter.text(found))
 
 
 def _check_clock(source: Source, by_wall: bool) -> None:
@@ -161,19 +208,8 @@ def hz(
     with open_source(sim, bag) as source:
         entry = find_topic(source, topic)
         _check_clock(source, wall_time)
-        rates = Rates(window or 10_000)
-
-        def take(seconds: float, received: ReceivedMessage) -> None:
-            if wanted is None or wanted(source.decode(received)):
-                rates.add(seconds)
-
-        feed = source.feed([entry.name], _DEPTH)
-        _listen(feed, take, lambda: _print_rates(rates.found(), rate_text, json_), wall_time, duration)
-
-
-def rate_text(found: JsonObject) -> str:
-    """Format a rate as `ros2 topic hz` does."""
-    return f"average rate: {found['rate']:.3f}\n\t{_statistics_text(found)}"
+        meter = Rates(source, window or 10_000, wanted)
+        _listen(source, entry.name, meter, by_wall=wall_time, duration=duration, json_=json_)
 
 
 def bw(
@@ -189,26 +225,9 @@ def bw(
     with open_source(sim, bag) as source:
         entry = find_topic(source, topic)
         _check_clock(source, wall_time)
-        amounts = Amounts(window or 100)
         if not json_:
             print_line(f"Subscribed to [{entry.name}]")
-        feed = source.feed([entry.name], _DEPTH)
-
-        def take(seconds: float, received: ReceivedMessage) -> None:
-            amounts.add(seconds, len(received.data))
-
-        _listen(feed, take, lambda: _print_rates(amounts.found(), amount_text, json_), wall_time, duration)
-
-
-def amount_text(found: JsonObject) -> str:
-    """Format a bandwidth as `ros2 topic bw` does: all numbers in the unit that fits the rate."""
-    per_second = found["bytes_per_second"]
-    unit, size, digits = ("B", 1.0, 0) if per_second < 1e3 else ("KB", 1e3, 2) if per_second < 1e6 else ("MB", 1e6, 2)
-    rate, mean, low, high = (f"{n / size:.{digits}f} {unit}" for n in (per_second, *(found[k] for k in _SIZES)))
-    return f"{rate}/s from {found['messages']} messages\n\tMessage size mean: {mean} min: {low} max: {high}"
-
-
-_SIZES = ("mean", "min", "max")
+        _listen(source, entry.name, Amounts(window or 100), by_wall=wall_time, duration=duration, json_=json_)
 
 
 def delay(
@@ -220,28 +239,7 @@ def delay(
     json_: options.Json = False,
 ) -> None:
     """Prints how much later than its stamp a message is published, by the clock of the simulation."""
-    from simkit import msgs
-
     with open_source(sim, bag) as source:
         entry = find_topic(source, topic)
-        late: deque[float] = deque(maxlen=window or 10_000)
-
-        def take(seconds: float, received: ReceivedMessage) -> None:
-            header = getattr(source.decode(received), "header", None)
-            if header is None:
-                raise InputError(f"SK-CLI-033 {entry.types[0]} has no header, so no stamp", "SK-CLI-033")
-            late.append(seconds - msgs.stamp_ns(header.stamp) * 1e-9)
-
-        def found() -> JsonObject | None:
-            if not late:
-                return None
-            mean, spread = _statistics(late)
-            return {"delay": mean, **spread}
-
-        feed = source.feed([entry.name], _DEPTH)
-        _listen(feed, take, lambda: _print_rates(found(), delay_text, json_), False, duration)
-
-
-def delay_text(found: JsonObject) -> str:
-    """Format a delay as `ros2 topic delay` does."""
-    return f"average delay: {found['delay']:.3f}\n\t{_statistics_text(found)}"
+        meter = Delays(source, entry.types[0], window or 10_000)
+        _listen(source, entry.name, meter, duration=duration, json_=json_)

@@ -13,17 +13,16 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError, MessageError
+from simkit.run_spec import JsonMapping, JsonObject
 from simkit.yaml_reader import NotYaml, compose_nodes, finite_number, node_value
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
 
-JsonObject = dict[str, Any]
-JsonMapping = Mapping[str, Any]
 _Item = TypeVar("_Item")
 _Made = TypeVar("_Made")
 _KEYS = ("at", "topic", "message", "until", "rate")

@@ -19,10 +19,9 @@ if TYPE_CHECKING:
 def topic_list(sim: Simulation, clients: Collection[ClientConnection]) -> list[JsonObject]:
     """Every topic with who publishes and who takes it, clients among them, sorted by name."""
     names = NodeNames(sim, clients)
-    listed = sim.topics()
-    found: dict[str, JsonObject] = {}
-    for topic in listed:
-        found[topic] = {"name": topic, "types": [], "publishers": [], "subscribers": []}
+    found: dict[str, JsonObject] = {
+        topic: {"name": topic, "types": [], "publishers": [], "subscribers": []} for topic in sim.topics()
+    }
     for topic, end, types, what in sim.communication.bus.endpoints():
         if topic not in found or not end.active:
             continue
@@ -109,12 +108,7 @@ def model_state(sim: Simulation, name: str) -> JsonObject:
             for link_name, link in model.links.items()
         },
         "joints": {
-            joint_name: {
-                "type": joint.type,
-                "position": joint.position,
-                "velocity": joint.velocity,
-                "effort": joint.effort,
-            }
+            joint_name: {name: getattr(joint, name) for name in ("type", "position", "velocity", "effort")}
             for joint_name, joint in model.joints.items()
         },
         "models": list(model.models),
@@ -122,8 +116,7 @@ def model_state(sim: Simulation, name: str) -> JsonObject:
 
 
 def _pose_dict(pose: Pose) -> JsonObject:
-    rpy = np.asarray(pose.rpy)
-    return {"position": pose.position, "quaternion": pose.quaternion, "rpy": rpy}
+    return {"position": pose.position, "quaternion": pose.quaternion, "rpy": np.asarray(pose.rpy)}
 
 
 class NodeNames:

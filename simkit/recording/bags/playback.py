@@ -12,7 +12,7 @@ from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError, MessageError
 from simkit.msgs.message_text import message_to_dict
 from simkit.msgs.message_types import Message
-from simkit.recording.bags.reader import BagMessage, BagReader, open_bag_to_read
+from simkit.recording.bags.reader import BagMessage, open_bag_to_read
 from simkit.runtime.communication.topic_bus import absolute_name
 
 if TYPE_CHECKING:
@@ -77,11 +77,6 @@ class Playback:
         """Sends no more, and closes the bag."""
         self._next = None
         self._bag.close()
-
-    @property
-    def bag(self) -> BagReader:
-        """Return the bag that is played."""
-        return self._bag
 
     @property
     def duration(self) -> float:

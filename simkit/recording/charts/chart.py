@@ -31,6 +31,11 @@ class Style:
     colour: int = 0
     dash: int = 0
 
+    @property
+    def pen(self) -> tuple[str, tuple[float, ...]]:
+        """Colour and dash pattern."""
+        return _COLOURS[self.colour % len(_COLOURS)], _DASHES[self.dash % len(_DASHES)]
+
 
 @dataclass(frozen=True)
 class Chart:
@@ -124,10 +129,9 @@ class _Layout:
         told = (f"[{unit}]" if unit else "") + y.base_text
         canvas.text(16, (top + bottom) / 2, told.strip(", "), _SIZE, "middle", upright=True)
         for one, style in panel:
-            colour, dash = _COLOURS[style.colour % len(_COLOURS)], _DASHES[style.dash % len(_DASHES)]
-            self._line(canvas, one, x, y, colour, dash)
+            self._line(canvas, one, x, y, *style.pen)
         for (one, style), (left, row) in zip(panel, self._legends[number], strict=True):
-            colour, dash = _COLOURS[style.colour % len(_COLOURS)], _DASHES[style.dash % len(_DASHES)]
+            colour, dash = style.pen
             at = top - (self._legends[number][-1][1] - row) * _LEGEND - 7
             canvas.line(np.array([[left, at - 4], [left + 24, at - 4]]), colour, 2.0, dash)
             canvas.text(left + 30, at, _shorten(one.label, _WIDTH - _LEFT - 80, _SIZE), _SIZE)
