@@ -45,5 +45,7 @@ def test_the_examples_of_the_pages_are_found_through_entry_points(tmp_path: Path
     (info / "entry_points.txt").write_text(ENTRY_POINTS, encoding="utf-8")
     paths = os.pathsep.join([str(tmp_path), str(ROOT)])
     environment = {**os.environ, "PYTHONPATH": paths}
-    done = subprocess.run([sys.executable, "-c", PROGRAM], env=environment, cwd=tmp_path, capture_output=True, text=True)
+    done = subprocess.run(
+        [sys.executable, "-c", PROGRAM], env=environment, cwd=tmp_path, capture_output=True, text=True
+    )
     assert done.returncode == 0, done.stderr
