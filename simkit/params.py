@@ -105,6 +105,10 @@ class Params:
                 return c
         return None
 
+    def child_or_self(self, name: str) -> Params:
+        """The first child of that name, or this element: where a message about the child points to."""
+        return self.child(name) or self
+
     def block(self, name: str) -> Params:
         """The first child of that name, or an empty block, so that its defaults can be read."""
         return self.child(name) or Params(name, where=self.where, diagnostics=self.diagnostics)
@@ -285,6 +289,14 @@ class Params:
     def error(self, code: str, message: str, hint: str = "") -> None:
         """Records an error at this element's line."""
         self.diagnostics.error(code, message, self.where, hint)
+
+    def warning(self, code: str, message: str, hint: str = "") -> None:
+        """Records a warning at this element's line."""
+        self.diagnostics.warning(code, message, self.where, hint)
+
+    def note(self, code: str, message: str, hint: str = "") -> None:
+        """Records a note at this element's line."""
+        self.diagnostics.note(code, message, self.where, hint)
 
     def unread(self) -> Iterator[tuple[Params, str]]:
         """Each element nobody read, with the closest name that its reader asked for, or that it comes twice."""

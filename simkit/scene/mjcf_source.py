@@ -28,7 +28,28 @@ class MjcfGeom:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class MjcfSource:
+class MjcfElements:
+    """Which of the file's elements are which of the scene's.
+
+    Attributes:
+        bodies: scoped link -> body; `world` for the link that holds what the file has in its world body.
+        joints: scoped joint -> joint; empty for a fixed one.
+        free: scoped link -> free joint.
+        geoms: geom -> its owner.
+        lights: scoped light -> (light, its link or empty).
+        masses: body -> mass [kg], centre of mass [m], axes of inertia as a quaternion, principal moments [kg·m²].
+    """
+
+    bodies: dict[str, str] = field(default_factory=dict)
+    joints: dict[str, str] = field(default_factory=dict)
+    free: dict[str, str] = field(default_factory=dict)
+    geoms: dict[str, MjcfGeom] = field(default_factory=dict)
+    lights: dict[str, tuple[str, str]] = field(default_factory=dict)
+    masses: dict[str, Mass] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class MjcfSource(MjcfElements):
     """Where the engine's own description of a model is, and which of its elements are which of the scene's.
 
     Attributes:
@@ -36,12 +57,6 @@ class MjcfSource:
         place: where the file's world stands in the world at load time.
         prefix: of all names in the compiled world; empty for a file that is the world itself.
         roots: names of the top-level bodies that are this model's, as in the file.
-        bodies: scoped link -> body; `world` for the link that holds what the file has in its world body.
-        joints: scoped joint -> joint; empty for a fixed one.
-        free: scoped link -> free joint.
-        geoms: geom -> its owner.
-        lights: scoped light -> (light, its link or empty).
-        masses: body -> mass [kg], centre of mass [m], axes of inertia as a quaternion, principal moments [kg·m²].
         base: "auto" keeps the free joints of the file, "fixed" takes them away, "floating" adds what is missing.
         settings: what the file says of the engine itself, by element (`option`, `visual`, ...), with its line.
     """
@@ -50,11 +65,5 @@ class MjcfSource:
     place: Pose = IDENTITY
     prefix: str = ""
     roots: tuple[str, ...] = ()
-    bodies: Mapping[str, str] = field(default_factory=dict)
-    joints: Mapping[str, str] = field(default_factory=dict)
-    free: Mapping[str, str] = field(default_factory=dict)
-    geoms: Mapping[str, MjcfGeom] = field(default_factory=dict)
-    lights: Mapping[str, tuple[str, str]] = field(default_factory=dict)
-    masses: Mapping[str, Mass] = field(default_factory=dict)
     base: str = "auto"
     settings: Mapping[str, Any] = field(default_factory=dict)

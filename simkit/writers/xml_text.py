@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import fields
 from html import escape
+from typing import TYPE_CHECKING
 
 from simkit.params import Params
 from simkit.pose import Pose
 from simkit.scene.simkit_elements import written_name
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
 
 _KNOWN = {
     "gz": "http://gazebosim.org/schema",
@@ -19,9 +24,42 @@ _KNOWN = {
 _ILLEGAL = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ufffe\uffff]")
 
 
-def element(name: str, text: str = "", children: Iterable[Params | None] = (), /, **attributes: str) -> Params:
-    """An element; children that are None are left out."""
-    return Params(name, text, attributes, [c for c in children if c is not None])
+def element(name: str, content: str | Iterable[Params | None] = "", /, **attributes: str) -> Params:
+    """An element with a text, or with children; those that are None are left out."""
+    if isinstance(content, str):
+        return Params(name, content, attributes)
+    return Params(name, "", attributes, [c for c in content if c is not None])
+
+
+def text_element(name: str, value: str | float | bool | tuple[float, ...]) -> Params:
+    """An element with a value."""
+    if isinstance(value, bool):
+        return element(name, str(value).lower())
+    if isinstance(value, tuple):
+        return element(name, numbers(value))
+    return element(name, value if isinstance(value, str) else number(value))
+
+
+def field_elements(value: DataclassInstance, *names: str) -> list[Params]:
+    """An element for each of these fields, with the field's name and value."""
+    return [text_element(name, getattr(value, name)) for name in names]
+
+
+def changed_elements(value: DataclassInstance, *names: str) -> list[Params]:
+    """The elements of those of these fields whose values are not the format's own, which are the fields' defaults."""
+    usual = {field.name: field.default for field in fields(value)}
+    return field_elements(value, *(name for name in names if getattr(value, name) != usual[name]))
+
+
+def changed_element(name: str, value: str | float | None, usual: object) -> Params | None:
+    """An element for a value that is not the format's own."""
+    return None if value is None or value == usual else text_element(name, value)
+
+
+def group_element(name: str, children: Iterable[Params | None], /, **attributes: str) -> Params | None:
+    """An element for children; None where all of them are None."""
+    held = [child for child in children if child is not None]
+    return element(name, held, **attributes) if held else None
 
 
 def number(value: float) -> str:
@@ -35,8 +73,8 @@ def numbers(values: Iterable[float]) -> str:
     return " ".join(number(v) for v in values)
 
 
-def pose(value: Pose, **attributes: str) -> Params | None:
-    """`<pose>`, or None for none at all where there is no attribute to say.
+def pose(value: Pose) -> Params | None:
+    """`<pose>`, or None for none at all.
 
     Angles where they say the same rotation to 1e-12, else a quaternion.
     """
@@ -44,14 +82,11 @@ def pose(value: Pose, **attributes: str) -> Params | None:
     roll, pitch, yaw = (float(v) for v in value.rpy)
     again = Pose.from_rpy(x, y, z, roll, pitch, yaw).quaternion
     w = [float(v) for v in value.quaternion]
-    same = min(
-        sum(abs(a - b) for a, b in zip(again, w, strict=True)), sum(abs(a + b) for a, b in zip(again, w, strict=True))
-    )
-    if same > 1e-12:
-        text = numbers((x, y, z, w[1], w[2], w[3], w[0]))
-        return Params("pose", text, {**attributes, "rotation_format": "quat_xyzw"})
+    differences = (sum(abs(a - sign * b) for a, b in zip(again, w, strict=True)) for sign in (1, -1))
+    if min(differences) > 1e-12:
+        return element("pose", numbers((x, y, z, *w[1:], w[0])), rotation_format="quat_xyzw")
     text = numbers((x, y, z, roll, pitch, yaw))
-    return Params("pose", text, dict(attributes)) if attributes or text != "0 0 0 0 0 0" else None
+    return element("pose", text) if text != "0 0 0 0 0 0" else None
 
 
 def document(root: Params) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from simkit.diagnostics import Where
@@ -12,7 +12,6 @@ from simkit.loaders.mjcf.includes import GatheredFile
 from simkit.loaders.resources.loader import CompiledMjcf
 from simkit.pose import IDENTITY, Pose
 from simkit.scene import ScenePlugin
-from simkit.scene.mjcf_source import Mass, MjcfGeom
 
 if TYPE_CHECKING:
     import numpy as np
@@ -49,18 +48,6 @@ class ModelPlacement:
     base: str = "auto"
     plugins: tuple[ScenePlugin, ...] = ()
     where: Where | None = None
-
-
-@dataclass
-class ElementIds:
-    """Which element of the file each part of a model is."""
-
-    bodies: dict[str, str] = field(default_factory=dict)
-    joints: dict[str, str] = field(default_factory=dict)
-    free: dict[str, str] = field(default_factory=dict)
-    geoms: dict[str, MjcfGeom] = field(default_factory=dict)
-    lights: dict[str, tuple[str, str]] = field(default_factory=dict)
-    masses: dict[str, Mass] = field(default_factory=dict)
 
 
 class CompiledFile:

@@ -138,12 +138,8 @@ class _FileGatherer:
         if path is None:
             return []
         if path.resolve() in self.included:
-            diagnostics.error(
-                "SK-MJCF-006",
-                f"{name} is included a second time; MJCF takes a file once",
-                include.where,
-                "use <asset><model .../></asset> and <attach .../> for several copies",
-            )
+            hint = "use <asset><model .../></asset> and <attach .../> for several copies"
+            include.error("SK-MJCF-006", f"{name} is included a second time; MJCF takes a file once", hint)
             return []
         self.included.add(path.resolve())
         document = parse_file(path, diagnostics)
@@ -263,9 +259,7 @@ class _FileGatherer:
         if document is None:
             return
         if document.root.name != "mujoco":
-            diagnostics.error(
-                "SK-MJCF-006", f"{written} begins with <{document.root.name}>; a model to attach is MJCF", element.where
-            )
+            element.error("SK-MJCF-006", f"{written} begins with <{document.root.name}>; a model to attach is MJCF")
             return
         below = _FileGatherer(self.shared, path, self.chain).bundle(document.root)
         if not element.attribute("name"):

@@ -5,9 +5,11 @@ from __future__ import annotations
 import math
 from typing import Final
 
-from simkit.loaders.mjcf.compiled_file import CompiledFile, ElementIds, ModelPlacement
+from simkit.loaders.mjcf.compiled_file import CompiledFile, ModelPlacement
 from simkit.pose import Pose
 from simkit.scene import Axis, Mimic, SceneJoint
+from simkit.scene.geometry import vec3
+from simkit.scene.mjcf_source import MjcfElements
 
 _FREE, _BALL, _SLIDE, _HINGE = range(4)
 _EQUAL_JOINTS: Final = 2
@@ -15,7 +17,7 @@ _TYPES: Final = {_BALL: "ball", _SLIDE: "prismatic"}
 
 
 def read_joints(
-    file: CompiledFile, body: int, placed: ModelPlacement, place: Pose, found: ElementIds
+    file: CompiledFile, body: int, placed: ModelPlacement, place: Pose, found: MjcfElements
 ) -> list[SceneJoint]:
     """The joints that carry a body; one that is rigidly held hangs on a fixed joint."""
     model = file.model
@@ -44,25 +46,21 @@ def read_joints(
 
 
 def _joint(
-    file: CompiledFile, j: int, placed: ModelPlacement, body: Pose, parent: str, child: str, found: ElementIds
+    file: CompiledFile, j: int, placed: ModelPlacement, body: Pose, parent: str, child: str, found: MjcfElements
 ) -> SceneJoint:
     model, full = file.model, file.name("JOINT", j)
     name = full.removeprefix(placed.strip)
     scoped = f"{placed.scoped}::{name}"
     found.joints[scoped] = full
-    axes: tuple[Axis, ...] = ()
     kind = int(model.jnt_type[j])
-    limited = bool(model.jnt_limited[j])
-    if kind != _BALL:
-        axes = (_axis(file, j, body),)
     return SceneJoint(
         name=name,
         scoped=scoped,
-        type=_TYPES.get(kind, "revolute" if limited else "continuous"),
+        type=_TYPES.get(kind, "revolute" if model.jnt_limited[j] else "continuous"),
         parent_link=parent,
         child_link=child,
         pose_world=body @ Pose(model.jnt_pos[j]),
-        axes=axes,
+        axes=() if kind == _BALL else (_axis(file, j, body),),
         where=file.where("joint", full),
     )
 
@@ -70,13 +68,12 @@ def _joint(
 def _axis(file: CompiledFile, j: int, body: Pose) -> Axis:
     model = file.model
     dof = int(model.jnt_dofadr[j])
-    x, y, z = (float(v) for v in model.jnt_axis[j])
-    wx, wy, wz = (float(v) for v in body.rotate((x, y, z)))
+    direction = vec3(model.jnt_axis[j])
     low, high = (float(v) for v in model.jnt_range[j]) if model.jnt_limited[j] else (-math.inf, math.inf)
     effort = float(abs(model.jnt_actfrcrange[j]).max()) if model.jnt_actfrclimited[j] else math.inf
     return Axis(
-        xyz_world=(wx, wy, wz),
-        xyz_joint=(x, y, z),
+        xyz_world=vec3(body.rotate(direction)),
+        xyz_joint=direction,
         lower=low,
         upper=high,
         effort=effort,

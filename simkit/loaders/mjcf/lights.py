@@ -6,14 +6,16 @@ import math
 from collections.abc import Iterable
 from typing import Final
 
-from simkit.loaders.mjcf.compiled_file import CompiledFile, ElementIds
+from simkit.loaders.mjcf.compiled_file import CompiledFile
 from simkit.pose import Pose
 from simkit.scene import SceneLight
+from simkit.scene.geometry import vec3
+from simkit.scene.mjcf_source import MjcfElements
 
 _TYPES: Final = {0: "spot", 1: "directional"}
 
 
-def read_lights(file: CompiledFile, body: int, link: str, pose: Pose, found: ElementIds) -> tuple[SceneLight, ...]:
+def read_lights(file: CompiledFile, body: int, link: str, pose: Pose, found: MjcfElements) -> tuple[SceneLight, ...]:
     """The lights of a body.
 
     Args:
@@ -23,11 +25,10 @@ def read_lights(file: CompiledFile, body: int, link: str, pose: Pose, found: Ele
     return tuple(_light(file, i, link, pose, found) for i in file.lights_of.get(body, ()))
 
 
-def _light(file: CompiledFile, i: int, link: str, body: Pose, found: ElementIds) -> SceneLight:
+def _light(file: CompiledFile, i: int, link: str, body: Pose, found: MjcfElements) -> SceneLight:
     model, name = file.model, file.name("LIGHT", i)
     pose = body @ Pose(model.light_pos[i])
-    x, y, z = (float(v) for v in model.light_dir[i])
-    wx, wy, wz = (float(v) for v in pose.rotate((x, y, z)))
+    direction = vec3(model.light_dir[i])
     scoped = f"{link}::{name}" if link else name
     found.lights[scoped] = (name, link)
     constant, linear, quadratic = (float(v) for v in model.light_attenuation[i])
@@ -36,8 +37,8 @@ def _light(file: CompiledFile, i: int, link: str, body: Pose, found: ElementIds)
         scoped=scoped,
         type=_TYPES.get(int(model.light_type[i]), "point"),
         pose_world=pose,
-        direction=(x, y, z),
-        direction_world=(wx, wy, wz),
+        direction=direction,
+        direction_world=vec3(pose.rotate(direction)),
         link=link,
         diffuse=_colour(model.light_diffuse[i]),
         specular=_colour(model.light_specular[i]),

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import ClassVar
 
 from simkit.diagnostics import Diagnostics, Where
-from simkit.loaders.mjcf.compiled_file import WORLD_LINK, CompiledFile, ElementIds, ModelPlacement
+from simkit.loaders.mjcf.compiled_file import WORLD_LINK, CompiledFile, ModelPlacement
 from simkit.loaders.mjcf.includes import gather_files
 from simkit.loaders.mjcf.lights import read_lights
 from simkit.loaders.mjcf.model import ModelReader
@@ -22,6 +22,8 @@ from simkit.loaders.sdf.plugin import read_plugins
 from simkit.params import Params
 from simkit.pose import IDENTITY, Pose
 from simkit.scene import Physics, Scene, SceneModel, ScenePlugin, SceneWorld, Surroundings
+from simkit.scene.geometry import vec3
+from simkit.scene.mjcf_source import MjcfElements
 
 _UNNAMED = ("", "MuJoCo Model")
 
@@ -86,11 +88,8 @@ class MjcfLoader(IncludableLoader):
             around = None if is_part else _surroundings_of(file, ())
             return Scene((), model, name, around=around)
         if request.base != "auto":
-            request.diagnostics.note(
-                "SK-MJCF-012",
-                f"base={request.base!r} is for a bare model; {file.name!r} is a world",
-                document.root.where,
-            )
+            message = f"base={request.base!r} is for a bare model; {file.name!r} is a world"
+            document.root.note("SK-MJCF-012", message)
         return Scene((_surroundings_of(file, tuple(_world_models(file))),), None, name)
 
     def open_included(self, document: Document, workspace: Workspace) -> IncludedMjcf | None:
@@ -141,8 +140,8 @@ def _open_mjcf(
     """
     found = Diagnostics()
     gathered = gather_files(root, path, resolver, found)
-    check_bounds(gathered.root, found)
-    check_names(gathered.root, parser.schema_text(), found)
+    check_bounds(gathered.root)
+    check_names(gathered.root, parser.schema_text())
     compiled = None if found.has_errors else parser.compile(gathered, found)
     diagnostics.extend(found)
     if compiled is None:
@@ -164,22 +163,20 @@ def _frames_document(file: MjcfFile, diagnostics: Diagnostics) -> Params:
     scene = file.model(file.name, file.name)
     where = file.content.source.root.where
     seen = {link.name for link in scene.links}
-    children = [_frame_element("link", link.name, link.pose_world, {}, diagnostics) for link in scene.links]
+    children = [_frame_element("link", link.name, link.pose_world, diagnostics) for link in scene.links]
     for frame in scene.frames:
         if frame.name not in seen:
             seen.add(frame.name)
             link = frame.attached_to.removeprefix(f"{scene.scoped}::")
-            attributes = {"attached_to": link}
-            children.append(_frame_element("frame", frame.name, frame.pose_world, attributes, diagnostics))
+            children.append(_frame_element("frame", frame.name, frame.pose_world, diagnostics, attached_to=link))
     model = Params("model", "", {"name": file.name}, children, where, diagnostics)
     root = Params("sdf", "", {"version": "1.7"}, [model], where, diagnostics)
     root.mark_all_read()
     return root
 
 
-def _frame_element(kind: str, name: str, pose: Pose, attributes: dict[str, str], diagnostics: Diagnostics) -> Params:
-    x, y, z = (repr(float(v)) for v in pose.position)
-    w, i, j, k = (repr(float(v)) for v in pose.quaternion)
+def _frame_element(kind: str, name: str, pose: Pose, diagnostics: Diagnostics, **attributes: str) -> Params:
+    x, y, z, w, i, j, k = (repr(v) for v in pose.as_list())
     style = {"rotation_format": "quat_xyzw", "relative_to": "__model__"}
     placed = Params("pose", f"{x} {y} {z} {i} {j} {k} {w}", style, diagnostics=diagnostics)
     return Params(kind, "", {"name": name, **attributes}, [placed], diagnostics=diagnostics)
@@ -194,20 +191,16 @@ def _surroundings_of(file: MjcfFile, models: tuple[SceneModel, ...]) -> SceneWor
     """The world that a file's options make."""
     content, compiled = file.content, file.content.compiled
     option, spec = content.model.opt, content.spec
-    gx, gy, gz = (float(v) for v in option.gravity)
-    if not compiled.has_gravity:
-        gx = gy = gz = 0.0
-    mx, my, mz = (float(v) for v in option.magnetic)
     r, g, b = (float(c) for c in spec.visual.headlight.ambient)
     root = content.source.root
     place = next((e.where for e in root.children if e.name == "option"), root.where)
     return SceneWorld(
         name=file.name,
-        gravity=(gx, gy, gz),
-        magnetic_field=(mx, my, mz),
+        gravity=vec3(option.gravity) if compiled.has_gravity else (0.0, 0.0, 0.0),
+        magnetic_field=vec3(option.magnetic),
         physics=Physics(float(option.timestep), 1.0, place, sleep=compiled.allows_sleep),
         models=models,
-        lights=read_lights(content, 0, "", IDENTITY, ElementIds()),
+        lights=read_lights(content, 0, "", IDENTITY, MjcfElements()),
         surroundings=Surroundings(ambient=(r, g, b, 1.0)),
         where=root.where,
         mjcf=compiled.document,
@@ -252,34 +245,20 @@ def _free_name(name: str, taken: set[str]) -> str:
 def _report_base(model: SceneModel, request: LoadRequest) -> None:
     """Says what a base that the caller chose changes."""
     if request.base == "fixed" and any(j.type == "fixed" and j.parent_link == "world" for j in model.joints):
-        request.diagnostics.note(
-            "SK-MJCF-012", f"model {model.name!r} stands fixed in the world, as asked for (base='fixed')", model.where
-        )
+        message = f"model {model.name!r} stands fixed in the world, as asked for (base='fixed')"
+        request.diagnostics.note("SK-MJCF-012", message, model.where)
     held = [j.name for j in model.joints if j.parent_link == "world"]
     if request.base == "floating" and held:
-        request.diagnostics.warning(
-            "SK-MJCF-012",
-            f"model {model.name!r} cannot float: it hangs on the world by {', '.join(held[:5])}",
-            model.where,
-        )
+        message = f"model {model.name!r} cannot float: it hangs on the world by {', '.join(held[:5])}"
+        request.diagnostics.warning("SK-MJCF-012", message, model.where)
 
 
 def _report_engine_elements(file: MjcfFile, diagnostics: Diagnostics) -> None:
     """Says which of the file's elements are the engine's alone."""
     model, where = file.content.model, file.content.source.root.where
-    counts = {
-        "sensors": model.nsensor,
-        "cameras": model.ncam,
-        "tendons": model.ntendon,
-        "flexes": model.nflex,
-        "skins": model.nskin,
-        "keyframes": model.nkey,
-    }
-    left = [f"{count} {what}" for what, count in counts.items() if count]
+    counts = (model.nsensor, model.ncam, model.ntendon, model.nflex, model.nskin, model.nkey)
+    kinds = ("sensors", "cameras", "tendons", "flexes", "skins", "keyframes")
+    left = [f"{count} {kind}" for kind, count in zip(kinds, counts, strict=True) if count]
     if left:
-        diagnostics.note(
-            "SK-MJCF-010",
-            f"{file.name}: {', '.join(left)} of the file work in MuJoCo alone; they are in mj_model and mj_data, "
-            "and publish nothing",
-            where,
-        )
+        message = f"{file.name}: {', '.join(left)} of the file work in MuJoCo alone; they are in mj_model and mj_data"
+        diagnostics.note("SK-MJCF-010", f"{message}, and publish nothing", where)

@@ -6,30 +6,23 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Final
 
-from simkit.loaders.mjcf.compiled_file import CompiledFile, ElementIds, ModelPlacement
+from simkit.loaders.mjcf.compiled_file import CompiledFile, ModelPlacement
 from simkit.loaders.mjcf.joints import read_joints
 from simkit.loaders.mjcf.lights import read_lights
+from simkit.loaders.sdf.inertial import moments_of
 from simkit.pose import Pose
 from simkit.scene import (
-    Box,
-    Capsule,
-    Cylinder,
-    Ellipsoid,
-    Empty,
-    Geometry,
-    Heightmap,
     Inertial,
     Material,
-    Mesh,
-    Plane,
     SceneCollision,
     SceneFrame,
     SceneLink,
     SceneModel,
     SceneVisual,
-    Sphere,
     Surface,
 )
+from simkit.scene import geometry as shapes
+from simkit.scene.geometry import Geometry, vec3
 from simkit.scene.mjcf_source import MjcfGeom, MjcfSource
 
 _PLANE, _HFIELD, _SPHERE, _CAPSULE, _ELLIPSOID, _CYLINDER, _BOX, _MESH, _SDF = range(9)
@@ -49,31 +42,24 @@ class ModelReader:
         self._file, self._placed = file, placed
         self._model = file.model
         self._place = placed.pose_world @ placed.frame.inverse()
-        self._ids = ElementIds()
-
-    def read(self) -> SceneModel:
-        """One model with its links, joints and frames."""
-        file, placed, ids = self._file, self._placed, self._ids
-        bodies = sorted(b for root in placed.roots for b in file.bodies_of[root])
-        own = [*((0,) if placed.has_world else ()), *bodies]
-        links = [self._link(b) for b in own]
-        joints = [j for b in bodies for j in read_joints(file, b, placed, self._place, ids)]
-        frames = [f for b in own for f in self._frames(b)]
-        canonical = file.scoped_link(placed.roots[0], placed) if placed.roots else links[0].scoped if links else ""
-        source = MjcfSource(
+        self._source = MjcfSource(
             document=file.compiled.document,
             place=self._place,
             prefix=placed.prefix,
             roots=tuple(file.name("BODY", b) for b in placed.roots),
-            bodies=ids.bodies,
-            joints=ids.joints,
-            free=ids.free,
-            geoms=ids.geoms,
-            lights=ids.lights,
-            masses=ids.masses,
             base=placed.base,
             settings=file.settings,
         )
+
+    def read(self) -> SceneModel:
+        """One model with its links, joints and frames."""
+        file, placed = self._file, self._placed
+        bodies = sorted(b for root in placed.roots for b in file.bodies_of[root])
+        own = [*((0,) if placed.has_world else ()), *bodies]
+        links = [self._link(b) for b in own]
+        joints = [j for b in bodies for j in read_joints(file, b, placed, self._place, self._source)]
+        frames = [f for b in own for f in self._frames(b)]
+        canonical = file.scoped_link(placed.roots[0], placed) if placed.roots else links[0].scoped if links else ""
         return SceneModel(
             name=placed.name,
             scoped=placed.scoped,
@@ -88,11 +74,11 @@ class ModelReader:
             frames=tuple(frames),
             plugins=placed.plugins,
             where=placed.where or (links[0].where if links else file.source.root.where),
-            mjcf=source,
+            mjcf=self._source,
         )
 
     def _link(self, body: int) -> SceneLink:
-        file, model, found = self._file, self._model, self._ids
+        file, model, found = self._file, self._model, self._source
         name = file.link_name(body, self._placed)
         scoped = f"{self._placed.scoped}::{name}"
         found.bodies[scoped] = file.name("BODY", body)
@@ -127,9 +113,7 @@ class ModelReader:
         model = self._model
         turn = Pose((0.0, 0.0, 0.0), model.body_iquat[body]).matrix
         i = (turn * model.body_inertia[body]) @ turn.T
-        xx, yy, zz, xy, xz, yz = (float(v) for v in (i[0, 0], i[1, 1], i[2, 2], i[0, 1], i[0, 2], i[1, 2]))
-        x, y, z = (float(v) for v in model.body_ipos[body])
-        return Inertial(float(model.body_mass[body]), (x, y, z), (xx, yy, zz, xy, xz, yz))
+        return Inertial(float(model.body_mass[body]), vec3(model.body_ipos[body]), moments_of(i))
 
     def _frames(self, body: int) -> Iterable[SceneFrame]:
         file, model, placed = self._file, self._model, self._placed
@@ -147,14 +131,10 @@ class ModelReader:
         shape, pose = self._shape(g)
         where = file.where("geom", name)
         scoped = f"{link}::{name}"
-        self._ids.geoms[name] = MjcfGeom(link, scoped, collides, drawn)
+        self._source.geoms[name] = MjcfGeom(link, scoped, collides, drawn)
         if collides:
-            surface = Surface(
-                mu=float(model.geom_friction[g][0]) if model.geom_condim[g] > 1 else 0.0,
-                mu2=float(model.geom_friction[g][0]) if model.geom_condim[g] > 1 else 0.0,
-                torsional=float(model.geom_friction[g][1]),
-                where=where,
-            )
+            mu = float(model.geom_friction[g][0]) if model.geom_condim[g] > 1 else 0.0
+            surface = Surface(mu, mu, torsional=float(model.geom_friction[g][1]), where=where)
             collisions.append(SceneCollision(name, scoped, pose, shape, surface, where=where))
         if drawn:
             visuals.append(SceneVisual(name, scoped, pose, shape, self._material(g), where=where))
@@ -177,21 +157,21 @@ class ModelReader:
         if kind in (_MESH, _SDF):
             own = Pose(model.mesh_pos[number], model.mesh_quat[number])
             file, uri = self._asset("mesh", self._file.name("MESH", number))
-            x, y, z = (float(v) for v in model.mesh_scale[number])
-            return Mesh(file, uri, (x, y, z), missing=not file.is_file()), pose @ own.inverse()
+            scale = vec3(model.mesh_scale[number])
+            return shapes.Mesh(file, uri, scale, missing=not file.is_file()), pose @ own.inverse()
         if kind == _HFIELD:
             file, uri = self._asset("hfield", self._file.name("HFIELD", number))
             x, y, z, _ = (float(v) for v in model.hfield_size[number])
-            return Heightmap(file, uri, (2 * x, 2 * y, z)), pose
-        shapes: dict[int, Geometry] = {
-            _PLANE: Plane(size=(2 * a or 100.0, 2 * b or 100.0)),
-            _SPHERE: Sphere(a),
-            _CAPSULE: Capsule(a, 2 * b),
-            _CYLINDER: Cylinder(a, 2 * b),
-            _ELLIPSOID: Ellipsoid((a, b, c)),
-            _BOX: Box((2 * a, 2 * b, 2 * c)),
+            return shapes.Heightmap(file, uri, (2 * x, 2 * y, z)), pose
+        primitives: dict[int, Geometry] = {
+            _PLANE: shapes.Plane(size=(2 * a or 100.0, 2 * b or 100.0)),
+            _SPHERE: shapes.Sphere(a),
+            _CAPSULE: shapes.Capsule(a, 2 * b),
+            _CYLINDER: shapes.Cylinder(a, 2 * b),
+            _ELLIPSOID: shapes.Ellipsoid((a, b, c)),
+            _BOX: shapes.Box((2 * a, 2 * b, 2 * c)),
         }
-        return shapes.get(kind, Empty()), pose
+        return primitives.get(kind, shapes.Empty()), pose
 
     def _asset(self, kind: str, name: str) -> tuple[Path, str]:
         """The user's file behind an asset; for one that is written in the model, that file and the asset's name."""

@@ -6,11 +6,12 @@ The reader itself stops at the first. Its own table of the format is asked, so t
 from __future__ import annotations
 
 import re
+from collections.abc import Collection
 from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Final
 
-from simkit.diagnostics import Diagnostics, did_you_mean
+from simkit.diagnostics import did_you_mean
 from simkit.params import Params
 
 _LINE: Final = re.compile(r"^( *)(\S+) \((.)\) *(.*)$")
@@ -55,7 +56,7 @@ def _schema_table(text: str) -> _ElementKind | None:
     return root if body is not None and "geom" in body.children and "pos" in body.attributes else None
 
 
-def check_names(root: Params, schema_text: str, diagnostics: Diagnostics) -> None:
+def check_names(root: Params, schema_text: str) -> None:
     """Records an error for every element and attribute that MJCF does not have, with the closest name.
 
     Args:
@@ -63,24 +64,24 @@ def check_names(root: Params, schema_text: str, diagnostics: Diagnostics) -> Non
     """
     table = _schema_table(schema_text)
     if table is not None:
-        _check_children(root, table, table, diagnostics)
+        _check_children(root, table, table)
 
 
-def _check_children(element: Params, kind: _ElementKind, table: _ElementKind, diagnostics: Diagnostics) -> None:
+def _check_children(element: Params, kind: _ElementKind, table: _ElementKind) -> None:
     for child in element.children:
         name = child.name
         if name in _PREPROCESSED:
-            _check_attributes(child, _PREPROCESSED[name], diagnostics)
-            _check_children(child, kind, table, diagnostics)
+            _check_attributes(child, _PREPROCESSED[name])
+            _check_children(child, kind, table)
             continue
         below = kind if kind.recursive and name == _own_name(element, name) else kind.children.get(name)
         if below is None:
             known = [*kind.children, *_PREPROCESSED, *(("body", "default") if kind.recursive else ())]
             hint = did_you_mean(name, known) or _allowed_parents(name, table)
-            diagnostics.error("SK-MJCF-002", f"<{element.name}> has no element <{name}>", child.where, hint)
+            child.error("SK-MJCF-002", f"<{element.name}> has no element <{name}>", hint)
             continue
-        _check_attributes(child, below.attributes, diagnostics)
-        _check_children(child, below, table, diagnostics)
+        _check_attributes(child, below.attributes)
+        _check_children(child, below, table)
 
 
 def _own_name(element: Params, name: str) -> str:
@@ -90,21 +91,12 @@ def _own_name(element: Params, name: str) -> str:
     return "default" if name == "default" and element.name == "default" else ""
 
 
-def _check_attributes(element: Params, known: set[str] | frozenset[str], diagnostics: Diagnostics) -> None:
-    for name in element.attributes:
+def _check_attributes(element: Params, known: Collection[str]) -> None:
+    for name, text in element.attributes.items():
         if name not in known and ":" not in name:
             hint = did_you_mean(name, known) or (f"known are {', '.join(sorted(known))}" if len(known) < 12 else "")
-            diagnostics.error(
-                "SK-MJCF-003",
-                f"<{element.name}> has no attribute {name!r} (= {_shortened_value(element, name)})",
-                element.where,
-                hint,
-            )
-
-
-def _shortened_value(element: Params, name: str) -> str:
-    text = element.attributes[name]
-    return repr(text if len(text) <= 40 else text[:37] + "...")
+            shown = text if len(text) <= 40 else text[:37] + "..."
+            element.error("SK-MJCF-003", f"<{element.name}> has no attribute {name!r} (= {shown!r})", hint)
 
 
 def _allowed_parents(name: str, table: _ElementKind) -> str:

@@ -6,65 +6,19 @@ more than a message in a log file.
 
 from __future__ import annotations
 
+import csv
+import functools
+import itertools
 import math
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Final
 
-from simkit.diagnostics import Diagnostics
 from simkit.params import Params
 
 MOST_ELEMENTS: Final = 100_000
 """Elements after every replication."""
 
-_MILLION: Final = 1_000_000
-_MAX_COUNTS: Final[dict[tuple[str, str], int]] = {
-    ("numeric", "size"): _MILLION,
-    ("user", "dim"): 100_000,
-    ("contact", "num"): 10_000,
-    ("size", "njmax"): 10 * _MILLION,
-    ("size", "nconmax"): 10 * _MILLION,
-    ("size", "nstack"): 1 << 29,
-    ("size", "nuserdata"): _MILLION,
-    ("size", "nkey"): 10_000,
-    ("texture", "width"): 16_384,
-    ("texture", "height"): 16_384,
-    ("texture", "nchannel"): 4,
-    ("hfield", "nrow"): 10_000,
-    ("hfield", "ncol"): 10_000,
-    ("option", "iterations"): 100_000,
-    ("option", "ls_iterations"): 100_000,
-    ("option", "noslip_iterations"): 100_000,
-    ("option", "ccd_iterations"): 100_000,
-    ("option", "sdf_iterations"): 10_000,
-    ("option", "sdf_initpoints"): 10_000,
-    ("global", "offwidth"): 16_384,
-    ("global", "offheight"): 16_384,
-    ("quality", "shadowsize"): 16_384,
-    ("quality", "offsamples"): 64,
-    ("quality", "numslices"): 10_000,
-    ("quality", "numstacks"): 10_000,
-    ("quality", "numquads"): 1_000,
-    ("camera", "resolution"): 16_384,
-    ("mesh", "params"): 1_000,
-    ("mesh", "maxhullvert"): 10 * _MILLION,
-    ("lengthrange", "inttotal"): 1_000,
-    ("lengthrange", "interval"): 1_000,
-    ("general", "actdim"): 10_000,
-    ("plugin", "actdim"): 10_000,
-}
-_MAX_COUNTS_ANYWHERE: Final[dict[str, int]] = {
-    "nsample": 100_000,
-    "count": 10_000,
-    "cellcount": 1_000,
-    "group": 1_000,
-    **{f"nuser_{what}": 1_000 for what in ("body", "jnt", "geom", "site", "cam", "tendon", "actuator", "sensor")},
-}
-_MOST_PRODUCT: Final[dict[tuple[str, str], int]] = {
-    ("hfield", "nrow"): 25 * _MILLION,
-    ("texture", "width"): 64 * _MILLION,
-    ("camera", "resolution"): 64 * _MILLION,
-    ("mesh", "params"): 4 * _MILLION,
-}
 _TEXTS: Final = frozenset((
     "name", "class", "childclass", "prefix", "model", "key", "value", "data", "file", "content_type", "mesh",
     "material", "texture", "hfield", "joint", "joint1", "joint2", "body", "body1", "body2", "geom", "geom1",
@@ -79,16 +33,16 @@ _LONGEST_STEP: Final = 100.0
 _MEMORY_MOST: Final = 16 << 30
 
 
-def check_bounds(root: Params, diagnostics: Diagnostics) -> None:
+def check_bounds(root: Params) -> None:
     """Records an error for each number that is none, and for each count beyond what is allowed."""
     counted = 0
     for element, times in _elements(root):
         counted += times
         if counted > MOST_ELEMENTS * 10 or times > MOST_ELEMENTS:
-            _report_excess(element, "count", f"{times} copies", f"{MOST_ELEMENTS} elements in all", diagnostics)
+            _report_excess(element, "count", f"{times} copies", f"{MOST_ELEMENTS} elements in all")
             return
         for name, text in element.attributes.items():
-            _check(element, name, text, diagnostics)
+            _check(element, name, text)
 
 
 def _elements(root: Params) -> Iterator[tuple[Params, int]]:
@@ -114,46 +68,53 @@ def _numbers(text: str) -> list[float]:
     return found
 
 
-def _check(element: Params, name: str, text: str, diagnostics: Diagnostics) -> None:
+def _check(element: Params, name: str, text: str) -> None:
     if name in _TEXTS or name.startswith("file"):
         return
     if (element.name, name) == ("size", "memory"):
-        _check_memory(element, text, diagnostics)
+        _check_memory(element, text)
         return
     numbers = _numbers(text)
-    bad = next((n for n in numbers if math.isnan(n)), None)
-    if bad is not None or any(math.isinf(n) for n in numbers):
-        diagnostics.error(
-            "SK-MJCF-004",
-            f"<{element.name} {name}={text!r}>: every number must be finite",
-            element.where,
-            "leave the attribute out where there is no limit",
-        )
+    if not all(map(math.isfinite, numbers)):
+        message = f"<{element.name} {name}={text!r}>: every number must be finite"
+        element.error("SK-MJCF-004", message, "leave the attribute out where there is no limit")
         return
     if (element.name, name) == ("lengthrange", "timestep") and numbers and numbers[0] < _SHORTEST_STEP:
-        _report_excess(element, name, text, f"at least {_SHORTEST_STEP:g} s", diagnostics)
+        _report_excess(element, name, text, f"at least {_SHORTEST_STEP:g} s")
         return
     if (element.name, name) == ("option", "timestep") and numbers and not 1e-9 <= numbers[0] <= _LONGEST_STEP:
-        _report_excess(element, name, text, f"1e-9 to {_LONGEST_STEP:g} s", diagnostics)
+        _report_excess(element, name, text, f"1e-9 to {_LONGEST_STEP:g} s")
         return
-    most = _MAX_COUNTS.get((element.name, name), _MAX_COUNTS_ANYWHERE.get(name))
+    limits = _size_limits()
+    most, most_product = limits.get((element.name, name)) or limits.get(("*", name)) or (None, None)
     if most is not None and numbers and max(numbers) > most:
-        _report_excess(element, name, text, f"at most {most}", diagnostics)
-        return
-    product = _MOST_PRODUCT.get((element.name, name))
-    if product is not None:
+        _report_excess(element, name, text, f"at most {most}")
+    elif most_product is not None:
         values = [*numbers, *_numbers(element.attribute({"nrow": "ncol", "width": "height"}.get(name, "")))]
-        if math.prod(max(1.0, v) for v in values) > product:
-            _report_excess(element, name, " x ".join(f"{v:g}" for v in values), f"{product} in all", diagnostics)
+        if math.prod(max(1.0, v) for v in values) > most_product:
+            _report_excess(element, name, " x ".join(f"{v:g}" for v in values), f"{most_product} in all")
 
 
-def _check_memory(element: Params, text: str, diagnostics: Diagnostics) -> None:
+@functools.cache
+def _size_limits() -> dict[tuple[str, str], tuple[int, int | None]]:
+    """The largest number of each element's attribute (of `*`: any element's), and the largest product of its numbers.
+
+    A height field and a texture have the second number of the product in another attribute.
+    """
+    with Path(__file__).with_name("size_limits.csv").open(encoding="utf-8", newline="") as file:
+        rows = itertools.islice(csv.reader(file), 1, None)
+        return {
+            (element, name): (int(most), int(product) if product else None) for element, name, most, product in rows
+        }
+
+
+def _check_memory(element: Params, text: str) -> None:
     digits, unit = text.strip()[:-1], text.strip()[-1:].upper()
     scale = {"K": 10, "M": 20, "G": 30, "T": 40, "P": 50, "E": 60}.get(unit)
     number = _numbers(text if scale is None else digits)
     if number and number[0] * float(1 << (scale or 0)) > _MEMORY_MOST:
-        _report_excess(element, "memory", text, f"at most {_MEMORY_MOST >> 30}G", diagnostics)
+        _report_excess(element, "memory", text, f"at most {_MEMORY_MOST >> 30}G")
 
 
-def _report_excess(element: Params, name: str, found: str, allowed: str, diagnostics: Diagnostics) -> None:
-    diagnostics.error("SK-MJCF-005", f"<{element.name} {name}>: found {found}, allowed is {allowed}", element.where)
+def _report_excess(element: Params, name: str, found: str, allowed: str) -> None:
+    element.error("SK-MJCF-005", f"<{element.name} {name}>: found {found}, allowed is {allowed}")

@@ -20,22 +20,19 @@ def read_name(element: Params, diagnostics: Diagnostics, version: tuple[int, int
     if not name:
         diagnostics.error("SK-SDF-001", f"<{element.name}> needs a name", element.where)
         return ""
+    say, problem = diagnostics.error, ""
     if len(name) > LONGEST_NAME:
-        text = f"<{element.name}> has a name of {len(name)} characters, allowed are {LONGEST_NAME}"
-        diagnostics.error("SK-SDF-003", text, element.where)
-        return name[:LONGEST_NAME]
-    if name.startswith("__") and name.endswith("__"):
-        diagnostics.error(
-            "SK-SDF-003", f"<{element.name} name={name!r}>: names __like_this__ are reserved", element.where
-        )
+        problem = f"<{element.name}> has a name of {len(name)} characters, allowed are {LONGEST_NAME}"
+    elif name.startswith("__") and name.endswith("__"):
+        problem = f"<{element.name} name={name!r}>: names __like_this__ are reserved"
     elif name == "world" and element.name != "world":
         say = diagnostics.error if version >= (1, 7) else diagnostics.warning
-        say("SK-SDF-003", f"<{element.name} name='world'>: this name is reserved for the world", element.where)
+        problem = f"<{element.name} name='world'>: this name is reserved for the world"
     elif "::" in name and version >= (1, 8):
-        diagnostics.error(
-            "SK-SDF-003", f"<{element.name} name={name!r}>: '::' separates names and cannot be in one", element.where
-        )
-    return name
+        problem = f"<{element.name} name={name!r}>: '::' separates names and cannot be in one"
+    if problem:
+        say("SK-SDF-003", problem, element.where)
+    return name[:LONGEST_NAME]
 
 
 def named_elements(
@@ -52,11 +49,8 @@ def named_elements(
         if not name:
             continue
         if name in found:
-            diagnostics.error(
-                "SK-SDF-002",
-                f"{owner} has two <{element.name}> named {name!r} (the other at line {found[name].where.line})",
-                element.where,
-            )
-            continue
-        found[name] = element
+            text = f"{owner} has two <{element.name}> named {name!r} (the other at line {found[name].where.line})"
+            diagnostics.error("SK-SDF-002", text, element.where)
+        else:
+            found[name] = element
     return list(found.items())

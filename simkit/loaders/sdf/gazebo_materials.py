@@ -5,9 +5,7 @@ from __future__ import annotations
 import csv
 import functools
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
-from types import MappingProxyType
 from typing import Final
 
 from simkit.scene.model import Colour
@@ -15,30 +13,20 @@ from simkit.scene.model import Colour
 _COLUMNS: Final = ("ambient", "diffuse", "specular", "emissive")
 
 
-@dataclass(frozen=True, slots=True)
-class ScriptColours:
-    """Colours of one material script, RGBA from 0 to 1; `diffuse` carries the opacity."""
-
-    ambient: Colour
-    diffuse: Colour
-    specular: Colour
-    emissive: Colour
-
-
 @functools.cache
-def gazebo_materials() -> Mapping[str, ScriptColours]:
-    """The colours by the name behind `Gazebo/`, from `gazebo_materials.csv`.
+def gazebo_materials() -> Mapping[str, Mapping[str, Colour]]:
+    """Ambient, diffuse, specular and emissive colour by the name behind `Gazebo/`, from `gazebo_materials.csv`.
 
-    One number in a column stands for three equal ones. Of a textured material the diffuse colour is the mean of its
-    picture, which is not part of the table.
+    Colours are RGBA from 0 to 1; the diffuse one carries the opacity. One number in a column stands for three equal
+    ones. Of a textured material the diffuse colour is the mean of its picture, which is not part of the table.
     """
-    table = {}
+    table: dict[str, Mapping[str, Colour]] = {}
     with Path(__file__).with_name("gazebo_materials.csv").open(encoding="utf-8", newline="") as file:
         for row in csv.DictReader(file):
-            ambient, diffuse, specular, emissive = (_opaque(row[column]) for column in _COLUMNS)
-            colours = ScriptColours(ambient, (*diffuse[:3], float(row["opacity"] or 1.0)), specular, emissive)
+            colours = {column: _opaque(row[column]) for column in _COLUMNS}
+            colours["diffuse"] = (*colours["diffuse"][:3], float(row["opacity"] or 1.0))
             table.update(dict.fromkeys(row["names"].split(), colours))
-    return MappingProxyType(table)
+    return table
 
 
 def _opaque(column: str) -> Colour:
@@ -47,6 +35,6 @@ def _opaque(column: str) -> Colour:
     return r, g, b, 1.0
 
 
-def gazebo_material(name: str) -> ScriptColours | None:
-    """The colours of a material that comes with Gazebo, by its full name; None where there is none."""
-    return gazebo_materials().get(name.removeprefix("Gazebo/")) if name else None
+def gazebo_colours(name: str) -> dict[str, Colour]:
+    """The colours of a material that comes with Gazebo, by its full name; empty where there is none."""
+    return dict(gazebo_materials().get(name.removeprefix("Gazebo/"), {}))

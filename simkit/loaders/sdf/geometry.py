@@ -9,24 +9,11 @@ from pathlib import Path
 from simkit.diagnostics import did_you_mean
 from simkit.loaders.sdf.load_context import SdfFile, Workspace
 from simkit.params import Params
-from simkit.scene import (
-    Box,
-    Capsule,
-    Cone,
-    Cylinder,
-    Ellipsoid,
-    Empty,
-    Geometry,
-    Heightmap,
-    Mesh,
-    Plane,
-    Polyline,
-    Sphere,
-)
-from simkit.scene.geometry import Vec3
+from simkit.scene import geometry as shapes
+from simkit.scene.geometry import Geometry, Mesh, Vec3
 
 _LARGEST_SIZE = 1e15  # [m]; moments of larger shapes leave the numbers
-_Reader = Callable[[Params, SdfFile, Workspace], Geometry | None]
+_OPTIMIZATIONS = ("convex_hull", "convex_decomposition")
 
 
 def read_geometry(owner: Params, file: SdfFile, workspace: Workspace, what: str) -> Geometry | None:
@@ -34,80 +21,58 @@ def read_geometry(owner: Params, file: SdfFile, workspace: Workspace, what: str)
     block = owner.child("geometry")
     if block is None:
         near = did_you_mean("geometry", [c.name for c in owner.children])
-        workspace.diagnostics.warning("SK-SDF-009", f"{what} has no <geometry>, and so no shape", owner.where, near)
-        return Empty()
-    shapes = [c for c in block.children if ":" not in c.name]
-    if not shapes:
-        return Empty()
-    for shape in shapes:
-        reader = _READERS.get(shape.name)
-        if reader is not None:
-            block.child(shape.name)
-            if shape.name == "polyline":
-                return _polylines(block.all("polyline"))
-            return reader(shape, file, workspace)
-    for name in _READERS:
+        owner.warning("SK-SDF-009", f"{what} has no <geometry>, and so no shape", near)
+        return shapes.Empty()
+    held = [c for c in block.children if ":" not in c.name]
+    for shape in held:
+        if shape.name not in _KNOWN_SHAPES:
+            continue
+        block.child(shape.name)
+        if shape.name == "mesh":
+            return _mesh(shape, file, workspace)
+        if shape.name == "heightmap":
+            return _heightmap(shape, file, workspace)
+        if shape.name == "polyline":
+            return _polylines(block.all("polyline"))
+        return _PRIMITIVES[shape.name](shape)
+    for name in _KNOWN_SHAPES if held else ():
         block.has(name)
-    if shapes[0].name == "image":
+    if held and held[0].name == "image":
         block.child("image")
-        shapes[0].mark_all_read()
-        workspace.diagnostics.warning("SK-SDF-012", f"{what}: <image> as a shape is not simulated", shapes[0].where)
-    return Empty()
+        held[0].mark_all_read()
+        held[0].warning("SK-SDF-012", f"{what}: <image> as a shape is not simulated")
+    return shapes.Empty()
 
 
 def _positive(element: Params, name: str, default: float) -> float:
     value = element.number(name, default)
     if not 0 < value <= _LARGEST_SIZE:
-        found = element.child(name) or element
         allowed = "positive" if value <= 0 else f"at most {_LARGEST_SIZE:g}"
-        found.error("SK-SDF-009", f"<{element.name}> has {name} {value:g}, it must be {allowed}")
+        message = f"<{element.name}> has {name} {value:g}, it must be {allowed}"
+        element.child_or_self(name).error("SK-SDF-009", message)
         return default
     return value
 
 
-def _sizes(element: Params, name: str, default: Vec3, minimum: float = 0.0) -> Vec3:
-    values = element.vector3(name, default)
-    if not all(minimum < v <= _LARGEST_SIZE for v in values):
-        found = element.child(name) or element
+def _sizes(element: Params, name: str) -> Vec3:
+    values = element.vector3(name, (1.0, 1.0, 1.0))
+    if not all(0 < v <= _LARGEST_SIZE for v in values):
         text = " ".join(f"{v:g}" for v in values)
-        allowed = "positive" if any(v <= minimum for v in values) else f"at most {_LARGEST_SIZE:g}"
-        found.error("SK-SDF-009", f"<{element.name}> has {name} {text}, each must be {allowed}")
-        return default
+        allowed = "positive" if any(v <= 0 for v in values) else f"at most {_LARGEST_SIZE:g}"
+        message = f"<{element.name}> has {name} {text}, each must be {allowed}"
+        element.child_or_self(name).error("SK-SDF-009", message)
+        return (1.0, 1.0, 1.0)
     return values
 
 
-def _box(element: Params, _file: SdfFile, _workspace: Workspace) -> Geometry:
-    return Box(_sizes(element, "size", (1.0, 1.0, 1.0)))
-
-
-def _sphere(element: Params, _file: SdfFile, _workspace: Workspace) -> Geometry:
-    return Sphere(_positive(element, "radius", 1.0))
-
-
-def _cylinder(element: Params, _file: SdfFile, _workspace: Workspace) -> Geometry:
-    return Cylinder(_positive(element, "radius", 1.0), _positive(element, "length", 1.0))
-
-
-def _capsule(element: Params, _file: SdfFile, _workspace: Workspace) -> Geometry:
-    return Capsule(_positive(element, "radius", 0.5), _positive(element, "length", 1.0))
-
-
-def _cone(element: Params, _file: SdfFile, _workspace: Workspace) -> Geometry:
-    return Cone(_positive(element, "radius", 0.5), _positive(element, "length", 1.0))
-
-
-def _ellipsoid(element: Params, _file: SdfFile, _workspace: Workspace) -> Geometry:
-    return Ellipsoid(_sizes(element, "radii", (1.0, 1.0, 1.0)))
-
-
-def _plane(element: Params, _file: SdfFile, _workspace: Workspace) -> Geometry:
+def _plane(element: Params) -> Geometry:
     normal = element.vector3("normal", (0.0, 0.0, 1.0))
     length = math.sqrt(sum(v * v for v in normal))
     if length < 1e-12:
         element.error("SK-SDF-009", "<plane> has a normal of length zero")
-        return Plane()
+        return shapes.Plane()
     width, depth = element.vector("size", 2, (1.0, 1.0))
-    return Plane((normal[0] / length, normal[1] / length, normal[2] / length), (width, depth))
+    return shapes.Plane((normal[0] / length, normal[1] / length, normal[2] / length), (width, depth))
 
 
 def _mesh(element: Params, file: SdfFile, workspace: Workspace) -> Geometry | None:
@@ -122,8 +87,8 @@ def _mesh(element: Params, file: SdfFile, workspace: Workspace) -> Geometry | No
     optimization, most = _optimization(element)
     if not uri:
         return None
-    place = element.child("uri") or element.child("filename") or element
-    path = find_mesh(uri, place, file, workspace)
+    place = element.child("uri") or element.child_or_self("filename")
+    path = _find_mesh(uri, place, file, workspace)
     if path is None:
         return Mesh(Path(uri), uri, scale, name, center, missing=True)
     return Mesh(path.absolute(), uri, scale, name, center, optimization=optimization, max_hulls=most)
@@ -135,19 +100,14 @@ def _optimization(element: Params) -> tuple[str, int]:
     most = settings.integer("max_convex_hulls", 16, minimum=1, maximum=1_000_000)
     settings.child("voxel_resolution")  # of another algorithm, which fills the mesh with cubes
     asked = element.attribute("optimization")
-    if asked in ("", "convex_hull", "convex_decomposition"):
+    if asked in ("", *_OPTIMIZATIONS):
         return asked, most
-    allowed = ("convex_hull", "convex_decomposition")
-    element.diagnostics.warning(
-        "SK-MESH-015",
-        f"<mesh optimization={asked!r}> is not known, allowed are {', '.join(allowed)}",
-        element.where,
-        did_you_mean(asked, allowed),
-    )
+    message = f"<mesh optimization={asked!r}> is not known, allowed are {', '.join(_OPTIMIZATIONS)}"
+    element.warning("SK-MESH-015", message, did_you_mean(asked, _OPTIMIZATIONS))
     return "", most
 
 
-def find_mesh(uri: str, place: Params, file: SdfFile, workspace: Workspace) -> Path | None:
+def _find_mesh(uri: str, place: Params, file: SdfFile, workspace: Workspace) -> Path | None:
     """The mesh file that a URI names; what is to be said of it is said once, however often it is used."""
     path, said = workspace.resolver.mesh(uri, place.where, file.folder)
     if path is not None or uri not in workspace.reported:
@@ -159,13 +119,13 @@ def find_mesh(uri: str, place: Params, file: SdfFile, workspace: Workspace) -> P
 
 def _heightmap(element: Params, file: SdfFile, workspace: Workspace) -> Geometry | None:
     uri = element.text("uri", required=True)
-    size = _sizes(element, "size", (1.0, 1.0, 1.0))
+    size = _sizes(element, "size")
     position = element.vector3("pos", (0.0, 0.0, 0.0))
     if not uri:
         return None
-    place = element.child("uri") or element
-    path = workspace.resolver.resolve(uri, place.where, workspace.diagnostics, file.folder)
-    return None if path is None else Heightmap(path.absolute(), uri, size, position)
+    where = element.child_or_self("uri").where
+    path = workspace.resolver.resolve(uri, where, workspace.diagnostics, file.folder)
+    return None if path is None else shapes.Heightmap(path.absolute(), uri, size, position)
 
 
 def _polylines(elements: list[Params]) -> Geometry | None:
@@ -174,7 +134,7 @@ def _polylines(elements: list[Params]) -> Geometry | None:
     height = _positive(elements[0], "height", 1.0)
     for element in elements[1:]:
         element.child("height")
-    return Polyline(tuple(outlines), height) if outlines else None
+    return shapes.Polyline(tuple(outlines), height) if outlines else None
 
 
 def _outline(element: Params) -> tuple[tuple[float, float], ...] | None:
@@ -194,16 +154,14 @@ def _outline(element: Params) -> tuple[tuple[float, float], ...] | None:
     return tuple(points)
 
 
-_READERS: dict[str, _Reader] = {
-    "box": _box,
-    "sphere": _sphere,
-    "cylinder": _cylinder,
-    "capsule": _capsule,
-    "cone": _cone,
-    "ellipsoid": _ellipsoid,
+_PRIMITIVES: dict[str, Callable[[Params], Geometry]] = {
+    "box": lambda e: shapes.Box(_sizes(e, "size")),
+    "sphere": lambda e: shapes.Sphere(_positive(e, "radius", 1.0)),
+    "cylinder": lambda e: shapes.Cylinder(_positive(e, "radius", 1.0), _positive(e, "length", 1.0)),
+    "capsule": lambda e: shapes.Capsule(_positive(e, "radius", 0.5), _positive(e, "length", 1.0)),
+    "cone": lambda e: shapes.Cone(_positive(e, "radius", 0.5), _positive(e, "length", 1.0)),
+    "ellipsoid": lambda e: shapes.Ellipsoid(_sizes(e, "radii")),
     "plane": _plane,
-    "mesh": _mesh,
-    "heightmap": _heightmap,
-    "polyline": lambda element, _file, _workspace: _polylines([element]),
-    "empty": lambda _element, _file, _workspace: Empty(),
+    "empty": lambda _: shapes.Empty(),
 }
+_KNOWN_SHAPES = (*_PRIMITIVES, "mesh", "heightmap", "polyline")

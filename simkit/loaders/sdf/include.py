@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 
 from simkit.diagnostics import did_you_mean
@@ -21,10 +22,14 @@ def read_inline_entity(element: Params, file: SdfFile, workspace: Workspace) -> 
     name = read_name(element, workspace.diagnostics, file.version)
     if not name:
         return None
-    pose, base = read_pose(element)
     placement = element.attribute("placement_frame") if element.name == "model" else ""
-    where, place = element.where, pose_location(element)
-    return EntitySource(name, element, file, pose, base, placement=placement, where=where, pose_where=place)
+    return replace(entity_source(element, name, file), placement=placement, pose_where=pose_location(element))
+
+
+def entity_source(element: Params, name: str, file: SdfFile) -> EntitySource:
+    """A named element of a file with its pose."""
+    pose, base = read_pose(element)
+    return EntitySource(name, element, file, pose, base, where=element.where)
 
 
 def read_include(include: Params, file: SdfFile, workspace: Workspace) -> EntitySource | None:
@@ -36,13 +41,9 @@ def read_include(include: Params, file: SdfFile, workspace: Workspace) -> Entity
     plugins = tuple(include.all("plugin"))
     placed = include.has("pose")
     pose, base = read_pose(include)
-    if not uri:
-        return None
-    found = _open_include(uri, include, file, workspace)
-    if found is None:
-        return None
-    element = _only_entity(found, uri, include, workspace)
-    if element is None:
+    found = _open_include(uri, include, file, workspace) if uri else None
+    element = None if found is None else _only_entity(found, uri, include, workspace)
+    if found is None or element is None:
         return None
     merge = include.attribute("merge", "false").lower() in ("true", "1")
     if found.included is not None and (merge or include.has(BLOCK)):
@@ -102,7 +103,7 @@ def _included_name(include: Params, file: SdfFile, workspace: Workspace) -> str:
 
 def _open_include(uri: str, include: Params, file: SdfFile, workspace: Workspace) -> SdfFile | None:
     resolver, diagnostics = workspace.resolver, workspace.diagnostics
-    place = include.child("uri") or include
+    place = include.child_or_self("uri")
     chosen = turtlebot3_uri(uri, place.where, diagnostics)
     if chosen is None:
         return None
@@ -129,11 +130,7 @@ def _only_entity(file: SdfFile, uri: str, include: Params, workspace: Workspace)
         held = ", ".join(f"<{e.name}>" for e in entities) or "none"
         has_world = "; it holds a <world>" if file.root.has("world") else ""
         near = did_you_mean("model", [c.name for c in file.root.children]) if not entities else ""
-        workspace.diagnostics.error(
-            "SK-SDF-016",
-            f"{uri} must hold exactly one model, light or actor, it holds {held}{has_world}",
-            include.where,
-            near,
-        )
+        message = f"{uri} must hold exactly one model, light or actor, it holds {held}{has_world}"
+        workspace.diagnostics.error("SK-SDF-016", message, include.where, near)
         return None
     return entities[0]

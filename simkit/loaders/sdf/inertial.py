@@ -7,16 +7,20 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from simkit.diagnostics import Diagnostics
 from simkit.loaders.resources.loader import MeshReader
 from simkit.loaders.sdf.solid_moments import Solid, solid_of, solid_of_triangles
 from simkit.params import Params
+from simkit.pose import Pose
 from simkit.scene import Inertial, Mesh, SceneCollision
+from simkit.scene.geometry import vec3
 
 Matrix = npt.NDArray[np.float64]
+Moments = tuple[float, float, float, float, float, float]
+"""ixx, iyy, izz, ixy, ixz, iyz [kg·m²]."""
+
+MOMENT_NAMES = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 _WATER = 1000.0
 _MAX_MOMENT = 1e15  # kg and kg·m²: the products of larger ones leave the numbers
-_KEYS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 
 
 def read_inertial(
@@ -25,7 +29,6 @@ def read_inertial(
     collisions: Sequence[SceneCollision],
     densities: Sequence[float | None],
     static: bool,
-    diagnostics: Diagnostics,
     mesh_reader: MeshReader | None = None,
 ) -> Inertial:
     """The mass properties of a link in link axes, about its centre of mass.
@@ -39,23 +42,21 @@ def read_inertial(
     if block is None:
         return Inertial(given=False)
     if block.attribute("auto", "false").lower() in ("true", "1"):
-        return _automatic(block, name, collisions, densities, mesh_reader, diagnostics)
+        return _automatic(block, name, collisions, densities, mesh_reader)
     block.has("density")
     mass = block.number("mass", 1.0, maximum=_MAX_MOMENT)
-    pose = block.pose("pose")
-    values = _moments(block.block("inertia"))
-    _check(name, mass, values, block, static, diagnostics)
-    x, y, z = (float(v) for v in pose.position)
-    turn = pose.matrix
+    pose, moments = block.pose("pose"), block.block("inertia")
+    values = [moments.number(k, float(k[1] == k[2]), minimum=-_MAX_MOMENT, maximum=_MAX_MOMENT) for k in MOMENT_NAMES]
+    _check(name, mass, values, block, static)
+    return Inertial(mass, vec3(pose.position), turned_moments(values, pose), True)
+
+
+def turned_moments(values: Sequence[float], pose: Pose) -> Moments:
+    """Moments and products of inertia in the axes of a pose, seen from the frame that the pose is given in."""
     if pose.quaternion[0] != 1.0:
-        values = _moments_text(turn @ _matrix(values) @ turn.T)
-    return Inertial(mass, (x, y, z), values, True)
-
-
-def _moments(block: Params) -> tuple[float, float, float, float, float, float]:
-    ixx, iyy, izz, ixy, ixz, iyz = (
-        block.number(k, 1.0 if k[1] == k[2] else 0.0, minimum=-_MAX_MOMENT, maximum=_MAX_MOMENT) for k in _KEYS
-    )
+        turn = pose.matrix
+        return moments_of(turn @ _matrix(values) @ turn.T)
+    ixx, iyy, izz, ixy, ixz, iyz = values
     return ixx, iyy, izz, ixy, ixz, iyz
 
 
@@ -63,39 +64,32 @@ def _matrix(v: Sequence[float]) -> Matrix:
     return np.array(((v[0], v[3], v[4]), (v[3], v[1], v[5]), (v[4], v[5], v[2])))
 
 
-def _moments_text(m: Matrix) -> tuple[float, float, float, float, float, float]:
+def moments_of(m: Matrix) -> Moments:
+    """ixx, iyy, izz, ixy, ixz and iyz of a matrix of inertia."""
     return float(m[0, 0]), float(m[1, 1]), float(m[2, 2]), float(m[0, 1]), float(m[0, 2]), float(m[1, 2])
 
 
-def _check(
-    name: str, mass: float, values: Sequence[float], block: Params, static: bool, diagnostics: Diagnostics
-) -> None:
-    say = diagnostics.warning if static else diagnostics.error
-    place = block.child("mass") or block
+def _check(name: str, mass: float, values: Sequence[float], block: Params, static: bool) -> None:
+    place = block.child_or_self("mass")
     if mass < 0:
-        say("SK-SDF-013", f"link {name!r} has mass {mass:g} kg, it must be positive", place.where)
+        say = place.warning if static else place.error
+        say("SK-SDF-013", f"link {name!r} has mass {mass:g} kg, it must be positive")
     elif mass == 0:
-        diagnostics.warning(
-            "SK-SDF-029", f"link {name!r} has mass 0; nothing without mass can move by itself", place.where
-        )
+        place.warning("SK-SDF-029", f"link {name!r} has mass 0; nothing without mass can move by itself")
     if any(values[3:]):
         small, middle, large = (float(v) for v in np.linalg.eigvalsh(_matrix(values)))
     else:
         small, middle, large = sorted(values[:3])
-    place = block.child("inertia") or block
+    place = block.child_or_self("inertia")
+    shown = ", ".join(f"{v:.4g}" for v in (small, middle, large))
     if small <= 0:
-        shown = ", ".join(f"{v:.4g}" for v in (small, middle, large))
         text = f"link {name!r} has an impossible inertia: principal moments {shown}, all must be positive"
         # a moment left at zero is common in the wild and Gazebo runs such files; a negative one is a mistake
-        (say if small < -1e-12 * max(1.0, large) else diagnostics.warning)("SK-SDF-013", text, place.where)
+        is_mistake = small < -1e-12 * max(1.0, large) and not static
+        (place.error if is_mistake else place.warning)("SK-SDF-013", text)
     elif small + middle < large * (1 - 1e-6):
-        shown = ", ".join(f"{v:.4g}" for v in (small, middle, large))
-        diagnostics.warning(
-            "SK-SDF-014",
-            f"link {name!r} has an inertia that no solid has: of its principal moments {shown} "
-            "two must add up to more than the third",
-            place.where,
-        )
+        text = f"link {name!r} has an inertia that no solid has: of its principal moments {shown}"
+        place.warning("SK-SDF-014", f"{text} two must add up to more than the third")
 
 
 def _automatic(
@@ -104,19 +98,15 @@ def _automatic(
     collisions: Sequence[SceneCollision],
     densities: Sequence[float | None],
     mesh_reader: MeshReader | None,
-    diagnostics: Diagnostics,
 ) -> Inertial:
     """Mass properties of the collision solids; a given mass scales them."""
     common = block.number("density", _WATER, minimum=0, maximum=_MAX_MOMENT)
     parts = []
     for collision, density in zip(collisions, densities, strict=True):
-        solid = _solid(collision, mesh_reader, diagnostics)
+        solid = _solid(collision, mesh_reader, block)
         if solid is None or not (solid[0] > 0 and np.isfinite(solid[2]).all()):
-            diagnostics.warning(
-                "SK-SDF-022",
-                f"link {name!r}: collision {collision.name!r} has no volume for automatic inertia",
-                collision.where,
-            )
+            text = f"link {name!r}: collision {collision.name!r} has no volume for automatic inertia"
+            block.diagnostics.warning("SK-SDF-022", text, collision.where)
             continue
         volume, centre, moments = solid
         mass = volume * (common if density is None else density)
@@ -124,9 +114,7 @@ def _automatic(
         parts.append((mass, collision.pose_link.transform(centre), turn @ moments @ turn.T * (mass / volume)))
     total = sum(mass for mass, _, _ in parts)
     if total <= 0:
-        diagnostics.warning(
-            "SK-SDF-022", f"link {name!r} has no collision to compute its inertia from; 1 kg is used", block.where
-        )
+        block.warning("SK-SDF-022", f"link {name!r} has no collision to compute its inertia from; 1 kg is used")
         return Inertial()
     com = sum((mass * at for mass, at, _ in parts), np.zeros(3)) / total
     inertia = np.zeros((3, 3))
@@ -136,22 +124,20 @@ def _automatic(
     given = block.number("mass", total, maximum=_MAX_MOMENT)
     if not (total <= _MAX_MOMENT and np.abs(inertia).max() <= _MAX_MOMENT):
         weight = f"link {name!r} weighs {total:g} kg by its collisions"
-        text = f"{weight}; at most {_MAX_MOMENT:g} kg and kg·m² can be simulated"
-        diagnostics.error("SK-SDF-013", text, block.where)
+        block.error("SK-SDF-013", f"{weight}; at most {_MAX_MOMENT:g} kg and kg·m² can be simulated")
         return Inertial()
     if given <= 0:
-        place = block.child("mass") or block
-        diagnostics.error("SK-SDF-013", f"link {name!r} has mass {given:g} kg, it must be positive", place.where)
+        message = f"link {name!r} has mass {given:g} kg, it must be positive"
+        block.child_or_self("mass").error("SK-SDF-013", message)
         given = total
-    x, y, z = (float(v) for v in com)
-    return Inertial(given, (x, y, z), _moments_text(inertia * (given / total)), True)
+    return Inertial(given, vec3(com), moments_of(inertia * (given / total)), True)
 
 
-def _solid(collision: SceneCollision, mesh_reader: MeshReader | None, diagnostics: Diagnostics) -> Solid | None:
+def _solid(collision: SceneCollision, mesh_reader: MeshReader | None, block: Params) -> Solid | None:
     """What a collision encloses; a mesh is read, which reports what is wrong with its file."""
     shape = collision.geometry
     if not isinstance(shape, Mesh):
         return solid_of(shape)
     if mesh_reader is None or shape.missing:
         return None
-    return solid_of_triangles(mesh_reader(shape, diagnostics, collision.where))
+    return solid_of_triangles(mesh_reader(shape, block.diagnostics, collision.where))

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
-from simkit.diagnostics import Where, did_you_mean
-from simkit.loaders.sdf.entity_names import named_elements, scoped
+from simkit.diagnostics import did_you_mean
+from simkit.loaders.sdf.entity_names import scoped
 from simkit.loaders.sdf.frames import MODEL, WORLD, Frame, world_pose
-from simkit.loaders.sdf.load_context import NamedElement, Workspace, local_pose
+from simkit.loaders.sdf.load_context import NamedElement
 from simkit.loaders.sdf.plugin import read_plugins
-from simkit.loaders.sdf.sensor import read_sensor
+from simkit.loaders.sdf.sensor import read_sensors
 from simkit.params import Params
 from simkit.pose import IDENTITY, Pose
-from simkit.scene import Axis, Mimic, SceneJoint, SceneSensor
+from simkit.scene import Axis, Mimic, SceneJoint
+from simkit.scene.geometry import Vec3, vec3
 
 AXES = {
     "revolute": 1,
@@ -34,31 +36,28 @@ def joint_link_name(joint: Params, name: str) -> str:
     return "" if found is None else found.value or found.attribute("link").strip()
 
 
-def read_joint(part: NamedElement, model: str, workspace: Workspace) -> SceneJoint | None:
-    """A joint whose frame is known; None, with errors recorded, when it joins nothing.
+def read_joints(parts: Iterable[NamedElement], model: str) -> tuple[SceneJoint, ...]:
+    """Joints whose frames are known; those that join nothing are left out, with errors recorded.
 
     Args:
-        model: scoped name of its model; empty in a world.
+        model: scoped name of their model; empty in a world.
     """
-    element, diagnostics = part.element, workspace.diagnostics
+    return tuple(joint for part in parts if (joint := _joint(part, model)) is not None)
+
+
+def _joint(part: NamedElement, model: str) -> SceneJoint | None:
+    element = part.element
     own = scoped(model, part.name)
     kind = element.attribute("type").strip()
-    parent, child = _joint_link(part, "parent", workspace), _joint_link(part, "child", workspace)
+    parent, child = _joint_link(part, "parent"), _joint_link(part, "child")
     if kind not in AXES:
-        hint = did_you_mean(kind, AXES)
-        diagnostics.error(
-            "SK-SDF-008", f"joint {part.name!r} has type {kind!r}, known are {', '.join(AXES)}", element.where, hint
-        )
-        element.mark_all_read()
-        return None
-    if parent is None or child is None:
-        if child is not None:
-            _axes(part, kind, IDENTITY, workspace)  # for what is wrong with them
-        element.mark_all_read()
-        return None
-    if parent is child:
-        message = f"joint {part.name!r} joins link {child.scoped!r} with itself"
-        diagnostics.error("SK-SDF-007", message, element.where)
+        message = f"joint {part.name!r} has type {kind!r}, known are {', '.join(AXES)}"
+        element.error("SK-SDF-008", message, did_you_mean(kind, AXES))
+    elif parent is None and child is not None:
+        _axes(part, kind, IDENTITY)  # for what is wrong with them
+    elif parent is not None and parent is child:
+        element.error("SK-SDF-007", f"joint {part.name!r} joins link {child.scoped!r} with itself")
+    if kind not in AXES or parent is None or child is None or parent is child:
         element.mark_all_read()
         return None
     pose = world_pose(part.frame)
@@ -70,40 +69,29 @@ def read_joint(part: NamedElement, model: str, workspace: Workspace) -> SceneJoi
         parent_link=WORLD if parent.kind == WORLD else parent.scoped,
         child_link=child.scoped,
         pose_world=pose,
-        axes=_axes(part, kind, pose, workspace),
+        axes=_axes(part, kind, pose),
         thread_pitch=_thread_pitch(element) if kind == "screw" else 0.0,
         gearbox_ratio=element.number("gearbox_ratio", 1.0) if kind == "gearbox" else 1.0,
-        gearbox_reference=_gearbox_reference(part, workspace) if kind == "gearbox" else "",
-        sensors=_sensors(part, own, child, workspace),
+        gearbox_reference=_gearbox_reference(part) if kind == "gearbox" else "",
+        sensors=read_sensors(part, own, world_pose(child), world_pose(child).inverse() @ pose),
         plugins=read_plugins(element.all("plugin"), own),
         where=element.where,
     )
 
 
-def _sensors(part: NamedElement, own: str, child: Frame, workspace: Workspace) -> tuple[SceneSensor, ...]:
-    """The joint's sensors, their poses in the child link's frame."""
-    diagnostics, base = workspace.diagnostics, world_pose(child)
-    in_child = base.inverse() @ world_pose(part.frame)
-    sensors = []
-    for name, e in named_elements(part.element.all("sensor"), f"joint {part.name!r}", diagnostics, part.file.version):
-        pose = in_child @ local_pose(e, part.scope, part.frame, f"sensor {name!r}")
-        sensors.append(read_sensor(e, name, own, True, pose, base, diagnostics))
-    return tuple(sensors)
-
-
-def _joint_link(part: NamedElement, which: str, workspace: Workspace) -> Frame | None:
+def _joint_link(part: NamedElement, which: str) -> Frame | None:
     """The link at one end; the parent may be the world."""
-    element, diagnostics = part.element, workspace.diagnostics
+    element = part.element
     name = joint_link_name(element, which)
-    place = element.child(which) or element
+    place = element.child_or_self(which)
     what = f"joint {part.name!r}: the {which}"
     if not name:
         near = "" if element.has(which) else did_you_mean(which, [c.name for c in element.children])
-        diagnostics.error("SK-SDF-026", f"joint {part.name!r} needs <{which}>", place.where, near)
+        place.error("SK-SDF-026", f"joint {part.name!r} needs <{which}>", near)
         return None
     if name == WORLD:
         if which == "child":
-            diagnostics.error("SK-SDF-004", f"{what} cannot be the world", place.where, "exchange parent and child")
+            place.error("SK-SDF-004", f"{what} cannot be the world", "exchange parent and child")
             return None
         return Frame(WORLD, WORLD, WORLD)
     frames = part.scope.chain(name)
@@ -111,47 +99,36 @@ def _joint_link(part: NamedElement, which: str, workspace: Workspace) -> Frame |
         part.scope.report_unknown(name, what, place.where)
         return None
     if frames and frames[-1] is part.frame:
-        diagnostics.error("SK-SDF-007", f"{what} is the joint itself", place.where)
+        place.error("SK-SDF-007", f"{what} is the joint itself")
         return None
     return part.scope.body(name, place.where, what)
 
 
-def _axes(part: NamedElement, kind: str, pose_world: Pose, workspace: Workspace) -> tuple[Axis, ...]:
+def _axes(part: NamedElement, kind: str, pose_world: Pose) -> tuple[Axis, ...]:
     axes = []
     for index, name in enumerate(("axis", "axis2")):
-        if index >= AXES[kind]:
-            part.element.has(name)  # it has no meaning for this kind, which the report on unused elements says
-            continue
-        element = part.element.child(name)
-        if element is None:
-            if kind != "gearbox" or index == 0:
-                workspace.diagnostics.warning(
-                    "SK-SDF-026", f"{kind} joint {part.name!r} has no <{name}>; 0 0 1 is used", part.element.where
-                )
-                element = Params(name, where=part.element.where, diagnostics=workspace.diagnostics)
-            else:
-                continue
-        axes.append(_axis(part, element, kind, pose_world, workspace))
+        has_axis = part.element.has(name)
+        if index >= AXES[kind] or (kind == "gearbox" and index == 1 and not has_axis):
+            continue  # one that has no meaning for this kind is named by the report on unused elements
+        if not has_axis:
+            part.element.warning("SK-SDF-026", f"{kind} joint {part.name!r} has no <{name}>; 0 0 1 is used")
+        axes.append(_axis(part, part.element.block(name), kind, pose_world))
     return tuple(axes)
 
 
-def _axis(part: NamedElement, element: Params, kind: str, pose_world: Pose, workspace: Workspace) -> Axis:
-    direction = _direction(part, element, workspace)
+def _axis(part: NamedElement, element: Params, kind: str, pose_world: Pose) -> Axis:
+    direction = _direction(part, element)
     limit, dynamics = element.block("limit"), element.block("dynamics")
     lower = _position_limit(limit, "lower", -math.inf)
     upper = _position_limit(limit, "upper", math.inf)
     if kind == "continuous":
         lower, upper = -math.inf, math.inf
     if lower > upper:
-        workspace.diagnostics.warning(
-            "SK-SDF-027",
-            f"joint {part.name!r} has a lower limit {lower:g} above its upper limit {upper:g}; it is read as unlimited",
-            (limit.child("lower") or limit).where,
-        )
+        message = f"joint {part.name!r} has a lower limit {lower:g} above its upper limit {upper:g}"
+        limit.child_or_self("lower").warning("SK-SDF-027", f"{message}; it is read as unlimited")
         lower, upper = -math.inf, math.inf
-    turned = pose_world.rotate(direction)
     return Axis(
-        xyz_world=(float(turned[0]), float(turned[1]), float(turned[2])),
+        xyz_world=vec3(pose_world.rotate(direction)),
         xyz_joint=direction,
         lower=lower,
         upper=upper,
@@ -172,29 +149,25 @@ def _optional_non_negative(block: Params, name: str) -> float | None:
     return block.number(name, 0.0, minimum=0.0) if block.has(name) else None
 
 
-def _direction(part: NamedElement, element: Params, workspace: Workspace) -> tuple[float, float, float]:
+def _direction(part: NamedElement, element: Params) -> Vec3:
     """The unit axis in the joint frame; it is given there, in `expressed_in`, or (before 1.5) in the model frame."""
     x, y, z = element.vector3("xyz", (0.0, 0.0, 1.0))
-    xyz = element.child("xyz")
+    xyz = element.child_or_self("xyz")
     length = math.hypot(x, y, z)
-    where = (xyz or element).where
     if length < 1e-12:
-        workspace.diagnostics.error("SK-SDF-017", f"joint {part.name!r} has an axis of length zero", where)
+        xyz.error("SK-SDF-017", f"joint {part.name!r} has an axis of length zero")
         return (0.0, 0.0, 1.0)
-    frame = xyz.attribute("expressed_in") if xyz is not None else ""
-    in_model = (
-        element.boolean("use_parent_model_frame", part.file.version < (1, 5)) if part.file.version < (1, 7) else False
-    )
+    frame = xyz.attribute("expressed_in") if xyz is not element else ""
+    version = part.file.version
+    in_model = version < (1, 7) and element.boolean("use_parent_model_frame", version < (1, 5))
     if not frame and in_model:
         frame = MODEL
     unit = (x / length, y / length, z / length)
     if not frame:
         return unit
-    source = (
-        IDENTITY if frame == MODEL and part.scope.root.scope is None else part.scope.pose_of(frame, part.frame, where)
-    )
-    turned = part.scope.resolve(part.frame).inverse().rotate(source.rotate(unit))
-    return (float(turned[0]), float(turned[1]), float(turned[2]))
+    is_own_model = frame == MODEL and part.scope.root.scope is None
+    source = IDENTITY if is_own_model else part.scope.pose_of(frame, part.frame, xyz.where)
+    return vec3(part.scope.resolve(part.frame).inverse().rotate(source.rotate(unit)))
 
 
 def _position_limit(limit: Params, name: str, none: float) -> float:
@@ -233,19 +206,17 @@ def _thread_pitch(element: Params) -> float:
     if element.has("screw_thread_pitch"):
         return element.number("screw_thread_pitch", 1.0)
     if old == 0:
-        place = element.child("thread_pitch") or element
-        place.error("SK-PARAM-002", "found <thread_pitch>0</thread_pitch>, allowed is a number other than 0")
+        message = "found <thread_pitch>0</thread_pitch>, allowed is a number other than 0"
+        element.child_or_self("thread_pitch").error("SK-PARAM-002", message)
         return 1.0
     return -2 * math.pi / old if element.has("thread_pitch") else 1.0
 
 
-def _gearbox_reference(part: NamedElement, workspace: Workspace) -> str:
+def _gearbox_reference(part: NamedElement) -> str:
     name = part.element.text("gearbox_reference_body", "")
     if not name:
-        workspace.diagnostics.error(
-            "SK-SDF-026", f"gearbox {part.name!r} needs <gearbox_reference_body>", part.element.where
-        )
+        part.element.error("SK-SDF-026", f"gearbox {part.name!r} needs <gearbox_reference_body>")
         return ""
-    where: Where = (part.element.child("gearbox_reference_body") or part.element).where
+    where = part.element.child_or_self("gearbox_reference_body").where
     body = part.scope.body(name, where, f"gearbox {part.name!r}")
     return body.scoped if body is not None else ""

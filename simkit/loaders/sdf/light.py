@@ -4,46 +4,52 @@ from __future__ import annotations
 
 import math
 
-from simkit.diagnostics import Diagnostics, closest
+from simkit.diagnostics import did_you_mean
+from simkit.loaders.sdf.entity_names import scoped as join
+from simkit.loaders.sdf.load_context import NamedElement
 from simkit.loaders.sdf.material import read_colour
 from simkit.params import LARGEST, Params
 from simkit.pose import Pose
 from simkit.scene import SceneLight
-from simkit.scene.geometry import Vec3
+from simkit.scene.geometry import Vec3, vec3
 
 _TYPES = ("point", "spot", "directional")
 
 
-def read_light(
-    element: Params, name: str, scoped: str, pose_world: Pose, link: str, diagnostics: Diagnostics
-) -> SceneLight:
-    """A light whose pose is resolved already."""
+def read_lights(part: NamedElement, link: str, link_world: Pose) -> tuple[SceneLight, ...]:
+    """The lights of a link.
+
+    Args:
+        link: scoped name of the link.
+        link_world: pose of the link in the world.
+    """
+    return tuple(
+        read_light(e, name, link_world @ part.pose_of(e, f"light {name!r}"), link) for name, e in part.named("light")
+    )
+
+
+def read_light(element: Params, name: str, pose_world: Pose, link: str = "") -> SceneLight:
+    """A light whose pose is resolved already; `link` is the scoped name of what carries it."""
     kind = element.attribute("type")
     if not kind:
         message = f"<light name={name!r}> needs type= ({', '.join(_TYPES)}); it is taken as a point"
-        diagnostics.warning("SK-SDF-039", message, element.where)
+        element.warning("SK-SDF-039", message)
         kind = "point"
     if kind not in _TYPES:
-        near = closest(kind, _TYPES)
-        diagnostics.error(
-            "SK-SDF-025",
-            f"light {name!r} has type {kind!r}, known are {', '.join(_TYPES)}",
-            element.where,
-            f"did you mean {near!r}?" if near else "",
-        )
+        message = f"light {name!r} has type {kind!r}, known are {', '.join(_TYPES)}"
+        element.error("SK-SDF-025", message, did_you_mean(kind, _TYPES))
         kind = "point"
     element.child("pose")
-    direction = _direction(element, name, diagnostics)
+    direction = _direction(element, name)
     fade, spot = element.block("attenuation"), element.block("spot")
-    turned = pose_world.rotate(direction)
     element.child("visualize")
     return SceneLight(
         name=name,
-        scoped=scoped,
+        scoped=join(link, name),
         type=kind,
         pose_world=pose_world,
         direction=direction,
-        direction_world=(float(turned[0]), float(turned[1]), float(turned[2])),
+        direction_world=vec3(pose_world.rotate(direction)),
         link=link,
         diffuse=read_colour(element, "diffuse", (1.0, 1.0, 1.0, 1.0)),
         specular=read_colour(element, "specular", (0.1, 0.1, 0.1, 1.0)),
@@ -62,10 +68,10 @@ def read_light(
     )
 
 
-def _direction(element: Params, name: str, diagnostics: Diagnostics) -> Vec3:
+def _direction(element: Params, name: str) -> Vec3:
     x, y, z = element.vector3("direction", (0.0, 0.0, -1.0))
     length = math.sqrt(x * x + y * y + z * z)
     if length < 1e-12:
-        diagnostics.error("SK-SDF-025", f"light {name!r} has a direction of length zero", element.where)
+        element.error("SK-SDF-025", f"light {name!r} has a direction of length zero")
         return (0.0, 0.0, -1.0)
     return (x / length, y / length, z / length)

@@ -5,19 +5,19 @@ from __future__ import annotations
 from dataclasses import replace
 
 from simkit.diagnostics import did_you_mean
-from simkit.loaders.sdf.entity_names import named_elements, scoped
+from simkit.loaders.sdf.entity_names import scoped
 from simkit.loaders.sdf.frames import world_pose
 from simkit.loaders.sdf.geometry import read_geometry
 from simkit.loaders.sdf.inertial import read_inertial
-from simkit.loaders.sdf.light import read_light
-from simkit.loaders.sdf.load_context import NamedElement, Workspace, local_pose
+from simkit.loaders.sdf.light import read_lights
+from simkit.loaders.sdf.load_context import NamedElement, Workspace
 from simkit.loaders.sdf.material import read_material
 from simkit.loaders.sdf.plugin import read_plugins
-from simkit.loaders.sdf.sensor import read_sensor
+from simkit.loaders.sdf.sensor import read_sensors
 from simkit.loaders.sdf.surface import read_surface
 from simkit.params import Params
-from simkit.pose import Pose
-from simkit.scene import SceneCollision, SceneLight, SceneLink, SceneSensor, SceneVisual, Surface
+from simkit.scene import SceneCollision, SceneLink, SceneVisual, Surface
+from simkit.scene.geometry import vec3
 
 
 def read_link(part: NamedElement, model: str, static: bool, windy: bool, workspace: Workspace) -> SceneLink:
@@ -28,33 +28,26 @@ def read_link(part: NamedElement, model: str, static: bool, windy: bool, workspa
         static: whether the model is static.
         windy: whether the wind pushes the links of the model that do not say it themselves.
     """
-    element, diagnostics = part.element, workspace.diagnostics
+    element = part.element
     own = scoped(model, part.name)
     pose = world_pose(part.frame)
     element.child("pose")
-    read = [
-        _collision(part, c, name, own, workspace)
-        for name, c in named_elements(element.all("collision"), f"link {part.name!r}", diagnostics, part.file.version)
-    ]
+    read = [_collision(part, c, name, own, workspace) for name, c in part.named("collision")]
     collisions = tuple(c for c, _ in read if c is not None)
     densities = [density for c, density in read if c is not None]
-    visuals = tuple(
-        visual
-        for name, v in named_elements(element.all("visual"), f"link {part.name!r}", diagnostics, part.file.version)
-        if (visual := _visual(part, v, name, own, workspace)) is not None
-    )
+    visuals = [_visual(part, v, name, own, workspace) for name, v in part.named("visual")]
     return SceneLink(
         name=part.name,
         scoped=own,
         pose_world=pose,
-        inertial=read_inertial(element, part.name, collisions, densities, static, diagnostics, workspace.mesh_reader),
+        inertial=read_inertial(element, part.name, collisions, densities, static, workspace.mesh_reader),
         gravity=element.boolean("gravity", True),
         kinematic=element.boolean("kinematic", False),
         self_collide=element.boolean("self_collide", False),
         collisions=collisions,
-        visuals=visuals,
-        sensors=_sensors(part, own, pose, workspace),
-        lights=_lights(part, own, pose, workspace),
+        visuals=tuple(v for v in visuals if v is not None),
+        sensors=read_sensors(part, own, pose),
+        lights=read_lights(part, own, pose),
         plugins=read_plugins(element.all("plugin"), own),
         where=element.where,
         velocity_decay=_velocity_decay(element),
@@ -82,7 +75,7 @@ def _collision(
     collision = SceneCollision(
         name=name,
         scoped=scoped(link, name),
-        pose_link=local_pose(element, part.scope, part.frame, what),
+        pose_link=part.pose_of(element, what),
         geometry=shape,
         surface=surface,
         laser_retro=element.number("laser_retro", 0.0),
@@ -99,23 +92,18 @@ def _with_friction_frame(surface: Surface, part: NamedElement, element: Params, 
     scope, frames = part.scope, part.scope.chain(name)
     if frames and frames[-1].kind == "link":
         return surface
-    found = element.block("surface").block("friction").block("ode").child("fdir1")
-    where = element.where if found is None else found.where
+    found = element.block("surface").block("friction").block("ode").child("fdir1") or element
     owner = f"the direction of friction of link {part.name!r}"
-    body = None if frames is None else scope.body(name, where, owner)
+    body = None if frames is None else scope.body(name, found.where, owner)
     if body is None or body.kind != "link":
         if frames is None:
             message = f"{owner} is told in {name!r}, which is no frame here; it is taken in the collision's own"
-            hint = did_you_mean(name, scope.all_names())
-            scope.diagnostics.warning("SK-SDF-040", message, where, hint)
+            found.warning("SK-SDF-040", message, did_you_mean(name, scope.all_names()))
         return replace(surface, fdir1_frame="")
     turned = world_pose(body).inverse().rotate((scope.world @ scope.pose_of(name)).rotate(surface.fdir1))
     own = link.rpartition("::")[0]
-    return replace(
-        surface,
-        fdir1=(float(turned[0]), float(turned[1]), float(turned[2])),
-        fdir1_frame=body.scoped.removeprefix(f"{own}::") if own else body.scoped,
-    )
+    frame = body.scoped.removeprefix(f"{own}::") if own else body.scoped
+    return replace(surface, fdir1=vec3(turned), fdir1_frame=frame)
 
 
 def _visual(part: NamedElement, element: Params, name: str, link: str, workspace: Workspace) -> SceneVisual | None:
@@ -127,7 +115,7 @@ def _visual(part: NamedElement, element: Params, name: str, link: str, workspace
     return SceneVisual(
         name=name,
         scoped=scoped(link, name),
-        pose_link=local_pose(element, part.scope, part.frame, what),
+        pose_link=part.pose_of(element, what),
         geometry=shape,
         material=read_material(element, part.file, workspace),
         transparency=element.number("transparency", 0.0, minimum=0.0, maximum=1.0),
@@ -136,29 +124,4 @@ def _visual(part: NamedElement, element: Params, name: str, link: str, workspace
         laser_retro=element.number("laser_retro", 0.0),
         where=element.where,
         plugins=read_plugins(element.all("plugin"), scoped(link, name)),
-    )
-
-
-def _sensors(part: NamedElement, link: str, pose: Pose, workspace: Workspace) -> tuple[SceneSensor, ...]:
-    found = named_elements(part.element.all("sensor"), f"link {part.name!r}", workspace.diagnostics, part.file.version)
-    return tuple(
-        read_sensor(
-            e, name, link, False, local_pose(e, part.scope, part.frame, f"sensor {name!r}"), pose, workspace.diagnostics
-        )
-        for name, e in found
-    )
-
-
-def _lights(part: NamedElement, link: str, pose: Pose, workspace: Workspace) -> tuple[SceneLight, ...]:
-    found = named_elements(part.element.all("light"), f"link {part.name!r}", workspace.diagnostics, part.file.version)
-    return tuple(
-        read_light(
-            e,
-            name,
-            scoped(link, name),
-            pose @ local_pose(e, part.scope, part.frame, f"light {name!r}"),
-            link,
-            workspace.diagnostics,
-        )
-        for name, e in found
     )

@@ -13,6 +13,7 @@ from simkit.loaders.resources.loader import Loader, LoadRequest, MeshReader, Mjc
 from simkit.loaders.resources.model_folder import NEWEST_SDF, sdf_version
 from simkit.loaders.resources.uri_resolver import Resolver
 from simkit.loaders.resources.xml_reader import Document, parse_file
+from simkit.loaders.sdf.entity_names import named_elements
 from simkit.loaders.sdf.frames import Frame, Scope, pose_base
 from simkit.loaders.sdf.version_upgrade import modernise, nest_flattened_models
 from simkit.params import Params
@@ -180,6 +181,21 @@ class NamedElement:
     scope: Scope
     file: SdfFile
 
+    def named(self, kind: str) -> list[tuple[str, Params]]:
+        """The elements of a kind in it, with their names; a bad or a repeated name is an error."""
+        owner = f"{self.frame.kind} {self.name!r}"
+        return named_elements(self.element.all(kind), owner, self.element.diagnostics, self.file.version)
+
+    def pose_of(self, inner: Params, what: str) -> Pose:
+        """The pose of something inside a link (or joint) in that link's frame; `relative_to` may name another frame."""
+        pose, base = read_pose(inner)
+        if not base:
+            return pose
+        if self.scope.chain(base) is None:
+            self.scope.report_unknown(base, f"{what}: the frame", pose_location(inner))
+            return pose
+        return self.scope.resolve(self.frame).inverse() @ self.scope.pose_of(base) @ pose
+
 
 @dataclass(frozen=True)
 class EntitySource:
@@ -237,17 +253,4 @@ def read_pose(element: Params, name: str = "pose") -> tuple[Pose, str]:
 
 def pose_location(element: Params) -> Where:
     """The line of an element's pose, or its own."""
-    pose = element.child("pose")
-    return element.where if pose is None else pose.where
-
-
-def local_pose(element: Params, scope: Scope, owner: Frame, what: str) -> Pose:
-    """The pose of something inside a link (or joint) in that link's frame; `relative_to` may name another frame."""
-    pose, base = read_pose(element)
-    if not base:
-        return pose
-    frames = scope.chain(base)
-    if frames is None:
-        scope.report_unknown(base, f"{what}: the frame", pose_location(element))
-        return pose
-    return scope.resolve(owner).inverse() @ scope.pose_of(base) @ pose
+    return element.child_or_self("pose").where

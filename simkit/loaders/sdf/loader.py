@@ -30,9 +30,9 @@ class SdfLoader(Loader):
         file = workspace.file(document.root, folder, chain)
         scene = _read(file, document, request, workspace)
         for root in workspace.roots.values():
-            report_unread(root, request.diagnostics)
+            report_unread(root)
         for model in workspace.changed:
-            report_unread(model, request.diagnostics, model.name)
+            report_unread(model, model.name)
         return scene
 
 
@@ -54,8 +54,7 @@ def _read(file: SdfFile, document: Document, request: LoadRequest, workspace: Wo
     if source is None:
         return Scene((), None, name)
     if source.element.name == "light":
-        light = read_light(source.element, source.name, source.name, source.pose, "", workspace.diagnostics)
-        return Scene((), None, name, light)
+        return Scene((), None, name, read_light(source.element, source.name, source.pose))
     return Scene((), _model(source, request, workspace), name)
 
 

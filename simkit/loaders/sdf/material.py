@@ -6,7 +6,7 @@ import math
 from pathlib import Path
 
 from simkit.diagnostics import closest, did_you_mean
-from simkit.loaders.sdf.gazebo_materials import gazebo_material, gazebo_materials
+from simkit.loaders.sdf.gazebo_materials import gazebo_colours, gazebo_materials
 from simkit.loaders.sdf.load_context import SdfFile, Workspace
 from simkit.loaders.sdf.material_script import OgreMaterial, find_material, find_texture
 from simkit.params import Params
@@ -39,6 +39,8 @@ def read_material(visual: Params, file: SdfFile, workspace: Workspace) -> Materi
             _report_missing_texture(f"texture {ogre.texture} of material {name!r}", script, workspace)
     if name and not script_colours and ogre is None and not block.has("diffuse") and texture is None:
         _report_unknown_script(name, script, workspace)
+    has_roughness = _has_content(workflow, "roughness")
+    roughness = workflow.number("roughness", minimum=0.0, maximum=1.0) if has_roughness else None
     return Material(
         ambient=ambient,
         diffuse=diffuse,
@@ -46,9 +48,7 @@ def read_material(visual: Params, file: SdfFile, workspace: Workspace) -> Materi
         emissive=read_colour(block, "emissive", script_colours.get("emissive", _BLACK)),
         texture=texture,
         script=name,
-        roughness=workflow.number("roughness", minimum=0.0, maximum=1.0)
-        if _has_content(workflow, "roughness")
-        else None,
+        roughness=roughness,
         double_sided=block.boolean("double_sided", ogre.is_double_sided if ogre is not None else False),
         texture_scale=scale,
         shininess=block.number("shininess", minimum=0.0) if _has_content(block, "shininess") else None,
@@ -64,13 +64,9 @@ def _script_material(
     name: str, script: Params, file: SdfFile, workspace: Workspace
 ) -> tuple[OgreMaterial | None, list[Path]]:
     """The material of that name in the scripts that the file points to, and the places it points to."""
-    places: list[Path] = []
-    for element in script.all("uri"):
-        if "media/materials" in element.value or not element.value:
-            continue  # Gazebo's own, known by name
-        found, _ = workspace.resolver.search(element.value, file.folder)
-        if found is not None:
-            places.append(found)
+    # Gazebo's own are known by name
+    uris = [e.value for e in script.all("uri") if e.value and "media/materials" not in e.value]
+    places = [place for uri in uris if (place := workspace.resolver.search(uri, file.folder)[0]) is not None]
     return (find_material(name, places) if name and places else None), places
 
 
@@ -80,10 +76,7 @@ def _script_colours(name: str, ogre: OgreMaterial | None) -> dict[str, Colour]:
         if not ogre.is_transparent:
             colours["diffuse"] = (*colours["diffuse"][:3], 1.0)
         return colours
-    known = gazebo_material(name)
-    if known is None:
-        return {}
-    return {k: getattr(known, k) for k in ("ambient", "diffuse", "specular", "emissive")}
+    return gazebo_colours(name)
 
 
 def _report_unknown_script(name: str, script: Params, workspace: Workspace) -> None:

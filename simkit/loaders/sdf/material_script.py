@@ -13,7 +13,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Final
 
-from simkit.loaders.sdf.gazebo_materials import gazebo_material
+from simkit.loaders.sdf.gazebo_materials import gazebo_colours
 from simkit.scene.model import Colour
 
 _LARGEST_SCRIPT: Final = 1 << 20
@@ -57,9 +57,7 @@ def find_material(name: str, places: Sequence[Path]) -> OgreMaterial | None:
         seen.add(found.parent)
         above = known.get(found.parent)
         if above is None:
-            of_gazebo = gazebo_material(found.parent)
-            colours = {k: getattr(of_gazebo, k) for k in _COLOURS} if of_gazebo is not None else {}
-            return replace(found, parent="", colours={**colours, **found.colours})
+            return replace(found, parent="", colours={**gazebo_colours(found.parent), **found.colours})
         found = replace(
             found,
             parent=above.parent,

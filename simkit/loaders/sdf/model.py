@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
-from simkit.diagnostics import Diagnostics
 from simkit.loaders.sdf.entity_names import named_elements, scoped
-from simkit.loaders.sdf.frames import MODEL, Frame, Scope, world_pose
+from simkit.loaders.sdf.frames import MODEL, WORLD, Frame, Scope, world_pose
 from simkit.loaders.sdf.include import read_include, read_inline_entity
-from simkit.loaders.sdf.joint import joint_link_name, read_joint
+from simkit.loaders.sdf.joint import joint_link_name, read_joints
 from simkit.loaders.sdf.link import read_link
 from simkit.loaders.sdf.load_context import (
     EntitySource,
@@ -22,7 +21,6 @@ from simkit.loaders.sdf.load_context import (
 )
 from simkit.loaders.sdf.plugin import read_plugins
 from simkit.params import Params
-from simkit.pose import IDENTITY, Pose
 from simkit.scene import SceneFrame, SceneModel
 
 _MODEL_SETTINGS = ("static", "self_collide", "enable_wind", "allow_auto_disable")
@@ -34,18 +32,8 @@ def declare_model(source: EntitySource, outer: Scope, outer_scoped: str, workspa
         return None
     own = scoped(outer_scoped, source.name)
     scope = Scope(Frame(source.name, "model", own), workspace.diagnostics)
-    frame = Frame(
-        source.name,
-        "model",
-        own,
-        outer,
-        source.pose,
-        source.relative_to,
-        inside=scope,
-        placement=source.placement,
-        where=source.where,
-        pose_where=source.pose_where,
-    )
+    frame = Frame(source.name, "model", own, outer, source.pose, source.relative_to, where=source.where)
+    frame.inside, frame.placement, frame.pose_where = scope, source.placement, source.pose_where
     draft = ModelDraft(source, own, frame, scope)
     _declare_content(draft, source.element, source.file, scope, workspace)
     draft.plugins.extend(source.plugins)
@@ -53,7 +41,7 @@ def declare_model(source: EntitySource, outer: Scope, outer_scoped: str, workspa
     return draft
 
 
-def register_frame(frame: Frame, scope: Scope, version: tuple[int, int], diagnostics: Diagnostics) -> None:
+def register_frame(frame: Frame, scope: Scope, version: tuple[int, int]) -> None:
     """Gives a name to a frame; from 1.7 on all siblings of any kind share one set of names."""
     taken = scope.names.setdefault(frame.name, frame)
     if taken is frame:
@@ -61,15 +49,14 @@ def register_frame(frame: Frame, scope: Scope, version: tuple[int, int], diagnos
     line = taken.where.line
     text = f"{frame.kind} {frame.name!r} has the name of a {taken.kind} (line {line})"
     if taken.kind == frame.kind or version >= (1, 7):
-        diagnostics.error("SK-SDF-002", f"{text}; siblings need different names", frame.where)
+        scope.diagnostics.error("SK-SDF-002", f"{text}; siblings need different names", frame.where)
     else:
-        diagnostics.warning("SK-SDF-024", f"{text}; the name means the {taken.kind}", frame.where)
+        scope.diagnostics.warning("SK-SDF-024", f"{text}; the name means the {taken.kind}", frame.where)
 
 
 def _declare_content(draft: ModelDraft, element: Params, file: SdfFile, scope: Scope, workspace: Workspace) -> None:
-    diagnostics, owner = workspace.diagnostics, f"model {draft.source.name!r}"
-    for name, link in named_elements(element.all("link"), owner, diagnostics, file.version):
-        draft.links.append(_declare_element(draft, name, link, "link", "", scope, file, workspace))
+    owner, names = f"model {draft.source.name!r}", draft.scoped
+    draft.links += declare_elements(element, "link", owner, names, file, scope)
     for source in model_sources(element, file, workspace):
         if source.element.name != "model":
             _report_non_model(source, workspace)
@@ -79,15 +66,9 @@ def _declare_content(draft: ModelDraft, element: Params, file: SdfFile, scope: S
             nested = declare_model(source, scope, draft.scoped, workspace)
             if nested is not None:
                 draft.models.append(nested)
-                register_frame(nested.frame, scope, file.version, diagnostics)
-    for name, joint in named_elements(element.all("joint"), owner, diagnostics, file.version):
-        draft.joints.append(
-            _declare_element(draft, name, joint, "joint", joint_link_name(joint, "child"), scope, file, workspace)
-        )
-    for name, frame in named_elements(element.all("frame"), owner, diagnostics, file.version):
-        draft.frames.append(
-            _declare_element(draft, name, frame, "frame", frame.attribute("attached_to"), scope, file, workspace)
-        )
+                register_frame(nested.frame, scope, file.version)
+    draft.joints += declare_elements(element, "joint", owner, names, file, scope)
+    draft.frames += declare_elements(element, "frame", owner, names, file, scope)
     draft.plugins.extend(element.all("plugin"))
 
 
@@ -105,34 +86,37 @@ def model_sources(element: Params, file: SdfFile, workspace: Workspace) -> Itera
             yield source
 
 
-def _declare_element(
-    draft: ModelDraft,
-    name: str,
-    element: Params,
-    kind: str,
-    attached_to: str,
-    scope: Scope,
-    file: SdfFile,
-    workspace: Workspace,
-) -> NamedElement:
-    pose, base = read_pose(element)
-    frame = Frame(name, kind, scoped(draft.scoped, name), scope, pose, base, attached_to, where=element.where)
-    frame.pose_where = pose_location(element)
-    if kind == "joint" and attached_to == "world":
-        frame.attached_to = ""
-    register_frame(frame, scope, file.version, workspace.diagnostics)
-    return NamedElement(name, element, frame, scope, file)
+def declare_elements(
+    element: Params, kind: str, owner: str, outer: str, file: SdfFile, scope: Scope
+) -> list[NamedElement]:
+    """Enters the links, joints or frames of a model (or a world) in its names.
+
+    Args:
+        owner: the model, for messages.
+        outer: its scoped name; empty for a world.
+    """
+    parts = []
+    for name, found in named_elements(element.all(kind), owner, scope.diagnostics, file.version):
+        pose, base = read_pose(found)
+        attached = ""
+        if kind == "joint":
+            child = joint_link_name(found, "child")
+            attached = "" if child == WORLD else child
+        elif kind == "frame":
+            attached = found.attribute("attached_to")
+        frame = Frame(name, kind, scoped(outer, name), scope, pose, base, attached, where=found.where)
+        frame.pose_where = pose_location(found)
+        register_frame(frame, scope, file.version)
+        parts.append(NamedElement(name, found, frame, scope, file))
+    return parts
 
 
 def _report_non_model(source: EntitySource, workspace: Workspace) -> None:
     kind = source.element.name
     source.element.mark_all_read()
-    workspace.diagnostics.error(
-        "SK-SDF-016",
-        f"a {kind} ({source.name!r}) cannot be included in a model".replace("a actor", "an actor"),
-        source.where,
-        "include it in the world" + (", or put it in a link" if kind == "light" else ""),
-    )
+    message = f"a {kind} ({source.name!r}) cannot be included in a model".replace("a actor", "an actor")
+    hint = "include it in the world" + (", or put it in a link" if kind == "light" else "")
+    workspace.diagnostics.error("SK-SDF-016", message, source.where, hint)
 
 
 def merge_model(draft: ModelDraft, source: EntitySource, scope: Scope, workspace: Workspace, base: str = MODEL) -> None:
@@ -146,10 +130,9 @@ def merge_model(draft: ModelDraft, source: EntitySource, scope: Scope, workspace
     if source.placement:
         alone = declare_model(replace(source, merge=False), scope, draft.scoped, workspace.quiet())
         pose = pose if alone is None else pose @ alone.scope.pose_of(source.placement, None, source.where).inverse()
-    proxy = Frame(
-        name, "frame", scoped(draft.scoped, name), scope, pose, source.relative_to or base, where=source.where
-    )
-    register_frame(proxy, scope, (1, 12), workspace.diagnostics)
+    relative_to = source.relative_to or base
+    proxy = Frame(name, "frame", scoped(draft.scoped, name), scope, pose, relative_to, where=source.where)
+    register_frame(proxy, scope, (1, 12))
     inner = Scope(proxy, workspace.diagnostics, scope.names)
     first, models = len(draft.links), len(draft.models)
     _declare_content(draft, source.element, source.file, inner, workspace)
@@ -172,14 +155,13 @@ def _report_lost(source: EntitySource, workspace: Workspace) -> None:
     source.element.child("pose")
     if lost:
         listed = ", ".join(f"<{name}>" for name in lost)
-        workspace.diagnostics.note(
-            "SK-SDF-035", f"{listed} of the merged model {source.name!r} is lost in the merge", source.where
-        )
+        message = f"{listed} of the merged model {source.name!r} is lost in the merge"
+        workspace.diagnostics.note("SK-SDF-035", message, source.where)
 
 
 def _choose_canonical(draft: ModelDraft, element: Params, workspace: Workspace) -> None:
     """The link that stands for the model: the named one, else the first link, else that of the first nested model."""
-    scope, diagnostics = draft.scope, workspace.diagnostics
+    scope = draft.scope
     wanted = element.attribute("canonical_link")
     frames = scope.chain(wanted) if wanted else None
     if wanted and (not frames or frames[-1].kind != "link"):
@@ -194,13 +176,9 @@ def _choose_canonical(draft: ModelDraft, element: Params, workspace: Workspace) 
             break
     still = _is_static(draft.source)
     if not draft.links and not draft.models and not still:
-        near = [c.name for c in element.children]
-        diagnostics.error(
-            "SK-SDF-006",
-            f"model {draft.source.name!r} has no link",
-            element.where,
-            f"it has only <{'>, <'.join(dict.fromkeys(near))}>" if near else "give it a <link>",
-        )
+        held = dict.fromkeys(c.name for c in element.children)
+        hint = f"it has only <{'>, <'.join(held)}>" if held else "give it a <link>"
+        workspace.diagnostics.error("SK-SDF-006", f"model {draft.source.name!r} has no link", element.where, hint)
 
 
 def _is_static(source: EntitySource) -> bool:
@@ -227,8 +205,8 @@ def build_model(draft: ModelDraft, static: bool, workspace: Workspace, base: str
     element.child("pose")
     windy = element.boolean("enable_wind", False)
     links = tuple(read_link(part, draft.scoped, still, windy, workspace) for part in draft.links)
-    _report_defaults(draft, [link.name for link in links if not link.inertial.given], still, workspace)
-    joints = tuple(j for part in draft.joints if (j := read_joint(part, draft.scoped, workspace)) is not None)
+    _report_defaults(draft, [link.name for link in links if not link.inertial.given], still)
+    joints = read_joints(draft.joints, draft.scoped)
     canonical = draft.scope.chain(draft.scope.canonical) if draft.scope.canonical else None
     return SceneModel(
         name=source.name,
@@ -241,7 +219,7 @@ def build_model(draft: ModelDraft, static: bool, workspace: Workspace, base: str
         base=base,
         links=links,
         joints=joints,
-        frames=(*read_frames(draft.frames), *(_proxy_frame(p) for p in draft.proxies)),
+        frames=(*read_frames(draft.frames), *(SceneFrame(p.name, p.scoped, world_pose(p)) for p in draft.proxies)),
         models=tuple(build_model(nested, still, workspace) for nested in draft.models),
         plugins=read_plugins(draft.plugins, draft.scoped),
         where=source.where,
@@ -253,28 +231,15 @@ def read_frames(parts: Iterable[NamedElement]) -> tuple[SceneFrame, ...]:
     """Frames with the body each is attached to; one attached to nothing is an error."""
     frames = []
     for part in parts:
-        place_of = part.element.where
-        body = part.scope.body(part.name, place_of, f"frame {part.name!r}")
+        body = part.scope.body(part.name, part.element.where, f"frame {part.name!r}")
         part.element.child("pose")
-        frames.append(
-            SceneFrame(part.name, part.frame.scoped, _frame_pose(part.frame), body.scoped if body is not None else "")
-        )
+        carrier = "" if body is None else body.scoped
+        frames.append(SceneFrame(part.name, part.frame.scoped, world_pose(part.frame), carrier))
     return tuple(frames)
 
 
-def _proxy_frame(frame: Frame) -> SceneFrame:
-    return SceneFrame(frame.name, frame.scoped, _frame_pose(frame), "")
-
-
-def _frame_pose(frame: Frame) -> Pose:
-    return world_pose(frame) if frame.scope is not None else IDENTITY
-
-
-def _report_defaults(draft: ModelDraft, names: list[str], static: bool, workspace: Workspace) -> None:
+def _report_defaults(draft: ModelDraft, names: list[str], static: bool) -> None:
     if names and not static:
         listed = ", ".join(names[:8]) + (f" and {len(names) - 8} more" if len(names) > 8 else "")
-        workspace.diagnostics.note(
-            "SK-SDF-015",
-            f"model {draft.scoped!r}: no <inertial> in {listed}; SDF gives each 1 kg and 1 kg m2",
-            draft.source.element.where,
-        )
+        message = f"model {draft.scoped!r}: no <inertial> in {listed}; SDF gives each 1 kg and 1 kg m2"
+        draft.source.element.note("SK-SDF-015", message)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-from simkit.diagnostics import Diagnostics, did_you_mean
+from simkit.diagnostics import did_you_mean
 from simkit.loaders.sdf.frames import Frame, world_pose
 from simkit.loaders.sdf.load_context import ModelDraft
 from simkit.params import Params
@@ -20,7 +20,7 @@ _SAME_POSE = 1e-3  # metres and radians: saved numbers have six digits, and what
 _UNAPPLIED = ("velocity", "acceleration", "wrench")
 
 
-def saved_states(world: Params, name: str, diagnostics: Diagnostics) -> list[Params]:
+def saved_states(world: Params, name: str) -> list[Params]:
     """The states that speak of this world; another one is reported."""
     found = []
     for state in world.all("state"):
@@ -31,9 +31,14 @@ def saved_states(world: Params, name: str, diagnostics: Diagnostics) -> list[Par
             found.append(state)
             continue
         state.mark_all_read()
-        hint = did_you_mean(of, (name,))
-        diagnostics.warning(_CODE, f"the saved state of world {of!r} is not applied to {name!r}", state.where, hint)
+        message = f"the saved state of world {of!r} is not applied to {name!r}"
+        state.warning(_CODE, message, did_you_mean(of, (name,)))
     return found
+
+
+def _all_saved(block: Params, kind: str) -> list[Params]:
+    """What a block says of entities of a kind, as `<model>` or as `<model_state>`."""
+    return [*block.all(kind), *block.all(f"{kind}_state")]
 
 
 def deleted_names(states: Iterable[Params]) -> set[str]:
@@ -51,32 +56,28 @@ def saved_light_poses(states: Iterable[Params]) -> dict[str, Pose]:
     return {
         light.attribute("name"): light.pose("pose")
         for state in states
-        for tag in ("light", "light_state")
-        for light in state.all(tag)
+        for light in _all_saved(state, "light")
         if light.has("pose")
     }
 
 
-def apply_saved_poses(states: Iterable[Params], drafts: Iterable[ModelDraft], diagnostics: Diagnostics) -> None:
+def apply_saved_poses(states: Iterable[Params], drafts: Iterable[ModelDraft]) -> None:
     """Moves models to where a state has them, before anything is resolved."""
     known = {draft.source.name: draft for draft in drafts}
     for state in states:
-        for tag in ("model", "model_state"):
-            for saved in state.all(tag):
-                _apply_saved_pose(saved, known, Pose(), diagnostics)
+        for saved in _all_saved(state, "model"):
+            _apply_saved_pose(saved, known, Pose())
         for joint in state.all("joint_state"):
             joint.mark_all_read()
-            diagnostics.warning(_CODE, "the saved position of a joint is not applied", joint.where)
+            joint.warning(_CODE, "the saved position of a joint is not applied")
 
 
-def _apply_saved_pose(saved: Params, known: dict[str, ModelDraft], outer: Pose, diagnostics: Diagnostics) -> None:
+def _apply_saved_pose(saved: Params, known: dict[str, ModelDraft], outer: Pose) -> None:
     name = saved.attribute("name").strip()
     draft = known.get(name)
     if draft is None:
-        hint = did_you_mean(name, known)
-        diagnostics.warning(
-            _CODE, f"the saved state speaks of model {name!r}, which is not in the file", saved.where, hint
-        )
+        message = f"the saved state speaks of model {name!r}, which is not in the file"
+        saved.warning(_CODE, message, did_you_mean(name, known))
         saved.mark_all_read()
         return
     here = saved.pose("pose")
@@ -86,20 +87,18 @@ def _apply_saved_pose(saved: Params, known: dict[str, ModelDraft], outer: Pose, 
         here = outer @ draft.frame.pose
     scale = saved.vector3("scale", (1.0, 1.0, 1.0))
     if any(abs(s - 1) > 1e-9 for s in scale):
-        diagnostics.warning(_CODE, f"the saved scale of model {name!r} is not applied", saved.where)
-    draft.saved_links.extend(link for tag in ("link", "link_state") for link in saved.all(tag))
+        saved.warning(_CODE, f"the saved scale of model {name!r} is not applied")
+    draft.saved_links += _all_saved(saved, "link")
     if not draft.joints and not draft.merged:
         for link, part in _match_elements(draft):
             if link.has("pose"):
                 part.pose, part.relative_to = here.inverse() @ link.pose("pose"), ""
-    for tag in ("joint", "joint_state"):
-        for joint in saved.all(tag):
-            joint.mark_all_read()
+    for joint in _all_saved(saved, "joint"):
+        joint.mark_all_read()
     saved.child("frame")
     inside = {nested.source.name: nested for nested in draft.models}
-    for tag in ("model", "model_state"):
-        for nested in saved.all(tag):
-            _apply_saved_pose(nested, inside, here, diagnostics)
+    for nested in _all_saved(saved, "model"):
+        _apply_saved_pose(nested, inside, here)
 
 
 def _match_elements(draft: ModelDraft) -> list[tuple[Params, Frame]]:
@@ -107,27 +106,19 @@ def _match_elements(draft: ModelDraft) -> list[tuple[Params, Frame]]:
     return [(link, frames[n]) for link in draft.saved_links if (n := link.attribute("name")) in frames]
 
 
-def report_unapplied(draft: ModelDraft, diagnostics: Diagnostics) -> None:
+def report_unapplied(draft: ModelDraft) -> None:
     """Says what of a placed model's saved state is not applied: joint positions and velocities."""
-    moved = [
-        link
-        for link, frame in _match_elements(draft)
-        if link.has("pose") and _is_different(link.pose("pose"), world_pose(frame))
-    ]
+    matched, owner = _match_elements(draft), f"model {draft.scoped!r}"
+    moved = [e for e, frame in matched if e.has("pose") and _is_different(e.pose("pose"), world_pose(frame))]
     if moved:
         names = ", ".join(link.attribute("name") for link in moved[:5])
-        diagnostics.warning(
-            _CODE,
-            f"model {draft.scoped!r}: the saved poses of {names} need other joint positions; its joints start at zero",
-            moved[0].where,
-        )
-    fast = [link for link, _ in _match_elements(draft) if _has_motion(link)]
+        message = f"{owner}: the saved poses of {names} need other joint positions; its joints start at zero"
+        moved[0].warning(_CODE, message)
+    fast = [link for link, _ in matched if _has_motion(link)]
     if fast:
-        diagnostics.warning(
-            _CODE, f"model {draft.scoped!r}: saved velocities are not applied; it starts at rest", fast[0].where
-        )
+        fast[0].warning(_CODE, f"{owner}: saved velocities are not applied; it starts at rest")
     for nested in draft.models:
-        report_unapplied(nested, diagnostics)
+        report_unapplied(nested)
 
 
 def _is_different(a: Pose, b: Pose) -> bool:
@@ -138,6 +129,6 @@ def _is_different(a: Pose, b: Pose) -> bool:
 def _has_motion(link: Params) -> bool:
     for name in _UNAPPLIED:
         link.child(name)
-    for collision in (*link.all("collision"), *link.all("collision_state")):
+    for collision in _all_saved(link, "collision"):
         collision.mark_all_read()
     return any(abs(v) > 1e-3 for v in link.vector("velocity", 6, (0.0,) * 6))

@@ -2,29 +2,36 @@
 
 from __future__ import annotations
 
-from simkit.diagnostics import Diagnostics
 from simkit.loaders.sdf.entity_names import scoped as join
+from simkit.loaders.sdf.load_context import NamedElement
 from simkit.loaders.sdf.plugin import read_plugins
 from simkit.params import Params
-from simkit.pose import Pose
+from simkit.pose import IDENTITY, Pose
 from simkit.scene import SceneSensor
 
 
-def read_sensor(
-    element: Params, name: str, parent: str, on_joint: bool, pose_link: Pose, link_world: Pose, diagnostics: Diagnostics
-) -> SceneSensor:
-    """A sensor on a link or joint.
+def read_sensors(
+    part: NamedElement, scoped: str, link_world: Pose, in_link: Pose = IDENTITY
+) -> tuple[SceneSensor, ...]:
+    """The sensors of a link or joint.
 
     Args:
-        parent: scoped name of the link or joint.
-        pose_link: in the frame of the link (a joint's child link).
-        link_world: pose of that link in the world.
+        scoped: name of the link or joint from the world down.
+        link_world: pose in the world of the link, or of the joint's child link.
+        in_link: pose of the joint's frame in its child link.
     """
+    return tuple(
+        _sensor(e, name, scoped, part.frame.kind == "joint", in_link @ part.pose_of(e, f"sensor {name!r}"), link_world)
+        for name, e in part.named("sensor")
+    )
+
+
+def _sensor(element: Params, name: str, parent: str, on_joint: bool, pose_link: Pose, link_world: Pose) -> SceneSensor:
     kind = element.attribute("type").strip()
     if kind == "custom":
         kind = next((v for k, v in element.attributes.items() if k.endswith(":type") and v), kind)
     if not kind:
-        diagnostics.error("SK-SDF-020", f"sensor {name!r} needs a type", element.where)
+        element.error("SK-SDF-020", f"sensor {name!r} needs a type")
     scoped = join(parent, name)
     own = [c for c in element.children if c.name != "plugin"]
     params = Params(element.name, element.value, element.attributes, own, element.where, element.diagnostics)
@@ -52,5 +59,5 @@ def _rate(params: Params, sensor: str) -> float:
     rate = params.number("update_rate", 0.0)
     if rate < 0:
         message = f"sensor {sensor!r}: <update_rate>{rate:g}</update_rate> is every step, as 0 is"
-        params.diagnostics.note("SK-SENSOR-029", message, params.block("update_rate").where)
+        params.block("update_rate").note("SK-SENSOR-029", message)
     return max(rate, 0.0)

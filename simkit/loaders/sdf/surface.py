@@ -48,9 +48,7 @@ def read_surface(collision: Params) -> Surface:
 
 def _direction_frame(ode: Params) -> str:
     """The link that `<fdir1>` is given in, as Gazebo's own attribute says."""
-    found = ode.child("fdir1")
-    if found is None:
-        return ""
+    found = ode.block("fdir1")
     return found.attribute("gz:expressed_in") or found.attribute("ignition:expressed_in")
 
 
@@ -64,10 +62,8 @@ def _non_negative(block: Params, name: str, default: float, *, finite: bool = Tr
     value = block.number(name, default, finite=finite)
     if value >= 0:
         return value
-    found = block.child(name) or block
-    found.diagnostics.warning(
-        "SK-SDF-030", f"<{name}> is {value:g}, it cannot be negative; {default:g} is used", found.where
-    )
+    message = f"<{name}> is {value:g}, it cannot be negative; {default:g} is used"
+    block.child_or_self(name).warning("SK-SDF-030", message)
     return default
 
 

@@ -18,18 +18,19 @@ _LEFT_OVER = frozenset(("axis", "axis2"))
 _MAX_REPORTED = 500
 
 
-def report_unread(root: Params, diagnostics: Diagnostics, place: str = "sdf") -> None:
+def report_unread(root: Params, place: str = "sdf") -> None:
     """Says what in a tree has no effect: a warning for each unknown name, one note for Gazebo's own settings.
 
     Args:
         place: the table that describes the tree's root.
     """
-    report = _UnreadReport(diagnostics)
+    report = _UnreadReport(root.diagnostics)
     report.visit(root, place, ())
-    if report.quiet:
-        listed = ", ".join(f"<{name}> (line {where.line})" for name, where in report.in_order())
-        first = report.in_order()[0][1]
-        diagnostics.note("SK-SDF-010", f"settings of Gazebo's without effect here: {listed}", Where(first.file))
+    quiet = sorted(report.quiet.items(), key=lambda item: item[1].line or 0)
+    if quiet:
+        listed = ", ".join(f"<{name}> (line {where.line})" for name, where in quiet)
+        message = f"settings of Gazebo's without effect here: {listed}"
+        root.diagnostics.note("SK-SDF-010", message, Where(quiet[0][1].file))
 
 
 @dataclass
@@ -38,11 +39,7 @@ class _UnreadReport:
 
     diagnostics: Diagnostics
     quiet: dict[str, Where] = field(default_factory=dict)
-
     said: int = 0
-
-    def in_order(self) -> list[tuple[str, Where]]:
-        return sorted(self.quiet.items(), key=lambda item: item[1].line or 0)
 
     def warn(self, code: str, where: Where, say: Callable[[], tuple[str, str]]) -> None:
         """One warning, its text and hint; a file with more of them than anybody reads is told so once."""

@@ -7,19 +7,13 @@ from dataclasses import dataclass, field
 from simkit.loaders.sdf.actor import read_actor
 from simkit.loaders.sdf.entity_names import named_elements, read_name
 from simkit.loaders.sdf.frames import WORLD, Frame, Scope, world_pose
-from simkit.loaders.sdf.joint import joint_link_name, read_joint
+from simkit.loaders.sdf.include import entity_source
+from simkit.loaders.sdf.joint import read_joints
 from simkit.loaders.sdf.light import read_light
-from simkit.loaders.sdf.load_context import (
-    EntitySource,
-    ModelDraft,
-    NamedElement,
-    SdfFile,
-    Workspace,
-    pose_location,
-    read_pose,
-)
+from simkit.loaders.sdf.load_context import EntitySource, ModelDraft, NamedElement, SdfFile, Workspace
 from simkit.loaders.sdf.model import (
     build_model,
+    declare_elements,
     declare_model,
     merge_model,
     model_sources,
@@ -46,7 +40,7 @@ from simkit.loaders.sdf.world_settings import (
 )
 from simkit.params import Params
 from simkit.pose import Pose
-from simkit.scene import SceneActor, SceneFrame, SceneLight, SceneWorld
+from simkit.scene import SceneFrame, SceneLight, SceneWorld
 
 _MAGNETIC = (5.5645e-6, 22.8758e-6, -42.3884e-6)
 
@@ -74,18 +68,18 @@ def read_world(element: Params, file: SdfFile, workspace: Workspace) -> SceneWor
     """A world with everything in it resolved."""
     diagnostics = workspace.diagnostics
     name = read_name(element, diagnostics, file.version) or "default"
-    states = saved_states(element, name, diagnostics)
+    states = saved_states(element, name)
     content = _WorldContent(world_scope(workspace))
     content.plugins.extend(element.all("plugin"))
     for source in _entity_sources(element, name, states, file, workspace):
         _add_entity(source, content, workspace)
-    content.frames += _declare_elements(element, "frame", file, content.scope, workspace)
-    content.joints += _declare_elements(element, "joint", file, content.scope, workspace)
-    apply_saved_poses(states, content.drafts, diagnostics)
+    content.frames += declare_elements(element, "frame", "the world", "", file, content.scope)
+    content.joints += declare_elements(element, "joint", "the world", "", file, content.scope)
+    apply_saved_poses(states, content.drafts)
     for draft in content.drafts:
         place_model(draft)
-        report_unapplied(draft, diagnostics)
-    physics, gravity = read_physics(element, diagnostics)
+        report_unapplied(draft)
+    physics, gravity = read_physics(element)
     stood = saved_light_poses(states)
     return SceneWorld(
         name=name,
@@ -93,18 +87,18 @@ def read_world(element: Params, file: SdfFile, workspace: Workspace) -> SceneWor
         magnetic_field=element.vector3("magnetic_field", _MAGNETIC),
         physics=physics,
         models=tuple(build_model(draft, False, workspace) for draft in content.drafts),
-        lights=tuple(_light(source, content.scope, stood.get(source.name), workspace) for source in content.lights),
+        lights=tuple(_light(source, content.scope, stood.get(source.name)) for source in content.lights),
         frames=(*read_frames(content.frames), *(_proxy_frame(p, content.scope) for p in content.proxies)),
-        joints=tuple(j for part in content.joints if (j := read_joint(part, "", workspace)) is not None),
+        joints=read_joints(content.joints, ""),
         plugins=read_plugins(content.plugins, ""),
         surroundings=read_surroundings(element),
-        spherical_coordinates=read_spherical_coordinates(element, diagnostics),
+        spherical_coordinates=read_spherical_coordinates(element),
         quality=read_quality(element),
         gazebo_quirks=element.boolean("gazebo_quirks", False),
         where=element.where,
         wind=element.block("wind").vector3("linear_velocity", (0.0, 0.0, 0.0)),
-        atmosphere=read_atmosphere(element, diagnostics),
-        actors=tuple(_actor(source, content.scope) for source in content.actors),
+        atmosphere=read_atmosphere(element),
+        actors=tuple(read_actor(s.element, s.name, _pose_of(s, "actor", content.scope)) for s in content.actors),
     )
 
 
@@ -115,15 +109,15 @@ def _entity_sources(
     diagnostics = workspace.diagnostics
     found: list[EntitySource] = []
     for kind in ("light", "actor"):
-        for name, e in named_elements(element.all(kind), "the world", diagnostics, file.version):
-            found.append(_entity_source(e, name, file))
+        named = named_elements(element.all(kind), "the world", diagnostics, file.version)
+        found += [entity_source(e, name, file) for name, e in named]
     found += model_sources(element, file, workspace)
     for population in element.all("population"):
         found += population_sources(population, world, file, workspace)
     for block in inserted_blocks(states):
         found += model_sources(block, file, workspace)
-        for name, e in named_elements(block.all("light"), "the saved state", diagnostics, file.version):
-            found.append(_entity_source(e, name, file))
+        named = named_elements(block.all("light"), "the saved state", diagnostics, file.version)
+        found += [entity_source(e, name, file) for name, e in named]
     gone = deleted_names(states)
     for source in found:
         if source.name in gone:
@@ -147,7 +141,7 @@ def _add_entity(source: EntitySource, content: _WorldContent, workspace: Workspa
         draft = declare_model(source, content.scope, "", workspace)
         if draft is not None:
             before = content.scope.names.get(source.name)
-            register_frame(draft.frame, content.scope, source.file.version, workspace.diagnostics)
+            register_frame(draft.frame, content.scope, source.file.version)
             if before is None:
                 content.drafts.append(draft)
 
@@ -170,28 +164,9 @@ def _merge_into_world(source: EntitySource, content: _WorldContent, workspace: W
     content.plugins += draft.plugins
 
 
-def _declare_elements(
-    element: Params, kind: str, file: SdfFile, scope: Scope, workspace: Workspace
-) -> list[NamedElement]:
-    parts = []
-    for name, found in named_elements(element.all(kind), "the world", workspace.diagnostics, file.version):
-        pose, base = read_pose(found)
-        attached = joint_link_name(found, "child") if kind == "joint" else found.attribute("attached_to")
-        frame = Frame(name, kind, name, scope, pose, base, attached, where=found.where)
-        frame.pose_where = pose_location(found)
-        register_frame(frame, scope, file.version, workspace.diagnostics)
-        parts.append(NamedElement(name, found, frame, scope, file))
-    return parts
-
-
 def _proxy_frame(frame: Frame, scope: Scope) -> SceneFrame:
     body = scope.body(frame.name, frame.where, f"frame {frame.name!r}") if frame.attached_to else None
     return SceneFrame(frame.name, frame.scoped, world_pose(frame), "" if body is None else body.scoped)
-
-
-def _entity_source(element: Params, name: str, file: SdfFile) -> EntitySource:
-    pose, base = read_pose(element)
-    return EntitySource(name, element, file, pose, base, where=element.where)
 
 
 def _pose_of(source: EntitySource, kind: str, scope: Scope) -> Pose:
@@ -199,10 +174,6 @@ def _pose_of(source: EntitySource, kind: str, scope: Scope) -> Pose:
     return world_pose(frame)
 
 
-def _light(source: EntitySource, scope: Scope, saved: Pose | None, workspace: Workspace) -> SceneLight:
+def _light(source: EntitySource, scope: Scope, saved: Pose | None) -> SceneLight:
     pose = saved if saved is not None else _pose_of(source, "light", scope)
-    return read_light(source.element, source.name, source.name, pose, "", workspace.diagnostics)
-
-
-def _actor(source: EntitySource, scope: Scope) -> SceneActor:
-    return read_actor(source.element, source.name, _pose_of(source, "actor", scope))
+    return read_light(source.element, source.name, pose)

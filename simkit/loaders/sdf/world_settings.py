@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from simkit.diagnostics import Diagnostics, did_you_mean
+from simkit.diagnostics import did_you_mean
 from simkit.loaders.sdf.material import read_colour
 from simkit.params import Params
 from simkit.scene import Atmosphere, Physics, SphericalCoordinates, Surroundings
@@ -16,7 +16,7 @@ _SHORTEST = 1e-9  # seconds of one step
 _LONGEST = 100.0  # seconds of one step; nobody means more
 
 
-def read_physics(world: Params, diagnostics: Diagnostics) -> tuple[Physics, Vec3]:
+def read_physics(world: Params) -> tuple[Physics, Vec3]:
     """The default physics profile, and gravity [m/s²] from the world or (before 1.6) from that profile."""
     profiles = world.all("physics")
     chosen = next((p for p in profiles if p.attribute("default", "false").lower() in ("true", "1")), None)
@@ -26,15 +26,14 @@ def read_physics(world: Params, diagnostics: Diagnostics) -> tuple[Physics, Vec3
         name = other.attribute("name")
         if other is not chosen:
             other.mark_all_read()
-            message = f"physics profile {name!r} is not the default and not used"
-            diagnostics.note("SK-SDF-023", message, other.where)
-    block = chosen or Params("physics", where=world.where, diagnostics=diagnostics)
+            other.note("SK-SDF-023", f"physics profile {name!r} is not the default and not used")
+    block = chosen or Params("physics", where=world.where, diagnostics=world.diagnostics)
     inside = block.vector3("gravity", _GRAVITY)
     gravity = world.vector3("gravity", inside)
     step = block.number("max_step_size", _old_step(block), maximum=_LONGEST)
     if step < _SHORTEST:
         allowed = "it must be positive" if step <= 0 else f"time is counted in nanoseconds: at least {_SHORTEST:g} s"
-        diagnostics.error("SK-PARAM-002", f"found <max_step_size>{step:g}</max_step_size>, {allowed}", block.where)
+        block.error("SK-PARAM-002", f"found <max_step_size>{step:g}</max_step_size>, {allowed}")
         step = 0.001
     law = block.choice("contact_law", CONTACT_LAWS, "simkit")
     factor = max(0.0, _real_time_factor(block, step))
@@ -99,9 +98,8 @@ def _fog(scene: Params) -> Fog | None:
     if kind == "none":
         return None
     if kind not in _FOGS:
-        place = block.child("type") or block
         message = f"found <type>{kind}</type> of a fog, allowed is one of none, {', '.join(_FOGS)}; there is no fog"
-        scene.diagnostics.warning("SK-RENDER-010", message, place.where, did_you_mean(kind, _FOGS) or _FOG_HINT)
+        block.child_or_self("type").warning("SK-RENDER-010", message, did_you_mean(kind, _FOGS) or _FOG_HINT)
         return None
     return fog
 
@@ -111,13 +109,13 @@ def read_quality(world: Params) -> str:
     return world.block("scene").choice("quality", QUALITIES, "fast")
 
 
-def read_atmosphere(world: Params, diagnostics: Diagnostics) -> Atmosphere:
+def read_atmosphere(world: Params) -> Atmosphere:
     """The air at the origin; only the adiabatic kind is known to the format."""
     block = world.block("atmosphere")
     kind = block.attribute("type", "adiabatic") or "adiabatic"
     if kind != "adiabatic":
-        hint = did_you_mean(kind, ("adiabatic",))
-        diagnostics.error("SK-SDF-036", f"<atmosphere type={kind!r}>: the one type is adiabatic", block.where, hint)
+        message = f"<atmosphere type={kind!r}>: the one type is adiabatic"
+        block.error("SK-SDF-036", message, did_you_mean(kind, ("adiabatic",)))
     return Atmosphere(
         temperature=block.number("temperature", 288.15, minimum=0.0),
         temperature_gradient=block.number("temperature_gradient", -0.0065),
@@ -126,17 +124,16 @@ def read_atmosphere(world: Params, diagnostics: Diagnostics) -> Atmosphere:
     )
 
 
-def read_spherical_coordinates(world: Params, diagnostics: Diagnostics) -> SphericalCoordinates | None:
+def read_spherical_coordinates(world: Params) -> SphericalCoordinates | None:
     """Where on a planet the origin lies; angles are degrees in the file."""
     block = world.child("spherical_coordinates")
     if block is None:
         return None
     orientation = block.text("world_frame_orientation", "ENU")
     if orientation != "ENU":
-        place = block.child("world_frame_orientation") or block
         message = f"<world_frame_orientation> is {orientation!r}; the one that exists is ENU, which is used"
-        diagnostics.warning("SK-SDF-012", message, place.where)
-    equatorial, polar = _surface(block, diagnostics)
+        block.child_or_self("world_frame_orientation").warning("SK-SDF-012", message)
+    equatorial, polar = _surface(block)
     return SphericalCoordinates(
         latitude=math.radians(block.number("latitude_deg", 0.0, minimum=-90, maximum=90)),
         longitude=math.radians(block.number("longitude_deg", 0.0, minimum=-360, maximum=360)),
@@ -149,18 +146,18 @@ def read_spherical_coordinates(world: Params, diagnostics: Diagnostics) -> Spher
     )
 
 
-def _surface(block: Params, diagnostics: Diagnostics) -> tuple[float, float]:
+def _surface(block: Params) -> tuple[float, float]:
     """Semi-axes [m] of the surface; a custom one says its own."""
     name = block.text("surface_model", "EARTH_WGS84")
     custom = name == "CUSTOM_SURFACE"
     axes = tuple(block.number(f"surface_axis_{a}", 0.0, required=custom) for a in ("equatorial", "polar"))
-    place = block.child("surface_model") or block
+    place = block.child_or_self("surface_model")
     if name not in SURFACES:
         message = f"<surface_model> {name!r} is not one of {', '.join(SURFACES)}"
-        diagnostics.error("SK-SDF-036", message, place.where, did_you_mean(name, SURFACES))
+        place.error("SK-SDF-036", message, did_you_mean(name, SURFACES))
     if not custom:
         return SURFACES.get(name) or SURFACES["EARTH_WGS84"] or (0.0, 0.0)
     if min(axes) <= 0:
         message = f"CUSTOM_SURFACE has the semi-axes {axes[0]:g} and {axes[1]:g} m, both must be positive"
-        diagnostics.error("SK-SDF-036", message, place.where)
+        place.error("SK-SDF-036", message)
     return axes[0], axes[1]

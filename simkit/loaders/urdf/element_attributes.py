@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from simkit.diagnostics import did_you_mean
 from simkit.params import LARGEST, Params
 from simkit.pose import IDENTITY, Pose
-from simkit.scene.geometry import Vec3
+from simkit.scene.geometry import Vec3, vec3
 
 FARTHEST = 1e15  # metres; beyond it sums of poses would leave the numbers
 _XACRO_HINT = "the file looks like xacro that was not expanded: load the .xacro file itself"
@@ -19,21 +19,19 @@ def report_bad_value(element: Params, attribute: str, allowed: str) -> None:
     text = element.attributes.get(attribute, "")
     shown = text if len(text) <= 60 else text[:57] + "..."
     hint = _XACRO_HINT if "${" in text or "$(" in text else ""
-    message = f'<{element.name} {attribute}="{shown}">: allowed is {allowed}'
-    element.diagnostics.error("SK-URDF-013", message, element.where, hint)
+    element.error("SK-URDF-013", f'<{element.name} {attribute}="{shown}">: allowed is {allowed}', hint)
 
 
 def report_missing(element: Params, attribute: str, allowed: str, owner: str = "") -> None:
     """Records an attribute that is not there."""
     near = did_you_mean(attribute, element.attributes)
     what = f"{owner}: " if owner else ""
-    message = f"{what}<{element.name}> needs {attribute}= ({allowed})"
-    element.diagnostics.error("SK-URDF-001", message, element.where, near)
+    element.error("SK-URDF-001", f"{what}<{element.name}> needs {attribute}= ({allowed})", near)
 
 
 def report_substitute(element: Params, found: str, instead: str, hint: str = "") -> None:
     """Records what urdfdom leaves out with a message of its own, and what stands for it here."""
-    element.diagnostics.warning("SK-URDF-031", f"{found}; {instead}", element.where, hint)
+    element.warning("SK-URDF-031", f"{found}; {instead}", hint)
 
 
 def skip_element(element: Params) -> None:
@@ -100,7 +98,7 @@ def numbers_attribute(element: Params, attribute: str, count: int, allowed: str 
 def vector3_attribute(element: Params, attribute: str, default: Vec3 = (0.0, 0.0, 0.0)) -> Vec3:
     """Three finite numbers."""
     found = numbers_attribute(element, attribute, 3)
-    return default if found is None else (found[0], found[1], found[2])
+    return default if found is None else vec3(found)
 
 
 def leading_numbers(element: Params, attribute: str, count: int, allowed: str = "") -> tuple[float, ...] | None:
@@ -141,8 +139,7 @@ def extension_boolean(element: Params) -> bool:
     """true, yes, 1 or false, no, 0; anything else is an error."""
     found = extension_text(element).lower()
     if found not in ("true", "yes", "1", "false", "no", "0"):
-        message = f"<{element.name}> is {extension_text(element)!r}, allowed is true or false"
-        element.diagnostics.error("SK-URDF-013", message, element.where)
+        element.error("SK-URDF-013", f"<{element.name}> is {extension_text(element)!r}, allowed is true or false")
     return found in ("true", "yes", "1")
 
 
@@ -154,6 +151,5 @@ def extension_numbers(element: Params, count: int) -> Sequence[float] | None:
         return kept
     what = "a number" if count == 1 else f"{count} numbers"
     hint = _XACRO_HINT if "${" in extension_text(element) else ""
-    message = f"<{element.name}> is {extension_text(element)!r}, allowed is {what}"
-    element.diagnostics.error("SK-URDF-013", message, element.where, hint)
+    element.error("SK-URDF-013", f"<{element.name}> is {extension_text(element)!r}, allowed is {what}", hint)
     return None

@@ -24,7 +24,6 @@ from simkit.scene import Box, Capsule, Cylinder, Geometry, Mesh, Plane, Sphere
 from simkit.scene.geometry import Vec3
 
 THINNEST = 1e-4
-_Reader = Callable[[Params, RobotDraft, str], Geometry | None]
 
 
 def read_geometry(owner: Params, draft: RobotDraft, what: str) -> Geometry | None:
@@ -32,25 +31,24 @@ def read_geometry(owner: Params, draft: RobotDraft, what: str) -> Geometry | Non
     block = owner.child("geometry")
     if block is None:
         near = did_you_mean("geometry", [c.name for c in owner.children])
-        draft.diagnostics.error("SK-URDF-009", f"{what} needs <geometry>", owner.where, near)
+        owner.error("SK-URDF-009", f"{what} needs <geometry>", near)
         return None
     shapes = [c for c in block.children if ":" not in c.name]
     for shape in shapes:
-        reader = _READERS.get(shape.name)
-        if reader is not None:
+        if shape.name in _PRIMITIVES:
             block.child(shape.name)
-            return reader(shape, draft, what)
+            return _PRIMITIVES[shape.name](shape, what)
         if shape.name == "mesh":
             block.child("mesh")
             return _mesh(shape, draft, what)
     known = ", ".join(f"<{name}>" for name in _SHAPES)
     if not shapes:
-        draft.diagnostics.error("SK-URDF-009", f"{what} has an empty <geometry>, known are {known}", block.where)
+        block.error("SK-URDF-009", f"{what} has an empty <geometry>, known are {known}")
         return None
     hint = did_you_mean(shapes[0].name, _SHAPES)
     message = f"{what} has a <{shapes[0].name}>, known are {known}"
     if hint:
-        draft.diagnostics.error("SK-URDF-009", message, shapes[0].where, hint)
+        shapes[0].error("SK-URDF-009", message, hint)
     else:
         report_substitute(shapes[0], message, "it is left out")
     block.mark_all_read()
@@ -67,17 +65,17 @@ def _sizes(element: Params, attribute: str, what: str, sizes: tuple[float, ...])
         return tuple(v or 1.0 for v in sizes)
     shown = f"{what}: <{element.name}> has {attribute} {' '.join(f'{v:g}' for v in sizes)}"
     if any(v < 0 for v in sizes):
-        element.diagnostics.error("SK-URDF-009", f"{shown}, it must be positive", element.where)
+        element.error("SK-URDF-009", f"{shown}, it must be positive")
         return tuple(abs(v) or THINNEST for v in sizes)
     if any(v > FARTHEST for v in sizes):
-        element.diagnostics.error("SK-URDF-009", f"{shown}, it must be at most {FARTHEST:g}", element.where)
+        element.error("SK-URDF-009", f"{shown}, it must be at most {FARTHEST:g}")
         return tuple(1.0 for _ in sizes)
     message = f"{shown}; what has no size is made {THINNEST * 1000:g} mm"
     element.diagnostics.warning("SK-URDF-028", message, element.where)
     return tuple(v or THINNEST for v in sizes)
 
 
-def _box(element: Params, _draft: RobotDraft, what: str) -> Geometry:
+def _box(element: Params, what: str) -> Geometry:
     size = numbers_attribute(element, "size", 3)
     if size is None:
         if "size" not in element.attributes:
@@ -85,18 +83,6 @@ def _box(element: Params, _draft: RobotDraft, what: str) -> Geometry:
         return Box((1.0, 1.0, 1.0))
     x, y, z = _sizes(element, "size", what, size)
     return Box((x, y, z))
-
-
-def _cylinder(element: Params, _draft: RobotDraft, what: str) -> Geometry:
-    return Cylinder(_positive(element, "radius", what), _positive(element, "length", what))
-
-
-def _capsule(element: Params, _draft: RobotDraft, what: str) -> Geometry:
-    return Capsule(_positive(element, "radius", what), _positive(element, "length", what))
-
-
-def _sphere(element: Params, _draft: RobotDraft, what: str) -> Geometry:
-    return Sphere(_positive(element, "radius", what))
 
 
 def _mesh(element: Params, draft: RobotDraft, what: str) -> Geometry | None:
@@ -109,9 +95,7 @@ def _mesh(element: Params, draft: RobotDraft, what: str) -> Geometry | None:
         report_missing(element, "filename", "the URI of a mesh", what)
         return None
     path = draft.assets.mesh(uri, element)
-    if path is None:
-        return Mesh(Path(uri), uri, scale, missing=True)
-    return Mesh(path, uri, scale)
+    return Mesh(path or Path(uri), uri, scale, missing=path is None)
 
 
 def _scale(element: Params) -> Vec3:
@@ -124,17 +108,17 @@ def _scale(element: Params) -> Vec3:
     return (1.0, 1.0, 1.0) if found is None else (found[0], found[1], found[2])
 
 
-def _plane(element: Params, _draft: RobotDraft, what: str) -> Geometry:
+def _plane(element: Params, what: str) -> Geometry:
     """PyBullet's: an endless plane through the origin of its frame."""
     report_substitute(element, f"{what}: <plane> is PyBullet's word", "it is an endless plane, as there")
     return Plane(vector3_attribute(element, "normal", (0.0, 0.0, 1.0)))
 
 
-_READERS: dict[str, _Reader] = {
+_PRIMITIVES: dict[str, Callable[[Params, str], Geometry]] = {
     "box": _box,
-    "cylinder": _cylinder,
-    "sphere": _sphere,
-    "capsule": _capsule,
+    "cylinder": lambda e, what: Cylinder(_positive(e, "radius", what), _positive(e, "length", what)),
+    "sphere": lambda e, what: Sphere(_positive(e, "radius", what)),
+    "capsule": lambda e, what: Capsule(_positive(e, "radius", what), _positive(e, "length", what)),
     "plane": _plane,
 }
 _SHAPES = ("box", "cylinder", "sphere", "capsule", "mesh")

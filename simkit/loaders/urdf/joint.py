@@ -5,10 +5,8 @@ from __future__ import annotations
 import math
 
 from simkit.diagnostics import did_you_mean
-from simkit.loaders.sdf.entity_names import named_elements
-from simkit.loaders.sdf.load_context import local_pose
 from simkit.loaders.sdf.plugin import read_plugins
-from simkit.loaders.sdf.sensor import read_sensor
+from simkit.loaders.sdf.sensor import read_sensors
 from simkit.loaders.urdf import gazebo_extensions
 from simkit.loaders.urdf.element_attributes import (
     number_attribute,
@@ -19,11 +17,12 @@ from simkit.loaders.urdf.element_attributes import (
 )
 from simkit.loaders.urdf.robot_draft import JointDraft, RobotDraft
 from simkit.params import Params
-from simkit.pose import Pose, Vector
-from simkit.scene import Axis, Calibration, Mimic, Safety, SceneJoint, SceneSensor
-from simkit.scene.geometry import Vec3
+from simkit.pose import Pose
+from simkit.scene import Axis, Calibration, Mimic, Safety, SceneJoint
+from simkit.scene.geometry import Vec3, vec3
 
 _NO_LIMIT = 1e15
+_NO_MIMIC = ("fixed", "floating", "planar")
 _FIXED_DEFAULTS = ("preserveFixedJoint", "disableFixedJointLumping")  # every link stays a link here
 
 
@@ -43,7 +42,7 @@ def read_joint(draft: RobotDraft, joint: JointDraft) -> SceneJoint:
         child_link=draft.own(joint.child),
         pose_world=pose,
         axes=_axes(draft, joint, pose, extension),
-        sensors=_sensors(draft, joint, extension),
+        sensors=read_sensors(draft.part(joint.child, extension, name), own, pose),
         plugins=read_plugins(extension.all("plugin"), own),
         where=element.where,
         safety=_safety(element),
@@ -66,8 +65,8 @@ def _axes(draft: RobotDraft, joint: JointDraft, pose: Pose, extension: Params) -
                 for attribute in found.attributes:
                     found.attribute(attribute)
         return ()
-    direction = _direction(draft, joint)
-    limit = _limits(draft, joint)
+    direction = _direction(joint)
+    lower, upper, effort, velocity = _limits(joint)
     dynamics = element.block("dynamics")
     damping = number_attribute(dynamics, "damping", 0.0)
     friction = number_attribute(dynamics, "friction", 0.0)
@@ -76,12 +75,12 @@ def _axes(draft: RobotDraft, joint: JointDraft, pose: Pose, extension: Params) -
     directions = (*_plane_axes(direction), direction) if joint.type == "planar" else (direction,)
     return tuple(
         Axis(
-            xyz_world=_vec3(pose.rotate(d)),
+            xyz_world=vec3(pose.rotate(d)),
             xyz_joint=d,
-            lower=limit[0],
-            upper=limit[1],
-            effort=limit[2],
-            velocity=limit[3],
+            lower=lower,
+            upper=upper,
+            effort=effort,
+            velocity=velocity,
             damping=damping,
             friction=friction,
             stiffness=stiffness,
@@ -92,7 +91,7 @@ def _axes(draft: RobotDraft, joint: JointDraft, pose: Pose, extension: Params) -
     )
 
 
-def _direction(draft: RobotDraft, joint: JointDraft) -> Vec3:
+def _direction(joint: JointDraft) -> Vec3:
     """The unit axis in the joint frame; x where none is given, as URDF has it."""
     element = joint.element.child("axis")
     if element is None:
@@ -102,8 +101,7 @@ def _direction(draft: RobotDraft, joint: JointDraft) -> Vec3:
     x, y, z = vector3_attribute(element, "xyz", (1.0, 0.0, 0.0))
     length = math.sqrt(x * x + y * y + z * z)
     if not 1e-12 < length < math.inf:
-        message = f"joint {joint.name!r} has an axis of length {length:g}"
-        draft.diagnostics.error("SK-URDF-014", message, element.where)
+        element.error("SK-URDF-014", f"joint {joint.name!r} has an axis of length {length:g}")
         return (1.0, 0.0, 0.0)
     return (x / length, y / length, z / length)
 
@@ -121,14 +119,10 @@ def _plane_axes(normal: Vec3) -> tuple[Vec3, Vec3]:
     return (a, b, c), (q * c - r * b, r * a - p * c, p * b - q * a)
 
 
-def _vec3(values: Vector) -> Vec3:
-    return (float(values[0]), float(values[1]), float(values[2]))
-
-
 # ---------------------------------------------------------------------- limits
 
 
-def _limits(draft: RobotDraft, joint: JointDraft) -> tuple[float, float, float, float]:
+def _limits(joint: JointDraft) -> tuple[float, float, float, float]:
     """Lower, upper, effort, velocity; infinite where there is none."""
     element, name = joint.element, joint.name
     limit = element.child("limit")
@@ -137,18 +131,18 @@ def _limits(draft: RobotDraft, joint: JointDraft) -> tuple[float, float, float, 
         if bounded:
             hint = "make it continuous" if joint.type == "revolute" else "give it <limit lower= upper= ...>"
             message = f"{joint.type} joint {name!r} has no <limit>, which URDF requires; it is read as unlimited"
-            draft.diagnostics.warning("SK-URDF-020", message, element.where, hint)
+            element.warning("SK-URDF-020", message, hint)
         return (-math.inf, math.inf, math.inf, math.inf)
-    effort, velocity = _unsigned_limit(draft, joint, limit, "effort"), _unsigned_limit(draft, joint, limit, "velocity")
+    effort, velocity = _unsigned_limit(joint, limit, "effort"), _unsigned_limit(joint, limit, "velocity")
     lower, upper = _position_limit(limit, "lower"), _position_limit(limit, "upper")
     if not bounded:
         return (-math.inf, math.inf, effort, velocity)
     if "lower" not in limit.attributes and "upper" not in limit.attributes:
         message = f"{joint.type} joint {name!r}: <limit> has neither lower nor upper; both are 0, it cannot move"
-        draft.diagnostics.warning("SK-URDF-020", message, limit.where)
+        limit.warning("SK-URDF-020", message)
     if lower > upper:
         message = f"joint {name!r} has lower {lower:g} above upper {upper:g}; it is read as unlimited"
-        draft.diagnostics.warning("SK-URDF-019", message, limit.where)
+        limit.warning("SK-URDF-019", message)
         return (-math.inf, math.inf, effort, velocity)
     return (lower, upper, effort, velocity)
 
@@ -158,18 +152,18 @@ def _position_limit(limit: Params, attribute: str) -> float:
     return math.copysign(math.inf, value) if abs(value) >= _NO_LIMIT else value
 
 
-def _unsigned_limit(draft: RobotDraft, joint: JointDraft, limit: Params, attribute: str) -> float:
+def _unsigned_limit(joint: JointDraft, limit: Params, attribute: str) -> float:
     """An effort or velocity limit; negative or none means unlimited, and so does a velocity of 0."""
     if attribute not in limit.attributes:
         limit.attribute(attribute)
         if joint.type in ("revolute", "prismatic"):
             message = f"joint {joint.name!r}: <limit> has no {attribute}, which URDF requires; it is read as unlimited"
-            draft.diagnostics.warning("SK-URDF-020", message, limit.where)
+            limit.warning("SK-URDF-020", message)
         return math.inf
     value = number_attribute(limit, attribute, -1.0, finite=False)
     if value == 0 and attribute == "velocity":
         message = f"joint {joint.name!r} has a velocity limit of 0, under which it could never move; read as unlimited"
-        draft.diagnostics.warning("SK-URDF-019", message, limit.where)
+        limit.warning("SK-URDF-019", message)
         return math.inf
     return math.inf if value < 0 or value >= _NO_LIMIT else value
 
@@ -184,25 +178,23 @@ def _mimic(draft: RobotDraft, joint: JointDraft) -> Mimic | None:
         return None
     leader = text_attribute(element, "joint")
     multiplier, offset = number_attribute(element, "multiplier", 1.0), number_attribute(element, "offset", 0.0)
-    message, said = "", draft.diagnostics.error
+    message, said = "", element.error
     if not leader:
         report_missing(element, "joint", "the name of a joint", f"joint {joint.name!r}")
         return None
     if leader not in draft.joints:
         message = f"joint {joint.name!r} mimics {leader!r}, which does not exist; it moves freely"
-        said = draft.diagnostics.warning
-    elif draft.joints[leader].type in ("fixed", "floating", "planar"):
+        said = element.warning
+    elif draft.joints[leader].type in _NO_MIMIC:
         message = f"joint {joint.name!r} mimics {leader!r}, which is {draft.joints[leader].type}"
-    elif joint.type in ("fixed", "floating", "planar"):
-        draft.diagnostics.warning(
-            "SK-URDF-015", f"{joint.type} joint {joint.name!r}: <mimic> has no effect", element.where
-        )
+    elif joint.type in _NO_MIMIC:
+        element.warning("SK-URDF-015", f"{joint.type} joint {joint.name!r}: <mimic> has no effect")
         return None
     elif leader == joint.name or _is_in_mimic_ring(draft, joint.name):
         message = f"joint {joint.name!r} mimics itself"
     if message:
-        moving = [n for n, j in draft.joints.items() if j.type not in ("fixed", "floating", "planar")]
-        said("SK-URDF-015", message, element.where, did_you_mean(leader, moving))
+        moving = [n for n, j in draft.joints.items() if j.type not in _NO_MIMIC]
+        said("SK-URDF-015", message, did_you_mean(leader, moving))
         return None
     return Mimic(draft.own(leader), 0, multiplier, offset)
 
@@ -241,26 +233,3 @@ def _calibration(element: Params) -> Calibration | None:
     if text_attribute(block, "reference_position") and rising is None:  # the spelling of URDF before 1.0
         rising = parse_number(text_attribute(block, "reference_position"))
     return Calibration(rising, falling)
-
-
-# ---------------------------------------------------------------------- sensors
-
-
-def _sensors(draft: RobotDraft, joint: JointDraft, extension: Params) -> tuple[SceneSensor, ...]:
-    """Sensors of a joint; its frame is that of its child link."""
-    pose, frame = draft.links_world[joint.child], draft.frame(joint.child)
-    own = draft.own(joint.name)
-    return tuple(
-        read_sensor(
-            element,
-            name,
-            own,
-            True,
-            local_pose(element, draft.scope, frame, f"sensor {name!r}"),
-            pose,
-            draft.diagnostics,
-        )
-        for name, element in named_elements(
-            extension.all("sensor"), f"joint {joint.name!r}", draft.diagnostics, draft.file.version
-        )
-    )

@@ -46,16 +46,8 @@ def place_links(draft: RobotDraft) -> None:
         scope.names[name] = Frame(name, "link", draft.own(name), scope, pose, where=element.where, resolved=pose)
     for name, joint in draft.joints.items():
         pose = in_model.get(joint.child, IDENTITY)
-        frame = Frame(
-            name,
-            "joint",
-            draft.own(name),
-            scope,
-            pose,
-            attached_to=joint.child,
-            where=joint.element.where,
-            resolved=pose,
-        )
+        frame = Frame(name, "joint", draft.own(name), scope, pose, attached_to=joint.child, resolved=pose)
+        frame.where = joint.element.where
         scope.names.setdefault(name, frame)
     scope.canonical = draft.root
 
@@ -69,8 +61,7 @@ def _elements_by_name(draft: RobotDraft, kind: str) -> dict[str, Params]:
             report_missing(element, "name", "a text")
             element.mark_all_read()
         elif name in found:
-            line = found[name].where.line
-            message = f"two {kind}s are named {name!r}: the other is at line {line}"
+            message = f"two {kind}s are named {name!r}: the other is at line {found[name].where.line}"
             draft.diagnostics.error("SK-URDF-002", message, element.where, "give one of them another name")
             skip_element(element)
         else:
@@ -106,8 +97,7 @@ def _joint_link(draft: RobotDraft, name: str, joint: Params, which: str) -> str:
     element = joint.child(which)
     if element is None:
         near = did_you_mean(which, [c.name for c in joint.children])
-        message = f"joint {name!r} needs <{which} link=...>"
-        draft.diagnostics.error("SK-URDF-001", message, joint.where, near)
+        draft.diagnostics.error("SK-URDF-001", f"joint {name!r} needs <{which} link=...>", joint.where, near)
         return ""
     link = text_attribute(element, "link")
     if not link:
@@ -163,6 +153,5 @@ def _report_rings(draft: RobotDraft, above: dict[str, JointDraft]) -> None:
             name = above[name].parent
         if name in way:
             ring = way[way.index(name) :]
-            trail = " <- ".join([*ring[:8], ring[0]])
-            message = f"joints go round in a circle: {trail}"
+            message = f"joints go round in a circle: {' <- '.join([*ring[:8], ring[0]])}"
             draft.diagnostics.error("SK-URDF-007", message, above[ring[0]].element.where)

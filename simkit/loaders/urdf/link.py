@@ -5,13 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-import numpy as np
-
-from simkit.loaders.sdf.entity_names import named_elements
-from simkit.loaders.sdf.light import read_light
-from simkit.loaders.sdf.load_context import local_pose
+from simkit.loaders.sdf.inertial import MOMENT_NAMES, turned_moments
+from simkit.loaders.sdf.light import read_lights
 from simkit.loaders.sdf.plugin import read_plugins
-from simkit.loaders.sdf.sensor import read_sensor
+from simkit.loaders.sdf.sensor import read_sensors
 from simkit.loaders.sdf.surface import read_surface
 from simkit.loaders.sdf.version_upgrade import modernise
 from simkit.loaders.urdf.element_attributes import number_attribute as attribute_number
@@ -21,10 +18,13 @@ from simkit.loaders.urdf.geometry import read_geometry
 from simkit.loaders.urdf.material import Materials, extended_material
 from simkit.loaders.urdf.robot_draft import RobotDraft
 from simkit.params import Params
-from simkit.scene import Inertial, SceneCollision, SceneLight, SceneLink, SceneSensor, SceneVisual, Surface
+from simkit.scene import Inertial, SceneCollision, SceneLink, SceneSensor, SceneVisual, Surface
+from simkit.scene.geometry import vec3
 
 HEAVIEST = 1e15  # kg and kg m2: the products of larger ones leave the numbers
-_MOMENTS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
+_CONTACT_WORDS = {
+    "kp": "kp", "kd": "kd", "min_depth": "minDepth", "max_vel": "maxVel", "soft_cfm": "softCfm", "soft_erp": "softErp",
+}  # fmt: skip
 _SENSORS_VERSION = (1, 4)  # of SDF, as which Gazebo read URDF when robots wrote one <noise> for a whole IMU
 NO_MASS = Inertial(0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0, 0.0, 0.0), given=False)
 
@@ -40,14 +40,14 @@ def read_link(draft: RobotDraft, name: str, materials: Materials, windy: bool) -
         name=name,
         scoped=draft.own(name),
         pose_world=draft.links_world[name],
-        inertial=_inertial(draft, name, element),
+        inertial=_inertial(name, element),
         gravity=(gravity if gravity is not None else True) if off is None else not off,
         kinematic=bool(read_flag(extension, "kinematic")),
         self_collide=bool(read_flag(extension, "selfCollide", "self_collide")),
         collisions=_collisions(draft, name, element, extension),
         visuals=_visuals(draft, name, element, extension, materials),
         sensors=_sensors(draft, name, extension),
-        lights=_lights(draft, name, extension),
+        lights=read_lights(draft.part(name, extension), draft.own(name), draft.links_world[name]),
         plugins=read_plugins(extension.all("plugin"), draft.own(name)),
         where=element.where,
         velocity_decay=(
@@ -58,7 +58,7 @@ def read_link(draft: RobotDraft, name: str, materials: Materials, windy: bool) -
     )
 
 
-def _inertial(draft: RobotDraft, name: str, link: Params) -> Inertial:
+def _inertial(name: str, link: Params) -> Inertial:
     """Mass properties in link axes; a link without them is a frame without mass."""
     block = link.child("inertial")
     if block is None:
@@ -74,20 +74,12 @@ def _inertial(draft: RobotDraft, name: str, link: Params) -> Inertial:
         report_substitute(block, said, "its mass is at one point", "give it the moments of its shape")
     kilograms = attribute_number(mass, "value", owner=f"link {name!r}")
     if kilograms < 0:
-        message = f"link {name!r} has mass {kilograms:g} kg, it cannot be negative"
-        draft.diagnostics.error("SK-URDF-016", message, mass.where)
+        mass.error("SK-URDF-016", f"link {name!r} has mass {kilograms:g} kg, it cannot be negative")
     if kilograms > HEAVIEST:
         report_bad_value(mass, "value", f"at most {HEAVIEST:g} kg")
         kilograms = 1.0
-    values = tuple(_moment(inertia, key, name) for key in _MOMENTS) if inertia is not None else (0.0,) * 6
-    x, y, z = (float(v) for v in pose.position)
-    if pose.quaternion[0] != 1.0:
-        turn = pose.matrix
-        a, b, c, d, e, f = values
-        m = turn @ np.array(((a, d, e), (d, b, f), (e, f, c))) @ turn.T
-        values = tuple(float(v) for v in (m[0, 0], m[1, 1], m[2, 2], m[0, 1], m[0, 2], m[1, 2]))
-    a, b, c, d, e, f = values
-    return Inertial(kilograms, (x, y, z), (a, b, c, d, e, f), True)
+    values = [0.0 if inertia is None else _moment(inertia, key, name) for key in MOMENT_NAMES]
+    return Inertial(kilograms, vec3(pose.position), turned_moments(values, pose), True)
 
 
 def _moment(inertia: Params, key: str, link: str) -> float:
@@ -122,24 +114,15 @@ def unique_names(elements: list[Params], link: str, kind: str) -> list[str]:
 
 def _collisions(draft: RobotDraft, link: str, element: Params, extension: Params) -> tuple[SceneCollision, ...]:
     elements = element.all("collision")
-    surface, retro = _surface(extension), read_number(extension, "laserRetro")
+    surface, retro = _surface(extension), read_number(extension, "laserRetro") or 0.0
     found = []
     for name, collision in zip(unique_names(elements, link, "collision"), elements, strict=True):
         shape = read_geometry(collision, draft, f"collision {name!r} of link {link!r}")
         pose = read_origin(collision)
         collision.attribute("group")
         if shape is not None:
-            found.append(
-                SceneCollision(
-                    name=name,
-                    scoped=draft.own(link, name),
-                    pose_link=pose,
-                    geometry=shape,
-                    surface=surface,
-                    laser_retro=retro or 0.0,
-                    where=collision.where,
-                )
-            )
+            own = draft.own(link, name)
+            found.append(SceneCollision(name, own, pose, shape, surface, retro, collision.where))
     return tuple(found)
 
 
@@ -153,12 +136,7 @@ def _surface(extension: Params) -> Surface:
         "mu": read_number(extension, "mu1", minimum=0.0),
         "mu2": read_number(extension, "mu2", minimum=0.0),
         "fdir1": read_vector(extension, "fdir1"),
-        "kp": read_number(extension, "kp"),
-        "kd": read_number(extension, "kd"),
-        "min_depth": read_number(extension, "minDepth"),
-        "max_vel": read_number(extension, "maxVel"),
-        "soft_cfm": read_number(extension, "softCfm"),
-        "soft_erp": read_number(extension, "softErp"),
+        **{field: read_number(extension, word) for field, word in _CONTACT_WORDS.items()},
     }
     known = {key: value for key, value in given.items() if value is not None}
     return replace(surface, **known, where=extension.where) if known else surface  # type: ignore[arg-type]
@@ -167,8 +145,7 @@ def _surface(extension: Params) -> Surface:
 def _visuals(
     draft: RobotDraft, link: str, element: Params, extension: Params, materials: Materials
 ) -> tuple[SceneVisual, ...]:
-    elements = element.all("visual")
-    blobs = extension.all("visual")
+    elements, blobs = element.all("visual"), extension.all("visual")
     retro = read_number(extension, "laserRetro")
     found = []
     for name, visual in zip(unique_names(elements, link, "visual"), elements, strict=True):
@@ -203,50 +180,25 @@ def _visuals(
 
 
 def _sensors(draft: RobotDraft, link: str, extension: Params) -> tuple[SceneSensor, ...]:
-    pose, frame = draft.links_world[link], draft.frame(link)
-    elements = [modernise(e, _SENSORS_VERSION) for e in _without_duplicates(extension.all("sensor"), link, draft)]
-    return tuple(
-        read_sensor(
-            element,
-            name,
-            draft.own(link),
-            False,
-            local_pose(element, draft.scope, frame, f"sensor {name!r}"),
-            pose,
-            draft.diagnostics,
-        )
-        for name, element in named_elements(elements, f"link {link!r}", draft.diagnostics, draft.file.version)
-    )
+    sensors = [modernise(e, _SENSORS_VERSION) for e in _without_duplicates(extension.all("sensor"), link)]
+    block = Params("link", children=sensors, where=extension.where, diagnostics=extension.diagnostics)
+    return read_sensors(draft.part(link, block), draft.own(link), draft.links_world[link])
 
 
-def _without_duplicates(sensors: list[Params], link: str, draft: RobotDraft) -> list[Params]:
+def _without_duplicates(sensors: list[Params], link: str) -> list[Params]:
     """Sensors without those that are named like an earlier one, as robots have them whose xacro is included twice."""
     first: dict[str, Params] = {}
+    kept = []
     for element in sensors:
         name = element.attribute("name").strip()
         known = first.setdefault(name, element)
         if name and known is not element:
             message = f"link {link!r} has two sensors named {name!r}; that of line {known.where.line} is used"
-            draft.diagnostics.warning("SK-URDF-030", message, element.where, "give one of them another name")
+            element.warning("SK-URDF-030", message, "give one of them another name")
             element.mark_all_read()
-    return [e for e in sensors if not e.attribute("name").strip() or first[e.attribute("name").strip()] is e]
-
-
-def _lights(draft: RobotDraft, link: str, extension: Params) -> tuple[SceneLight, ...]:
-    pose, frame = draft.links_world[link], draft.frame(link)
-    return tuple(
-        read_light(
-            element,
-            name,
-            draft.own(link, name),
-            pose @ local_pose(element, draft.scope, frame, f"light {name!r}"),
-            draft.own(link),
-            draft.diagnostics,
-        )
-        for name, element in named_elements(
-            extension.all("light"), f"link {link!r}", draft.diagnostics, draft.file.version
-        )
-    )
+        else:
+            kept.append(element)
+    return kept
 
 
 def is_massless(link: SceneLink) -> bool:

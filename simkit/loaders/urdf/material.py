@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from simkit.diagnostics import did_you_mean
-from simkit.loaders.sdf.gazebo_materials import gazebo_material, gazebo_materials
+from simkit.loaders.sdf.gazebo_materials import gazebo_colours, gazebo_materials
 from simkit.loaders.sdf.material import read_material
 from simkit.loaders.urdf.element_attributes import (
     extension_text,
@@ -19,8 +19,6 @@ from simkit.loaders.urdf.robot_draft import RobotDraft
 from simkit.params import Params
 from simkit.scene import Material
 from simkit.scene.model import Colour
-
-_BLACK: Colour = (0.0, 0.0, 0.0, 1.0)
 
 
 @dataclass
@@ -39,7 +37,7 @@ class Materials:
                 report_missing(element, "name", "a text")
             elif name in self._lines:
                 message = f"two materials are named {name!r}: the other is at line {self._lines[name]}, which is used"
-                self.draft.diagnostics.warning("SK-URDF-026", message, element.where)
+                element.warning("SK-URDF-026", message)
                 element.mark_all_read()
                 continue
             self._define(name, element)
@@ -62,14 +60,12 @@ class Materials:
             return own
         if name in self.named:
             return self.named[name]
-        if name.startswith("Gazebo/") and (known := gazebo_material(name)) is not None:
-            return _plain(known.diffuse)
+        if name.startswith("Gazebo/") and (known := gazebo_colours(name)):
+            return Material(known["diffuse"], known["diffuse"])
         if name and name not in self._unknown and name not in self._lines:
             self._unknown.add(name)
             message = f"material {name!r} is not defined; a mesh keeps its own colours, a shape is drawn white"
-            self.draft.diagnostics.warning(
-                "SK-URDF-026", message, element.where, did_you_mean(name, [*self.named, *gazebo_materials()])
-            )
+            element.warning("SK-URDF-026", message, did_you_mean(name, [*self.named, *gazebo_materials()]))
         return None
 
     def _define(self, name: str, element: Params) -> None:
@@ -96,17 +92,12 @@ class Materials:
         if texture is not None:
             uri = text_attribute(texture, "filename")
             if not uri:
-                message = "<texture> names no file (filename=); drawn without it"
-                self.draft.diagnostics.warning("SK-URI-006", message, texture.where)
+                texture.warning("SK-URI-006", "<texture> names no file (filename=); drawn without it")
             path = self.draft.assets.texture(uri, texture) if uri else None
         if rgba is None and path is None:
             return None
         base = rgba or (1.0, 1.0, 1.0, 1.0)
         return Material(base, base, texture=path)
-
-
-def _plain(colour: Colour) -> Material:
-    return Material(colour, colour)
 
 
 def extended_material(extension: Params, own: Material | None, draft: RobotDraft) -> Material | None:
@@ -123,7 +114,6 @@ def extended_material(extension: Params, own: Material | None, draft: RobotDraft
 
 def _as_sdf(element: Params) -> Params:
     """`<material>Gazebo/Red</material>` in SDF's words."""
-
     inner = Params("name", extension_text(element), where=element.where, diagnostics=element.diagnostics)
     for name in ("script", "material", "visual"):
         inner = Params(name, children=[inner], where=element.where, diagnostics=element.diagnostics)

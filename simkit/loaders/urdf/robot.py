@@ -7,8 +7,7 @@ from pathlib import Path
 from simkit.loaders.resources.uri_resolver import Resolver
 from simkit.loaders.sdf.entity_names import named_elements, scoped
 from simkit.loaders.sdf.frames import Frame, Scope
-from simkit.loaders.sdf.joint import joint_link_name
-from simkit.loaders.sdf.joint import read_joint as read_sdf_joint
+from simkit.loaders.sdf.joint import joint_link_name, read_joints
 from simkit.loaders.sdf.link import read_link as read_sdf_link
 from simkit.loaders.sdf.load_context import NamedElement, SdfFile, Workspace, read_pose
 from simkit.loaders.sdf.model import read_frames
@@ -22,47 +21,26 @@ from simkit.loaders.urdf.material import Materials
 from simkit.loaders.urdf.robot_draft import RobotDraft, RobotFiles
 from simkit.loaders.urdf.transmission import read_controls, read_transmissions
 from simkit.loaders.urdf.unread_elements import report_unread
-from simkit.params import Params
-from simkit.pose import IDENTITY, Pose
-from simkit.scene import SceneFrame, SceneJoint, SceneLink, SceneModel
+from simkit.pose import Pose
+from simkit.scene import SceneJoint, SceneLink, SceneModel
 
 
-class GazeboAdditions:
-    """What the blocks without a reference add; its names are entered in the robot's scope at once."""
-
-    def __init__(self, draft: RobotDraft, block: Params, windy: bool) -> None:
-        self._draft, self._block, self._windy = draft, block, windy
-        self._links = self._parts("link")
-        self._joints = self._parts("joint")
-        self._frames = self._parts("frame")
-
-    def links(self) -> tuple[SceneLink, ...]:
-        return tuple(
-            read_sdf_link(p, self._draft.scoped, False, self._windy, self._draft.workspace) for p in self._links
-        )
-
-    def joints(self) -> tuple[SceneJoint, ...]:
-        found = (read_sdf_joint(p, self._draft.scoped, self._draft.workspace) for p in self._joints)
-        return tuple(j for j in found if j is not None)
-
-    def frames(self) -> tuple[SceneFrame, ...]:
-        return read_frames(self._frames)
-
-    def _parts(self, kind: str) -> list[NamedElement]:
-        draft, parts = self._draft, []
-        owner = f"robot {draft.name!r}"
-        for name, element in named_elements(self._block.all(kind), owner, draft.diagnostics, draft.file.version):
-            taken = draft.scope.names.get(name)
-            if taken is not None:
-                message = f"<gazebo>: {kind} {name!r} has the name of a {taken.kind} (line {taken.where.line})"
-                draft.diagnostics.error("SK-URDF-002", message, element.where)
-                continue
-            pose, base = read_pose(element)
-            attached = joint_link_name(element, "child") if kind == "joint" else element.attribute("attached_to")
-            frame = Frame(name, kind, draft.own(name), draft.scope, pose, base, attached, where=element.where)
-            draft.scope.names[name] = frame
-            parts.append(NamedElement(name, element, frame, draft.scope, draft.file))
-        return parts
+def _added_elements(draft: RobotDraft, kind: str) -> list[NamedElement]:
+    """What the `<gazebo>` blocks without a reference add of a kind; its names are entered in the robot's scope."""
+    parts = []
+    elements, owner = draft.extensions.robot.all(kind), f"robot {draft.name!r}"
+    for name, element in named_elements(elements, owner, draft.diagnostics, draft.file.version):
+        taken = draft.scope.names.get(name)
+        if taken is not None:
+            message = f"<gazebo>: {kind} {name!r} has the name of a {taken.kind} (line {taken.where.line})"
+            element.error("SK-URDF-002", message)
+            continue
+        pose, base = read_pose(element)
+        attached = joint_link_name(element, "child") if kind == "joint" else element.attribute("attached_to")
+        frame = Frame(name, kind, draft.own(name), draft.scope, pose, base, attached, where=element.where)
+        draft.scope.names[name] = frame
+        parts.append(NamedElement(name, element, frame, draft.scope, draft.file))
+    return parts
 
 
 WORLD = "world"
@@ -107,19 +85,22 @@ def build_robot(
         static: whether it is static; None for what its file says.
         is_included: whether an SDF file includes it, whose joints may fix it to the world.
     """
-    diagnostics, robot = draft.diagnostics, draft.extensions.robot
+    robot = draft.extensions.robot
     draft.scoped = scoped(outer, draft.name)
-    own_pose = robot.pose("pose", IDENTITY)
+    own_pose = robot.pose("pose")
     draft.pose = own_pose if pose is None else pose
     draft.scope.world = draft.pose
     place_links(draft)
     materials = Materials(draft)
     windy = bool(read_flag(robot, "enable_wind"))
-    additions = GazeboAdditions(draft, robot, windy)
-    links = (*(read_link(draft, name, materials, windy) for name in draft.links), *additions.links())
-    joints = (*(read_joint(draft, joint) for joint in draft.joints.values()), *additions.joints())
+    more_links, more_joints, frames = (_added_elements(draft, kind) for kind in ("link", "joint", "frame"))
+    links = (
+        *(read_link(draft, name, materials, windy) for name in draft.links),
+        *(read_sdf_link(part, draft.scoped, False, windy, draft.workspace) for part in more_links),
+    )
+    joints = (*(read_joint(draft, j) for j in draft.joints.values()), *read_joints(more_joints, draft.scoped))
     draft.extensions.report_unknown(draft.links, draft.joints)
-    _check_force_sensors(draft, links, joints)
+    _check_force_sensors(links, joints)
     declared = bool(read_flag(robot, "static"))
     still = declared if static is None else static
     model = SceneModel(
@@ -133,7 +114,7 @@ def build_robot(
         base=base if still else _choose_base(draft, base, is_included, _fixed_base_reason(draft, links, joints)),
         links=links,
         joints=joints,
-        frames=additions.frames(),
+        frames=read_frames(frames),
         plugins=read_plugins(robot.all("plugin"), draft.scoped),
         where=draft.element.where,
         allow_auto_disable=read_flag(robot, "allow_auto_disable") is not False,
@@ -142,7 +123,7 @@ def build_robot(
     )
     draft.assets.report_packages()
     _report_frames(draft, links)
-    report_unread(draft.element, draft.extensions, diagnostics)
+    report_unread(draft.element, draft.extensions)
     return model
 
 
@@ -163,10 +144,9 @@ def _fixed_base_reason(draft: RobotDraft, links: tuple[SceneLink, ...], joints: 
             elif joint.child_link not in ground:
                 ground.add(joint.child_link)
                 stack.append(joint.child_link)
-    is_ground = bool(kinds) and kinds <= {"planar", "floating"} and not ground & heavy
-    return (
-        f"its root link {draft.root!r} has no mass and stands for the ground under a moving base" if is_ground else ""
-    )
+    if kinds and kinds <= {"planar", "floating"} and not ground & heavy:
+        return f"its root link {draft.root!r} has no mass and stands for the ground under a moving base"
+    return ""
 
 
 def _choose_base(draft: RobotDraft, base: str, is_included: bool, held: str) -> str:
@@ -174,22 +154,21 @@ def _choose_base(draft: RobotDraft, base: str, is_included: bool, held: str) -> 
 
     One that cannot float, for the reason in `held`, is fixed.
     """
-    diagnostics, where = draft.diagnostics, draft.element.where
+    element, owner = draft.element, f"robot {draft.name!r}"
     if draft.root == WORLD:
         if base == "floating":
-            message = f"robot {draft.name!r} has the root link 'world', which is the world: its base stays fixed"
-            diagnostics.warning("SK-URDF-018", message, where, "take the link 'world' out of the file")
+            message = f"{owner} has the root link 'world', which is the world: its base stays fixed"
+            element.warning("SK-URDF-018", message, "take the link 'world' out of the file")
         elif base == "auto" and not is_included:
-            message = f"robot {draft.name!r}: base is fixed, because its root link is named 'world'"
-            diagnostics.note("SK-URDF-017", message, where)
+            element.note("SK-URDF-017", f"{owner}: base is fixed, because its root link is named 'world'")
         return "fixed"
     if base == "auto" and held and draft.root:
-        message = f"robot {draft.name!r}: {held}, so its base is fixed"
-        diagnostics.warning("SK-URDF-032", message, where, "give its links an <inertial> if it is to move")
+        hint = "give its links an <inertial> if it is to move"
+        element.warning("SK-URDF-032", f"{owner}: {held}, so its base is fixed", hint)
         return "fixed"
     if base == "auto" and not is_included:
-        message = f"robot {draft.name!r}: base is floating, because no link is named 'world'"
-        diagnostics.note("SK-URDF-017", message, where, "base='fixed' holds it where it is")
+        message = f"{owner}: base is floating, because no link is named 'world'"
+        element.note("SK-URDF-017", message, "base='fixed' holds it where it is")
     return base
 
 
@@ -198,10 +177,10 @@ def _report_frames(draft: RobotDraft, links: tuple[SceneLink, ...]) -> None:
     if names:
         listed = ", ".join(names[:8]) + (f" and {len(names) - 8} more" if len(names) > 8 else "")
         message = f"robot {draft.name!r}: links without <inertial> are frames without mass: {listed}"
-        draft.diagnostics.note("SK-URDF-024", message, draft.links.get(names[0], draft.element).where)
+        draft.links.get(names[0], draft.element).note("SK-URDF-024", message)
 
 
-def _check_force_sensors(draft: RobotDraft, links: tuple[SceneLink, ...], joints: tuple[SceneJoint, ...]) -> None:
+def _check_force_sensors(links: tuple[SceneLink, ...], joints: tuple[SceneJoint, ...]) -> None:
     """A force_torque sensor on a joint that carries neither mass nor collision would read zero for ever."""
     by_name = {link.scoped: link for link in links}
     below: dict[str, list[str]] = {}
@@ -224,4 +203,4 @@ def _check_force_sensors(draft: RobotDraft, links: tuple[SceneLink, ...], joints
                 f"without mass ({', '.join(sorted(link.name for link in loaded)[:6])}): it could never read anything"
             )
             hint = "give the link an <inertial>, or put the sensor on a joint that carries something"
-            draft.diagnostics.error("SK-URDF-023", message, sensors[0].where, hint)
+            sensors[0].params.error("SK-URDF-023", message, hint)

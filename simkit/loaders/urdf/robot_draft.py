@@ -8,8 +8,8 @@ from pathlib import Path
 from simkit.diagnostics import Diagnostic, Diagnostics
 from simkit.loaders.resources.uri_resolver import Resolver
 from simkit.loaders.sdf.entity_names import scoped
-from simkit.loaders.sdf.frames import Frame, Scope
-from simkit.loaders.sdf.load_context import SdfFile, Workspace
+from simkit.loaders.sdf.frames import Scope
+from simkit.loaders.sdf.load_context import NamedElement, SdfFile, Workspace
 from simkit.loaders.urdf.gazebo_extensions import GazeboExtensions
 from simkit.params import Params
 from simkit.pose import IDENTITY, Pose
@@ -112,6 +112,8 @@ class RobotDraft:
         """A scoped name inside the robot."""
         return scoped(self.scoped, *names)
 
-    def frame(self, name: str) -> Frame:
-        """The frame of a link or joint, for the SDF readers."""
-        return self.scope.names[name]
+    def part(self, link: str, extension: Params, joint: str = "") -> NamedElement:
+        """The extension of a link, or of a joint whose child link is named, as the SDF readers take elements."""
+        frame = self.scope.names[link]
+        frame = replace(frame, kind="joint") if joint else frame
+        return NamedElement(joint or link, extension, frame, self.scope, self.file)

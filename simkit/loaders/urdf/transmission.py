@@ -45,15 +45,14 @@ def _transmission(draft: RobotDraft, element: Params) -> Transmission:
     older = text_attribute(element, "type")
     kind = (written.value if written is not None else "") or older
     if not kind:
-        message = f"transmission {name!r} needs <type>"
-        draft.diagnostics.warning("SK-URDF-025", message, element.where)
+        element.warning("SK-URDF-025", f"transmission {name!r} needs <type>")
     common = _reduction(element, 1.0)
     joints = element.all("joint")
     for joint in joints:
         _is_known_joint(draft, joint, f"transmission {name!r}")
     if not joints:
         near = did_you_mean("joint", [c.name for c in element.children])
-        draft.diagnostics.warning("SK-URDF-025", f"transmission {name!r} names no <joint>", element.where, near)
+        element.warning("SK-URDF-025", f"transmission {name!r} names no <joint>", near)
     return Transmission(
         name=name,
         kind=_kind(kind),
@@ -88,9 +87,7 @@ def _transmission_end(element: Params, reduction: float) -> TransmissionEnd:
 def _reduction(element: Params, default: float) -> float:
     found = _number(element, "mechanicalReduction", default)
     if found == 0:
-        place = element.child("mechanicalReduction") or element
-        message = "<mechanicalReduction> is 0, it cannot be"
-        element.diagnostics.error("SK-URDF-013", message, place.where)
+        element.child_or_self("mechanicalReduction").error("SK-URDF-013", "<mechanicalReduction> is 0, it cannot be")
         return default
     return found
 
@@ -109,5 +106,4 @@ def _number(element: Params, name: str, default: float) -> float:
 def _is_known_joint(draft: RobotDraft, joint: Params, owner: str) -> None:
     name = text_attribute(joint, "name")
     if name not in draft.joints:
-        message = f"{owner}: there is no joint {name!r}"
-        draft.diagnostics.warning("SK-URDF-025", message, joint.where, did_you_mean(name, draft.joints))
+        joint.warning("SK-URDF-025", f"{owner}: there is no joint {name!r}", did_you_mean(name, draft.joints))

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterator
 
-from simkit.diagnostics import Diagnostics, Where, did_you_mean
+from simkit.diagnostics import Where, did_you_mean
 from simkit.loaders.sdf.element_table import sdf_elements
 from simkit.loaders.sdf.unread_elements import report_unread as report_sdf
 from simkit.loaders.urdf.gazebo_extensions import GazeboExtensions
 from simkit.params import Params
 
-_Loud = dict[tuple[str, str, str], list[Where]]  # (message, code, hint) -> places
+_Places = defaultdict[str, list[Where]]
+_Loud = defaultdict[tuple[str, str, str], list[Where]]  # (message, code, hint) -> places
 _TOOLS_WORDS = """
     contact self_collision_checking joint_properties frame collision_checking verbose gravity kinematic
     sensor simulated_actuated_joint compliance gear_ratio rotor_inertia saturationLower saturationUpper deadBandUpper
@@ -32,43 +34,47 @@ _SHORT_WORDS = frozenset(_SHORT.split())  # of <gazebo>, which SDF has under oth
 _KEPT = frozenset(("transmission", "ros2_control", "gazebo"))
 
 
-def report_unread(robot: Params, extensions: GazeboExtensions, diagnostics: Diagnostics) -> None:
+def report_unread(robot: Params, extensions: GazeboExtensions) -> None:
     """A warning for each unknown element or attribute; one note for those of other tools; Gazebo's as in SDF."""
-    quiet: dict[str, list[Where]] = {}
-    loud: _Loud = {}
+    quiet: _Places = defaultdict(list)
+    loud: _Loud = defaultdict(list)
     for element in _read_elements(robot):
         for child in element.children:
             if ":" in child.name or child.was_read or (element is robot and child.name in _KEPT):
                 continue
+            text = f"<{child.name}> in <{element.name}>"
             if child.name in _OF_OTHER_TOOLS or (child.name, element.name) == ("material", "collision"):
-                quiet.setdefault(f"<{child.name}> in <{element.name}>", []).append(child.where)
+                quiet[text].append(child.where)
                 continue
-            key = (f"<{child.name}> in <{element.name}> is not known and not used", "SK-URDF-010", "")
             hint = did_you_mean(child.name, element.asked)
-            loud.setdefault((key[0], key[1], hint), []).append(child.where)
+            loud[f"{text} is not known and not used", "SK-URDF-010", hint].append(child.where)
         for name in element.attributes:
             if ":" in name or name.startswith("xmlns") or name in element.attributes_asked:
                 continue
             text = f"{name}= of <{element.name}>"
             if name in _ATTRIBUTES_OF_OTHER_TOOLS:
-                quiet.setdefault(text, []).append(element.where)
+                quiet[text].append(element.where)
                 continue
             hint = did_you_mean(name, element.attributes_asked)
-            loud.setdefault((f"{text} is not known and not used", "SK-URDF-012", hint), []).append(element.where)
-    _report_extensions(robot, extensions, loud, diagnostics)
+            loud[f"{text} is not known and not used", "SK-URDF-012", hint].append(element.where)
+    _report_extensions(robot, extensions, loud)
     for (message, code, hint), places in loud.items():
-        diagnostics.warning(code, message + _repeated(places), places[0], hint)
-    if quiet:
-        listed = ", ".join(
-            f"{what} (line {places[0].line}{_remaining_count(places)})" for what, places in quiet.items()
-        )
-        first = min((p for places in quiet.values() for p in places), key=lambda w: w.line or 0)
-        diagnostics.note("SK-URDF-011", f"words of other tools, without effect here and in Gazebo: {listed}", first)
+        robot.diagnostics.warning(code, message + _repeated(places), places[0], hint)
+    _note_all("SK-URDF-011", "words of other tools, without effect here and in Gazebo", quiet, robot)
 
 
-def _report_extensions(robot: Params, extensions: GazeboExtensions, loud: _Loud, diagnostics: Diagnostics) -> None:
+def _note_all(code: str, message: str, found: _Places, robot: Params) -> None:
+    """One note that lists what was found, with lines; none where nothing was."""
+    if found:
+        counts = {what: f", {len(places)} times" if len(places) > 1 else "" for what, places in found.items()}
+        listed = ", ".join(f"{what} (line {places[0].line}{counts[what]})" for what, places in found.items())
+        first = min((p for places in found.values() for p in places), key=lambda w: w.line or 0)
+        robot.diagnostics.note(code, f"{message}: {listed}", first)
+
+
+def _report_extensions(robot: Params, extensions: GazeboExtensions, loud: _Loud) -> None:
     """One note for Gazebo's settings of solvers; the rest as in an SDF model."""
-    settings: dict[str, list[Where]] = {}
+    settings: _Places = defaultdict(list)
     parts: list[Params] = []
     for name, block in extensions.merged.items():
         kind = extensions.kinds.get(name, "")
@@ -78,28 +84,23 @@ def _report_extensions(robot: Params, extensions: GazeboExtensions, loud: _Loud,
         kept = []
         for child in block.children:
             if child.name in _SETTINGS_OF_GAZEBO:
-                settings.setdefault(child.name, []).append(child.where)
+                settings[f"<{child.name}>"].append(child.where)
             elif child.name in _SHORT_WORDS or ":" in child.name:
                 if not child.was_read and ":" not in child.name:
                     message = f"<{child.name}> has no meaning for a {place if name else 'robot'} and is not used"
-                    loud.setdefault((message, "SK-URDF-010", ""), []).append(child.where)
+                    loud[message, "SK-URDF-010", ""].append(child.where)
             elif sdf_elements().row(place, child.name) is None:
                 hint = did_you_mean(child.name, [*block.asked, *sdf_elements().elements(place)])
                 message = f"<{child.name}> in <gazebo> is not known and not used"
-                loud.setdefault((message, "SK-URDF-010", hint), []).append(child.where)
+                loud[message, "SK-URDF-010", hint].append(child.where)
             else:
                 kept.append(child)
-        parts += [Params(place, "", {}, kept, block.where, diagnostics)] if name else kept
-    model = Params("model", "", {}, parts, robot.where, diagnostics)
+        parts += [Params(place, "", {}, kept, block.where, robot.diagnostics)] if name else kept
+    model = Params("model", "", {}, parts, robot.where, robot.diagnostics)
     for part in ("link", "joint"):
         model.all(part)
-    if settings:
-        listed = ", ".join(
-            f"<{name}> (line {places[0].line}{_remaining_count(places)})" for name, places in settings.items()
-        )
-        first = min((p for places in settings.values() for p in places), key=lambda w: w.line or 0)
-        diagnostics.note("SK-URDF-022", f"settings of Gazebo's without effect here: {listed}", first)
-    report_sdf(model, diagnostics, "model")
+    _note_all("SK-URDF-022", "settings of Gazebo's without effect here", settings, robot)
+    report_sdf(model, "model")
 
 
 def _read_elements(robot: Params) -> Iterator[Params]:
@@ -117,7 +118,3 @@ def _repeated(places: list[Where]) -> str:
         return ""
     lines = ", ".join(str(p.line) for p in places[:6])
     return f" ({len(places)} times: lines {lines}{', ...' if len(places) > 6 else ''})"
-
-
-def _remaining_count(places: list[Where]) -> str:
-    return f", {len(places)} times" if len(places) > 1 else ""
