@@ -88,7 +88,7 @@ class _InertiaFinder:
         elif name == "mass" and where[-2:-1] == ["inertial"]:
             self.number_from = self.tag_end()
             if "value" in attributes:
-                self.mass = _number(attributes["value"])
+                self.mass = float(attributes["value"])
         elif name == "inertia" and where[-2:-1] == ["inertial"] and self.links:
             self.open = WrittenInertia(self.links[-1], self.parser.CurrentLineNumber, self.is_urdf)
             self.open.values = dict(_SDF_DEFAULTS) if not self.is_urdf else dict.fromkeys(MOMENT_NAMES, 0.0)
@@ -103,7 +103,7 @@ class _InertiaFinder:
         for key in MOMENT_NAMES:
             match = re.search(rb"\s" + key.encode() + rb"\s*=\s*([\"'])(.*?)\1", tag, re.DOTALL)
             if match:
-                inertia.values[key] = _number(match[2].decode())
+                inertia.values[key] = float(match[2].decode())
                 inertia.spans[key] = (begin + match.start(2), begin + match.end(2))
         inertia.end = finish - (2 if tag.endswith(b"/>") else 1)
 
@@ -112,9 +112,9 @@ class _InertiaFinder:
         self.stack.pop()
         if name in MOMENT_NAMES and self.open is not None and self.stack[-1:] == ["inertia"]:
             self.open.spans[name] = (self.number_from, position)
-            self.open.values[name] = _number(self.data[self.number_from : position].decode())
+            self.open.values[name] = float(self.data[self.number_from : position].decode())
         elif name == "mass" and self.stack[-1:] == ["inertial"] and not self.is_urdf:
-            self.mass = _number(self.data[self.number_from : position].decode())
+            self.mass = float(self.data[self.number_from : position].decode())
         elif name == "inertia" and self.open is not None:
             if not self.is_urdf:
                 self.open.end = position
@@ -162,7 +162,3 @@ def replace_numbers(data: bytes, changes: Sequence[tuple[WrittenInertia, Mapping
         out += [data[position:begin], new]
         position = finish
     return b"".join([*out, data[position:]])
-
-
-def _number(text: str) -> float:
-    return float(text.strip())

@@ -14,7 +14,6 @@ from simkit.scene import (
     Atmosphere,
     Axis,
     Geometry,
-    Mimic,
     Scene,
     SceneCollision,
     SceneFrame,
@@ -179,7 +178,7 @@ def _joint(joint: SceneJoint, diagnostics: Diagnostics, read_sensor: SensorReade
         "child_link": joint.child_link,
         "pose_world": joint.pose_world.as_list(),
         "axes": [_axis(a) for a in joint.axes],
-        "mimic": None if mimic is None else _mimic(mimic),
+        "mimic": None if mimic is None else asdict(mimic),
         "sensors": [_sensor(s, diagnostics, read_sensor) for s in joint.sensors],
     }
 
@@ -189,10 +188,6 @@ def _axis(axis: Axis) -> Block:
     rest = ("damping", "friction", "stiffness", "spring_ref")
     numbers = {name: _json_number(getattr(axis, name)) for name in (*limits, *rest)}
     return {"xyz_world": list(axis.xyz_world), **numbers}
-
-
-def _mimic(mimic: Mimic) -> Block:
-    return asdict(mimic)
 
 
 def _numbers_of(settings: Atmosphere | SphericalCoordinates | None) -> Block | None:

@@ -16,6 +16,7 @@ from simkit.errors import InputError
 from simkit.loaders import Document, Resolver, find_document
 from simkit.loaders.resources.bundled_models import turtlebot3_uri
 from simkit.loaders.resources.model_folder import model_file
+from simkit.loaders.resources.uris import absolute_path
 from simkit.loaders.resources.xml_reader import parse_file
 from simkit.params import Params
 from simkit.writers.asset_folder import companion_files
@@ -27,18 +28,8 @@ _COPIED_FILES = ("model.config", "manifest.xml", "package.xml")
 _LICENCES = re.compile(r"^(licen[cs]e|copying|notice|credits|attribution|authors)", re.IGNORECASE)
 _MANIFESTS = ("model.config", "package.xml", "manifest.xml")
 _PACKAGE_FOLDERS = {
-    "meshes",
-    "mesh",
-    "urdf",
-    "xacro",
-    "materials",
-    "textures",
-    "scripts",
-    "config",
-    "worlds",
-    "sdf",
-    "media",
-}
+    "meshes", "mesh", "urdf", "xacro", "materials", "textures", "scripts", "config", "worlds", "sdf", "media",
+}  # fmt: skip
 _FILE_SUFFIX = re.compile(r"\.[A-Za-z0-9]{2,8}$")
 
 
@@ -64,7 +55,7 @@ class WorldCollector:
             expanded: the tree is not what the file says (xacro), so it is written anew.
         """
         assert document.path is not None
-        path = _absolute(document.path)
+        path = absolute_path(document.path)
         self.home = path.parent
         name = f"{path.name.removesuffix('.xacro').removesuffix('.urdf')}.urdf" if expanded else path.name
         self.resolver = self.resolver.around(self.home)
@@ -90,7 +81,7 @@ class WorldCollector:
 
     def _collect_file(self, path: Path) -> PurePosixPath:
         """Collect a file of any kind with the files that it names; return its path in the folder."""
-        path = _absolute(path)
+        path = absolute_path(path)
         if path in self._done:
             return self._done[path]
         target = self._target_path(path)
@@ -108,14 +99,14 @@ class WorldCollector:
     def _collect_model(self, folder: Path, file: Path) -> PurePosixPath:
         """Collect a model's folder: its file, manifest and licence; return the folder's path."""
         self._collect_file(file)
-        folder = _absolute(folder)
+        folder = absolute_path(folder)
         place = self._target_path(folder / file.name).parent
         self._copy_licences(folder, place)
         return place
 
     def _collect_folder(self, path: Path) -> PurePosixPath:
         """Collect a whole folder, such as one of material scripts."""
-        path = _absolute(path)
+        path = absolute_path(path)
         target = self._target_path(path)
         for source in sorted(p for p in path.rglob("*") if p.is_file() and not p.is_symlink()):
             self._copy(source, target / source.relative_to(path).as_posix())
@@ -198,7 +189,7 @@ class WorldCollector:
         path, _ = self.resolver.search(uri, folder)
         if path is None:
             return None
-        self._register_root(uri, _absolute(path))
+        self._register_root(uri, absolute_path(path))
         if not path.is_dir():
             return self._collect_file(path)
         if parent == "include" or element.name == "include":
@@ -217,7 +208,7 @@ class WorldCollector:
                 if not key.startswith("file"):
                     continue
                 for inside in folders:
-                    source = _absolute(folder / inside / reference)
+                    source = absolute_path(folder / inside / reference)
                     if source.is_file() and source.is_relative_to(folder):
                         target = here / inside / reference
                         document = parse_file(source, Diagnostics()) if source.suffix == ".xml" else None
@@ -300,12 +291,8 @@ def _file_references(element: Params, parent: str) -> Iterator[str]:
     if is_text and (is_include or _may_be_file(element.value)):
         yield element.value
     for key, value in element.attributes.items():
-        if (
-            value
-            and not (element.name == "plugin" and key in ("filename", "name"))
-            and key != "name"
-            and _may_be_file(value)
-        ):
+        is_library = element.name == "plugin" and key == "filename"
+        if value and key != "name" and not is_library and _may_be_file(value):
             yield value
 
 
@@ -326,12 +313,8 @@ def _replace_uris(text: bytes, changes: Mapping[str, str]) -> bytes:
 def _replace_in_tree(node: Params, changes: Mapping[str, str]) -> Params:
     """A tree with each URI replaced."""
     attributes = {k: changes.get(v, v) for k, v in node.attributes.items()}
-    return Params(
-        node.name,
-        changes.get(node.value, node.value),
-        attributes,
-        [_replace_in_tree(c, changes) for c in node.children],
-    )
+    children = [_replace_in_tree(c, changes) for c in node.children]
+    return Params(node.name, changes.get(node.value, node.value), attributes, children)
 
 
 def _root_of(path: Path) -> Path:
@@ -350,10 +333,6 @@ def _root_of(path: Path) -> Path:
 
 def _relative(place: Path | PurePosixPath, here: Path | PurePosixPath) -> str:
     return Path(os.path.relpath(str(place), str(here) or ".")).as_posix()
-
-
-def _absolute(path: Path) -> Path:
-    return Path(os.path.abspath(path))  # noqa: PTH100 - resolve() would follow links
 
 
 def _file_outside(described: object, folder: Path) -> str:

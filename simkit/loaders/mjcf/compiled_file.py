@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from simkit.diagnostics import Where
-from simkit.loaders.mjcf.includes import GatheredFile
-from simkit.loaders.resources.loader import CompiledMjcf
+from simkit.loaders.resources.loader import CompiledMjcf, MjcfText
 from simkit.pose import IDENTITY, Pose
 from simkit.scene import ScenePlugin
 
@@ -58,7 +57,7 @@ class CompiledFile:
         compiled: its specification, model and first state.
     """
 
-    def __init__(self, source: GatheredFile, compiled: CompiledMjcf) -> None:
+    def __init__(self, source: MjcfText, compiled: CompiledMjcf) -> None:
         self.source, self.compiled = source, compiled
         self.spec, self.model, self.data = compiled.spec, compiled.model, compiled.data
         model = self.model
@@ -113,7 +112,7 @@ def _ids_by_owner(owners: npt.NDArray[np.int32]) -> dict[int, list[int]]:
     return found
 
 
-def _engine_settings(source: GatheredFile) -> dict[str, Where]:
+def _engine_settings(source: MjcfText) -> dict[str, Where]:
     """What the file itself says of the engine: option attributes and flags, and other global elements, with lines."""
     found: dict[str, Where] = {}
     for element in source.root.children:

@@ -6,7 +6,6 @@ element a line, so that a line in its messages is found again in the file it cam
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 from typing import Final
@@ -15,6 +14,7 @@ from xml.sax.saxutils import quoteattr  # it brings the network's modules along,
 from simkit.diagnostics import NOWHERE, Diagnostics, Where
 from simkit.loaders.mjcf.asset_files import placeholder, read_asset
 from simkit.loaders.mjcf.size_limits import MOST_ELEMENTS
+from simkit.loaders.resources.loader import MjcfText
 from simkit.loaders.resources.uri_resolver import Resolver
 from simkit.loaders.resources.xml_reader import parse_file
 from simkit.params import Params
@@ -32,35 +32,6 @@ _FOLDER_OF: Final = {
 _FILES: Final = ("file", "fileright", "fileleft", "fileup", "filedown", "filefront", "fileback")
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class GatheredFile:
-    """A whole MJCF model, nothing of it left on disk.
-
-    Attributes:
-        root: the outermost element with every include in place.
-        text: what MuJoCo reads.
-        models: the models that it attaches, by the names that the text uses.
-        assets: its other files, likewise.
-        lines: the place in the user's files of every line of the text (and of the models it attaches).
-        origins: top-level body -> name of the model whose file it was included from.
-        files: name among the assets -> (file, as written).
-        file: the outermost file, or None for text.
-    """
-
-    root: Params
-    text: str
-    models: Mapping[str, bytes]
-    assets: Mapping[str, bytes]
-    lines: tuple[Where, ...]
-    origins: Mapping[str, str]
-    files: Mapping[str, tuple[Path, str]]
-    file: str | None
-
-    def where(self, line: int) -> Where:
-        """The place of a line of the text."""
-        return self.lines[line - 1] if 0 < line <= len(self.lines) else self.root.where
-
-
 @dataclass
 class _SharedFiles:
     """What the files of one load share."""
@@ -75,7 +46,7 @@ class _SharedFiles:
     count: int = 0
 
 
-def gather_files(root: Params, path: Path | None, resolver: Resolver, diagnostics: Diagnostics) -> GatheredFile:
+def gather_files(root: Params, path: Path | None, resolver: Resolver, diagnostics: Diagnostics) -> MjcfText:
     """Everything that a file needs; what cannot be found or may not be read is an error in `diagnostics`."""
     return _FileGatherer(_SharedFiles(resolver, diagnostics), path).bundle(root)
 
@@ -92,14 +63,14 @@ class _FileGatherer:
         self.folders = {"meshdir": "", "texturedir": ""}
         self.strips = False
 
-    def bundle(self, root: Params) -> GatheredFile:
+    def bundle(self, root: Params) -> MjcfText:
         whole = self._with_includes(root, self.folder, 0)
         self._settings(whole)
         self._assets(whole)
         first = len(self.shared.lines)
         text: list[str] = []
         self._write(whole, text)
-        return GatheredFile(
+        return MjcfText(
             root=whole,
             text="\n" * first + "".join(text),
             models=self.shared.models,

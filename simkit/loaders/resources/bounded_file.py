@@ -7,7 +7,6 @@ import os
 import select
 import stat
 from pathlib import Path
-from typing import BinaryIO, cast
 
 PIPE_TIMEOUT = 10.0  # [s] for whoever writes into a pipe
 
@@ -21,31 +20,21 @@ def read_bounded(path: Path, most: int) -> bytes:
         OSError: it cannot be read, is a folder or a device, or a pipe stays silent for 10 s.
     """
     handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
-    with os.fdopen(handle, "rb", buffering=0) as stream:
+    with os.fdopen(handle, "rb", buffering=0):
         mode = os.fstat(handle).st_mode
-        if stat.S_ISREG(mode):
-            return _read_file(cast(BinaryIO, stream), most)
-        if stat.S_ISFIFO(mode):
-            return _read_pipe(handle, most)
+        if stat.S_ISREG(mode) or stat.S_ISFIFO(mode):
+            return _read_pieces(handle, most, is_pipe=stat.S_ISFIFO(mode))
         if stat.S_ISDIR(mode):
             raise OSError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
         raise OSError(errno.EINVAL, "it is a device, not a file", str(path))
 
 
-def _read_file(stream: BinaryIO, most: int) -> bytes:
-    pieces, left = [], most + 1
-    while left > 0 and (piece := stream.read(min(left, 1 << 24))):
-        pieces.append(piece)
-        left -= len(piece)
-    return b"".join(pieces)
-
-
-def _read_pipe(handle: int, most: int) -> bytes:
+def _read_pieces(handle: int, most: int, *, is_pipe: bool) -> bytes:
     pieces, left = [], most + 1
     while left > 0:
-        if not select.select([handle], [], [], PIPE_TIMEOUT)[0]:
+        if is_pipe and not select.select([handle], [], [], PIPE_TIMEOUT)[0]:
             raise OSError(errno.ETIMEDOUT, f"nothing came through the pipe for {PIPE_TIMEOUT:g} s")
-        piece = os.read(handle, min(left, 1 << 20))
+        piece = os.read(handle, min(left, 1 << 24))
         if not piece:
             break
         pieces.append(piece)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import abc
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 from simkit.diagnostics import Diagnostics, Where
@@ -35,24 +36,33 @@ class Triangles(Protocol):
 MeshReader = Callable[[Mesh, Diagnostics, Where], Sequence[Triangles]]
 
 
-class MjcfText(Protocol):
-    """An MJCF file with everything that it includes and names, as MuJoCo reads it."""
+@dataclass(frozen=True, slots=True, eq=False)
+class MjcfText:
+    """An MJCF file with everything that it includes and names, in memory, as MuJoCo reads it.
 
-    @property
-    def root(self) -> Params: ...
+    Attributes:
+        root: the outermost element with every include in place.
+        text: what MuJoCo reads.
+        models: the models that it attaches, by the names that the text uses.
+        assets: its other files, likewise.
+        lines: the place in the user's files of every line of the text (and of the models it attaches).
+        origins: top-level body -> name of the model whose file it was included from.
+        files: name among the assets -> (file, as written).
+        file: the outermost file, or None for text.
+    """
 
-    @property
-    def text(self) -> str: ...
-
-    @property
-    def models(self) -> Mapping[str, bytes]: ...
-
-    @property
-    def assets(self) -> Mapping[str, bytes]: ...
+    root: Params
+    text: str
+    models: Mapping[str, bytes]
+    assets: Mapping[str, bytes]
+    lines: tuple[Where, ...]
+    origins: Mapping[str, str]
+    files: Mapping[str, tuple[Path, str]]
+    file: str | None
 
     def where(self, line: int) -> Where:
-        """The place in the user's files of a line of the text."""
-        ...
+        """The place of a line of the text."""
+        return self.lines[line - 1] if 0 < line <= len(self.lines) else self.root.where
 
 
 class CompiledMjcf(Protocol):

@@ -36,6 +36,7 @@ _SEARCH_VARIABLES = (
     "GAZEBO_MODEL_PATH",
     "ROS_PACKAGE_PATH",
 )
+_SCHEMES = ("model", "package", "file")
 _CACHE_VARIABLES = ("GZ_FUEL_CACHE_PATH", "IGN_FUEL_CACHE_PATH")
 _NOT_HERE = frozenset(("SK-URI-001", "SK-URI-002", "SK-URI-009"))
 _PATH_HINT = "name the folder that holds it with --resource-path or SIMKIT_RESOURCE_PATH"
@@ -122,45 +123,26 @@ class Resolver:
         uri = package_uri(uri)
         scheme, _, rest = uri.partition("://")
         if uri.startswith(("http://", "https://")):
-            looked = format_searched(places)
-            diagnostics.error(
-                "SK-URI-002",
-                f"{uri} is not on this machine and nothing is downloaded{looked}",
-                where,
-                f"fetch it once with Gazebo (its cache is read), or {_PATH_HINT}",
-            )
+            message = f"{uri} is not on this machine and nothing is downloaded{format_searched(places)}"
+            hint = f"fetch it once with Gazebo (its cache is read), or {_PATH_HINT}"
+            diagnostics.error("SK-URI-002", message, where, hint)
         elif places is None:
             diagnostics.error("SK-URI-003", f"{uri} leaves the folders it may use", where, _PATH_HINT)
-        elif "://" in uri and scheme not in ("model", "package", "file"):
-            diagnostics.error(
-                "SK-URI-004",
-                f"{uri}: schemes known are model, package, file, https",
-                where,
-                did_you_mean(scheme, ("model", "package", "file", "https")),
-            )
+        elif "://" in uri and scheme not in _SCHEMES:
+            message = f"{uri}: schemes known are model, package, file, https"
+            diagnostics.error("SK-URI-004", message, where, did_you_mean(scheme, (*_SCHEMES, "https")))
         else:
-            self._not_found(uri, scheme, rest.split("/")[0], places, where, diagnostics, relative_to)
-        return None
-
-    def _not_found(
-        self,
-        uri: str,
-        scheme: str,
-        name: str,
-        places: list[Path] | None,
-        where: Where,
-        diagnostics: Diagnostics,
-        relative_to: Path | None,
-    ) -> None:
-        near = did_you_mean(name, self._nearby_names(relative_to)) if scheme in ("model", "package") else ""
-        if scheme == "package":
-            folder, tried = self.find_package(name, relative_to)
-            if folder is None:
+            name = rest.split("/")[0]
+            near = did_you_mean(name, self._nearby_names(relative_to)) if scheme in ("model", "package") else ""
+            folder, tried = self.find_package(name, relative_to) if scheme == "package" else (None, [])
+            if scheme == "package" and folder is None:
                 message = f"{uri}: the package {name!r} is not found{format_searched(tried)}"
                 hint = f"name its folder: --package-path {name}=DIR"
                 diagnostics.error("SK-URI-009", message, where, f"{near} or {hint}" if near else hint)
-                return
-        diagnostics.error("SK-URI-001", f"{uri} is not found{format_searched(places)}", where, near or _PATH_HINT)
+            else:
+                message = f"{uri} is not found{format_searched(places)}"
+                diagnostics.error("SK-URI-001", message, where, near or _PATH_HINT)
+        return None
 
     def find_package(self, name: str, relative_to: Path | None) -> tuple[Path | None, list[Path]]:
         """The folder of a ROS package, and every place looked in; what is found may be read from then on."""
@@ -195,11 +177,8 @@ class Resolver:
         named = self._model_candidates(rest, relative_to)
         if scheme == "model":
             return first_existing(chain(named, self._package_candidates(rest, relative_to)))
-        return first_existing(
-            chain(
-                self._package_candidates(rest, relative_to), named, self._renamed_checkout_candidates(rest, relative_to)
-            )
-        )
+        renamed = self._renamed_checkout_candidates(rest, relative_to)
+        return first_existing(chain(self._package_candidates(rest, relative_to), named, renamed))
 
     def _exists(self, text: str, relative_to: Path | None) -> bool:
         return relative_to is not None and is_existing(relative_to / text)

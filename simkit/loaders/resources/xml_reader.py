@@ -150,10 +150,6 @@ class _TreeBuilder:
         root, self.root = self.root, None
         return root
 
-    def at(self, error: expat.ExpatError) -> int:
-        """The line of an error."""
-        return error.lineno + self.offset
-
     @property
     def line(self) -> int:
         return self.parser.CurrentLineNumber + self.offset
@@ -209,23 +205,19 @@ def parse_text(text: str | bytes, diagnostics: Diagnostics, file: str | None = N
         return None
     if isinstance(text, str) and data.lstrip().startswith(b"<?xml"):
         declaration, _, rest = data.lstrip().partition(b"?>")
-        data = (
-            data[: len(data) - len(data.lstrip())] + b"<?xml version='1.0'?>" + b"\n" * declaration.count(b"\n") + rest
-        )
+        blank = data[: len(data) - len(data.lstrip())]
+        data = blank + b"<?xml version='1.0'?>" + b"\n" * declaration.count(b"\n") + rest
     reader = _TreeBuilder(file, diagnostics)
     try:
         return reader.read(data)
     except expat.ExpatError as error:
         mended = _without_comments(data)
         root = None if mended is None else _parse_without_comments(mended, file, diagnostics)
+        said, where = expat.ErrorString(error.code), Where(file, error.lineno + reader.offset)
         if root is not None:
-            text_of = expat.ErrorString(error.code)
-            diagnostics.warning(
-                "SK-XML-004", f"not strictly XML, read all the same: {text_of}", Where(file, reader.at(error))
-            )
+            diagnostics.warning("SK-XML-004", f"not strictly XML, read all the same: {said}", where)
             return root
-        text_of = expat.ErrorString(error.code)
-        diagnostics.error("SK-XML-001", f"broken XML: {text_of}{reader.inside}", Where(file, reader.at(error)))
+        diagnostics.error("SK-XML-001", f"broken XML: {said}{reader.inside}", where)
     except _RefusedDocument as refused:
         diagnostics.error(refused.code, str(refused), Where(file, reader.line))
     except (LookupError, ValueError) as error:

@@ -158,14 +158,8 @@ def _child_actions(change: Params, target: Params) -> None:
             target.children.append(_without_action_attributes(child))
         elif (found := _matching_child(child, target)) is None:
             continue
-        elif action == "modify":
-            _modify(child, found)
-        elif action == "replace":
-            _replace(child, target, found)
-        elif child.children:
-            _change_element("remove", child, target, found)
         else:
-            target.children.remove(found)
+            _change_element(action, child, target, found)
 
 
 def _matching_child(wanted: Params, target: Params) -> Params | None:

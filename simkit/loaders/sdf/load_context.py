@@ -155,9 +155,8 @@ class Workspace:
             self.diagnostics.warning("SK-LOAD-004", f"SDF {text} is newer than {newest}, the newest known", root.where)
         key = chain[-1] if chain else ""
         if version < (1, 2) and key not in self.roots:
-            self.diagnostics.warning(
-                "SK-LOAD-004", f"SDF {text} is from 2012; it is read in today's spelling", root.where
-            )
+            message = f"SDF {text} is from 2012; it is read in today's spelling"
+            self.diagnostics.warning("SK-LOAD-004", message, root.where)
         if key not in self.roots:
             self.roots[key] = nest_flattened_models(modernise(root, version), version)
         root = self.roots[key]

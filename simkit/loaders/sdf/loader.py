@@ -60,28 +60,24 @@ def _read(file: SdfFile, document: Document, request: LoadRequest, workspace: Wo
 
 def _bare(file: SdfFile, workspace: Workspace) -> EntitySource | None:
     """The one model (or light) of a file without a world."""
-    root, diagnostics = file.root, workspace.diagnostics
+    root = file.root
     found = [*root.all("model"), *root.all("light")]
     actors = root.all("actor")
     for actor in actors:
         actor.mark_all_read()
-        diagnostics.warning("SK-SDF-012", "<actor>: actors are not simulated", actor.where)
+        actor.warning("SK-SDF-012", "<actor>: actors are not simulated")
     includes = root.all("include")
     if not found and includes:
         return read_include(includes[0], file, workspace)
     if not found:
         if not actors:
             near = next((h for c in root.children if (h := did_you_mean(c.name, ("world", "model", "light")))), "")
-            diagnostics.error("SK-SDF-026", f"<{root.name}> holds neither a world nor a model", root.where, near)
+            root.error("SK-SDF-026", f"<{root.name}> holds neither a world nor a model", near)
         return None
     for other in found[1:]:
         other.mark_all_read()
-        diagnostics.error(
-            "SK-SDF-028",
-            f"a file without a world holds one model; <{other.name} name={other.attribute('name')!r}> is one more",
-            other.where,
-            "put them into a <world>",
-        )
+        message = f"a file without a world holds one model; <{other.name} name={other.attribute('name')!r}> is one more"
+        other.error("SK-SDF-028", message, "put them into a <world>")
     return read_inline_entity(found[0], file, workspace)
 
 

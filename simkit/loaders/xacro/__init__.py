@@ -7,12 +7,9 @@ and do nothing else; every step, text, list and number is bounded, and files are
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
 
-from simkit.diagnostics import Diagnostics
-from simkit.loaders.resources.uri_resolver import Resolver
 from simkit.loaders.resources.xml_reader import Document
-from simkit.loaders.xacro import expansion
+from simkit.loaders.xacro.expansion import expand
 
 __all__ = ["expand", "needs_expansion"]
 
@@ -28,11 +25,3 @@ def needs_expansion(document: Document) -> bool:
         text = _COMMENT.sub(b"", text)
     computes = b"${" in text or b"$(" in text
     return b"<xacro:" in text or (computes and "xmlns:xacro" in document.root.attributes)
-
-
-def expand(
-    document: Document, resolver: Resolver, arguments: Mapping[str, str], diagnostics: Diagnostics
-) -> Document | None:
-    """The expanded file; None, with an error recorded, where it cannot be expanded. See `expansion.expand`."""
-
-    return expansion.expand(document, resolver, arguments, diagnostics)

@@ -14,7 +14,7 @@ from simkit.loaders.resources.xml_reader import Document
 from simkit.loaders.xacro.dom import place_of, to_document, to_params
 from simkit.loaders.xacro.expansion_limits import MAX_FILES_DEEP, BoundError, Budget, ExpansionError
 from simkit.loaders.xacro.expression import Evaluator, Function, Names, Value
-from simkit.loaders.xacro.expression_functions import direct_names, math_functions, python_functions, tokenize
+from simkit.loaders.xacro.expression_functions import DIRECT_NAMES, math_functions, python_functions, tokenize
 from simkit.loaders.xacro.file_access import FileAccess, MissingError
 from simkit.loaders.xacro.private_package import MACRO_ARGUMENT, XacroModule, import_private_xacro
 
@@ -38,19 +38,10 @@ def expand(
     try:
         engine = import_private_xacro()
     except ImportError as error:
-        hint = "pip install xacro"
-        diagnostics.error(
-            "SK-XACRO-006",
-            f"the file is xacro, and {error.name or error} is not installed",
-            _top_element(document),
-            hint,
-        )
+        message = f"the file is xacro, and {error.name or error} is not installed"
+        diagnostics.error("SK-XACRO-006", message, document.root.where, "pip install xacro")
         return None
     return _Expansion(engine, document, resolver, arguments, diagnostics).run()
-
-
-def _top_element(document: Document) -> Where:
-    return document.root.where
 
 
 class _Expansion:
@@ -65,7 +56,7 @@ class _Expansion:
         diagnostics: Diagnostics,
     ) -> None:
         self.engine, self.document, self.diagnostics = engine, document, diagnostics
-        self.where = _top_element(document)
+        self.where = document.root.where
         self.files = FileAccess(resolver, diagnostics, lambda: self.where)
         self.budget = Budget()
         self.given = {str(k): str(v) for k, v in arguments.items()}
@@ -124,12 +115,9 @@ class _Expansion:
         for name in self.given:
             if name not in self.declared:
                 known = ", ".join(sorted(self.declared)) or "none"
-                self.diagnostics.warning(
-                    "SK-XACRO-004",
-                    f"the file has no argument {name!r} (it has: {known}); it has no effect",
-                    _top_element(self.document),
-                    did_you_mean(name, self.declared),
-                )
+                message = f"the file has no argument {name!r} (it has: {known}); it has no effect"
+                hint = did_you_mean(name, self.declared)
+                self.diagnostics.warning("SK-XACRO-004", message, self.document.root.where, hint)
 
     # ------------------------------------------------------------------ what replaces xacro's own
 
@@ -320,7 +308,7 @@ class _Expansion:
             own[said] = Function(self._print_message)
         for name, table in (("python", python), ("math", mathematics), ("xacro", own)):
             dict.update(spaces[name], table)
-        direct = {name: python[name] for name in direct_names()}
+        direct = {name: python[name] for name in DIRECT_NAMES}
         commands = {
             "find": Function(lambda name: self.files.package_folder(str(name), self._current_folder())),
             "env": Function(lambda name: self._command(f"env {name}", None)),

@@ -9,7 +9,9 @@ from collections.abc import Callable
 from simkit.loaders.xacro.expansion_limits import MAX_ITEMS, BoundError, ExpansionError
 from simkit.loaders.xacro.expression import Evaluator, Function, Value
 
-_DIRECT = ("list", "dict", "map", "len", "str", "float", "int", "bool", "min", "max", "round", "sorted", "range")
+DIRECT_NAMES = ("list", "dict", "map", "len", "str", "float", "int", "bool", "min", "max", "round", "sorted", "range")
+"""The functions that need no `python.` before them."""
+
 _LARGEST_FACTORIAL = 1000
 
 
@@ -64,11 +66,6 @@ def math_functions() -> dict[str, Value]:
     for name in ("factorial", "comb", "perm"):
         table[name] = Function(_check_size(getattr(math, name)))
     return table
-
-
-def direct_names() -> tuple[str, ...]:
-    """The functions that need no `python.` before them."""
-    return _DIRECT
 
 
 def tokenize(text: str, sep: str = ",; ", skip_empty: bool = True) -> list[str]:

@@ -93,9 +93,8 @@ class FileAccess:
                 places = ", ".join(str(p) for p in tried[:6])
                 message = f"$(find {name}): the package is not found, it stands as package://{name}"
                 looked = f"; looked in {places}" if places else ""
-                self.diagnostics.note(
-                    "SK-XACRO-007", message + looked, self._where(), f"name its folder: --package-path {name}=DIR"
-                )
+                hint = f"name its folder: --package-path {name}=DIR"
+                self.diagnostics.note("SK-XACRO-007", message + looked, self._where(), hint)
         return self._packages[name]
 
     def read_yaml(self, path: Path, evaluate: Callable[[str], Value], budget: Budget) -> Value:
