@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from simkit.diagnostics import Diagnostic, Where, did_you_mean
 from simkit.errors import InputError
@@ -25,9 +25,26 @@ from simkit.scene import (
     SceneModel,
     ScenePlugin,
     SceneSensor,
+    SceneVisual,
     SceneWorld,
 )
+from simkit.scene.geometry import vec3
 from simkit.scene.world import CONTACT_LAWS, QUALITIES
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
+T = TypeVar("T", bound="DataclassInstance")
+_Entity = SceneModel | SceneLink | SceneJoint | SceneLight | SceneCollision | SceneSensor | SceneVisual | ScenePlugin
+_Tree = dict[str, "_Tree"]  # fields that hold entities, and the fields of those
+
+_SENSOR_TREE: _Tree = {"plugins": {}}
+_LINK_TREE: _Tree = {
+    "sensors": _SENSOR_TREE, "lights": {}, "plugins": {}, "collisions": {}, "visuals": {"plugins": {}}
+}  # fmt: skip
+_MODEL_TREE: _Tree = {"links": _LINK_TREE, "joints": {"sensors": _SENSOR_TREE}, "models": {}, "plugins": {}}
+_MODEL_TREE["models"] = _MODEL_TREE
+_WORLD_TREE: _Tree = {"models": _MODEL_TREE, "lights": {}, "joints": {}, "plugins": {}}
 
 _CODE = "SK-CLI-014"
 _PLACE = "--set "
@@ -79,9 +96,8 @@ def check_used(diagnostics: Iterable[Diagnostic]) -> None:
     """
     for found in diagnostics:
         if found.code == "SK-PARAM-003" and (found.file or "").startswith(_PLACE):
-            raise InputError(
-                f"{_CODE} {found.file}: {found.message}" + (f"; {found.hint}" if found.hint else ""), _CODE
-            )
+            hint = f"; {found.hint}" if found.hint else ""
+            raise InputError(f"{_CODE} {found.file}: {found.message}{hint}", _CODE)
 
 
 def _override_error(text: str, reason: str) -> InputError:
@@ -106,72 +122,53 @@ class _Override:
         names = sorted(_entities(scene), key=len, reverse=True)
         entity = next((n for n in names if path.startswith(n + ".")), None)
         if entity is None:
-            asked = (
-                path.rpartition("::")[0] + "::" + path.rpartition("::")[2].split(".")[0]
-                if "::" in path
-                else path.split(".")[0]
-            )
+            outer, colons, last = path.rpartition("::")
+            asked = outer + colons + last.split(".")[0]
             if path in (*names, "physics", "world", "scene"):
                 raise _override_error(self.text, f"{path!r} needs an element, as in {path}.element=value")
             hint = did_you_mean(asked, [*names, "physics", "world", "scene"])
             raise _override_error(self.text, f"no entity {asked!r}; {hint or 'simkit inspect lists them'}")
         element = path[len(entity) + 1 :]
-        worlds = tuple(self._in_world(w, entity, element) for w in scene.worlds)
-        model = None if scene.model is None else self._in_model(scene.model, entity, element)
+        worlds = tuple(self._inside(world, _WORLD_TREE, "", entity, element) for world in scene.worlds)
+        model = scene.model
+        if model is not None:
+            model = self._inside(model, _MODEL_TREE, model.scoped, entity, element)
+            model = self._model(model, element) if model.scoped == entity else model
         return replace(scene, worlds=worlds, model=model)
 
-    def _in_world(self, world: SceneWorld, entity: str, element: str) -> SceneWorld:
-        return replace(
-            world,
-            models=tuple(self._in_model(m, entity, element) for m in world.models),
-            lights=tuple(self._light(li, element) if li.scoped == entity else li for li in world.lights),
-            joints=tuple(self._joint(j, element) if j.scoped == entity else j for j in world.joints),
-            plugins=self._plugins(world.plugins, "", entity, element),
-        )
+    def _inside(self, holder: T, tree: _Tree, owner: str, entity: str, element: str) -> T:
+        """A copy of a world, a model, ... in which the entity has the value, wherever in it that is.
 
-    def _in_model(self, model: SceneModel, entity: str, element: str) -> SceneModel:
-        if entity != model.scoped and not entity.startswith(model.scoped + "::"):
-            return model
-        model = replace(
-            model,
-            links=tuple(self._in_link(link, entity, element) for link in model.links),
-            joints=tuple(self._in_joint(j, entity, element) for j in model.joints),
-            models=tuple(self._in_model(m, entity, element) for m in model.models),
-            plugins=self._plugins(model.plugins, model.scoped, entity, element),
-        )
-        return self._model(model, element) if entity == model.scoped else model
+        Args:
+            tree: the fields of the holder that are looked through.
+            owner: scoped name of the holder; empty for a world.
+        """
+        changes: dict[str, object] = {}
+        for field, below in tree.items():
+            items = []
+            for item in getattr(holder, field):
+                changed = self._inside(item, below, item.scoped, entity, element) if below else item
+                items.append(self._change(changed, element) if _path_of(item, owner) == entity else changed)
+            changes[field] = tuple(items)
+        return replace(holder, **changes)
 
-    def _in_link(self, link: SceneLink, entity: str, element: str) -> SceneLink:
-        if entity != link.scoped and not entity.startswith(link.scoped + "::"):
-            return link
-        link = replace(
-            link,
-            sensors=self._sensors(link.sensors, entity, element),
-            lights=tuple(self._light(li, element) if li.scoped == entity else li for li in link.lights),
-            plugins=self._plugins(link.plugins, link.scoped, entity, element),
-            collisions=tuple(self._collision(c, element) if c.scoped == entity else c for c in link.collisions),
-            visuals=tuple(
-                replace(v, plugins=self._plugins(v.plugins, v.scoped, entity, element)) if v.plugins else v
-                for v in link.visuals
-            ),
-        )
-        return self._link(link, element) if entity == link.scoped else link
-
-    def _in_joint(self, joint: SceneJoint, entity: str, element: str) -> SceneJoint:
-        joint = replace(joint, sensors=self._sensors(joint.sensors, entity, element))
-        return self._joint(joint, element) if joint.scoped == entity else joint
-
-    def _sensors(self, sensors: tuple[SceneSensor, ...], entity: str, element: str) -> tuple[SceneSensor, ...]:
-        changed = (replace(s, plugins=self._plugins(s.plugins, s.scoped, entity, element)) for s in sensors)
-        return tuple(self._sensor(s, element) if s.scoped == entity else s for s in changed)
-
-    def _plugins(
-        self, plugins: tuple[ScenePlugin, ...], owner: str, entity: str, element: str
-    ) -> tuple[ScenePlugin, ...]:
-        return tuple(
-            replace(p, params=self._params(p.params, element)) if _join_path(owner, p.name) == entity else p
-            for p in plugins
-        )
+    def _change(self, item: object, element: str) -> object:
+        match item:
+            case SceneModel():
+                return self._model(item, element)
+            case SceneLink():
+                return self._link(item, element)
+            case SceneJoint():
+                return self._joint(item, element)
+            case SceneLight():
+                return self._light(item, element)
+            case SceneCollision():
+                return self._collision(item, element)
+            case SceneSensor():
+                return self._sensor(item, element)
+            case ScenePlugin():
+                return replace(item, params=self._params(item.params, element))
+        return item
 
     # ------------------------------------------------------------------ changing it
 
@@ -231,31 +228,27 @@ class _Override:
     def _light(self, light: SceneLight, element: str) -> SceneLight:
         self._known(element, _LIGHT)
         if element == "intensity":
-            return replace(
-                light, intensity=self._number(lambda v: math.isfinite(v) and v >= 0, "a number of at least 0")
-            )
+            return replace(light, intensity=self._non_negative())
         if element == "direction":
             x, y, z = self._vector(3)
             length = math.hypot(x, y, z)
             if length == 0:
                 raise _override_error(self.text, "a direction must not be zero")
             unit = (x / length, y / length, z / length)
-            world = light.pose_world.rotate(unit)
-            return replace(light, direction=unit, direction_world=(float(world[0]), float(world[1]), float(world[2])))
+            return replace(light, direction=unit, direction_world=vec3(light.pose_world.rotate(unit)))
         return replace(light, **_change_value(element, self._boolean()))
 
     def _collision(self, collision: SceneCollision, element: str) -> SceneCollision:
         self._known(element, list(_SURFACE))
-        value = self._number(lambda v: math.isfinite(v) and v >= 0, "a number of at least 0")
-        return replace(collision, surface=replace(collision.surface, **_change_value(_SURFACE[element], value)))
+        surface = replace(collision.surface, **_change_value(_SURFACE[element], self._non_negative()))
+        return replace(collision, surface=surface)
 
     def _sensor(self, sensor: SceneSensor, element: str) -> SceneSensor:
         if element == "update_rate":
-            rate = self._number(lambda v: math.isfinite(v) and v >= 0, "a number of at least 0")
-            return replace(sensor, rate=rate, params=self._params(sensor.params, element))
-        if element == "topic":
-            return replace(sensor, topic=self.value, params=self._params(sensor.params, element))
-        if element in ("name", "type", "pose"):
+            sensor = replace(sensor, rate=self._non_negative())
+        elif element == "topic":
+            sensor = replace(sensor, topic=self.value)
+        elif element in ("name", "type", "pose"):
             raise _override_error(self.text, f"<{element}> cannot be set")
         return replace(sensor, params=self._params(sensor.params, element))
 
@@ -297,6 +290,9 @@ class _Override:
             raise _override_error(self.text, f"found {self.value!r}, allowed is {allowed}")
         return value
 
+    def _non_negative(self) -> float:
+        return self._number(lambda v: math.isfinite(v) and v >= 0, "a number of at least 0")
+
     def _one_of(self, allowed: Sequence[str]) -> str:
         if self.value not in allowed:
             raise _override_error(self.text, f"found {self.value!r}, allowed is one of {', '.join(allowed)}")
@@ -322,25 +318,23 @@ def _change_value(name: str, value: object) -> dict[str, Any]:
     return {name: value}
 
 
-def _join_path(owner: str, name: str) -> str:
-    return f"{owner}::{name}" if owner else name
+def _path_of(item: _Entity, owner: str) -> str:
+    """The name that `--set` begins with; empty for a visual, of which only the plugins can be set."""
+    if isinstance(item, ScenePlugin):
+        return f"{owner}::{item.name}" if owner else item.name
+    return "" if isinstance(item, SceneVisual) else item.scoped
 
 
 def _entities(scene: Scene) -> set[str]:
     """Every name that `--set` can begin with."""
-    found: set[str] = set()
-    models = [m for w in scene.worlds for m in w.models] + ([scene.model] if scene.model else [])
-    for world in scene.worlds:
-        found |= {li.scoped for li in world.lights} | {j.scoped for j in world.joints} | {p.name for p in world.plugins}
-    for model in (nested for m in models for nested in m.all_models()):
-        found.add(model.scoped)
-        found |= {_join_path(model.scoped, p.name) for p in model.plugins}
-        for link in model.links:
-            found |= {link.scoped, *(c.scoped for c in link.collisions), *(li.scoped for li in link.lights)}
-            found |= {_join_path(link.scoped, p.name) for p in link.plugins}
-            found |= {_join_path(visual.scoped, p.name) for visual in link.visuals for p in visual.plugins}
-        found |= {j.scoped for j in model.joints}
-        owned = [link.sensors for link in model.links] + [joint.sensors for joint in model.joints]
-        for sensor in (s for sensors in owned for s in sensors):
-            found |= {sensor.scoped, *(_join_path(sensor.scoped, p.name) for p in sensor.plugins)}
-    return found
+    found = {path for world in scene.worlds for path in _paths(world, _WORLD_TREE, "")}
+    if scene.model is not None:
+        found |= {scene.model.scoped, *_paths(scene.model, _MODEL_TREE, scene.model.scoped)}
+    return found - {""}
+
+
+def _paths(holder: object, tree: _Tree, owner: str) -> Iterator[str]:
+    for field, below in tree.items():
+        for item in getattr(holder, field):
+            yield _path_of(item, owner)
+            yield from _paths(item, below, item.scoped)

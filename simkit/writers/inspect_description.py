@@ -98,10 +98,7 @@ def _world(world: SceneWorld, diagnostics: Diagnostics, read_sensor: SensorReade
         "wind": list(world.wind),
         "atmosphere": _numbers_of(world.atmosphere),
         "spherical_coordinates": _numbers_of(world.spherical_coordinates),
-        "physics": {
-            "max_step_size": world.physics.max_step_size,
-            "real_time_factor": world.physics.real_time_factor,
-        },
+        "physics": {"max_step_size": world.physics.max_step_size, "real_time_factor": world.physics.real_time_factor},
         "models": [_model(m, diagnostics, read_sensor) for m in world.models],
         "lights": [_light(light) for light in world.lights],
         "frames": [_frame(f) for f in world.frames],
@@ -229,9 +226,7 @@ def _totals(scene: Scene) -> Block:
     joints = [j for m in models for j in m.joints] + [j for w in scene.worlds for j in w.joints]
     owners: list[SceneLink | SceneJoint] = [*links, *joints]
     sensors = [s for owner in owners for s in owner.sensors]
-    lights = (
-        sum(len(w.lights) for w in scene.worlds) + (scene.light is not None) + sum(len(link.lights) for link in links)
-    )
+    lights = [li for w in scene.worlds for li in w.lights] + [li for link in links for li in link.lights]
     visuals = [visual for link in links for visual in link.visuals]
     carriers: list[SceneModel | SceneLink | SceneJoint | SceneSensor | SceneVisual]
     carriers = [*models, *owners, *sensors, *visuals]
@@ -243,7 +238,7 @@ def _totals(scene: Scene) -> Block:
         "collisions": sum(len(link.collisions) for link in links),
         "visuals": len(visuals),
         "sensors": len(sensors),
-        "lights": lights,
+        "lights": len(lights) + (scene.light is not None),
         "plugins": len(owned) + sum(len(w.plugins) for w in scene.worlds),
         "mass": math.fsum(link.inertial.mass for link in links),
     }

@@ -107,11 +107,8 @@ class _Assets:
         self._textures(spec.textures)
         for item in (*spec.meshes, *spec.hfields, *spec.skins):
             if item.file:
-                content = self._content(item.file, spec.meshdir)
-                item.file, item.content_type = (
-                    self._save(content, _file_stem(item.name or item.file), Path(item.file).suffix),
-                    "",
-                )
+                content, stem = self._content(item.file, spec.meshdir), _file_stem(item.name or item.file)
+                item.file, item.content_type = self._save(content, stem, Path(item.file).suffix), ""
         spec.meshdir = spec.texturedir = ""
         for name in list(spec.assets):
             del spec.assets[name]

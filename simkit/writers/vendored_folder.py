@@ -252,12 +252,9 @@ def vendor(
     diagnostics.raise_if_errors()
     if document is None or document.path is None:
         raise InputError(f"SK-LOAD-002 {source} is no file", "SK-LOAD-002")
-    parent = target.absolute().parent
+    stage: Path | None = None
     try:
-        stage = Path(tempfile.mkdtemp(prefix=f".{target.name}.", dir=parent))
-    except OSError as error:
-        raise InputError(f"SK-CLI-016 cannot write {target}: {error.strerror or error}", "SK-CLI-016") from None
-    try:
+        stage = Path(tempfile.mkdtemp(prefix=f".{target.name}.", dir=target.absolute().parent))
         collector = WorldCollector(resolver, stage, diagnostics)
         main = collector.collect(document, expanded)
         after = describe(stage / main, base=base)
@@ -271,7 +268,8 @@ def vendor(
     except OSError as error:
         raise InputError(f"SK-CLI-016 cannot write {target}: {error.strerror or error}", "SK-CLI-016") from None
     finally:
-        shutil.rmtree(stage, ignore_errors=True)
+        if stage is not None:
+            shutil.rmtree(stage, ignore_errors=True)
     return main, collector.count
 
 

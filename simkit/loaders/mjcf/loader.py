@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 from typing import ClassVar
 
 from simkit.diagnostics import Diagnostics, Where
@@ -77,7 +76,7 @@ class MjcfLoader(IncludableLoader):
         resolver = request.resolver.around(document.folder)
         is_part = request.as_model or request.name is not None or request.pose is not None
         parser = _parser(request.mjcf_parser)
-        file = _open_mjcf(document.root, document.path, resolver, request.diagnostics, parser, is_part)
+        file = _open_mjcf(document, resolver, request.diagnostics, parser, is_part)
         name = None if document.path is None else str(document.path)
         if file is None:
             return Scene(file=name)
@@ -94,7 +93,7 @@ class MjcfLoader(IncludableLoader):
 
     def open_included(self, document: Document, workspace: Workspace) -> IncludedMjcf | None:
         parser = _parser(workspace.mjcf_parser)
-        file = _open_mjcf(document.root, document.path, workspace.resolver, workspace.diagnostics, parser)
+        file = _open_mjcf(document, workspace.resolver, workspace.diagnostics, parser)
         return None if file is None else IncludedMjcf(_frames_document(file, workspace.diagnostics), file)
 
 
@@ -126,12 +125,7 @@ def _parser(mjcf_parser: Callable[[], MjcfParser] | None) -> MjcfParser:
 
 
 def _open_mjcf(
-    root: Params,
-    path: Path | None,
-    resolver: Resolver,
-    diagnostics: Diagnostics,
-    parser: MjcfParser,
-    as_model: bool = True,
+    document: Document, resolver: Resolver, diagnostics: Diagnostics, parser: MjcfParser, as_model: bool = True
 ) -> MjcfFile | None:
     """Reads a file with all that it includes and names; None, with errors recorded, where it cannot be used.
 
@@ -139,6 +133,7 @@ def _open_mjcf(
         as_model: it is wanted as a model, even where it could be a world.
     """
     found = Diagnostics()
+    root, path = document.root, document.path
     gathered = gather_files(root, path, resolver, found)
     check_bounds(gathered.root)
     check_names(gathered.root, parser.schema_text())

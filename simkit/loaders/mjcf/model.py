@@ -11,16 +11,7 @@ from simkit.loaders.mjcf.joints import read_joints
 from simkit.loaders.mjcf.lights import read_lights
 from simkit.loaders.sdf.inertial import moments_of
 from simkit.pose import Pose
-from simkit.scene import (
-    Inertial,
-    Material,
-    SceneCollision,
-    SceneFrame,
-    SceneLink,
-    SceneModel,
-    SceneVisual,
-    Surface,
-)
+from simkit.scene import Inertial, Material, SceneCollision, SceneFrame, SceneLink, SceneModel, SceneVisual, Surface
 from simkit.scene import geometry as shapes
 from simkit.scene.geometry import Geometry, vec3
 from simkit.scene.mjcf_source import MjcfGeom, MjcfSource
@@ -83,12 +74,9 @@ class ModelReader:
         scoped = f"{self._placed.scoped}::{name}"
         found.bodies[scoped] = file.name("BODY", body)
         if body:
-            found.masses[file.name("BODY", body)] = (
-                float(model.body_mass[body]),
-                tuple(model.body_ipos[body].tolist()),
-                tuple(model.body_iquat[body].tolist()),
-                tuple(model.body_inertia[body].tolist()),
-            )
+            arrays = (model.body_ipos, model.body_iquat, model.body_inertia)
+            centre, axes, moments = (tuple(array[body].tolist()) for array in arrays)
+            found.masses[file.name("BODY", body)] = (float(model.body_mass[body]), centre, axes, moments)
         pose = self._place @ file.pose(body)
         collisions: list[SceneCollision] = []
         visuals: list[SceneVisual] = []

@@ -121,10 +121,8 @@ def _check_tree(draft: RobotDraft) -> None:
         if other is None:
             above[joint.child] = joint
             continue
-        message = (
-            f"link {joint.child!r} hangs on two joints, {other.name!r} (line {other.element.where.line}) "
-            f"and {joint.name!r}; a URDF is a tree"
-        )
+        first = f"{other.name!r} (line {other.element.where.line})"
+        message = f"link {joint.child!r} hangs on two joints, {first} and {joint.name!r}; a URDF is a tree"
         hint = "close a loop with <gazebo><joint ...> in SDF's words"
         draft.diagnostics.error("SK-URDF-005", message, joint.element.where, hint)
     joined_badly = {
