@@ -17,7 +17,7 @@ is reported. `simkit plugin info` shows the fields, and the report of an element
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Any, Generic, Literal, Protocol, TypeVar, overload
+from typing import Any, Generic, Literal, Protocol, Self, TypeVar, overload
 
 from simkit.params import Params
 from simkit.pose import IDENTITY, Pose
@@ -41,12 +41,17 @@ class Options:
     def __init__(self, params: Params) -> None:
         self.params = params
         self.is_given = True
-        self._values: dict[str, object] = {}
 
     @classmethod
     def fields(cls) -> dict[str, Option]:
         """The options by the names of their fields, those of base classes first."""
         return {name: v for c in reversed(cls.__mro__) for name, v in vars(c).items() if isinstance(v, Option)}
+
+    def read_all(self) -> Self:
+        """Reads every option that was not read yet, so that all faults of the block are reported now."""
+        for name in self.fields():
+            getattr(self, name)
+        return self
 
     @classmethod
     def element_names(cls) -> Iterator[str]:
@@ -117,10 +122,10 @@ class Option:
     def __get__(self, options: Options | None, owner: type[Options]) -> Any:
         if options is None:
             return self
-        if self.name not in options._values:
-            default = getattr(options, self.instead) if self.instead else self.default
-            options._values[self.name] = self._read(options.params, default)
-        return options._values[self.name]
+        default = getattr(options, self.instead) if self.instead else self.default
+        # from now on the attribute of the instance comes before this descriptor of its class
+        found = vars(options)[self.name] = self._read(options.params, default)
+        return found
 
     def _read(self, params: Params, default: Any) -> Any:
         name, required = self.element, self.required

@@ -5,9 +5,8 @@ from __future__ import annotations
 import re
 
 _SAID = re.compile(r"\[\s*([^\]\d'\"\[][^\]'\"\[]{0,15}?)\s*\]")
-_UNITS = frozenset(
-    "m cm mm s ms Hz kg N N·m rad deg m/s rad/s m/s² rad/s² m/s^2 rad/s^2 K Pa V A W J T % m² 1/s °C lx".split()
-)
+_KNOWN = "m cm mm s ms Hz kg N N·m rad deg m/s rad/s m/s² rad/s² m/s^2 rad/s^2 K Pa V A W J T % m² 1/s °C lx"
+_UNITS = frozenset(_KNOWN.split())
 _WORD = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+|\d+")
 # Each row is a unit and the names that stand for it; all words of a name must be there. The first row that fits counts.
 _RULES: tuple[tuple[str, tuple[str, ...]], ...] = (

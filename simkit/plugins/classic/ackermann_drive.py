@@ -14,21 +14,19 @@ from typing import TYPE_CHECKING
 
 from simkit import msgs
 from simkit.params import Params
-from simkit.plugins.base import ModelPlugin
+from simkit.plugins.classic.commanded_drive import CommandedDrive
 from simkit.plugins.drives.drive_outputs import DriveOutputOptions, DriveOutputs
-from simkit.plugins.drives.odometry import COMMAND_TYPES, TrueMotion, command_of
+from simkit.plugins.drives.odometry import COMMAND_TYPES
 from simkit.plugins.drives.wheel_joints import find_drive_joint, find_wheels, steering_angles
 from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.joints.joint_axis import JointAxis
 from simkit.plugins.joints.pid import Pid
-from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, OptionsOf, boolean, number, text, vector, vector3
 from simkit.scene import Cylinder, Sphere
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.compiler.name_map import ActuatorRef
-    from simkit.msgs import Twist, TwistStamped
     from simkit.runtime import Model
     from simkit.scene import SceneJoint, SceneLink, SceneModel
 
@@ -67,7 +65,7 @@ class GazeboRosAckermannDriveOptions(Options):
     steering_wheel_joint: str = text("steering_wheel_joint")
 
 
-class GazeboRosAckermannDrive(ModelPlugin):
+class GazeboRosAckermannDrive(CommandedDrive):
     """Steers the front wheels and drives the rear ones of a car from `cmd_vel`; odometry is the world's truth.
 
     The distance between the axles, that between the front wheels and the rear wheels' radius are those of the wheels'
@@ -83,7 +81,6 @@ class GazeboRosAckermannDrive(ModelPlugin):
     )
     options = OptionsOf(GazeboRosAckermannDriveOptions)
     filenames = ("libgazebo_ros_ackermann_drive.so",)
-    drives = True
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         self._canonical = scene.canonical_link
@@ -98,29 +95,23 @@ class GazeboRosAckermannDrive(ModelPlugin):
         self._hand = self._prepare_hand(scene, params, builder)
 
     def _read(self, params: Params) -> None:
-        self._most_speed = self.options.max_speed
-        self._most_steer = self.options.max_steer
-        hand = self.options.max_steering_angle
-        self._ratio = self._most_steer / hand
-        self._rate = self.options.update_rate
-        options = self.options
+        options = self.options.read_all()
+        self._ratio = options.max_steer / options.max_steering_angle
         self._gains = {
             "left_steering": _pid_numbers(options.left_steering_pid_gain, options.left_steering_i_range),
             "right_steering": _pid_numbers(options.right_steering_pid_gain, options.right_steering_i_range),
             "linear_velocity": _pid_numbers(options.linear_velocity_pid_gain, options.linear_velocity_i_range),
         }
-        self._tells_distance = self.options.publish_distance
-        self._tells_angle = self.options.publish_steerangle
         x, y = (params.number(f"covariance_{axis}", 1e-5, minimum=0) for axis in "xy")
         self._told = DriveOutputOptions(
             odometry_topic="odom",
-            odometry_frame=self.options.odometry_frame,
-            base_frame=self.options.robot_base_frame,
-            odometry=self.options.publish_odom,
-            odometry_tf=self.options.publish_odom_tf,
-            wheel_tf=self.options.publish_wheel_tf,
+            odometry_frame=options.odometry_frame,
+            base_frame=options.robot_base_frame,
+            odometry=options.publish_odom,
+            odometry_tf=options.publish_odom_tf,
+            wheel_tf=options.publish_wheel_tf,
             joint_states=False,
-            covariance=(x, y, self.options.covariance_yaw),
+            covariance=(x, y, options.covariance_yaw),
         )
 
     def _measure(self, scene: SceneModel, wheels: list[SceneJoint], params: Params) -> None:
@@ -161,40 +152,28 @@ class GazeboRosAckermannDrive(ModelPlugin):
         return builder.add_position_servo(joint.scoped, max_effort=math.inf, owner=self.name)
 
     def load(self, parent: Model, params: Params) -> None:
-        self.once = OneTimeWarnings(self)
-        self.before_step_rate = self.after_step_rate = self._rate
+        self.start(parent, "cmd_vel", self.options.update_rate)
         self._axes = [JointAxis(self.sim.joint(joint.scoped)) for joint in (*self._turned, *self._wheels[2:])]
-        self._true = TrueMotion(parent, self.sim.link(self._canonical))
         self._pids = {name: Pid.of(numbers) for name, numbers in self._gains.items()}
-        self._command = (0.0, 0.0)
-        self._last_ns = self.sim.time_ns
         self._distance = 0.0
         self._place = self._true.place()[:2]
-        self.listen("cmd_vel", COMMAND_TYPES, self._on_command)
         self._outputs = DriveOutputs(self, self._told, [*self._turned, *self._wheels])
-        self._distance_out = self.advertise("distance", _FLOAT) if self._tells_distance else None
-        self._angle_out = self.advertise("steerangle", _FLOAT) if self._tells_angle else None
-
-    def _on_command(self, message: Twist | TwistStamped) -> None:
-        command = command_of(message)
-        if command is None:
-            self.once.not_finite()
-        else:
-            self._command = command
+        self._distance_out = self.advertise("distance", _FLOAT) if self.options.publish_distance else None
+        self._angle_out = self.advertise("steerangle", _FLOAT) if self.options.publish_steerangle else None
 
     # ------------------------------------------------------------------ commands
 
     def before_step(self) -> None:
         """Pushes the joints for one step."""
-        now = self.sim.time_ns
-        elapsed, self._last_ns = (now - self._last_ns) * 1e-9, now
+        options, elapsed = self.options, self._elapsed()
         if elapsed <= 0.0:
-            elapsed = max(self.period, 1.0 / self._rate) if self._rate > 0 else self.period
+            elapsed = max(self.period, 1.0 / options.update_rate) if options.update_rate > 0 else self.period
         speed, angle = self._command
         left, right, rear_left, rear_right = self._axes
-        target = max(-self._most_speed, min(self._most_speed, speed)) / self._radius
+        target = max(-options.max_speed, min(options.max_speed, speed)) / self._radius
         push = self._pids["linear_velocity"].update(rear_right.velocity - target, elapsed)
-        angle = max(-self._most_steer, min(self._most_steer, math.copysign(angle, angle * math.copysign(1.0, speed))))
+        most = options.max_steer
+        angle = max(-most, min(most, math.copysign(angle, angle * math.copysign(1.0, speed))))
         wanted = steering_angles(math.tan(angle), self._base, self._width)
         for axis, name, goal in zip((left, right), ("left_steering", "right_steering"), wanted, strict=True):
             axis.push(self._pids[name].update(axis.position - goal, elapsed))

@@ -7,20 +7,19 @@ wheel is held), and an encoder twist is negative when the robot drives backwards
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+import abc
+from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, Self
 
 from simkit.params import Params
-from simkit.plugins.base import ModelPlugin
+from simkit.plugins.classic.commanded_drive import CommandedDrive
 from simkit.plugins.drives.odometry import (
     COMMAND_TYPES,
     ODOMETRY,
     TRANSFORMS,
     BodyTwist,
     DeadReckoning,
-    TrueMotion,
-    command_of,
     odometry_message,
     planar_covariance,
     rolling_twist,
@@ -29,7 +28,6 @@ from simkit.plugins.drives.odometry import (
 from simkit.plugins.drives.odometry_noise import (
     EquivalentWheelAngles,
     NoisyOdometry,
-    OdometryNoise,
     OdometryNoiseOptions,
     odometry_noise,
     replace_planar_pose,
@@ -37,7 +35,6 @@ from simkit.plugins.drives.odometry_noise import (
 from simkit.plugins.drives.wheel_joints import find_wheels
 from simkit.plugins.endpoints import Endpoint, listens, publishes
 from simkit.plugins.joint_states import JOINT_STATE, joint_readings, joint_state_message
-from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import (
     Options,
     block,
@@ -56,7 +53,6 @@ from simkit.pose import Pose, Vector
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.compiler.name_map import ActuatorRef
-    from simkit.msgs import Twist, TwistStamped
     from simkit.runtime import Model
     from simkit.scene import SceneModel
 
@@ -74,29 +70,7 @@ class Pair:
     radius: float
 
 
-@dataclass(frozen=True, slots=True)
-class DriveSettings:
-    """The plugin's parameters; rates Hz, torque N·m, acceleration m/s² at the rim (0: no limit); `noise` is our own."""
-
-    update_rate: float
-    pairs: tuple[Pair, ...]
-    max_torque: float
-    max_acceleration: float
-    command_topic: str
-    odometry_topic: str
-    odometry_frame: str
-    base_frame: str
-    from_encoders: bool
-    publish_odom: bool
-    publish_odom_tf: bool
-    publish_wheel_tf: bool
-    publish_wheel_joint_state: bool
-    publish_ground_truth: bool
-    covariance: tuple[float, float, float]
-    noise: OdometryNoise | None = None
-
-
-class CommonDiffDriveOptions(Options):
+class CommonDiffDriveOptions(Options, abc.ABC):
     """Options in either spelling, with what holds where a spelling has no element for it."""
 
     command_topic: str = "cmd_vel"
@@ -118,26 +92,25 @@ class CommonDiffDriveOptions(Options):
     covariance_yaw: float = number(1e-3, minimum=0)
     odometry_noise: OdometryNoiseOptions = block(OdometryNoiseOptions)
 
-    def settings(self, pairs: tuple[Pair, ...]) -> DriveSettings:
-        """The settings of a drive with these wheels."""
-        return DriveSettings(
-            update_rate=self.update_rate,
-            pairs=pairs,
-            max_torque=self.max_wheel_torque,
-            max_acceleration=self.max_wheel_acceleration,
-            command_topic=self.command_topic,
-            odometry_topic=self.odometry_topic,
-            odometry_frame=self.odometry_frame,
-            base_frame=self.robot_base_frame,
-            from_encoders=self.odometry_source in (0, "0", "encoder"),
-            publish_odom=self.publish_odom,
-            publish_odom_tf=self.publish_odom_tf,
-            publish_wheel_tf=self.publish_wheel_tf,
-            publish_wheel_joint_state=self.publish_wheel_joint_state,
-            publish_ground_truth=self.publish_ground_truth,
-            covariance=(self.covariance_x, self.covariance_y, self.covariance_yaw),
-            noise=odometry_noise(self.odometry_noise),
-        )
+    def read_all(self) -> Self:
+        """Reads every option, then the pairs of wheels and the odometry's noise, our own."""
+        super().read_all()
+        self.pairs, self.noise = self._read_pairs(), odometry_noise(self.odometry_noise)
+        return self
+
+    @abc.abstractmethod
+    def _read_pairs(self) -> tuple[Pair, ...]:
+        """Read the pairs of wheels."""
+
+    @property
+    def from_encoders(self) -> bool:
+        """Whether the odometry is that of the wheels, not the world's truth."""
+        return self.odometry_source in (0, "0", "encoder")
+
+    @property
+    def tells_odom_tf(self) -> bool:
+        """Whether the odometry goes out as a transform."""
+        return self.publish_odom_tf
 
 
 class DiffDriveOptions(CommonDiffDriveOptions):
@@ -158,18 +131,18 @@ class DiffDriveOptions(CommonDiffDriveOptions):
     wheel_separations: tuple[float, ...] = numbers("m", element="wheel_separation", minimum=1e-6)
     wheel_diameters: tuple[float, ...] = numbers("m", element="wheel_diameter", minimum=1e-6)
 
-
-def read_options(params: Params) -> DriveSettings:
-    """Reads either spelling; ROS 1's is taken where one of its names occurs and there is no `<ros>` block."""
-    given = DiffDriveOptions(params)
-    if is_ros_1(params, _ROS_1):
-        return _read_ros_1(params)
-    for name, fixed in (("command_topic", given.command_topic), ("odometry_topic", given.odometry_topic)):
-        # the ROS 2 plugin has no such element; one that only repeats the name it uses anyway is no loss
-        if any(c.name == name and c.value.strip("/") == fixed for c in params.children):
-            params.child(name)
-    _ = given.update_rate  # read first, so that its report stays before those of the wheels
-    return given.settings(_read_pairs(given))
+    def _read_pairs(self) -> tuple[Pair, ...]:
+        count, left, right = self.num_wheel_pairs, self.left_joints, self.right_joints
+        if left and right and not len(left) == len(right) == count:
+            found_text = f"found {len(left)} <left_joint> and {len(right)} <right_joint>"
+            allowed = f"allowed is one of each for each of {count} <num_wheel_pairs>"
+            self.params.error("SK-PARAM-002", f"{found_text}, {allowed}")
+            return ()
+        # Gazebo's default stands for each pair that the lists do not reach
+        separations = [*self.wheel_separations, *[0.34] * (len(left) - len(self.wheel_separations))]
+        diameters = [*self.wheel_diameters, *[0.15] * (len(left) - len(self.wheel_diameters))]
+        joined = zip(left, right, separations, diameters, strict=False)
+        return tuple(Pair(a, b, separation, diameter / 2) for a, b, separation, diameter in joined)
 
 
 class DiffDriveRos1Options(CommonDiffDriveOptions):
@@ -194,35 +167,31 @@ class DiffDriveRos1Options(CommonDiffDriveOptions):
     publish_wheel_joint_state: bool = boolean(element="publishWheelJointState")
     ros_debug_level: bool = without_effect(element="rosDebugLevel")
 
+    def _read_pairs(self) -> tuple[Pair, ...]:
+        left, right = self.left_joint, self.right_joint
+        if self.legacy_mode:
+            # for files of before 2016, whose wheels were named the other way round
+            left, right = right, left
+        return (Pair(left, right, self.wheel_separation, self.wheel_diameter / 2),)
 
-def _read_ros_1(params: Params) -> DriveSettings:
-    given = DiffDriveRos1Options(params)
-    left, right = given.left_joint, given.right_joint
-    if given.legacy_mode:
-        # for files of before 2016, whose wheels were named the other way round
-        left, right = right, left
-    _ = given.ros_debug_level  # of the plugin's log
-    pair = Pair(left=left, right=right, separation=given.wheel_separation, radius=given.wheel_diameter / 2)
-    publish_odom = given.publish_odom  # Gazebo's <publishTf> is of both
-    found = given.settings((pair,))
-    return replace(found, publish_odom_tf=found.publish_odom_tf and publish_odom)
+    @property
+    def tells_odom_tf(self) -> bool:
+        return self.publish_odom_tf and self.publish_odom  # Gazebo's <publishTf> is of both
 
 
-def _read_pairs(given: DiffDriveOptions) -> tuple[Pair, ...]:
-    count, left, right = given.num_wheel_pairs, given.left_joints, given.right_joints
-    if left and right and not len(left) == len(right) == count:
-        found_text = f"found {len(left)} <left_joint> and {len(right)} <right_joint>"
-        allowed = f"allowed is one of each for each of {count} <num_wheel_pairs>"
-        given.params.error("SK-PARAM-002", f"{found_text}, {allowed}")
-        return ()
-    # Gazebo's default stands for each pair that the lists do not reach
-    separations = [*given.wheel_separations, *[0.34] * (len(left) - len(given.wheel_separations))]
-    diameters = [*given.wheel_diameters, *[0.15] * (len(left) - len(given.wheel_diameters))]
-    joined = zip(left, right, separations, diameters, strict=False)
-    return tuple(Pair(a, b, separation, diameter / 2) for a, b, separation, diameter in joined)
+def read_options(params: Params) -> CommonDiffDriveOptions:
+    """Reads either spelling; ROS 1's is taken where one of its names occurs and there is no `<ros>` block."""
+    if is_ros_1(params, _ROS_1):
+        return DiffDriveRos1Options(params).read_all()
+    given = DiffDriveOptions(params).read_all()
+    for name, fixed in (("command_topic", given.command_topic), ("odometry_topic", given.odometry_topic)):
+        # the ROS 2 plugin has no such element; one that only repeats the name it uses anyway is no loss
+        if any(c.name == name and c.value.strip("/") == fixed for c in params.children):
+            params.child(name)
+    return given
 
 
-class GazeboRosDiffDrive(ModelPlugin):
+class GazeboRosDiffDrive(CommandedDrive):
     """Drives pairs of wheels from `cmd_vel`, and says where the robot went on `odom` and `/tf`.
 
     The last command holds until the next. With `<publish_ground_truth>` (simkit's own) the model's true pose in the
@@ -239,10 +208,9 @@ class GazeboRosDiffDrive(ModelPlugin):
     )
     option_types: ClassVar[tuple[type[Options], ...]] = (DiffDriveOptions, DiffDriveRos1Options)
     filenames = ("libgazebo_ros_diff_drive.so",)
-    drives = True
     is_level = False  # whether the odometry leaves out the height
 
-    def read(self, params: Params) -> DriveSettings:
+    def read(self, params: Params) -> CommonDiffDriveOptions:
         """The parameters, in the spelling that they are in."""
         return read_options(params)
 
@@ -255,26 +223,21 @@ class GazeboRosDiffDrive(ModelPlugin):
         self._canonical = scene.canonical_link
         for joint in (joint for pair in zip(*wheels.values(), strict=False) for joint in pair):
             self._joints.append((joint.scoped, joint.parent_link, joint.child_link))
-            servo = builder.add_velocity_servo(joint.scoped, max_effort=options.max_torque, owner=self.name)
+            servo = builder.add_velocity_servo(joint.scoped, max_effort=options.max_wheel_torque, owner=self.name)
             self._servos.append(servo)
 
     def load(self, parent: Model, params: Params) -> None:
-        self.once = OneTimeWarnings(self)
         options = self.options
-        self.before_step_rate = self.after_step_rate = options.update_rate
+        self.start(parent, options.command_topic, options.update_rate)
         self._wheels = [self.sim.joint(name) for name, _, _ in self._joints]
-        self._true = TrueMotion(parent, self.sim.link(self._canonical))
-        self._command = (0.0, 0.0)
         self._rims = [0.0] * len(self._wheels)
-        self._last_ns = self.sim.time_ns
         self._reckoning = DeadReckoning()
         self._angles = self._first_angles()
-        self._covariance = planar_covariance(*options.covariance)
+        self._covariance = planar_covariance(options.covariance_x, options.covariance_y, options.covariance_yaw)
         self._erring, self._followed = self._start_erring()
         self._last_read_ns = self.sim.time_ns
-        self.listen(options.command_topic, COMMAND_TYPES, self._on_command)
         self._odom = self.advertise(options.odometry_topic, ODOMETRY) if options.publish_odom else None
-        self._tf = self.advertise("/tf", TRANSFORMS) if options.publish_odom_tf or options.publish_wheel_tf else None
+        self._tf = self.advertise("/tf", TRANSFORMS) if options.tells_odom_tf or options.publish_wheel_tf else None
         self._truth = self.advertise("ground_truth/odom", ODOMETRY) if options.publish_ground_truth else None
         self._states = None
         if options.publish_wheel_joint_state:
@@ -282,18 +245,9 @@ class GazeboRosDiffDrive(ModelPlugin):
 
     # ------------------------------------------------------------------ commands
 
-    def _on_command(self, message: Twist | TwistStamped) -> None:
-        command = command_of(message)
-        if command is None:
-            self.once.not_finite()
-        else:
-            self._command = command
-
     def before_step(self) -> None:
         """Moves each wheel's rim speed towards its target, by at most the acceleration limit."""
-        forward, turn = self._command
-        now = self.sim.time_ns
-        elapsed, self._last_ns = (now - self._last_ns) * 1e-9, now
+        (forward, turn), elapsed = self._command, self._elapsed()
         for index, pair in enumerate(self.options.pairs):
             for side, sign in ((0, -1.0), (1, 1.0)):
                 wheel = 2 * index + side
@@ -304,7 +258,7 @@ class GazeboRosDiffDrive(ModelPlugin):
                     self.sim.engine.set_control(self._servos[wheel], speed / pair.radius)
 
     def _ramped(self, speed: float, target: float, elapsed: float) -> float:
-        limit = self.options.max_acceleration
+        limit = self.options.max_wheel_acceleration
         if limit == 0 or abs(target - speed) < _CLOSE:
             return target
         step = limit * elapsed
@@ -320,13 +274,13 @@ class GazeboRosDiffDrive(ModelPlugin):
         elif options.from_encoders:
             self._advance()
         if self._truth is not None and self._truth.wanted:
-            self._truth.publish(odometry_message(now, "world", options.base_frame, *self._true.state()))
+            self._truth.publish(odometry_message(now, "world", options.robot_base_frame, *self._true.state()))
         odom = self._odom if self._odom is not None and self._odom.wanted else None
         tf = self._tf if self._tf is not None and self._tf.wanted else None
         if odom or tf:
             pose, twist = self._measured()
             if odom:
-                frames = options.odometry_frame, options.base_frame
+                frames = options.odometry_frame, options.robot_base_frame
                 shown = Pose((*pose.position[:2], 0.0), pose.quaternion) if self.is_level else pose
                 odom.publish_later(partial(odometry_message, now, *frames, shown, twist, *self._covariances()))
             if tf:
@@ -387,8 +341,8 @@ class GazeboRosDiffDrive(ModelPlugin):
 
     def _transforms(self, base: Pose) -> list[tuple[str, str, Pose]]:
         found = []
-        if self.options.publish_odom_tf:
-            found.append((self.options.odometry_frame, self.options.base_frame, base))
+        if self.options.tells_odom_tf:
+            found.append((self.options.odometry_frame, self.options.robot_base_frame, base))
         if self.options.publish_wheel_tf:
             for _, above, below in self._joints:
                 parent, child = self.sim.link(above), self.sim.link(below)

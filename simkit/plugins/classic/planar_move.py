@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, cast
 
@@ -27,7 +26,7 @@ from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, boolean, number, text
 from simkit.plugins.ros_names import is_ros_1
-from simkit.pose import Pose, Vector, quat_from_rpy
+from simkit.pose import Pose, quat_from_rpy
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -36,37 +35,22 @@ if TYPE_CHECKING:
     from simkit.runtime.engine.simulated_time import TickGrid
     from simkit.scene import SceneModel
 
-_ROS_1 = (
-    "robotNamespace",
-    "commandTopic",
-    "odometryTopic",
-    "odometryFrame",
-    "robotBaseFrame",
-    "odometryRate",
-    "cmdTimeout",
-)
-
-
-@dataclass(frozen=True, slots=True)
-class DriveSettings:
-    """The plugin's parameters: rates Hz (0: every step); `timeout` [s] is for ever where it is infinite."""
-
-    command_topic: str
-    odometry_topic: str
-    odometry_frame: str
-    base_frame: str
-    update_rate: float
-    publish_rate: float
-    publish_odom: bool
-    publish_odom_tf: bool
-    timeout: float
-    covariance: Vector
-    twist_covariance: Vector
-    is_level: bool
+_ROS_1 = ("robotNamespace", "commandTopic", "odometryTopic", "odometryFrame", "robotBaseFrame")
+_ROS_1_TIMES = ("odometryRate", "cmdTimeout")
 
 
 class PlanarMoveOptions(Options):
-    """Options in the spelling of ROS 2."""
+    """Options in the spelling of ROS 2, whose topics have fixed names; rates in Hz, 0 is every step.
+
+    Attributes:
+        timeout: how long a command holds [s].
+        is_level: whether the odometry leaves out the height, and has zeros for the twist's covariance.
+    """
+
+    command_topic: str = "cmd_vel"
+    odometry_topic: str = "odom"
+    timeout = math.inf
+    is_level = False
 
     covariance_x: float = number(1e-5, minimum=0)
     covariance_y: float = number(1e-5, minimum=0)
@@ -79,58 +63,37 @@ class PlanarMoveOptions(Options):
     publish_odom_tf: bool = boolean(True)
 
 
-def read_options(params: Params) -> DriveSettings:
-    """Reads either spelling; ROS 1's is taken where one of its names occurs and there is no `<ros>` block."""
-    given = PlanarMoveOptions(params)
-    if is_ros_1(params, _ROS_1):
-        return _read_ros_1(params)
-    variances = given.covariance_x, given.covariance_y, given.covariance_yaw
-    return DriveSettings(
-        command_topic="cmd_vel",
-        odometry_topic="odom",
-        odometry_frame=given.odometry_frame,
-        base_frame=given.robot_base_frame,
-        update_rate=given.update_rate,
-        publish_rate=given.publish_rate,
-        publish_odom=given.publish_odom,
-        publish_odom_tf=given.publish_odom_tf,
-        timeout=math.inf,
-        covariance=planar_covariance(*variances),
-        twist_covariance=planar_covariance(*variances),
-        is_level=False,
-    )
-
-
 class PlanarMoveRos1Options(Options):
-    """Options in the spelling of ROS 1."""
+    """Options in the spelling of ROS 1, where one rate is of the odometry and of its transform."""
 
-    odometry_rate: float = number(20.0, "Hz", element="odometryRate", minimum=0)
+    covariance_x, covariance_y, covariance_yaw = 1e-5, 1e-5, 1e-3
+    update_rate = 0.0
+    is_level = True
+
+    publish_rate: float = number(20.0, "Hz", element="odometryRate", minimum=0)
     cmd_timeout: float = number(-1.0, "s", element="cmdTimeout")
     command_topic: str = text("cmd_vel", element="commandTopic")
     odometry_topic: str = text("odom", element="odometryTopic")
     odometry_frame: str = text("odom", element="odometryFrame")
     robot_base_frame: str = text("base_footprint", element="robotBaseFrame")
 
+    @property
+    def timeout(self) -> float:
+        """How long a command holds [s]; a negative `<cmdTimeout>` is none, and so is one that is absent."""
+        return self.cmd_timeout if self.cmd_timeout >= 0 else math.inf
 
-def _read_ros_1(params: Params) -> DriveSettings:
-    given = PlanarMoveRos1Options(params)
-    rate = given.odometry_rate
-    # a negative timeout is none, and so is one that is absent
-    timeout = given.cmd_timeout
-    return DriveSettings(
-        command_topic=given.command_topic,
-        odometry_topic=given.odometry_topic,
-        odometry_frame=given.odometry_frame,
-        base_frame=given.robot_base_frame,
-        update_rate=0.0,
-        publish_rate=rate,
-        publish_odom=rate > 0,
-        publish_odom_tf=rate > 0,
-        timeout=timeout if timeout >= 0 else math.inf,
-        covariance=planar_covariance(1e-5, 1e-5, 1e-3),
-        twist_covariance=np.zeros(36),
-        is_level=True,
-    )
+    @property
+    def publish_odom(self) -> bool:
+        """Whether odometry and transform go out."""
+        return self.publish_rate > 0
+
+    publish_odom_tf = publish_odom
+
+
+def read_options(params: Params) -> PlanarMoveOptions | PlanarMoveRos1Options:
+    """Reads either spelling; ROS 1's is taken where one of its names occurs and there is no `<ros>` block."""
+    kind = PlanarMoveRos1Options if is_ros_1(params, (*_ROS_1, *_ROS_1_TIMES)) else PlanarMoveOptions
+    return kind(params).read_all()
 
 
 class GazeboRosPlanarMove(ModelPlugin):
@@ -166,6 +129,8 @@ class GazeboRosPlanarMove(ModelPlugin):
     def load(self, parent: Model, params: Params) -> None:
         self.once = OneTimeWarnings(self)
         options = self.options
+        self._covariance = planar_covariance(options.covariance_x, options.covariance_y, options.covariance_yaw)
+        self._twist_covariance = np.zeros(36) if options.is_level else self._covariance
         self._true = TrueMotion(parent, self.sim.link(self._canonical))
         self._told = self._command = (0.0, 0.0, 0.0)
         self._told_ns = self.sim.time_ns
@@ -231,10 +196,10 @@ class GazeboRosPlanarMove(ModelPlugin):
         if not (odom or tf):
             return
         options, now, (pose, twist) = self.options, self.sim.time_ns, self._reading()
-        frames = options.odometry_frame, options.base_frame
+        frames = options.odometry_frame, options.robot_base_frame
         if odom:
             shown = Pose((*pose.position[:2], 0.0), pose.quaternion) if options.is_level else pose
-            covariances = options.covariance, options.twist_covariance
+            covariances = self._covariance, self._twist_covariance
             odom.publish_later(partial(odometry_message, now, *frames, shown, twist, *covariances))
         if tf:
             tf.publish_later(partial(transforms, now, (*frames, pose)))

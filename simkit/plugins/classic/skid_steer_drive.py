@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from simkit.params import Params
-from simkit.plugins.classic.diff_drive import CommonDiffDriveOptions, DriveSettings, GazeboRosDiffDrive, Pair
+from simkit.plugins.classic.diff_drive import CommonDiffDriveOptions, GazeboRosDiffDrive, Pair
 from simkit.plugins.drives.odometry import COMMAND_TYPES
 from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.options import boolean, number, text
@@ -29,6 +29,11 @@ class SkidSteerOptions(CommonDiffDriveOptions):
     covariance_y: float = number(1e-4, minimum=0)
     covariance_yaw: float = number(1e-2, minimum=0)
 
+    def _read_pairs(self) -> tuple[Pair, ...]:
+        left, right = (self.left_front_joint, self.left_rear_joint), (self.right_front_joint, self.right_rear_joint)
+        separation, radius = self.wheel_separation, self.wheel_diameter / 2
+        return tuple(Pair(a, b, separation, radius) for a, b in zip(left, right, strict=True))
+
 
 class GazeboRosSkidSteerDrive(GazeboRosDiffDrive):
     """Drives two pairs of wheels from `<commandTopic>` (`cmd_vel`), both sides as a differential drive does.
@@ -47,8 +52,5 @@ class GazeboRosSkidSteerDrive(GazeboRosDiffDrive):
     filenames = ("libgazebo_ros_skid_steer_drive.so",)
     is_level = True
 
-    def read(self, params: Params) -> DriveSettings:
-        given = SkidSteerOptions(params)
-        left, right = (given.left_front_joint, given.left_rear_joint), (given.right_front_joint, given.right_rear_joint)
-        separation, radius = given.wheel_separation, given.wheel_diameter / 2
-        return given.settings(tuple(Pair(a, b, separation, radius) for a, b in zip(left, right, strict=True)))
+    def read(self, params: Params) -> CommonDiffDriveOptions:
+        return SkidSteerOptions(params).read_all()

@@ -33,16 +33,15 @@ def test_what_a_ros_2_file_leaves_out_is_gazebos_default() -> None:
     found = read_options(Params.from_dict({}))
     assert (found.update_rate, found.publish_rate) == (20.0, 20.0)
     assert found.publish_odom and found.publish_odom_tf and not found.is_level
-    assert (found.odometry_frame, found.base_frame) == ("odom", "base_footprint")
-    np.testing.assert_array_equal(found.covariance[::7], [1e-5, 1e-5, 1e12, 1e12, 1e12, 1e-3])
-    np.testing.assert_array_equal(found.twist_covariance, found.covariance)
+    assert (found.odometry_frame, found.robot_base_frame) == ("odom", "base_footprint")
+    assert (found.covariance_x, found.covariance_y, found.covariance_yaw) == (1e-5, 1e-5, 1e-3)
 
 
 def test_what_a_ros_1_file_leaves_out_is_gazebos_default() -> None:
     found = read_options(Params.from_dict({"robotNamespace": ""}))
     assert (found.command_topic, found.odometry_topic, found.publish_rate) == ("cmd_vel", "odom", 20.0)
     assert found.timeout == math.inf and found.is_level
-    np.testing.assert_array_equal(found.twist_covariance, 0)
+    assert (found.covariance_x, found.covariance_y, found.covariance_yaw) == (1e-5, 1e-5, 1e-3)
 
 
 @pytest.mark.parametrize("name", ["update_rate", "publish_rate", "covariance_x"])
@@ -145,6 +144,8 @@ def test_ros_1_tells_no_height() -> None:
         sim.run(1.0)
     assert len(odometry.messages) == 50
     np.testing.assert_allclose(xyz(odometry.latest.pose.pose.position), (0, 0.5, 0), atol=2e-3)
+    np.testing.assert_array_equal(odometry.latest.pose.covariance[::7], [1e-5, 1e-5, 1e12, 1e12, 1e12, 1e-3])
+    np.testing.assert_array_equal(odometry.latest.twist.covariance, 0)
     assert tf.latest.transforms[0].transform.translation.z == pytest.approx(0.1, abs=1e-3)
     assert tf.latest.transforms[0].child_frame_id == "base"
 

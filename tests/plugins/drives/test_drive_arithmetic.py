@@ -26,21 +26,22 @@ def test_what_a_ros_2_file_leaves_out_is_gazebos_default() -> None:
     found = options()
     (pair,) = found.pairs
     assert (pair.left, pair.right, pair.separation, pair.radius) == ("l", "r", 0.34, 0.075)
-    assert (found.update_rate, found.max_torque, found.max_acceleration) == (100.0, 5.0, 0.0)
-    assert not (found.publish_odom or found.publish_odom_tf or found.publish_wheel_tf or found.from_encoders)
-    assert (found.odometry_frame, found.base_frame, found.covariance) == ("odom", "base_footprint", (1e-5, 1e-5, 1e-3))
+    assert (found.update_rate, found.max_wheel_torque, found.max_wheel_acceleration) == (100.0, 5.0, 0.0)
+    assert not (found.publish_odom or found.tells_odom_tf or found.publish_wheel_tf or found.from_encoders)
+    assert (found.odometry_frame, found.robot_base_frame) == ("odom", "base_footprint")
+    assert (found.covariance_x, found.covariance_y, found.covariance_yaw) == (1e-5, 1e-5, 1e-3)
 
 
 def test_what_a_ros_1_file_leaves_out_is_gazebos_default() -> None:
     found = read_options(Params.from_dict({"leftJoint": "a", "rightJoint": "b"}))
     (pair,) = found.pairs
     assert (pair.left, pair.right, pair.separation, pair.radius) == ("a", "b", 0.34, 0.075)
-    assert found.publish_odom and found.publish_odom_tf and not found.from_encoders
+    assert found.publish_odom and found.tells_odom_tf and not found.from_encoders
 
 
 def test_ros_1_without_transforms_has_no_odometry_and_older_files_name_the_wheels_the_other_way_round() -> None:
     found = read_options(Params.from_dict({"leftJoint": "a", "rightJoint": "b", "publishTf": False}))
-    assert not (found.publish_odom or found.publish_odom_tf)
+    assert not (found.publish_odom or found.tells_odom_tf)
     params = Params.from_dict({"leftJoint": "a", "rightJoint": "b", "legacyMode": True, "rosDebugLevel": "na"})
     (pair,) = read_options(params).pairs
     assert (pair.left, pair.right) == ("b", "a")
@@ -53,7 +54,7 @@ def test_ros_1_names_topics_and_source() -> None:
             {"commandTopic": "go", "odometryTopic": "where", "odometrySource": "encoder", "wheelTorque": 2}
         )
     )
-    assert (found.command_topic, found.odometry_topic, found.from_encoders, found.max_torque) == (
+    assert (found.command_topic, found.odometry_topic, found.from_encoders, found.max_wheel_torque) == (
         "go",
         "where",
         True,
