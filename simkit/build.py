@@ -16,9 +16,13 @@ from simkit.errors import InputError, LoadError, PluginError
 from simkit.loaders import Resolver, load_scene
 from simkit.loaders.spawned_models import SpawnedModel, add_spawned_models
 from simkit.mujoco_import import import_mujoco
-from simkit.plugins.discovery.builtin_plugins import add_actor_models, apply_scene_plugins
 from simkit.plugins.discovery.instance_check import find_more_problems, make_all_parts
-from simkit.plugins.discovery.make_instances import make_model_parts, report_unread
+from simkit.plugins.discovery.make_instances import (
+    add_actor_models,
+    make_model_parts,
+    report_unread,
+)
+from simkit.plugins.gz.sensors import with_sensors_colours
 from simkit.pose import Pose
 from simkit.run_spec import LoadOptions, PluginErrorPolicy, RunSpec
 from simkit.scene import Mesh, Scene, SceneModel, SceneSensor, SceneWorld
@@ -268,7 +272,7 @@ def _scene(
         diagnostics.raise_if_errors()
     of_scene = [text for text in overrides if text.startswith("scene.")]
     scene = apply_overrides(scene, [text for text in overrides if text not in of_scene])
-    return apply_overrides(apply_scene_plugins(scene), of_scene)
+    return apply_overrides(with_sensors_colours(scene), of_scene)
 
 
 def _spawned_reader(resolver: Resolver) -> Any:

@@ -112,7 +112,7 @@ def new_plugin(
 ) -> None:
     """Writes a plugin with typed parameters, and a test that passes."""
     from simkit.plugins.authoring.new_plugins import plugin_named, plugins_missing_in
-    from simkit.plugins.authoring.plugin_test_skeleton import write_plugins
+    from simkit.plugins.authoring.plugin_skeleton import write_plugins
 
     if (name is None) == (from_ is None):
         raise InputError("SK-PLUGIN-072 give either a NAME or --from WORLD", "SK-PLUGIN-072")

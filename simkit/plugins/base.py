@@ -234,14 +234,16 @@ class Plugin(abc.ABC):
             The parameter, whose `value` is always the present one.
         """
         from simkit.plugins.live_parameters import declare_at
+        from simkit.runtime.communication.parameter_server import Parameter
 
         own = f"{self.ros.namespace}/{self.name}"
         otherwise = "/" + "/".join(filter(None, (*self.scoped.split("::"), self.name)))
         # a model has several of one class under one name: then the plugin itself says what tells them apart
         otherwise = getattr(self, "node", otherwise)
         node = self.sim.communication.live_parameters.node_of(self, otherwise if "::" in self.name else own, otherwise)
-        return declare_at(
-            self,
+        if on_change is not None:
+            on_change = self.sim.engine.faults.guard(self, f"its callback for parameter {name!r}", on_change)
+        parameter = Parameter(
             node,
             name,
             default,
@@ -249,10 +251,10 @@ class Plugin(abc.ABC):
             maximum=maximum,
             choices=choices,
             description=description,
-            params=self.params,
-            element=element or name,
             on_change=on_change,
+            owner=self,
         )
+        return declare_at(self, parameter, self.params, element or name)
 
     def random(self, channel: str, width: int = 1) -> RandomStream:
         """This plugin's own random stream: `.normal(index)` has `width` numbers that depend on seed, name and index."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from simkit.params import Params
@@ -20,49 +19,30 @@ class ParameterOwner(Protocol):
     sim: Simulation
 
 
-def declare_at(
-    plugin: ParameterOwner,
-    node: str,
-    name: str,
-    default: T,
-    *,
-    minimum: float | None,
-    maximum: float | None,
-    choices: Sequence[T],
-    description: str,
-    params: Params,
-    element: str,
-    on_change: Callable[[T], None] | None,
-) -> Parameter[T]:
-    """Read the first value from an element in `params`, add the parameter to a node, and open the node's services."""
-    table = plugin.sim.communication.live_parameters
-    if on_change is not None:
-        on_change = plugin.sim.engine.faults.guard(plugin, f"its callback for parameter {name!r}", on_change)
-    value: Any = _first_value(params, element, default, minimum, maximum, choices)
-    is_new = node not in table.nodes()
-    parameter = Parameter(
-        node,
-        name,
-        value,
-        minimum=minimum,
-        maximum=maximum,
-        choices=choices,
-        description=description,
-        on_change=on_change,
-        owner=plugin,
-    )
+def declare_at(plugin: ParameterOwner, parameter: Parameter[T], params: Params, element: str) -> Parameter[T]:
+    """Read the first value from an element in `params`, add the parameter to its node, and open the node's services.
+
+    Args:
+        plugin: whose it is.
+        parameter: with its default as its value.
+        params: where the element is.
+        element: its name.
+    """
+    communication = plugin.sim.communication
+    parameter.value = value = _first_value(params, element, parameter)
+    is_new = parameter.node not in communication.live_parameters.nodes()
     if not parameter.is_within(value):
         params.error("SK-PARAM-002", f"found <{element}> {value!r}, allowed is {parameter.allowed}")
-    table.add(parameter)
+    communication.live_parameters.add(parameter)
     if is_new:
-        with plugin.sim.communication.bus.owned_by(plugin):
-            offer_parameter_services(plugin.sim.communication.services, plugin.sim.communication.live_parameters, node)
+        with communication.bus.owned_by(plugin):
+            offer_parameter_services(communication.services, communication.live_parameters, parameter.node)
     return parameter
 
 
-def _first_value(
-    params: Params, element: str, default: Any, minimum: float | None, maximum: float | None, choices: Sequence[Any]
-) -> Any:
+def _first_value(params: Params, element: str, parameter: Parameter[Any]) -> Any:
+    default, choices = parameter.value, parameter.choices
+    minimum, maximum = parameter.minimum, parameter.maximum
     if isinstance(default, bool):
         return params.boolean(element, default)
     if isinstance(default, str):

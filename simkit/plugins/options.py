@@ -17,6 +17,7 @@ is reported. `simkit plugin info` shows the fields, and the report of an element
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any, Generic, Literal, Protocol, Self, TypeVar, overload
 
 from simkit.params import Params
@@ -48,9 +49,10 @@ class Options:
         return {name: v for c in reversed(cls.__mro__) for name, v in vars(c).items() if isinstance(v, Option)}
 
     def read_all(self) -> Self:
-        """Reads every option that was not read yet, so that all faults of the block are reported now."""
-        for name in self.fields():
-            getattr(self, name)
+        """Read every option except live parameters, so that all faults of the block are reported together."""
+        for name, option in self.fields().items():
+            if not option.is_live:
+                getattr(self, name)
         return self
 
     @classmethod
@@ -61,16 +63,11 @@ class Options:
             if option.options is not None:
                 yield from option.options.element_names()
 
-    def read_all(self) -> None:
-        """Reads every field now but live parameters, so that problems are reported with the others of the file."""
-        for name, option in self.fields().items():
-            if not option.is_live:
-                getattr(self, name)
-
     def __deepcopy__(self, memo: dict[int, object]) -> Options:
         return self
 
 
+@dataclass(eq=False)
 class Option:
     """One element that a plugin reads; a field of a class of options.
 
@@ -91,30 +88,21 @@ class Option:
         description: what it is, where its name does not tell.
     """
 
-    def __init__(
-        self,
-        kind: OptionKind,
-        element: str = "",
-        default: Any = None,
-        unit: str = "",
-        *,
-        minimum: float | None = None,
-        maximum: float | None = None,
-        finite: bool = True,
-        choices: Sequence[str] = (),
-        size: int | None = None,
-        required: bool = False,
-        repeated: bool = False,
-        instead: str = "",
-        options: type[Options] | None = None,
-        is_live: bool = False,
-        description: str = "",
-    ) -> None:
-        self.kind, self.element, self.default, self.unit = kind, element, default, unit
-        self.minimum, self.maximum, self.finite, self.choices = minimum, maximum, finite, tuple(choices)
-        self.size, self.required, self.repeated, self.instead = size, required, repeated, instead
-        self.options, self.is_live, self.description = options, is_live, description
-        self.name = element
+    kind: OptionKind
+    element: str = ""
+    default: Any = None
+    unit: str = ""
+    minimum: float | None = None
+    maximum: float | None = None
+    finite: bool = True
+    choices: tuple[str, ...] = ()
+    size: int | None = None
+    required: bool = False
+    repeated: bool = False
+    instead: str = ""
+    options: type[Options] | None = None
+    is_live: bool = False
+    description: str = ""
 
     def __set_name__(self, owner: type[Options], name: str) -> None:
         self.name, self.element = name, self.element or name
@@ -277,7 +265,7 @@ def texts(*, element: str = "", required: bool = False) -> tuple[str, ...]:
 
 def choice(allowed: Sequence[str], default: str | None = None, *, element: str = "", required: bool = False) -> str:
     """One of a few words."""
-    return _declare(str, Option("choice", element, default, choices=allowed, required=required))
+    return _declare(str, Option("choice", element, default, choices=tuple(allowed), required=required))
 
 
 def vector(

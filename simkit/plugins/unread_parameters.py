@@ -60,30 +60,21 @@ def report_unread(params: Params, owner: str, reader: object) -> None:
         owner: whose they are, for messages.
         reader: the plugin, system or module whose source tells which names it could read.
     """
-    names = _KnownNames(reader)
     for element, suggestion in params.unread():
         text = f"{owner}: <{element.name}> is not used"
         if suggestion.endswith(" is"):  # it comes twice
             hint = suggestion
-        elif element.name in names.known:
+        elif element.name in _known_names(reader):
             hint = "the plugin reads it only under a condition that does not hold here, or later"
         else:
-            hint = did_you_mean(element.name, names.known) or suggestion
+            hint = did_you_mean(element.name, _known_names(reader)) or suggestion
         params.diagnostics.warning("SK-PARAM-003", text, element.where, hint)
     for element, attribute in params.unread_attributes():
         text = f"{owner}: attribute {attribute!r} of <{element.name}> is not used"
-        hint = did_you_mean(attribute, (*element.attributes_asked, *names.known)) if element.attributes_asked else ""
+        asked = element.attributes_asked
+        hint = did_you_mean(attribute, (*asked, *_known_names(reader))) if asked else ""
         params.diagnostics.warning("SK-PARAM-007", text, element.where, hint)
 
 
-class _KnownNames:
-    """What the class's source reads, looked up once it is needed."""
-
-    def __init__(self, reader: object) -> None:
-        self._reader = reader
-
-    @property
-    def known(self) -> frozenset[str]:
-        if isinstance(self._reader, ModuleType):
-            return _names_in_module(self._reader.__name__)
-        return names_read(type(self._reader))
+def _known_names(reader: object) -> frozenset[str]:
+    return _names_in_module(reader.__name__) if isinstance(reader, ModuleType) else names_read(type(reader))

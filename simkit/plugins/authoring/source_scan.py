@@ -277,7 +277,7 @@ class _Scan:
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in _READERS:
             return self._value(node.args[1], depth + 1) if len(node.args) > 1 else _hole(node)
         known = _constant(node, self._function.module)
-        return self._noun(node) if known is None and not _is_none(node) else known
+        return self._noun(node) if known is None and not isinstance(node, ast.Constant) else known
 
     def _noun(self, node: ast.expr) -> str:
         if isinstance(node, ast.Attribute) and node.attr in ("name", "scoped"):
@@ -285,11 +285,6 @@ class _Scan:
             word = owner.attr if isinstance(owner, ast.Attribute) else getattr(owner, "id", "name")
             return "{" + (self._parent if word in ("parent", "self") else word.strip("_")) + "}"
         return _hole(node)
-
-
-def _is_own(module: str) -> bool:
-    """Whether a module is simkit's, whose plugins declare what their helpers read."""
-    return module.startswith("simkit.")
 
 
 def _methods(cls: type) -> list[FunctionType]:
@@ -317,7 +312,9 @@ def _named_functions(function: _Function) -> Iterator[FunctionType]:
     for node in ast.walk(function.node):
         if isinstance(node, ast.Call):
             target = _constant(node.func, function.module)
-            if getattr(target, "__module__", "") != function.module.__name__ or _is_own(function.module.__name__):
+            module = function.module.__name__
+            # plugins of simkit declare what their helpers read
+            if getattr(target, "__module__", "") != module or module.startswith("simkit."):
                 continue
             if isinstance(target, FunctionType):
                 yield target
@@ -362,10 +359,6 @@ def _constant(node: ast.expr, module: ModuleType) -> Any:
             inner = _constant(only, module)
             return None if inner is None else tuple(inner)
     return None
-
-
-def _is_none(node: ast.expr) -> bool:
-    return isinstance(node, ast.Constant) and node.value is None
 
 
 def _hole(node: ast.expr) -> str:

@@ -22,13 +22,11 @@ from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.joints.joint_axis import JointAxis
 from simkit.plugins.joints.pid import Pid
 from simkit.plugins.options import Options, OptionsOf, boolean, number, text, vector, vector3
-from simkit.scene import Cylinder, Sphere
+from simkit.scene import Cylinder, SceneJoint, SceneLink, SceneModel, Sphere
 
 if TYPE_CHECKING:
-    from simkit.compiler import SpecBuilder
-    from simkit.compiler.name_map import ActuatorRef
+    from simkit.compiler import ActuatorRef, SpecBuilder
     from simkit.runtime import Model
-    from simkit.scene import SceneJoint, SceneLink, SceneModel
 
 _FLOAT = "std_msgs/msg/Float32"
 _WHEELS = ("front_left_joint", "front_right_joint", "rear_left_joint", "rear_right_joint")

@@ -1,4 +1,4 @@
-"""The force-torque sensor of Gazebo Classic: `libgazebo_ros_ft_sensor.so`, with its ROS 2 and its ROS 1 spelling."""
+"""Force-torque sensors of Gazebo Classic: `libgazebo_ros_ft_sensor.so`, and ROS 1's `libgazebo_ros_f3d.so`."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from simkit import msgs
 from simkit.params import LARGEST, Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.endpoints import publishes
-from simkit.plugins.find_entities import find_joint, find_link
-from simkit.plugins.options import Options, OptionsOf, number, text
+from simkit.plugins.find_entities import find_joint, find_link, find_named_link
+from simkit.plugins.options import Options, OptionsOf, number, text, without_effect
 from simkit.plugins.ros_names import is_ros_1
 from simkit.pose import Vector
 from simkit.runtime.handles.joint_mechanics import transmitted_wrench
@@ -124,3 +124,31 @@ class GazeboRosFtSensor(ModelPlugin):
         wrench, vector = map(msgs.type_of, names)
         force, torque = vector(*values[:3].tolist()), vector(*values[3:].tolist())
         return msgs.type_of(TYPE)(msgs.header(time_ns, self._frame), wrench(force, torque))
+
+
+class GazeboRosF3DOptions(Options):
+    """Options of `GazeboRosF3D`."""
+
+    topic_name: str = text(element="topicName", required=True)
+    body_name: str = text(element="bodyName", required=True)
+    frame_name: str = text("world", element="frameName")
+    always_on: bool = without_effect(element="alwaysOn")
+
+
+class GazeboRosF3D(GazeboRosFtSensor):
+    """Publishes on `<topicName>` the sum of all that acts on the link `<bodyName>`, at every step.
+
+    In the world's axes, gravity included: the link's mass times the acceleration of its centre of mass [N], and the
+    change of its angular momentum [N·m]. `<frameName>` (`world`) is only said.
+    """
+
+    endpoints = (publishes("{topicName}", "geometry_msgs/msg/WrenchStamped", named_by=("topicName",)),)
+    options = OptionsOf(GazeboRosF3DOptions)  # type: ignore[assignment]  # it reads none of the other one's
+    filenames = ("libgazebo_ros_f3d.so",)
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        self._topic = self.options.topic_name
+        self._joint, self._link = "", find_named_link(scene, "bodyName", params)
+        self._frame = self.options.frame_name.strip("/") or "world"
+        self._deviation = 0.0
+        _ = self.options.always_on

@@ -21,14 +21,12 @@ from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options, OptionsOf, integer, number, text, texts
 from simkit.pose import IDENTITY
 from simkit.runtime.contact.moving_surface import Belt, BeltMotion
-from simkit.scene import Cylinder, SceneJoint, SceneLink
+from simkit.scene import Cylinder, SceneJoint, SceneLink, SceneModel
 
 if TYPE_CHECKING:
-    from simkit.compiler import SpecBuilder
-    from simkit.compiler.name_map import ActuatorRef
+    from simkit.compiler import ActuatorRef, SpecBuilder
     from simkit.msgs import Twist, TwistStamped
     from simkit.runtime import Model
-    from simkit.scene import SceneModel
 
 _SIDES = ("left", "right")
 _STRAIGHT, _STANDING = 0.1, 0.1  # rate of turning [rad/s] and speed [m/s] below which Gazebo takes them for none

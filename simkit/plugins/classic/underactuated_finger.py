@@ -18,8 +18,7 @@ from simkit.runtime.engine.physics_step import CONTROL
 if TYPE_CHECKING:
     import mujoco
 
-    from simkit.compiler import SpecBuilder
-    from simkit.compiler.name_map import ActuatorRef
+    from simkit.compiler import ActuatorRef, SpecBuilder
     from simkit.runtime import Model
     from simkit.scene import SceneJoint, SceneModel
 

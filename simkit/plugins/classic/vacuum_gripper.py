@@ -21,8 +21,7 @@ from simkit.runtime.engine.physics_step import STALE
 if TYPE_CHECKING:
     import mujoco
 
-    from simkit.compiler import SpecBuilder
-    from simkit.compiler.name_map import NameMap
+    from simkit.compiler import NameMap, SpecBuilder
     from simkit.msgs import SetBool_Request
     from simkit.runtime import Model, Simulation, WorldStructure
     from simkit.scene import SceneModel

@@ -1,8 +1,8 @@
-"""Make the sensors and plugins that a scene asks for; report those of unknown kinds."""
+"""Make the sensors and plugins that a scene asks for; report those of unknown kinds, and add those of every world."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,9 +10,11 @@ from typing import TYPE_CHECKING
 from simkit.diagnostics import Diagnostics, did_you_mean
 from simkit.errors import SimkitError
 from simkit.params import Params
-from simkit.plugins.discovery.builtin_plugins import plugins_of_every_world
+from simkit.plugins.classic.server_services import ClassicServices
 from simkit.plugins.discovery.find_plugin_class import find_plugin
 from simkit.plugins.discovery.python_plugins import Attachment, ParentGetter, SceneEntity, attach_plugins, handle_getter
+from simkit.plugins.drives.robot_transforms import StaticTransforms
+from simkit.plugins.world.world_statistics import ClockPublisher, WorldStats
 from simkit.scene import SceneJoint, SceneLink, SceneModel, ScenePlugin, SceneSensor, SceneWorld
 from simkit.sensors import sensor_kinds
 from simkit.sensors.presets.preset_defaults import add_preset_defaults
@@ -224,3 +226,23 @@ def report_unread(parts: Iterable[SensorsAndPlugins]) -> None:
         for plugin, _ in part.plugins:
             if hasattr(plugin, "sim"):
                 plugin.report_unread()
+
+
+def plugins_of_every_world(world: SceneWorld) -> tuple[tuple[Plugin, ...], tuple[Plugin, ...]]:
+    """Plugins that a world has by itself: those that run before the file's own, and those that run after them."""
+    from simkit.plugins.actors import ActorMover
+    from simkit.plugins.world.world_services import WorldServices
+
+    actors = (ActorMover(),) if world.actors else ()
+    return (ClockPublisher(), StaticTransforms(), *actors), (WorldStats(), WorldServices(), ClassicServices())
+
+
+def add_actor_models(
+    world: SceneWorld, find_file: Callable[[str, Path | None], Path | None], diagnostics: Diagnostics
+) -> SceneWorld:
+    """The world with a model for every actor in it; what is wrong with an actor is reported."""
+    if not world.actors:
+        return world
+    from simkit.plugins.actors.actor_model import with_actors
+
+    return with_actors(world, find_file, diagnostics)

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from simkit.diagnostics import Diagnostics
 from simkit.plugins.base import Plugin
-from simkit.plugins.discovery.gz_hooks import as_class, describe_allowed_plugins, has_hooks
+from simkit.plugins.discovery.python_plugins import as_class, describe_allowed_plugins, has_hooks
 from simkit.plugins.plugin_names import ENTRY_POINT_GROUP, aliases, normalise
 from simkit.registry import entry_points_of
 from simkit.scene import ScenePlugin

@@ -13,13 +13,13 @@ from simkit.params import Params
 from simkit.plugins.live_parameters import declare_at
 from simkit.plugins.ros2_control.hardware_interfaces import InterfaceSelection
 from simkit.plugins.shared_by_copies import SharedByCopies
+from simkit.runtime.communication.parameter_server import Parameter
 
 if TYPE_CHECKING:
     from simkit.plugins.base import Plugin
     from simkit.plugins.ros2_control.hardware import Hardware
     from simkit.runtime import Simulation
     from simkit.runtime.communication.action_server import Action, GoalHandle
-    from simkit.runtime.communication.parameter_server import Parameter
     from simkit.runtime.communication.publisher import Listener, Publisher
     from simkit.runtime.communication.service_server import Service
 
@@ -212,20 +212,19 @@ class Controller(SharedByCopies, abc.ABC):
         *blocks, last = name.split(".")
         for block in blocks:
             params = params.block(block)
-        own, model = f"{plugin.ros.namespace}/{self.name}", plugin.scoped.partition("::")[0]
-        return declare_at(
-            plugin,
-            plugin.sim.communication.live_parameters.node_of(plugin, own, f"/{model}/{self.name}"),
+        own, model, sim = f"{plugin.ros.namespace}/{self.name}", plugin.scoped.partition("::")[0], plugin.sim
+        parameter = Parameter(
+            sim.communication.live_parameters.node_of(plugin, own, f"/{model}/{self.name}"),
             name,
             default,
             minimum=minimum,
             maximum=maximum,
             choices=choices,
             description=description,
-            params=params,
-            element=last,
-            on_change=on_change,
+            on_change=on_change and sim.engine.faults.guard(plugin, f"its callback for parameter {name!r}", on_change),
+            owner=plugin,
         )
+        return declare_at(plugin, parameter, params, last)
 
     def get_state(self) -> dict[str, object]:
         """A copy of every attribute it gave itself; handles and publishers stand for themselves.

@@ -12,14 +12,13 @@ from simkit.plugins.find_entities import find_light
 from simkit.plugins.options import Options, OptionsOf, number, text
 from simkit.plugins.world.sun_position import Site, SunPath, clear_sky
 from simkit.pose import Pose
-from simkit.scene import Atmosphere
+from simkit.scene import Atmosphere, SceneWorld, SphericalCoordinates
 from simkit.sensors.environment.atmosphere import air_column
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.runtime import Light, Simulation
     from simkit.runtime.handles.light import LightState
-    from simkit.scene import SceneWorld, SphericalCoordinates
     from simkit.scene.geometry import Vec3
 
 _DISTANCE = 149_597_870_700.0  # [m], one astronomical unit

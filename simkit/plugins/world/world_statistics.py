@@ -1,4 +1,4 @@
-"""Publish what gz tells of a world as a whole: statistics, clock, and all poses."""
+"""Publish `/clock`, and what gz tells of a world as a whole: statistics, clock, and all poses."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from simkit.params import Params
 from simkit.plugins.base import WorldPlugin
 from simkit.plugins.drives.entity_poses import EntityPoses, PosedEntity, PoseSample, pose_numbers, transforms_message
 from simkit.plugins.drives.odometry import TRANSFORMS
-from simkit.plugins.world.clock_publisher import TYPE as CLOCK
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
     from simkit.scene import SceneModel
 
+CLOCK: Final = "rosgraph_msgs/msg/Clock"
 STATISTICS: Final = "ros_gz_interfaces/msg/WorldStatistics"
 STATISTICS_RATE: Final = 5.0
 """[Hz], of simulated time; gz's server has it of real time."""
@@ -146,3 +146,16 @@ class WorldStats(WorldPlugin):
                 yield PosedEntity(link.scoped, visual.scoped, visual.pose_link)
         for nested in scene.models:
             yield from self._of_model(nested, with_visuals)
+
+
+class ClockPublisher(WorldPlugin):
+    """Publishes `rosgraph_msgs/msg/Clock` on `/clock` at 100 Hz of simulated time; part of every world."""
+
+    after_step_rate = 100.0
+
+    def load(self, parent: Simulation, params: Params) -> None:
+        self._clock = self.advertise("/clock", CLOCK)
+
+    def after_step(self) -> None:
+        if self._clock.wanted:
+            self._clock.publish(msgs.type_of(CLOCK)(msgs.time(self.sim.time_ns)))

@@ -12,7 +12,7 @@ from simkit import ModelPlugin, Params, WorldPlugin
 from simkit.plugins.authoring.catalogue import common_facts, facts_of
 from simkit.plugins.authoring.plugin_facts import Facts, Parameter, Topic
 from simkit.plugins.discovery.find_plugin_class import plugin_kinds
-from simkit.plugins.discovery.gz_hooks import as_class
+from simkit.plugins.discovery.python_plugins import as_class
 from simkit.plugins.endpoints import listens
 from simkit.plugins.options import Options, OptionsOf, number, texts
 
