@@ -54,7 +54,7 @@ HEAVY = {
     "concurrent": "0.02 s; few commands start processes",
     "fcntl": "only some systems have it",
     "glfw": "optional: the extra `view`",
-    "jinja2": "only reports need it",
+    "jinja2": "only reports and new plugins need it",
     "lxml": "only files need it",
     "markupsafe": "comes with jinja2",
     "msvcrt": "only some systems have it",

@@ -144,10 +144,7 @@ class Plugin(abc.ABC):
     def advertise(self, topic: str, type_name: str, *, latched: bool = False) -> Publisher:
         """A publisher on `topic` (expanded and remapped as in ROS), of a type such as `nav_msgs/msg/Odometry`."""
         with self.sim.communication.bus.owned_by(self):
-            publisher: Publisher = self.sim.communication.bus.advertise(
-                self.ros.topic(topic), type_name, latched=latched
-            )
-        return publisher
+            return self.sim.communication.bus.advertise(self.ros.topic(topic), type_name, latched=latched)
 
     def listen(self, topic: str, types: str | Sequence[str], callback: Callable[[Any], object]) -> Listener:
         """Calls `callback(message)` between two steps for each message on `topic`; the first type is the listed one."""
@@ -155,8 +152,7 @@ class Plugin(abc.ABC):
         guarded = self.sim.engine.faults.guard(self, f"its callback for {name!r}", callback)
         with self.sim.communication.bus.owned_by(self):
             kinds = (types,) if isinstance(types, str) else types
-            listener: Listener = self.sim.communication.bus.listen(name, kinds, guarded)
-        return listener
+            return self.sim.communication.bus.listen(name, kinds, guarded)
 
     def subscribe(
         self, topic: str, callback: Callable[[Any], None] | None = None, keep: int | None = None
@@ -203,8 +199,7 @@ class Plugin(abc.ABC):
             on_cancel: called with a goal that is to be cancelled; gives False to go on. Without it, nothing is.
         """
         with self.sim.communication.bus.owned_by(self):
-            opened: Action = self.sim.communication.actions.act(self.ros.topic(action), type_name, on_goal, on_cancel)
-        return opened
+            return self.sim.communication.actions.act(self.ros.topic(action), type_name, on_goal, on_cancel)
 
     def declare(
         self,
@@ -259,8 +254,7 @@ class Plugin(abc.ABC):
     def random(self, channel: str, width: int = 1) -> RandomStream:
         """This plugin's own random stream: `.normal(index)` has `width` numbers that depend on seed, name and index."""
         owner = f"{self.scoped}::{self.name}" if self.scoped else self.name
-        stream: RandomStream = self.sim.engine.streams.stream(owner, channel, width)
-        return stream
+        return self.sim.engine.streams.stream(owner, channel, width)
 
     @property
     def period(self) -> float:

@@ -303,9 +303,7 @@ def block(options: type[OptionsKind], *, element: str = "") -> OptionsKind:
 
 def blocks(options: type[OptionsKind], *, element: str = "") -> tuple[OptionsKind, ...]:
     """The options within each element of that name."""
-    option: Any = Option("block", element, options=options, repeated=True)
-    found: tuple[OptionsKind, ...] = option
-    return found
+    return _declare(tuple[OptionsKind, ...], Option("block", element, options=options, repeated=True))
 
 
 def without_effect(*, element: str = "") -> bool:

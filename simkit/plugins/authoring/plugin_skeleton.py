@@ -32,41 +32,30 @@ def plugin_text(wanted: NewPlugin) -> str:
     base, lines = _BASES[wanted.parent], _read_statements(wanted.elements, "params", "        ")
     names = attribute_names(wanted.elements)
     rate = next((names[e.name] for e in wanted.elements if e.name in _RATES and _is_one_number(e)), None)
-    uses = _uses(wanted)
     imports = sorted({base, "Params", *(["Pose"] if any("Pose.from_rpy(" in line for line in lines) else [])})
-    header = [
-        f'"""In place of `{_printable(wanted.filename or wanted.class_name)}`.{uses}\n"""' if uses else
-        f'"""The plugin `{wanted.class_name}`: a world names it `{_printable(wanted.filename)}`."""',
-        "",
-        "from __future__ import annotations",
-        "",
-        "from typing import Any",
-        "",
-        f"from simkit import {', '.join(imports)}",
-        "",
-        "",
-        f"class {wanted.class_name}({base}):",
-        f'    """What it does for the {wanted.parent} it hangs on."""',
-        "",
-    ]  # fmt: skip
-    if not _CALLED_BY_FILE.search(wanted.filename):
-        header.append(f"    filenames = ({quote_text(wanted.filename)},)")
-    if wanted.gz_names:
-        header.append(f"    names = ({', '.join(map(quote_text, wanted.gz_names))},)")
-    header += [
-        "    after_step_rate = 10.0  # Hz of simulated time; None is every step",
-        "",
-        "    def load(self, parent: Any, params: Params) -> None:",
-        f'        """Once, at t = 0, when everything is built; `parent` is the `{_PARENTS[wanted.parent]}`."""',
-        "        self.parent = parent",
-        *lines,
-        *([f"        self.after_step_rate = max(0.0, self.{rate})"] if rate else []),
-        "",
-        "    def after_step(self) -> None:",
-        '        """After a physics step, at `after_step_rate`: readings."""',
-        "",
-    ]
-    return "\n".join(header)
+    return _fill_template(
+        "plugin.py.j2",
+        wanted=wanted,
+        base=base,
+        handle=_PARENTS[wanted.parent],
+        library=_printable(wanted.filename),
+        uses=_uses(wanted),
+        imports=imports,
+        filename="" if _CALLED_BY_FILE.search(wanted.filename) else quote_text(wanted.filename),
+        gz_names=[quote_text(name) for name in wanted.gz_names],
+        statements=lines,
+        rate=rate,
+    )
+
+
+def _fill_template(name: str, **values: object) -> str:
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined  # for who writes a plugin only
+
+    folder = FileSystemLoader(Path(__file__).with_name("templates"))
+    environment = Environment(
+        loader=folder, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True
+    )
+    return environment.get_template(name).render(values)
 
 
 def _uses(wanted: NewPlugin) -> str:
@@ -226,31 +215,10 @@ def test_text(wanted: NewPlugin) -> str:
     for element in wanted.elements:
         for said in _expected(element, f"plugin.{names[element.name]}", first):
             checks += break_expression("    assert ", said, "    ")
-    approximate = any("approx(" in line for line in checks)
-    world = _world(wanted)
-    head = [
-        f'"""`{wanted.class_name}` reads what a world gives it, and the world runs."""',
-        "",
-        "from __future__ import annotations",
-        "",
-        "from pathlib import Path",
-        "from typing import Any",
-        "",
-        *(["import pytest", ""] if approximate else []),
-        "HERE = Path(__file__).parent",
-        f'WORLD = {"r" if chr(92) in world else ""}"""{world}"""',
-        "",
-        "",
-        f"def test_{wanted.module.replace('.', '_')}_reads_its_parameters_and_runs(simkit_world: Any) -> None:",
-        "    sim = simkit_world(WORLD, plugin_paths=[HERE])",
-        f'    plugin = next(p for p in sim.plugins.values() if type(p).__name__ == "{wanted.class_name}")',
-        *(checks or ["    assert plugin.parent is not None"]),
-        '    assert not [d for d in sim.diagnostics if d.code == "SK-PARAM-003"], "a parameter is not read"',
-        "    sim.run(0.2)",
-        "    assert sim.tick == round(0.2 / sim.timestep)",
-        "",
-    ]
-    return "\n".join(head)
+    is_approximate = any("approx(" in line for line in checks)
+    return _fill_template(
+        "plugin_test.py.j2", wanted=wanted, world=_world(wanted), checks=checks, is_approximate=is_approximate
+    )
 
 
 def _expected(element: Element, attribute: str, owner: Params | None) -> list[str]:
@@ -295,20 +263,7 @@ def _world(wanted: NewPlugin) -> str:
     else:
         body = "".join(f"<{e.name}>{escape(e.values[0])}</{e.name}>" for e in wanted.elements)
         plugin = f'<plugin name="{wanted.module}" filename={quote_attribute(wanted.filename)}>{body}</plugin>'
-    where = {
-        "world": "\n  {plugin}\n",
-        "model": '\n  <model name="box">\n    <link name="link"/>\n    {plugin}\n  </model>\n',
-        "visual": '\n  <model name="box"><link name="link">\n    <visual name="skin">'
-        "<geometry><box><size>1 1 1</size></box></geometry>\n      {plugin}\n    </visual>\n  </link></model>\n",
-        "sensor": '\n  <model name="box"><link name="link">\n    <sensor name="sensor" type="{sensor}">'
-        "<update_rate>10</update_rate>{inside}\n      {plugin}\n    </sensor>\n  </link></model>\n",
-    }[wanted.parent]
-    body = where.replace("{sensor}", wanted.sensor).replace("{inside}", _INSIDE.get(wanted.sensor, ""))
-    return f'<sdf version="1.9"><world name="w">{body.replace("{plugin}", plugin)}</world></sdf>\n'
-
-
-_SCAN = "<scan><horizontal><samples>3</samples></horizontal></scan><range><min>0.1</min><max>10</max></range>"
-_INSIDE = dict.fromkeys(("gpu_lidar", "gpu_ray", "lidar", "ray"), f"<lidar>{_SCAN}</lidar>")
+    return _fill_template("plugin_world.sdf.j2", wanted=wanted, plugin=plugin)
 
 
 def _xml(params: Params, name: str, filename: str) -> str:

@@ -109,8 +109,7 @@ def carrying_link(sim: Simulation, kind: str, scoped: str) -> Link | None:
         return sim.visual(scoped).link
     links = sim.contents.handles.tables["link"]
     if kind == "model":
-        found: Link | None = links.get(sim.model(scoped).scene.canonical_link)
-        return found
+        return links.get(sim.model(scoped).scene.canonical_link)
     return links.get(sim.light(scoped).scene.link)
 
 

@@ -113,8 +113,7 @@ def as_plugin(made: object, diagnostics: Diagnostics, where: Where = NOWHERE) ->
     if isinstance(made, Plugin):
         return made
     if inspect.isclass(made) and issubclass(made, Plugin) and not inspect.isabstract(made):
-        found: Plugin = made()
-        return found
+        return made()
     if not has_hooks(made):
         diagnostics.error("SK-PLUGIN-022", f"found {made!r}, allowed is {describe_allowed_plugins()}", where)
         return None
