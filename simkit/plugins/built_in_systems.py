@@ -50,12 +50,10 @@ class BuiltInSystem(Plugin):
     def prepare(self, scene: object, params: Params, builder: SpecBuilder) -> None:
         unused = ", ".join(sorted({f"<{child.name}>" for child in params.children}))
         params.mark_all_read()
-        label = self.name.rsplit("::", 1)[-1] if "::" in self.name else self._library()
+        library = self.source.filename if self.source is not None else self.name
+        label = self.name.rsplit("::", 1)[-1] if "::" in self.name else library
         message = f"plugin {label!r} is not needed: simkit does what it stands for by itself"
         params.diagnostics.note("SK-PLUGIN-005", message + (f"; not used: {unused}" if unused else ""), self.where)
-
-    def _library(self) -> str:
-        return self.source.filename if self.source is not None else self.name
 
     def load(self, parent: object, params: Params) -> None:
         """Nothing to do."""

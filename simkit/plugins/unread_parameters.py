@@ -20,10 +20,6 @@ _READERS = frozenset(
 )
 
 
-def _is_reader(method: str) -> bool:
-    return method in _READERS or method.startswith("get_")
-
-
 def names_read(cls: type[object]) -> frozenset[str]:
     """Names of elements and attributes that the modules of a class and its bases ask for; the source is only parsed."""
     own = (c for c in cls.__mro__ if c.__module__ != "simkit.plugins.base")
@@ -46,7 +42,9 @@ def _names_in_source(source: str) -> frozenset[str]:
 
 def _names_in_tree(tree: ast.Module) -> Iterator[str]:
     for node in ast.walk(tree):
-        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and _is_reader(node.func.attr):
+        if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Attribute):
+            continue
+        if node.func.attr in _READERS or node.func.attr.startswith("get_"):
             for value in (*node.args[:1], *(k.value for k in node.keywords if k.arg in ("name", "element"))):
                 if isinstance(value, ast.Constant) and isinstance(value.value, str):
                     yield value.value

@@ -81,14 +81,10 @@ def plugins_missing_in(scene: Scene, plugin_paths: Sequence[Path] = ()) -> list[
     found: dict[str, list[tuple[ScenePlugin, ParentKind, str]]] = {}
     for plugin, parent, sensor in _plugins_of_scene(scene):
         if _is_unmapped(plugin, plugin_paths):
-            key = _library_name(plugin)
+            key = normalise(plugin.filename) or normalise(plugin.name)
             found.setdefault(key, []).append((plugin, parent, sensor))
     taken: set[str] = set()
     return [_new_plugin_of_uses(uses, taken) for uses in found.values()]
-
-
-def _library_name(plugin: ScenePlugin) -> str:
-    return normalise(plugin.filename) or normalise(plugin.name)
 
 
 def _new_plugin_of_uses(uses: Sequence[tuple[ScenePlugin, ParentKind, str]], taken: set[str]) -> NewPlugin:

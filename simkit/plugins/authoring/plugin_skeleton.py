@@ -31,7 +31,8 @@ def plugin_text(wanted: NewPlugin) -> str:
     """The plugin's module."""
     base, lines = _BASES[wanted.parent], _read_statements(wanted.elements, "params", "        ")
     names = attribute_names(wanted.elements)
-    rate = next((names[e.name] for e in wanted.elements if e.name in _RATES and _is_one_number(e)), None)
+    numbers = [element.name for element in wanted.elements if element.kind == "number" and not element.repeated]
+    rate = next((names[name] for name in numbers if name in _RATES), None)
     imports = sorted({base, "Params", *(["Pose"] if any("Pose.from_rpy(" in line for line in lines) else [])})
     return _fill_template(
         "plugin.py.j2",
@@ -176,10 +177,6 @@ def number_text(text: str) -> str:
     """A number of a file as Python writes it."""
     number = float(text)
     return f'float("{number}")' if number in (float("inf"), float("-inf")) else repr(number)
-
-
-def _is_one_number(element: Element) -> bool:
-    return element.kind == "number" and not element.repeated
 
 
 def attribute_names(elements: Sequence[Element]) -> dict[str, str]:

@@ -55,7 +55,10 @@ class GazeboRosJointPoseTrajectory(ModelPlugin):
         self._model = parent
         is_ros_1 = any(params.has(name) for name in ("topicName", "serviceName", "updateRate", "robotNamespace"))
         if is_ros_1:
-            self._say_ros_1(params)
+            _ = self.options.update_rate_ros_1  # read by Gazebo, and used for nothing
+            _ = self.options.service_name  # of a service that Gazebo is built without
+            message = f"plugin {self.name!r}: the physics goes on while a trajectory plays; Gazebo on ROS 1 stops it"
+            params.diagnostics.note("SK-PLUGIN-046", message, self.where)
             rate, topic = 0.0, self.options.topic_name
         else:
             rate, topic = self.options.update_rate, "set_joint_trajectory"
@@ -67,12 +70,6 @@ class GazeboRosJointPoseTrajectory(ModelPlugin):
         self._index, self._due, self._start, self._last = 0, 0, 0, 0
         if topic:
             self.listen(topic, TRAJECTORY, self._on_trajectory)
-
-    def _say_ros_1(self, params: Params) -> None:
-        _ = self.options.update_rate_ros_1  # read by Gazebo, and used for nothing
-        _ = self.options.service_name  # of a service that Gazebo is built without
-        message = f"plugin {self.name!r}: the physics goes on while a trajectory plays; Gazebo on ROS 1 stops it"
-        params.diagnostics.note("SK-PLUGIN-046", message, self.where)
 
     # ------------------------------------------------------------------ commands
 

@@ -71,9 +71,9 @@ class RealSense(ModelPlugin):
     filenames = ("librealsense_gazebo_plugin.so",)
 
     def load(self, parent: Model, params: Params) -> None:
-        prefix = self.options.prefix
+        prefix = self.options.read_all().prefix
         near, far = camera_settings.read_depths(self.options, "range_min_depth", "range_max_depth")
-        cloud = self._read_cloud()
+        cloud = camera_settings.read_depths(self.options, "point_cloud_cutoff", "point_cloud_cutoff_max")
         for stream, ending in _STREAMS.items():
             topic = self._below(
                 prefix, getattr(self.options, f"{stream}_topic_name") or f"{_FOLDERS[stream]}/image_raw"
@@ -95,21 +95,14 @@ class RealSense(ModelPlugin):
         rates = ("depthUpdateRate", "colorUpdateRate", "infraredUpdateRate")
         camera_settings.report_without_effect(self, dict.fromkeys(rates, _SENSORS_OWN))
 
-    def _read_cloud(self) -> tuple[str, float, float]:
-        """Topic, nearest and farthest depth [m] of the cloud; without a topic there is none."""
-        is_wanted = self.options.point_cloud
-        topic = self.options.point_cloud_topic_name
-        depths = camera_settings.read_depths(self.options, "point_cloud_cutoff", "point_cloud_cutoff_max")
-        return topic if is_wanted else "", *depths
-
     def _publish_depth(
-        self, sensor: RgbdCamera, prefix: str, topics: tuple[str, str], cloud: tuple[str, float, float]
+        self, sensor: RgbdCamera, prefix: str, topics: tuple[str, str], cloud: tuple[float, float]
     ) -> None:
-        topic, near, far = cloud
+        topic = self.options.point_cloud_topic_name
         wanted = {"depth_image": topics[0], "depth_camera_info": topics[1]}
-        if topic:
+        if self.options.point_cloud and topic:
             sensor.use_optical_cloud_axes()
-            sensor.crop_clouds(near, far)
+            sensor.crop_clouds(*cloud)
             wanted["points"] = self._below(prefix, topic)
         sensor.publish_on(wanted)
 

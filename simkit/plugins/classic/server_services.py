@@ -14,6 +14,8 @@ from simkit.plugins.classic import property_services as properties
 from simkit.plugins.classic import state_services as states
 from simkit.plugins.classic.state_services import LINK_STATES, MODEL_STATES, STATES_RATE
 from simkit.plugins.classic.wrench_services import TimedWrench, apply_wrenches, joint_effort, link_wrench
+from simkit.plugins.endpoints import offers, offers_all
+from simkit.plugins.options import Options, OptionsOf, number
 from simkit.plugins.world.physics_settings import physics_fields, set_physics
 from simkit.plugins.world.service_entities import (
     RequestRefused,
@@ -59,29 +61,49 @@ class ClassicServices(WorldPlugin):
         self.pushes: list[TimedWrench] = []
         tables = [_server_services(sim), _wrench_services(self), state_services(sim), property_services(sim)]
         offer_table("", sim, *tables)
-        _broadcast_states("", sim, STATES_RATE)
+        _broadcast_states("", sim)
         if self._is_ros_1:
             offer_table("/gazebo", sim, _server_services(sim), _ros_1_services(self), property_services(sim))
-            _broadcast_states("/gazebo", sim, STATES_RATE)
+            _broadcast_states("/gazebo", sim)
             listen_to_states("/gazebo", sim)
-        sim.communication.on_demand.add(lambda: bool(self.pushes), None, self._push, "before")
+        sim.communication.on_demand.add(lambda: bool(self.pushes), None, self._apply, "before")
 
-    def push(self, push: TimedWrench | None) -> None:
-        """Takes on what pushes a link or drives a joint for a while."""
+    def push_link(self, request: msgs.ApplyLinkWrench_Request | msgs.ApplyBodyWrench_Request, link: str) -> str:
+        """Takes on what pushes a link for a while."""
+        self._push(link_wrench(self.sim, link, request))
+        return ""
+
+    def push_joint(self, request: msgs.ApplyJointEffort_Request) -> str:
+        """Takes on what drives a joint for a while."""
+        self._push(joint_effort(self.sim, request))
+        return f"Effort on joint [{request.joint_name}] set"
+
+    def clear_link(self, name: str) -> None:
+        """Ends what pushes a link."""
+        link = find_entity(self.sim, name, ("link",))[1]
+        if not self._keep([push for push in self.pushes if push.link != link]):
+            raise RequestRefused(f"no applied wrenches on {link!r}")
+
+    def clear_joint(self, name: str) -> None:
+        """Ends what drives a joint."""
+        joint = properties.joint_of(self.sim, name).scoped
+        if not self._keep([push for push in self.pushes if push.joint != joint]):
+            raise RequestRefused(f"no applied efforts on {joint!r}")
+
+    def _push(self, push: TimedWrench | None) -> None:
         if push is not None:
-            self.pushes.append(push)
-            self.sim.communication.on_demand.look()
+            self._keep([*self.pushes, push])
 
-    def clear(self, link: str = "", joint: str = "") -> None:
-        """Ends what pushes a link or drives a joint."""
-        self.pushes = [p for p in self.pushes if not (link and p.link == link) and not (joint and p.joint == joint)]
+    def _keep(self, pushes: list[TimedWrench]) -> bool:
+        """Sets what pushes; False where that is as many as before."""
+        if len(pushes) == len(self.pushes):
+            return False
+        self.pushes = pushes
         self.sim.communication.on_demand.look()
+        return True
 
-    def _push(self, _: int) -> None:
-        left = apply_wrenches(self.sim, self.pushes)
-        if len(left) != len(self.pushes):
-            self.pushes = left
-            self.sim.communication.on_demand.look()
+    def _apply(self, _: int) -> None:
+        self._keep(apply_wrenches(self.sim, self.pushes))
 
 
 def offer_table(prefix: str, sim: Simulation, *tables: Table, named: Callable[[str], str] | None = None) -> None:
@@ -144,37 +166,11 @@ def _reset_simulation(sim: Simulation) -> None:
 def _wrench_services(plugin: ClassicServices) -> Table:
     """gazebo_ros_force_system."""
     return {
-        "apply_link_wrench": ("gazebo_msgs/srv/ApplyLinkWrench", lambda r: _push_link(plugin, r, r.link_name)),
-        "clear_link_wrenches": ("gazebo_msgs/srv/LinkRequest", lambda r: _clear_link(plugin, r.link_name)),
-        "apply_joint_effort": ("gazebo_msgs/srv/ApplyJointEffort", lambda r: _push_joint(plugin, r)),
-        "clear_joint_efforts": ("gazebo_msgs/srv/JointRequest", lambda r: _clear_joint(plugin, r.joint_name)),
+        "apply_link_wrench": ("gazebo_msgs/srv/ApplyLinkWrench", lambda r: plugin.push_link(r, r.link_name)),
+        "clear_link_wrenches": ("gazebo_msgs/srv/LinkRequest", lambda r: plugin.clear_link(r.link_name)),
+        "apply_joint_effort": ("gazebo_msgs/srv/ApplyJointEffort", plugin.push_joint),
+        "clear_joint_efforts": ("gazebo_msgs/srv/JointRequest", lambda r: plugin.clear_joint(r.joint_name)),
     }
-
-
-def _push_link(
-    plugin: ClassicServices, request: msgs.ApplyLinkWrench_Request | msgs.ApplyBodyWrench_Request, link: str
-) -> str:
-    plugin.push(link_wrench(plugin.sim, link, request))
-    return ""
-
-
-def _push_joint(plugin: ClassicServices, request: msgs.ApplyJointEffort_Request) -> str:
-    plugin.push(joint_effort(plugin.sim, request))
-    return f"Effort on joint [{request.joint_name}] set"
-
-
-def _clear_link(plugin: ClassicServices, name: str) -> None:
-    link = find_entity(plugin.sim, name, ("link",))[1]
-    if not any(push.link == link for push in plugin.pushes):
-        raise RequestRefused(f"no applied wrenches on {link!r}")
-    plugin.clear(link=link)
-
-
-def _clear_joint(plugin: ClassicServices, name: str) -> None:
-    joint = properties.joint_of(plugin.sim, name).scoped
-    if not any(push.joint == joint for push in plugin.pushes):
-        raise RequestRefused(f"no applied efforts on {joint!r}")
-    plugin.clear(joint=joint)
 
 
 # ---------------------------------------------------------------------- what Classic has plugins for
@@ -240,16 +236,16 @@ def _ros_1_services(plugin: ClassicServices) -> Table:
     return {
         "spawn_sdf_model": spawn_model,
         "spawn_urdf_model": spawn_model,
-        "delete_model": ("gazebo_msgs/srv/DeleteModel", lambda r: _delete_model(sim, r)),
+        "delete_model": ("gazebo_msgs/srv/DeleteModel", partial(_delete_model, sim)),
         "get_model_state": ("gazebo_msgs/srv/GetModelState", partial(_get_model_state, sim)),
         "set_model_state": ("gazebo_msgs/srv/SetModelState", lambda r: _set_model_state(sim, r.model_state)),
         "get_link_state": ("gazebo_msgs/srv/GetLinkState", partial(_get_link_state, sim)),
         "set_link_state": ("gazebo_msgs/srv/SetLinkState", lambda r: _set_link_state(sim, r.link_state)),
         "set_model_configuration": ("gazebo_msgs/srv/SetModelConfiguration", partial(_configure_model, sim)),
-        "apply_body_wrench": ("gazebo_msgs/srv/ApplyBodyWrench", lambda r: _push_link(plugin, r, r.body_name)),
-        "clear_body_wrenches": ("gazebo_msgs/srv/BodyRequest", lambda r: _clear_link(plugin, r.body_name)),
-        "apply_joint_effort": ("gazebo_msgs/srv/ApplyJointEffort", lambda r: _push_joint(plugin, r)),
-        "clear_joint_forces": ("gazebo_msgs/srv/JointRequest", lambda r: _clear_joint(plugin, r.joint_name)),
+        "apply_body_wrench": ("gazebo_msgs/srv/ApplyBodyWrench", lambda r: plugin.push_link(r, r.body_name)),
+        "clear_body_wrenches": ("gazebo_msgs/srv/BodyRequest", lambda r: plugin.clear_link(r.body_name)),
+        "apply_joint_effort": ("gazebo_msgs/srv/ApplyJointEffort", plugin.push_joint),
+        "clear_joint_forces": ("gazebo_msgs/srv/JointRequest", lambda r: plugin.clear_joint(r.joint_name)),
     }
 
 
@@ -311,15 +307,15 @@ def listen_to_states(prefix: str, sim: Simulation) -> None:
 
 def broadcast_states(sim: Simulation, models: str, links: str, rate: float, *, is_aside: bool) -> None:
     """Publishes the states of models and links while somebody listens."""
-    makers = {models: states.model_states, links: states.link_states}
     topics = {models: MODEL_STATES, links: LINK_STATES}
-    sim.communication.on_demand.broadcast(topics, rate, lambda topic: makers[topic](sim), is_aside=is_aside)
+    make = partial(states.states_message, sim)
+    sim.communication.on_demand.broadcast(topics, rate, lambda topic: make(topics[topic]), is_aside=is_aside)
 
 
-def _broadcast_states(prefix: str, sim: Simulation, rate: float) -> None:
+def _broadcast_states(prefix: str, sim: Simulation) -> None:
     models, links = f"{prefix}/model_states", f"{prefix}/link_states"
     if not {models, links} & set(sim.communication.bus.all_topics()):  # a plugin of the file may have them
-        broadcast_states(sim, models, links, rate, is_aside=True)
+        broadcast_states(sim, models, links, STATES_RATE, is_aside=True)
 
 
 # ---------------------------------------------------------------------- which ROS a world is of
@@ -343,3 +339,43 @@ def _is_of_ros_1(plugin: ScenePlugin) -> bool:
         return True
     names = [child.name for child in plugin.params.children]
     return "ros" not in names and any(_CAMEL.match(name) for name in names)
+
+
+class GazeboRosStateOptions(Options):
+    """Options of `GazeboRosState`."""
+
+    update_rate: float = number(STATES_RATE, "Hz", minimum=0.0)
+
+
+class GazeboRosState(WorldPlugin):
+    """Publishes `model_states` and `link_states`, and offers `get_entity_state`, `set_entity_state` and the rest.
+
+    All in its own `<ros><namespace>`. `<update_rate>` [Hz] is 100 where it is not given; of 0 it is every step.
+    """
+
+    options = OptionsOf(GazeboRosStateOptions)
+    endpoints = (
+        *offers_all("gazebo_msgs", "GetEntityState", "SetEntityState"),
+        offers("set_joint_positions", "gazebo_msgs/srv/SetModelConfiguration"),
+    )
+    filenames = ("libgazebo_ros_state.so",)
+
+    def load(self, parent: Simulation, params: Params) -> None:
+        rate = self.options.update_rate
+        offer_table("", self.sim, state_services(self.sim), named=self.ros.topic)
+        models, links = self.ros.topic("model_states"), self.ros.topic("link_states")
+        broadcast_states(self.sim, models, links, rate, is_aside=False)
+
+
+class GazeboRosProperties(WorldPlugin):
+    """Offers `get_model_properties`, `get_physics_properties` and the rest in its own `<ros><namespace>`."""
+
+    filenames = ("libgazebo_ros_properties.so",)
+    endpoints = offers_all(
+        "gazebo_msgs",
+        *("GetWorldProperties", "GetModelProperties", "GetJointProperties", "SetJointProperties", "GetLinkProperties"),
+        *("GetLightProperties", "SetLightProperties", "GetPhysicsProperties", "SetPhysicsProperties"),
+    )
+
+    def load(self, parent: Simulation, params: Params) -> None:
+        offer_table("", self.sim, property_services(self.sim), named=self.ros.topic)

@@ -175,17 +175,10 @@ def set_joints(sim: Simulation, model: str, names: list[str], positions: npt.NDA
     handle.set_joint_positions(wanted)
 
 
-def model_states(sim: Simulation) -> object:
-    """A `gazebo_msgs/msg/ModelStates` of the top-level models."""
-    return _states(sim, MODEL_STATES, "model", list(sim.models))
-
-
-def link_states(sim: Simulation) -> object:
-    """A `gazebo_msgs/msg/LinkStates` of all links, by their scoped names."""
-    return _states(sim, LINK_STATES, "link", list(sim.contents.handles.tables["link"]))
-
-
-def _states(sim: Simulation, type_name: str, kind: str, names: list[str]) -> object:
+def states_message(sim: Simulation, type_name: str) -> object:
+    """A message of `MODEL_STATES`, the top-level models', or of `LINK_STATES`, all links' by their scoped names."""
+    kind = "model" if type_name == MODEL_STATES else "link"
+    names = list(sim.models if kind == "model" else sim.contents.handles.tables["link"])
     return msgs.make(
         type_name,
         name=names,

@@ -77,16 +77,13 @@ def _attach_plugin(plugin: Plugin, name: str, world: SceneWorld, diagnostics: Di
             message = f"plugin {shown!r} is to hang on {name!r}, which is no {places}; there is {listed}"
             diagnostics.error("SK-PLUGIN-021", message, hint=did_you_mean(name, there))
         return there.get(name)
-    fitting = [hung for hung in there.values() if not getattr(hung.scene, "static", False) and _is_top_level(hung)]
+    moving = [hung for hung in there.values() if not getattr(hung.scene, "static", False)]
+    fitting = [hung for hung in moving if not isinstance(hung.scene, SceneModel) or "::" not in hung.scoped]
     if len(fitting) == 1:
         return fitting[0]
     message = f"plugin {shown!r} belongs on a {places}, and there is not exactly one to hang it on: {listed}"
     diagnostics.error("SK-PLUGIN-021", message, hint=f'say which: plugins=[("name", {shown}(...))]')
     return None
-
-
-def _is_top_level(hung: Attachment) -> bool:
-    return not isinstance(hung.scene, SceneModel) or "::" not in hung.scoped
 
 
 def _candidates_of_kind(kind: str, plugin: Plugin, world: SceneWorld) -> Mapping[str, Attachment]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Container
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 from simkit import msgs
@@ -42,22 +43,7 @@ LIGHT: Final = "ros_gz_interfaces/msg/Light"
 MATERIAL: Final = "ros_gz_interfaces/msg/MaterialColor"
 _LIGHTS: Final = ("point", "spot", "directional")
 _REQUEST: Final = "simkit_msgs/srv/EntityRequest"
-_TABLE: Final = {
-    "control": "ros_gz_interfaces/srv/ControlWorld",
-    "create": "ros_gz_interfaces/srv/SpawnEntity",
-    "create_multiple": "simkit_msgs/srv/SpawnEntities",
-    "remove": "ros_gz_interfaces/srv/DeleteEntity",
-    "set_pose": "ros_gz_interfaces/srv/SetEntityPose",
-    "set_pose_vector": "simkit_msgs/srv/SetEntityPoses",
-    "set_physics": "gazebo_msgs/srv/SetPhysicsProperties",
-    "light_config": "simkit_msgs/srv/SetLight",
-    "visual_config": "simkit_msgs/srv/SetMaterialColor",
-    "wheel_slip": "simkit_msgs/srv/SetWheelSlip",
-    "enable_collision": _REQUEST,
-    "disable_collision": _REQUEST,
-    "set_spherical_coordinates": "simkit_msgs/srv/SetSphericalCoordinates",
-}
-_ALSO_BLOCKING: Final = frozenset(_TABLE) - {"control"}
+_Does = Callable[..., dict[str, object] | str | None]
 
 
 class WorldServices(WorldPlugin):
@@ -72,13 +58,12 @@ class WorldServices(WorldPlugin):
     def load(self, parent: Simulation, params: Params) -> None:
         self._prefix = prefix = valid_topic(f"/world/{self.sim.world.name}")
         offer = self.sim.communication.services.offer_by_default
-        for short, type_name in _TABLE.items():
-            does: Callable[..., dict[str, object] | str | None] = getattr(self, f"_{short}")
+        for short, (type_name, does) in self._services().items():
             name = f"{prefix}/{short}"
             says_why = type_name.startswith(("simkit_msgs", "gazebo_msgs"))
             handler = answer_handler(self.sim, name, does, says_why)
             offer(name, type_name, handler)
-            if short in _ALSO_BLOCKING:
+            if short != "control":
                 offer(f"{name}/blocking", type_name, handler)
         offer(f"{prefix}/scene/info", "simkit_msgs/srv/GetScene", self._scene_info)
         writing = answer_handler(self.sim, f"{prefix}/generate_world_sdf", lambda _: {"sdf": self.sim.control.to_sdf()})
@@ -92,6 +77,27 @@ class WorldServices(WorldPlugin):
             self.sim.communication.bus.aside.add(topic)
             self.sim.communication.bus.unlisted.add(topic)
             self.sim.communication.bus.listen(topic, (type_name,), command_handler(self.sim, topic, configure))
+
+    def _services(self) -> dict[str, tuple[str, _Does]]:
+        """Type of each service, and what it does with a request."""
+        return {
+            "control": ("ros_gz_interfaces/srv/ControlWorld", self._control),
+            "create": ("ros_gz_interfaces/srv/SpawnEntity", lambda request: self._spawn(request.entity_factory)),
+            "create_multiple": ("simkit_msgs/srv/SpawnEntities", self._create_multiple),
+            "remove": ("ros_gz_interfaces/srv/DeleteEntity", self._remove),
+            "set_pose": (
+                "ros_gz_interfaces/srv/SetEntityPose",
+                lambda request: self._place(request.entity, pose_of(request.pose)),
+            ),
+            "set_pose_vector": ("simkit_msgs/srv/SetEntityPoses", self._set_pose_vector),
+            "set_physics": ("gazebo_msgs/srv/SetPhysicsProperties", self._set_physics),
+            "light_config": ("simkit_msgs/srv/SetLight", lambda request: self._configure_light(request.light)),
+            "visual_config": ("simkit_msgs/srv/SetMaterialColor", lambda request: self._paint(request.material_color)),
+            "wheel_slip": ("simkit_msgs/srv/SetWheelSlip", self._wheel_slip),
+            "enable_collision": (_REQUEST, partial(self._switch_collision, True)),
+            "disable_collision": (_REQUEST, partial(self._switch_collision, False)),
+            "set_spherical_coordinates": ("simkit_msgs/srv/SetSphericalCoordinates", self._set_spherical_coordinates),
+        }
 
     # ------------------------------------------------------------------ running
 
@@ -123,9 +129,6 @@ class WorldServices(WorldPlugin):
         return set_physics(self.sim, request, keeps_gravity=not (gravity.x or gravity.y or gravity.z))
 
     # ------------------------------------------------------------------ entities
-
-    def _create(self, request: msgs.ros_gz_interfaces__srv__SpawnEntity_Request) -> None:
-        self._spawn(request.entity_factory)
 
     def _create_multiple(self, request: msgs.SpawnEntities_Request) -> None:
         with self.sim.contents.all_or_none():
@@ -199,9 +202,6 @@ class WorldServices(WorldPlugin):
             raise RequestRefused(f"{name!r} is not a direct child of the world; remove {name.split('::')[0]!r}")
         self.sim.remove(name)
 
-    def _set_pose(self, request: msgs.SetEntityPose_Request) -> None:
-        self._place(request.entity, pose_of(request.pose))
-
     def _set_pose_vector(self, request: msgs.SetEntityPoses_Request) -> None:
         if len(request.entities) != len(request.poses):
             raise RequestRefused(
@@ -216,18 +216,11 @@ class WorldServices(WorldPlugin):
     def _place(self, entity: msgs.Entity, pose: Pose) -> None:
         handle_of(self.sim, *entity_of(self.sim, entity, ("model", "light"))).set_pose(pose)
 
-    def _enable_collision(self, request: msgs.EntityRequest_Request) -> None:
-        self._switch_collision(request.entity, True)
-
-    def _disable_collision(self, request: msgs.EntityRequest_Request) -> None:
-        self._switch_collision(request.entity, False)
-
-    def _switch_collision(self, entity: msgs.Entity, enabled: bool) -> None:
-        kind, name = entity_of(self.sim, entity, ("collision", "link", "model"))
+    def _switch_collision(self, enabled: bool, request: msgs.EntityRequest_Request) -> None:
+        kind, name = entity_of(self.sim, request.entity, ("collision", "link", "model"))
         if kind == "model":
-            self.sim.control.enable_collisions(
-                [link.scoped for link in self.sim.model(name).scene.all_links()], enabled
-            )
+            links = [link.scoped for link in self.sim.model(name).scene.all_links()]
+            self.sim.control.enable_collisions(links, enabled)
         elif kind == "link":
             self.sim.control.enable_collisions([name], enabled)
         else:
@@ -241,9 +234,6 @@ class WorldServices(WorldPlugin):
             raise RequestRefused(f"{kind} {name!r} has no wheel of a wheel slip plugin")
 
     # ------------------------------------------------------------------ looks
-
-    def _light_config(self, request: msgs.SetLight_Request) -> None:
-        self._configure_light(request.light)
 
     def _configure_light(self, asked: msgs.Light) -> None:
         """What is zero in the message stays as it is: ROS cannot leave a field out."""
@@ -279,9 +269,6 @@ class WorldServices(WorldPlugin):
         light.change(replace(scene, **change))
         if pose != IDENTITY:
             light.set_pose(pose)
-
-    def _visual_config(self, request: msgs.SetMaterialColor_Request) -> str | None:
-        return self._paint(request.material_color)
 
     def _paint(self, asked: msgs.MaterialColor) -> str | None:
         sim, entity = self.sim, asked.entity
@@ -323,7 +310,6 @@ class WorldServices(WorldPlugin):
     # ------------------------------------------------------------------ the place on Earth
 
     def _set_spherical_coordinates(self, request: msgs.SetSphericalCoordinates_Request) -> None:
-
         entity = request.entity
         if entity.name or entity.id:
             handle = handle_of(self.sim, *entity_of(self.sim, entity, ("model", "light")))
