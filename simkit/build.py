@@ -16,10 +16,11 @@ from simkit.errors import InputError, LoadError, PluginError
 from simkit.loaders import Resolver, load_scene
 from simkit.loaders.spawned_models import SpawnedModel, add_spawned_models
 from simkit.mujoco_import import import_mujoco
-from simkit.plugins.discovery.instance_check import find_more_problems, make_all_parts
 from simkit.plugins.discovery.make_instances import (
+    InstanceMaker,
     add_actor_models,
-    make_model_parts,
+    find_more_problems,
+    make_all_parts,
     report_unread,
 )
 from simkit.plugins.gz.sensors import with_sensors_colours
@@ -114,7 +115,7 @@ def load(
         raise InputError(f"on_error is 'stop' or 'disable', got {on_error!r}")
     import_mujoco()
     from simkit.compiler import SpecBuilder
-    from simkit.runtime import Simulation, WorldStructure
+    from simkit.runtime import SensorsAndPlugins, Simulation, WorldStructure
 
     diagnostics = Diagnostics()
     resolver = Resolver([Path(p) for p in resource_paths], package_paths=package_paths)
@@ -148,7 +149,10 @@ def load(
     diagnostics.raise_if_errors(strict)
 
     load_model = partial(_model_to_spawn, resolver=resolver)
-    make_parts = partial(make_model_parts, plugin_paths=allowed)
+
+    def make_parts(model: SceneModel, builder: SpecBuilder, diagnostics: Diagnostics) -> SensorsAndPlugins:
+        return InstanceMaker(builder, diagnostics, allowed).model_parts(model)
+
     movable = frozenset(m.name for m in world.models if m.moved_by is not None)
     structure = WorldStructure(builder, compiled, {m.name: m for m in world.models}, movable, parts)
     simulation = Simulation(world, structure, diagnostics, seed, load_model, make_parts, on_error)

@@ -16,8 +16,7 @@ from dataclasses import dataclass, field, replace
 from types import FunctionType, ModuleType
 from typing import Any, Final
 
-from simkit.plugins.authoring.parameter_units import unit_of
-from simkit.plugins.authoring.plugin_facts import Facts, Parameter, Service, Topic, merged, merged_topics
+from simkit.plugins.authoring.plugin_facts import Facts, Parameter, Service, Topic, merged, merged_topics, unit_of
 from simkit.plugins.base import Plugin
 from simkit.plugins.options import Options
 

@@ -16,7 +16,6 @@ from simkit.plugins.classic.state_services import LINK_STATES, MODEL_STATES, STA
 from simkit.plugins.classic.wrench_services import TimedWrench, apply_wrenches, joint_effort, link_wrench
 from simkit.plugins.endpoints import offers, offers_all
 from simkit.plugins.options import Options, OptionsOf, number
-from simkit.plugins.world.physics_settings import physics_fields, set_physics
 from simkit.plugins.world.service_entities import (
     RequestRefused,
     answer_handler,
@@ -24,6 +23,7 @@ from simkit.plugins.world.service_entities import (
     find_entity,
     pose_fields,
 )
+from simkit.plugins.world.world_settings import physics_fields, set_physics
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder

@@ -13,8 +13,6 @@ from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import WorldPlugin
 from simkit.plugins.drives.wheel_slip import set_compliances
-from simkit.plugins.world.earth_location import set_entity_location, set_world_location
-from simkit.plugins.world.physics_settings import set_physics
 from simkit.plugins.world.service_entities import (
     KINDS,
     RequestRefused,
@@ -33,6 +31,7 @@ from simkit.plugins.world.service_entities import (
     spawn_entities,
     vector_of,
 )
+from simkit.plugins.world.world_settings import set_entity_location, set_physics, set_world_location
 from simkit.pose import IDENTITY, Pose
 
 if TYPE_CHECKING:
