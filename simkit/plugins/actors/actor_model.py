@@ -20,14 +20,7 @@ from simkit.plugins.actors.animated_actor import (
 from simkit.plugins.actors.script import Floats, Script, Track
 from simkit.plugins.actors.skin import skinned_actor_model
 from simkit.pose import Pose
-from simkit.scene import (
-    Material,
-    SceneActor,
-    SceneLink,
-    SceneModel,
-    SceneVisual,
-    SceneWorld,
-)
+from simkit.scene import Material, SceneActor, SceneLink, SceneModel, SceneVisual, SceneWorld
 
 
 @dataclass(frozen=True, slots=True)

@@ -250,8 +250,7 @@ class GazeboRosMultiCamera(CameraPlugin):
     filenames = ("libgazebo_ros_multicamera.so",)
 
     def load(self, parent: MultiCamera, params: Params) -> None:
-        if connect_multicamera(self, parent) is None:
-            self.refuse(parent, "multicamera")
+        connect_multicamera(self, parent)
 
 
 class GazeboRosTriggeredMultiCamera(CameraPlugin):
@@ -262,15 +261,14 @@ class GazeboRosTriggeredMultiCamera(CameraPlugin):
 
     def load(self, parent: MultiCamera, params: Params) -> None:
         names = connect_multicamera(self, parent)
-        if names is None:
-            self.refuse(parent, "multicamera")
-        else:
+        if names is not None:
             connect_trigger(self, parent, names)
 
 
 def connect_multicamera(plugin: CameraPlugin, sensor: MultiCamera) -> CameraNames | None:
-    """Names the topics; None where the sensor is no multicamera."""
+    """Names the topics; None after an error where the sensor is no multicamera."""
     if not hasattr(sensor, "eyes"):
+        plugin.refuse(sensor, "multicamera")
         return None
     names = CameraNames(plugin, sensor, is_ros_1=True)
     connect_stereo(plugin, sensor, names, _side)

@@ -58,15 +58,13 @@ class GazeboRosImu(ModelPlugin):
     filenames = ("libgazebo_ros_imu.so",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        options = self.options.read_all()
         self._body = find_named_link(scene, "bodyName", params)
-        self._topic = self.options.topic_name
-        self._service = self.options.service_name
-        self._frame = self.options.frame_name.strip("/") or self._body.rsplit("::", 1)[-1]
-        self._deviation = self.options.gaussian_noise
-        self._turn = quat_from_rpy(*self.options.rpy_offset)
-        self.after_step_rate = self.options.update_rate
-        _ = self.options.always_on
-        if any(self.options.xyz_offset):
+        self._frame = options.frame_name.strip("/") or self._body.rsplit("::", 1)[-1]
+        self._deviation = options.gaussian_noise
+        self._turn = quat_from_rpy(*options.rpy_offset)
+        self.after_step_rate = options.update_rate
+        if any(options.xyz_offset):
             message = f"plugin {self.name!r}: <xyzOffset> changes no reading, as in Gazebo"
             params.diagnostics.note("SK-SENSOR-072", message, params.block("xyzOffset").where)
         self._is_gazebos = builder.world.gazebo_quirks
@@ -77,9 +75,10 @@ class GazeboRosImu(ModelPlugin):
 
     def load(self, parent: Model, params: Params) -> None:
         self._link = self.sim.link(self._body)
-        self._out = self.advertise(self._topic, TYPE) if self._topic else None
-        if self._service and self.ros.topic(self._service) not in self.sim.communication.services.names():
-            self.offer(self._service, "std_srvs/srv/Empty", lambda _request: None)
+        topic, service = self.options.topic_name, self.options.service_name
+        self._out = self.advertise(topic, TYPE) if topic else None
+        if service and self.ros.topic(service) not in self.sim.communication.services.names():
+            self.offer(service, "std_srvs/srv/Empty", lambda _request: None)
         self._stream = self.random("gaussianNoise", 6) if self._deviation > 0 else None
         self._index = 0
         covariance = np.diag([self._deviation**2] * 3).reshape(9)

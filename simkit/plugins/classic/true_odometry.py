@@ -115,8 +115,7 @@ class GazeboRosP3D(ModelPlugin):
         pose, motion = self._reading()
         # counted whether heard or not, so that who listens does not change the noise
         index = count_instants(self, self._rate)
-        told = partial(self._message, self.sim.time_ns, pose, motion, index)
-        self._out.publish_later(told)
+        self._out.publish_later(partial(self._message, self.sim.time_ns, pose, motion, index))
 
     def _reading(self) -> tuple[Pose, Vector]:
         """Pose with its offset, and the twist: linear (3) and angular (3), both along the axes of the frame."""
@@ -173,7 +172,6 @@ class GazeboWorldOdometry(ModelPlugin):
         self._frame = self.options.frame_name
         element = "bodyName" if params.has("bodyName") or not params.has("frameName") else "frameName"
         self._body = find_named_link(scene, element, params)
-        self._topic = self.options.topic_name  # Gazebo's default
         self._rate = self.options.update_rate
 
     def load(self, parent: Model, params: Params) -> None:
@@ -194,7 +192,7 @@ class GazeboWorldOdometry(ModelPlugin):
         )
         self._stream = self.random("gaussian_noise", 3)
         self._walk: Vector = np.zeros(3)
-        self._out = self.advertise(self._topic, ODOMETRY)
+        self._out = self.advertise(self.options.topic_name, ODOMETRY)
         # whether heard or not, so that who listens does not change the noise
         publish_while_subscribed(self, self._out, self._rate, "tell", also=lambda: self._deviation.value > 0)
 

@@ -70,8 +70,7 @@ class GazeboRosVacuumGripper(ModelPlugin):
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         self._is_ros_1 = is_ros_1(params, _ROS_1)
-        self._topic, self._rate = "grasping", _RATE
-        fixed: tuple[str, ...] = ()
+        self._topic, self._rate, self._fixed = "grasping", _RATE, frozenset[str]()
         if self._is_ros_1:
             self._grippers = [find_named_link(scene, "bodyName", params)]
             self._topic, self._rate = self.options.topic_name, 0.0
@@ -88,8 +87,7 @@ class GazeboRosVacuumGripper(ModelPlugin):
             found = [find_link(scene, one.value, one) for one in named]
             self._grippers = [link.scoped for link in found if link is not None]
             self._reach = self.options.max_distance
-            fixed = self.options.fixed
-        self._fixed = frozenset(fixed)
+            self._fixed = frozenset(self.options.fixed)
         self._own = scene.scoped.split("::")[0]
 
     def load(self, parent: Model, params: Params) -> None:
