@@ -61,28 +61,14 @@ class TricycleOptions(Options):
     max_steering_angle_tolerance: float = number(0.01, "rad", minimum=0)
     max_wheel_torque: float = number(0.15, "N·m", minimum=0)
     update_rate: float = number(100.0, "Hz", minimum=0)
-    odometry_source: int | str = integer(1, minimum=0, maximum=1)
+    odometry_source: int = integer(1, minimum=0, maximum=1)
     odometry_frame: str = text("odom")
     robot_base_frame: str = text("base_link")
     publish_wheel_tf: bool = boolean()
     publish_wheel_joint_state: bool = boolean()
 
-    @property
-    def outputs(self) -> DriveOutputOptions:
-        """Odometry, transforms and joint states that go out."""
-        return DriveOutputOptions(
-            odometry_topic=self.odometry_topic,
-            odometry_frame=self.odometry_frame,
-            base_frame=self.robot_base_frame,
-            odometry=self.publish_odom,
-            odometry_tf=self.publish_odom,
-            wheel_tf=self.publish_wheel_tf,
-            joint_states=self.publish_wheel_joint_state,
-            covariance=_COVARIANCE,
-        )
 
-
-class TricycleRos1Options(TricycleOptions):
+class TricycleRos1Options(Options):
     """Options in the spelling of ROS 1; it always publishes its odometry."""
 
     publish_odom = True
@@ -100,13 +86,26 @@ class TricycleRos1Options(TricycleOptions):
     max_steering_angle_tolerance: float = number(0.01, "rad", element="steeringAngleTolerance", minimum=0)
     max_wheel_torque: float = number(5.0, "N·m", element="wheelTorque", minimum=0)
     update_rate: float = number(100.0, "Hz", element="updateRate", minimum=0)
-    odometry_source: int | str = choice(("world", "encoder"), "world", element="odometrySource")
+    odometry_source: str = choice(("world", "encoder"), "world", element="odometrySource")
     command_topic: str = text("cmd_vel", element="commandTopic")
     odometry_topic: str = text("odom", element="odometryTopic")
     odometry_frame: str = text("odom", element="odometryFrame")
     robot_base_frame: str = text("base_link", element="robotBaseFrame")
     publish_wheel_tf: bool = boolean(element="publishWheelTF")
     publish_wheel_joint_state: bool = boolean(element="publishWheelJointState")
+
+
+def _outputs(given: TricycleOptions | TricycleRos1Options) -> DriveOutputOptions:
+    return DriveOutputOptions(
+        odometry_topic=given.odometry_topic,
+        odometry_frame=given.odometry_frame,
+        base_frame=given.robot_base_frame,
+        odometry=given.publish_odom,
+        odometry_tf=given.publish_odom,
+        wheel_tf=given.publish_wheel_tf,
+        joint_states=given.publish_wheel_joint_state,
+        covariance=_COVARIANCE,
+    )
 
 
 class GazeboRosTricycleDrive(CommandedDrive):
@@ -151,7 +150,7 @@ class GazeboRosTricycleDrive(CommandedDrive):
         self._speed, self._given = 0.0, 0.0
         self._reckoning = DeadReckoning()
         self._angles = wheel_angles(*self._pair)
-        self._outputs = DriveOutputs(self, self.options.outputs, self._all)
+        self._outputs = DriveOutputs(self, _outputs(self.options), self._all)
 
     # ------------------------------------------------------------------ commands
 

@@ -10,7 +10,7 @@ from moved_models import INERTIA, box
 from plugin_worlds import element, stamps, world, xyz, yaw
 
 import simkit
-from simkit.plugins.classic.true_odometry import GazeboWorldOdometry
+from simkit.plugins.classic.world_odometry import GazeboWorldOdometry
 
 FILE = "name='truth' filename='libgazebo_world_odometry.so'"
 ARM = (

@@ -1,7 +1,4 @@
-"""True pose of a link as odometry: Gazebo Classic's `libgazebo_ros_p3d.so`, PAL's `libgazebo_world_odometry.so`.
-
-The first has a spelling of ROS 2 and one of ROS 1; the second is on the PMB2 base and the older TIAGo.
-"""
+"""Gazebo Classic's true pose of a link as odometry, in ROS 2 and ROS 1 spelling: `libgazebo_ros_p3d.so`."""
 
 from __future__ import annotations
 
@@ -144,72 +141,3 @@ def _is_whole(pose: Pose) -> bool:
     """Whether no bit of a pose changes where an offset of nothing is added: no zero has a sign, and it is unit."""
     turn = pose.quaternion
     return abs(math.sqrt(turn.dot(turn)) - 1.0) <= 1e-15 and bool(pose.position.all() and turn.all())
-
-
-class GazeboWorldOdometryOptions(Options):
-    """Options of `GazeboWorldOdometry`."""
-
-    frame_name: str = text("world", element="frameName")
-    body_name: str = text(element="bodyName", required=True)
-    topic_name: str = text("ft_data", element="topicName")
-    update_rate: float = number(1000.0, "Hz", element="updateRate", minimum=0)
-
-
-class GazeboWorldOdometry(ModelPlugin):
-    """Publishes on `<topicName>` where the link `<bodyName>` truly is in the world, whatever `<frameName>` says.
-
-    As Gazebo's: the frame of the message is `<frameName>` (`world`), which is the link as well where there is no
-    `<bodyName>`; the linear velocity is along the world's axes, the angular one along the link's own; `<updateRate>` is
-    1000 [Hz]. While it runs the parameters `x_offset`, `y_offset` [m] and `yaw_offset` [rad] move what is told, and
-    `gaussian_noise` lets it walk: the standard deviation of each step of x and y [m] and of the yaw [rad].
-    """
-
-    endpoints = (publishes("ft_data", ODOMETRY, named_by=("topicName",)),)
-    options = OptionsOf(GazeboWorldOdometryOptions)
-    filenames = ("libgazebo_world_odometry.so",)
-
-    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        self._frame = self.options.frame_name
-        element = "bodyName" if params.has("bodyName") or not params.has("frameName") else "frameName"
-        self._body = find_named_link(scene, element, params)
-        self._rate = self.options.update_rate
-
-    def load(self, parent: Model, params: Params) -> None:
-        self._link = self.sim.link(self._body)
-        self._x = self.declare("x_offset", 0.0, minimum=-100, maximum=100, description="added to x [m]")
-        self._y = self.declare("y_offset", 0.0, minimum=-100, maximum=100, description="added to y [m]")
-        self._yaw = self.declare(
-            "yaw_offset", 0.0, minimum=-math.pi, maximum=math.pi, description="added to the yaw [rad]"
-        )
-        what = "standard deviation of each step of the walk of x, y [m] and yaw [rad]"
-        self._deviation = self.declare(
-            "gaussian_noise",
-            0.0,
-            minimum=0,
-            maximum=5,
-            description=what,
-            on_change=lambda _: self.sim.communication.on_demand.look(),
-        )
-        self._stream = self.random("gaussian_noise", 3)
-        self._walk: Vector = np.zeros(3)
-        self._out = self.advertise(self.options.topic_name, ODOMETRY)
-        # whether heard or not, so that who listens does not change the noise
-        publish_while_subscribed(self, self._out, self._rate, "tell", also=lambda: self._deviation.value > 0)
-
-    def tell(self) -> None:
-        """Publishes."""
-        if self._deviation.value > 0:
-            self._walk = self._walk + self._deviation.value * self._stream.normal(count_instants(self, self._rate))
-        if not self._out.wanted:
-            return
-        link, (dx, dy, turn) = self._link, self._walk.tolist()
-        pose = link.pose
-        roll, pitch, yaw = pose.rpy
-        moved = Pose(
-            pose.position + np.array([dx + self._x.value, dy + self._y.value, 0.0]),
-            quat_from_rpy(roll, pitch, yaw + turn + self._yaw.value),
-        )
-        angular = quat_rotate(quat_conjugate(pose.quaternion), link.angular_velocity)
-        twist = BodyTwist(link.linear_velocity.tolist(), angular.tolist())
-        told = partial(odometry_message, self.sim.time_ns, self._frame, link.name, moved, twist)
-        self._out.publish_later(told)

@@ -1,0 +1,92 @@
+"""PAL's true pose of a link as odometry: `libgazebo_world_odometry.so`, on the PMB2 base and the older TIAGo."""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from simkit.params import Params
+from simkit.plugins.base import ModelPlugin
+from simkit.plugins.drives.odometry import ODOMETRY, BodyTwist, odometry_message
+from simkit.plugins.endpoints import publishes
+from simkit.plugins.find_entities import find_named_link
+from simkit.plugins.options import Options, OptionsOf, number, text
+from simkit.plugins.publish_on_demand import count_instants, publish_while_subscribed
+from simkit.pose import Pose, Vector, quat_conjugate, quat_from_rpy, quat_rotate
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.runtime import Model
+    from simkit.scene import SceneModel
+
+
+class GazeboWorldOdometryOptions(Options):
+    """Options of `GazeboWorldOdometry`."""
+
+    frame_name: str = text("world", element="frameName")
+    body_name: str = text(element="bodyName", required=True)
+    topic_name: str = text("ft_data", element="topicName")
+    update_rate: float = number(1000.0, "Hz", element="updateRate", minimum=0)
+
+
+class GazeboWorldOdometry(ModelPlugin):
+    """Publishes on `<topicName>` where the link `<bodyName>` truly is in the world, whatever `<frameName>` says.
+
+    As Gazebo's: the frame of the message is `<frameName>` (`world`), which is the link as well where there is no
+    `<bodyName>`; the linear velocity is along the world's axes, the angular one along the link's own; `<updateRate>` is
+    1000 [Hz]. While it runs the parameters `x_offset`, `y_offset` [m] and `yaw_offset` [rad] move what is told, and
+    `gaussian_noise` lets it walk: the standard deviation of each step of x and y [m] and of the yaw [rad].
+    """
+
+    endpoints = (publishes("ft_data", ODOMETRY, named_by=("topicName",)),)
+    options = OptionsOf(GazeboWorldOdometryOptions)
+    filenames = ("libgazebo_world_odometry.so",)
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        self._frame = self.options.frame_name
+        element = "bodyName" if params.has("bodyName") or not params.has("frameName") else "frameName"
+        self._body = find_named_link(scene, element, params)
+        self._rate = self.options.update_rate
+
+    def load(self, parent: Model, params: Params) -> None:
+        self._link = self.sim.link(self._body)
+        self._x = self.declare("x_offset", 0.0, minimum=-100, maximum=100, description="added to x [m]")
+        self._y = self.declare("y_offset", 0.0, minimum=-100, maximum=100, description="added to y [m]")
+        self._yaw = self.declare(
+            "yaw_offset", 0.0, minimum=-math.pi, maximum=math.pi, description="added to the yaw [rad]"
+        )
+        what = "standard deviation of each step of the walk of x, y [m] and yaw [rad]"
+        self._deviation = self.declare(
+            "gaussian_noise",
+            0.0,
+            minimum=0,
+            maximum=5,
+            description=what,
+            on_change=lambda _: self.sim.communication.on_demand.look(),
+        )
+        self._stream = self.random("gaussian_noise", 3)
+        self._walk: Vector = np.zeros(3)
+        self._out = self.advertise(self.options.topic_name, ODOMETRY)
+        # whether heard or not, so that who listens does not change the noise
+        publish_while_subscribed(self, self._out, self._rate, "tell", also=lambda: self._deviation.value > 0)
+
+    def tell(self) -> None:
+        """Publishes."""
+        if self._deviation.value > 0:
+            self._walk = self._walk + self._deviation.value * self._stream.normal(count_instants(self, self._rate))
+        if not self._out.wanted:
+            return
+        link, (dx, dy, turn) = self._link, self._walk.tolist()
+        pose = link.pose
+        roll, pitch, yaw = pose.rpy
+        moved = Pose(
+            pose.position + np.array([dx + self._x.value, dy + self._y.value, 0.0]),
+            quat_from_rpy(roll, pitch, yaw + turn + self._yaw.value),
+        )
+        angular = quat_rotate(quat_conjugate(pose.quaternion), link.angular_velocity)
+        twist = BodyTwist(link.linear_velocity.tolist(), angular.tolist())
+        told = partial(odometry_message, self.sim.time_ns, self._frame, link.name, moved, twist)
+        self._out.publish_later(told)
