@@ -49,10 +49,11 @@ class Options:
         return {name: v for c in reversed(cls.__mro__) for name, v in vars(c).items() if isinstance(v, Option)}
 
     def read_all(self) -> Self:
-        """Read every option except live parameters, so that all faults of the block are reported together."""
-        for name, option in self.fields().items():
-            if not option.is_live:
-                getattr(self, name)
+        """Read every option except live parameters, those of base classes last, so that all faults come together."""
+        for kind in type(self).__mro__:
+            for name, value in vars(kind).items():
+                if isinstance(value, Option) and not value.is_live:
+                    getattr(self, name)
         return self
 
     @classmethod

@@ -94,9 +94,10 @@ class CommonDiffDriveOptions(Options, abc.ABC):
     odometry_noise: OdometryNoiseOptions = block(OdometryNoiseOptions)
 
     def read_all(self) -> Self:
-        """Reads every option, then the pairs of wheels and the odometry's noise, our own."""
+        """Reads the pairs of wheels, then every other option, and the odometry's noise, our own."""
+        self.pairs = self._read_pairs()
         super().read_all()
-        self.pairs, self.noise = self._read_pairs(), odometry_noise(self.odometry_noise)
+        self.noise = odometry_noise(self.odometry_noise)
         return self
 
     @abc.abstractmethod
@@ -133,6 +134,7 @@ class DiffDriveOptions(CommonDiffDriveOptions):
     wheel_diameters: tuple[float, ...] = numbers("m", element="wheel_diameter", minimum=1e-6)
 
     def _read_pairs(self) -> tuple[Pair, ...]:
+        _ = self.update_rate  # read first, so that its report stays before those of the wheels
         count, left, right = self.num_wheel_pairs, self.left_joints, self.right_joints
         if left and right and not len(left) == len(right) == count:
             found_text = f"found {len(left)} <left_joint> and {len(right)} <right_joint>"

@@ -58,8 +58,8 @@ class GazeboRosImu(ModelPlugin):
     filenames = ("libgazebo_ros_imu.so",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        options = self.options.read_all()
         self._body = find_named_link(scene, "bodyName", params)
+        options = self.options.read_all()
         self._frame = options.frame_name.strip("/") or self._body.rsplit("::", 1)[-1]
         self._deviation = options.gaussian_noise
         self._turn = quat_from_rpy(*options.rpy_offset)

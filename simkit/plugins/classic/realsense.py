@@ -71,8 +71,9 @@ class RealSense(ModelPlugin):
     filenames = ("librealsense_gazebo_plugin.so",)
 
     def load(self, parent: Model, params: Params) -> None:
-        prefix = self.options.read_all().prefix
+        prefix = self.options.prefix
         near, far = camera_settings.read_depths(self.options, "range_min_depth", "range_max_depth")
+        _ = self.options.point_cloud, self.options.point_cloud_topic_name  # also where there is no depth camera
         cloud = camera_settings.read_depths(self.options, "point_cloud_cutoff", "point_cloud_cutoff_max")
         for stream, ending in _STREAMS.items():
             topic = self._below(
