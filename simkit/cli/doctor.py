@@ -40,8 +40,8 @@ _RENDERER_TIMEOUT = 60.0  # [s]
 # Drivers crash in their own ways; in a process of its own such a crash is a finding.
 _DRAW = """
 import simkit
-from simkit.mujoco_import import import_engine
-import_engine()
+from simkit.mujoco_import import import_mujoco
+import_mujoco()
 from simkit.sensors.cameras.rendering.gl_context import describe_renderer
 from simkit.sensors.cameras.rendering.overview_image import render_view
 world = ("<sdf version='1.12'><world name='w'><model name='m'><static>true</static><link name='l'><visual name='v'>"

@@ -270,6 +270,7 @@ def test_doctor_names_versions_and_the_renderer() -> None:
     assert result.exit_code == 0
     for name in ("simkit", "python", "mujoco", "renderer"):
         assert re.search(rf"^{name} +\S", result.stdout, re.MULTILINE)
+    assert "ImportError: cannot import name" not in result.stdout, "the drawing process uses the modules of today"
 
 
 def test_doctor_names_the_folders_of_its_variables(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
