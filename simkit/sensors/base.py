@@ -6,28 +6,25 @@ import abc
 import math
 from collections.abc import Mapping, Sequence
 from itertools import chain
-from typing import TYPE_CHECKING, ClassVar, TypeVar
+from typing import ClassVar, TypeVar
+
+import mujoco
 
 from simkit import msgs
-from simkit.diagnostics import Diagnostics, Where
+from simkit.compiler import Compiled, SpecBuilder
+from simkit.compiler.name_map import NameMap
+from simkit.diagnostics import Diagnostics, Severity, Where
 from simkit.msgs.message_types import Message
 from simkit.msgs.topic_names import valid_topic
 from simkit.pose import Pose, Vector
+from simkit.runtime import Simulation
+from simkit.runtime.engine.random_streams import RandomStreams
+from simkit.scene import SceneSensor
 from simkit.sensors.noise import NO_NOISE, Noise, NoiseModel, UniformNoise
 from simkit.sensors.sample import NoiseProcess, Product, Reading, Sample
 from simkit.sensors.sample_times import DelayedReadings, SampleTimes, read_timing
 from simkit.sensors.sampler import Sampler
 from simkit.sensors.topics_and_frames import check_topic, entity_topic, read_frame_id
-
-if TYPE_CHECKING:
-    import mujoco
-
-    from simkit.compiler import Compiled, SpecBuilder
-    from simkit.compiler.name_map import NameMap
-    from simkit.diagnostics import Severity
-    from simkit.runtime import Simulation
-    from simkit.runtime.engine.random_streams import RandomStreams
-    from simkit.scene import SceneSensor
 
 __all__ = ["Product", "Sample", "Sensor"]
 

@@ -7,15 +7,12 @@ from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 from simkit.params import Params
+from simkit.runtime.engine.random_streams import RandomStreams
+from simkit.runtime.engine.scheduler import Timetable
 from simkit.runtime.engine.simulated_time import Clock, SampleTiming, exact_fraction, exact_rate
 from simkit.sensors.sample import Sample
-
-if TYPE_CHECKING:
-    from simkit.runtime.engine.random_streams import RandomStreams
-    from simkit.runtime.engine.scheduler import Timetable
 
 MAX_LATENCY = 3600.0  # [s]; all readings on their way are kept
 _MILLISECOND = Fraction(1, 1000)

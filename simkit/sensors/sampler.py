@@ -5,20 +5,18 @@ from __future__ import annotations
 import abc
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, ClassVar, Self
+from typing import ClassVar, Self
+
+import mujoco
 
 from simkit.msgs.message_types import Message
+from simkit.runtime import Publisher, Simulation
+from simkit.runtime.communication.subscription import PendingWork
+from simkit.runtime.communication.subscription import LazyMessage
+from simkit.runtime.engine.physics_state import HeldState
+from simkit.runtime.engine.scheduler import Timetable
 from simkit.sensors.sample import Batch, Memory, NoiseProcess, Product, Reading, ReadingFunction, Sample
 from simkit.sensors.sample_times import DelayedReadings, LatencyTimetable, SampleTimes, TimingOptions
-
-if TYPE_CHECKING:
-    import mujoco
-
-    from simkit.runtime import Publisher, Simulation
-    from simkit.runtime.communication.subscription import LazyMessage, PendingWork
-    from simkit.runtime.engine.physics_state import HeldState
-    from simkit.runtime.engine.scheduler import Timetable
-
 
 _MAX_GATHERED = 64  # gathered before samples are made of them
 

@@ -8,12 +8,11 @@ from __future__ import annotations
 
 import abc
 from collections.abc import Callable, Hashable, Sequence
-from typing import TYPE_CHECKING, Generic, TypeVar
+from typing import Generic, TypeVar
 
-if TYPE_CHECKING:
-    import mujoco
+import mujoco
 
-    from simkit.sensors.sampler import Sampler
+from simkit.sensors.sampler import Sampler
 
 MIN_MEMBERS = 4
 """Fewer members are measured one by one in the same time."""

@@ -10,15 +10,13 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from simkit.diagnostics import Diagnostics
 from simkit.params import Params
+from simkit.scene import SceneSensor, SceneWorld
 from simkit.sensors.noise import NoiseModel, read_noise
 from simkit.sensors.topics_and_frames import read_frame_id
-
-if TYPE_CHECKING:
-    from simkit.scene import SceneSensor, SceneWorld
 
 _COMMON_ELEMENTS = ("always_on", "visualize", "enable_metrics", "pose", "update_rate", "topic")
 _DVL_ELEMENTS = ("gz:dvl", "ignition:dvl")  # elements with a prefix of others are reported by whoever reads them

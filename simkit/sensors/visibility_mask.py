@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
+from simkit.compiler.name_map import NameMap
 from simkit.params import Params
-
-if TYPE_CHECKING:
-    from simkit.compiler.name_map import NameMap
 
 ALL_VISIBLE: Final = 0xFFFFFFFF
 """The mask that hides nothing."""

@@ -6,24 +6,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
+import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from simkit.compiler import Compiled, LinkBinding
 from simkit.pose import Pose, Vector
+from simkit.runtime.engine.entity_structure import WorldStructure
+from simkit.scene import SceneVisual
 from simkit.sensors.cameras.camera_model import CameraModel
 from simkit.sensors.cameras.labelled_objects import DrawnVisual, LabelledObject, LabelledObjects, Numbers
 from simkit.sensors.cameras.rendering.view import Ids, View
 from simkit.sensors.cameras.shape_corners import CUBE, Corners, geom_corners
-
-if TYPE_CHECKING:
-    import mujoco
-
-    from simkit.compiler import Compiled, LinkBinding
-    from simkit.runtime.engine.entity_structure import WorldStructure
-    from simkit.scene import SceneVisual
-
 
 _PARTS_OF_EDGE = 16  # that an edge is bent in by a lens
 

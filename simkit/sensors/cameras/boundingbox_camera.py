@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
+import mujoco
 import numpy as np
 import numpy.typing as npt
 
 from simkit import msgs
 from simkit.diagnostics import Diagnostics
+from simkit.runtime import Simulation
+from simkit.scene import SceneSensor
 from simkit.sensors.base import Product
 from simkit.sensors.cameras import bounding_box_messages, image_messages, label_camera
 from simkit.sensors.cameras.bounding_boxes import (
@@ -27,12 +30,6 @@ from simkit.sensors.cameras.camera_options import CameraOptions, extend_options
 from simkit.sensors.cameras.label_camera import Keyword, LabelCamera, read_keyword
 from simkit.sensors.cameras.labelled_objects import LabelledObjects
 from simkit.sensors.cameras.rendering.view import Film, Ids, Shot
-
-if TYPE_CHECKING:
-    import mujoco
-
-    from simkit.runtime import Simulation
-    from simkit.scene import SceneSensor
 
 _VISIBLE, _FULL, _SPACE = "visible_2d", "full_2d", "3d"
 _BOX_TYPE: Final = Keyword(

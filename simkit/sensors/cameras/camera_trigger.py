@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from simkit.runtime.communication.topic_bus import TopicBus
+from simkit.runtime.communication.topic_bus import TopicBus
 
 TRIGGER_TYPES = ("std_msgs/msg/Bool", "std_msgs/msg/Empty")
 

@@ -4,18 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from simkit.diagnostics import Diagnostics
+from simkit.runtime import Simulation
+from simkit.scene import SceneSensor
 from simkit.sensors.cameras.rendering.view import Colours, Depths, Shot
 from simkit.sensors.cameras.rgbd_camera import RgbdCamera
 from simkit.sensors.sample import Reading
-
-if TYPE_CHECKING:
-    from simkit.runtime import Simulation
-    from simkit.scene import SceneSensor
 
 
 class DepthCamera(RgbdCamera):

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from simkit.params import Params
+from simkit.runtime.engine.random_streams import RandomStreams
 from simkit.sensors.cameras.camera_model import CameraModel
 from simkit.sensors.cameras.image_noise import ImageNoise
 from simkit.sensors.cameras.rendering.view import Depths
 from simkit.sensors.noise import NoiseModel
-
-if TYPE_CHECKING:
-    from simkit.runtime.engine.random_streams import RandomStreams
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,16 +6,14 @@ import functools
 import threading
 from collections.abc import Iterator
 from statistics import NormalDist
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from simkit.runtime.engine.random_streams import RandomStreams
 from simkit.sensors.cameras.array_pool import AnyArray, ArrayPool
 from simkit.sensors.noise import NoiseModel
-
-if TYPE_CHECKING:
-    from simkit.runtime.engine.random_streams import RandomStreams
 
 _WORDS = 1 << 16
 _LONGEST = 1e30  # [m] of a depth's noise, which has 32 bits

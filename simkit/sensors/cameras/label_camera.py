@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar, Final
+from typing import ClassVar, Final
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +13,8 @@ import numpy.typing as npt
 from simkit.diagnostics import Diagnostics, did_you_mean
 from simkit.msgs.message_types import Message
 from simkit.params import Params
+from simkit.runtime import Simulation, WorldStructure
+from simkit.scene import SceneSensor
 from simkit.sensors.base import Product
 from simkit.sensors.cameras import image_messages
 from simkit.sensors.cameras.bounding_box_messages import TYPE_2D, TYPE_3D, boxes_as_csv
@@ -20,11 +22,6 @@ from simkit.sensors.cameras.labelled_objects import LabelledObjects, find_labell
 from simkit.sensors.cameras.rendered_camera import RenderedCamera
 from simkit.sensors.cameras.rendering.view import Film, Ids
 from simkit.sensors.cameras.saved_images import ImageSaver, encode_png
-
-if TYPE_CHECKING:
-    from simkit.runtime import Simulation, WorldStructure
-    from simkit.scene import SceneSensor
-
 
 IMAGE, COLOURS, LABELS, BOXES = "image", "colored", "labels", "boxes"
 _FOLDERS: Final = {IMAGE: "images", COLOURS: "colored_maps", LABELS: "labels_maps", BOXES: "boxes"}

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
 
-if TYPE_CHECKING:
-    from simkit.compiler.name_map import NameMap
-    from simkit.runtime import Simulation
-    from simkit.runtime.engine.entity_structure import WorldStructure
+from simkit.compiler.name_map import NameMap
+from simkit.runtime import Simulation
+from simkit.runtime.engine.entity_structure import WorldStructure
 
 Numbers = npt.NDArray[np.int32]
 

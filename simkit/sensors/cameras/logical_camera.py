@@ -4,23 +4,19 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+import mujoco
 import numpy as np
 import numpy.typing as npt
 
 from simkit import msgs
+from simkit.compiler import Compiled
+from simkit.compiler.name_map import NameMap
 from simkit.diagnostics import Diagnostics
 from simkit.params import Params
 from simkit.pose import Pose, Vector, quat_multiply
+from simkit.scene import SceneModel, SceneSensor
 from simkit.sensors.base import Product, Sensor
-
-if TYPE_CHECKING:
-    import mujoco
-
-    from simkit.compiler import Compiled
-    from simkit.compiler.name_map import NameMap
-    from simkit.scene import SceneModel, SceneSensor
 
 IMAGE = "ros_gz_interfaces/msg/LogicalCameraImage"
 MODEL = "ros_gz_interfaces/msg/LogicalCameraImageModel"

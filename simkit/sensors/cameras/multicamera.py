@@ -6,15 +6,17 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from simkit import msgs
+from simkit.compiler import Compiled
 from simkit.diagnostics import Diagnostics
 from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.pose import IDENTITY, Pose
+from simkit.runtime import Simulation
+from simkit.scene import SceneSensor
 from simkit.sensors.base import Product
 from simkit.sensors.cameras import image_messages
 from simkit.sensors.cameras.array_pool import ArrayPool
@@ -29,11 +31,6 @@ from simkit.sensors.cameras.rendering.renderer import renderer_of
 from simkit.sensors.cameras.rendering.view import Film, Shot
 from simkit.sensors.sample import Reading
 from simkit.sensors.topics_and_frames import OPTICAL_POSE, sibling_topic
-
-if TYPE_CHECKING:
-    from simkit.compiler import Compiled
-    from simkit.runtime import Simulation
-    from simkit.scene import SceneSensor
 
 _PARALLEL = 1e-6  # [rad], and [m] of how far two cameras of a pair are one before the other
 

@@ -5,17 +5,20 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
 from simkit import msgs
+from simkit.compiler import Compiled
 from simkit.diagnostics import Diagnostics
 from simkit.msgs.message_types import Message
 from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.pose import IDENTITY, Pose
+from simkit.runtime import Simulation
+from simkit.scene import SceneSensor
 from simkit.sensors.base import Product
 from simkit.sensors.cameras import camera_trigger, image_messages
 from simkit.sensors.cameras.array_pool import ArrayPool
@@ -34,11 +37,6 @@ from simkit.sensors.cameras.saved_images import ImageSaver
 from simkit.sensors.sample import Memory, Reading
 from simkit.sensors.topics_and_frames import OPTICAL_POSE, sibling_topic
 from simkit.sensors.visibility_mask import hidden_geoms
-
-if TYPE_CHECKING:
-    from simkit.compiler import Compiled
-    from simkit.runtime import Simulation
-    from simkit.scene import SceneSensor
 
 
 class RenderedCamera(RenderedSampler):

@@ -5,12 +5,15 @@ from __future__ import annotations
 import abc
 import functools
 from collections.abc import Callable, Iterator, Sequence
-from typing import TYPE_CHECKING
+
+import mujoco
 
 from simkit.diagnostics import Diagnostics
 from simkit.errors import RenderError
 from simkit.msgs.message_types import Message
-from simkit.runtime.communication.subscription import NO_MESSAGE
+from simkit.runtime import Publisher
+from simkit.runtime.communication.subscription import NO_MESSAGE, LazyMessage
+from simkit.scene import SceneSensor
 from simkit.sensors.base import Sample, Sensor
 from simkit.sensors.cameras.camera_options import CameraOptions
 from simkit.sensors.cameras.rendering import gl_context, render_thread
@@ -18,13 +21,6 @@ from simkit.sensors.cameras.rendering.lights_and_shadows import read_lights, use
 from simkit.sensors.cameras.rendering.renderer import Composition, Renderer, free_renderer, renderer_of
 from simkit.sensors.cameras.rendering.view import Film, Shot
 from simkit.sensors.sample import Memory, Reading
-
-if TYPE_CHECKING:
-    import mujoco
-
-    from simkit.runtime import Publisher
-    from simkit.runtime.communication.subscription import LazyMessage
-    from simkit.scene import SceneSensor
 
 
 class RenderedSampler(Sensor):

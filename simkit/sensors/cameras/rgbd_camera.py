@@ -6,7 +6,7 @@ import functools
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -14,6 +14,8 @@ import numpy.typing as npt
 from simkit import msgs
 from simkit.diagnostics import Diagnostics
 from simkit.pose import IDENTITY, Pose
+from simkit.runtime import Simulation
+from simkit.scene import SceneSensor
 from simkit.sensors.base import Product
 from simkit.sensors.cameras import depth_messages, image_messages
 from simkit.sensors.cameras.array_pool import ArrayPool
@@ -27,10 +29,6 @@ from simkit.sensors.cameras.rendering.render_quality import Appearance
 from simkit.sensors.cameras.rendering.view import Colours, Depths, Film, Shot, View
 from simkit.sensors.sample import Reading
 from simkit.sensors.topics_and_frames import OPTICAL_POSE
-
-if TYPE_CHECKING:
-    from simkit.runtime import Simulation
-    from simkit.scene import SceneSensor
 
 _NO_COLOURS: Colours = np.empty((0, 0, 3), np.uint8)
 _TURNED = 1e-3  # rad; axes that differ by less are the same

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -12,14 +11,12 @@ import numpy.typing as npt
 from simkit import msgs
 from simkit.msgs.message_types import Message
 from simkit.params import Params
+from simkit.runtime import Simulation
 from simkit.runtime.communication.publisher import Publisher, TopicSides
 from simkit.runtime.communication.subscription import TopicReaders
 from simkit.save_path import SAVE_PATH_VARIABLE, allowed_folder
+from simkit.scene import SceneSensor
 from simkit.sensors.cameras.image_messages import IMAGE_TYPE, pixels_of
-
-if TYPE_CHECKING:
-    from simkit.runtime import Simulation
-    from simkit.scene import SceneSensor
 
 MAX_IMAGES = 100_000
 """Pictures of one camera in a run."""

@@ -8,25 +8,21 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
+import mujoco
 import numpy as np
 import numpy.typing as npt
 
 from simkit import msgs
 from simkit.diagnostics import Diagnostics
+from simkit.scene import SceneSensor
 from simkit.sensors.base import Product
 from simkit.sensors.cameras import image_messages, label_camera
 from simkit.sensors.cameras.camera_options import CameraOptions, extend_options
 from simkit.sensors.cameras.label_camera import Keyword, LabelCamera, read_keyword
 from simkit.sensors.cameras.labelled_objects import LabelledObjects
 from simkit.sensors.cameras.rendering.view import Film, Ids, Shot
-
-if TYPE_CHECKING:
-    import mujoco
-
-    from simkit.scene import SceneSensor
-
 
 Colour = tuple[int, int, int]
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import mujoco
 import numpy as np
@@ -17,13 +17,11 @@ from simkit.compiler.meshes.mesh_reader import load_mesh
 from simkit.compiler.shape_geometry import textured_triangles, turn_z_to
 from simkit.diagnostics import NOWHERE, Diagnostics
 from simkit.pose import Pose, Vector
+from simkit.runtime import Simulation
 from simkit.runtime.handles.visual import HeatSignature
 from simkit.scene import Geometry, Mesh, Plane
 from simkit.sensors.cameras.rendering.view import Ids
 from simkit.sensors.rays.embree_rays import TriangleScene, has_embree
-
-if TYPE_CHECKING:
-    from simkit.runtime import Simulation
 
 Kelvins = npt.NDArray[np.float32]
 

@@ -5,15 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
+import mujoco
 import numpy as np
 import numpy.typing as npt
 
 from simkit import msgs
+from simkit.compiler import Compiled
 from simkit.diagnostics import Diagnostics
 from simkit.pose import Vector
-from simkit.scene import Atmosphere
+from simkit.scene import Atmosphere, SceneSensor
 from simkit.sensors.base import Product
 from simkit.sensors.cameras import image_messages
 from simkit.sensors.cameras.camera_options import CameraOptions, extend_options
@@ -21,12 +23,6 @@ from simkit.sensors.cameras.rendered_camera import RenderedCamera
 from simkit.sensors.cameras.rendering.view import Film, Shot, View
 from simkit.sensors.cameras.temperature_map import Kelvins, TemperatureMap, make_temperature_map
 from simkit.sensors.sample import Reading
-
-if TYPE_CHECKING:
-    import mujoco
-
-    from simkit.compiler import Compiled
-    from simkit.scene import SceneSensor
 
 _FINE, _COARSE = 0.01, 3.0
 """[K] of one step, as in Gazebo, of pictures with 16 and with 8 bits."""

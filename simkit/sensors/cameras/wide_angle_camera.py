@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
 
 from simkit.params import Params
+from simkit.runtime import Simulation
 from simkit.sensors.cameras import image_messages
 from simkit.sensors.cameras.camera import Camera
 from simkit.sensors.cameras.camera_reading import CameraReading
 from simkit.sensors.cameras.cube_map import CubeMap
 from simkit.sensors.cameras.rendering.view import Film, Shot
 from simkit.sensors.cameras.wide_angle_lens import WideAngleModel, read_wide_angle_model
-
-if TYPE_CHECKING:
-    from simkit.runtime import Simulation
 
 
 class WideAngleCamera(Camera):

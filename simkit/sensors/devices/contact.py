@@ -4,27 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
+
+import mujoco
 
 from simkit import msgs
+from simkit.compiler import Compiled, SpecBuilder
+from simkit.compiler.name_map import NameMap
 from simkit.diagnostics import Diagnostics, Where, did_you_mean
 from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.pose import Vector
 from simkit.runtime.contact.collision_contacts import CollisionTable, collision_table, find_contacts
+from simkit.scene import SceneModel, SceneSensor, SceneWorld
 from simkit.sensors.base import Product, Sensor
 from simkit.sensors.devices.collision_names import find_collision
 from simkit.sensors.devices.contact_messages import contacts_message, states_message
 from simkit.sensors.devices.contact_reading import ContactReading, RawContacts
 from simkit.sensors.topics_and_frames import check_topic
-
-if TYPE_CHECKING:
-    import mujoco
-
-    from simkit.compiler import Compiled, SpecBuilder
-    from simkit.compiler.name_map import NameMap
-    from simkit.scene import SceneModel, SceneSensor, SceneWorld
-
 
 CONTACTS: Final = "ros_gz_interfaces/msg/Contacts"
 STATES: Final = "gazebo_msgs/msg/ContactsState"

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from simkit import msgs
 from simkit.pose import Vector
-
-if TYPE_CHECKING:
-    from simkit.sensors.devices.contact_reading import ContactPair, ContactReading
+from simkit.sensors.devices.contact_reading import ContactPair, ContactReading
 
 _COLLISION = 5  # of ros_gz_interfaces/msg/Entity
 

@@ -4,23 +4,21 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import mujoco
 import numpy as np
 
 from simkit import msgs
+from simkit.compiler import Compiled, SpecBuilder
 from simkit.diagnostics import Diagnostics
 from simkit.params import Params
 from simkit.pose import Vector
 from simkit.runtime.handles.joint_mechanics import joint_position, joint_velocity
+from simkit.scene import SceneSensor
 from simkit.sensors.base import Product, Sensor
 from simkit.sensors.noise import NoiseModel, quantise, read_noise
 from simkit.sensors.sample import Memory
-
-if TYPE_CHECKING:
-    from simkit.compiler import Compiled, SpecBuilder
-    from simkit.scene import SceneSensor
 
 TYPE = "sensor_msgs/msg/JointState"
 _ROTARY_TYPES = ("revolute", "continuous", "universal", "revolute2", "ball", "screw")

@@ -3,23 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+import mujoco
 import numpy as np
 
 from simkit import msgs
+from simkit.compiler import Compiled
 from simkit.diagnostics import Diagnostics
 from simkit.params import Params
 from simkit.pose import Vector
 from simkit.runtime.handles.joint_mechanics import torque_about, transmitted_wrench
+from simkit.scene import SceneSensor
 from simkit.sensors.base import Product, Sensor
 from simkit.sensors.noise import Noise, ThreeAxes, read_axes
-
-if TYPE_CHECKING:
-    import mujoco
-
-    from simkit.compiler import Compiled
-    from simkit.scene import SceneSensor
 
 TYPE = "geometry_msgs/msg/WrenchStamped"
 _TYPES = TYPE, "geometry_msgs/msg/Wrench", "geometry_msgs/msg/Vector3"

@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+import mujoco
 import numpy as np
 
 from simkit import msgs
 from simkit.diagnostics import Diagnostics
 from simkit.params import Params
+from simkit.scene import SceneSensor
 from simkit.sensors.base import Product
 from simkit.sensors.environment.air_sensor import AirSensor
 from simkit.sensors.noise import Noise, NoiseModel, read_noise
-
-if TYPE_CHECKING:
-    import mujoco
-
-    from simkit.scene import SceneSensor
 
 TYPE = "sensor_msgs/msg/FluidPressure"
 

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import abc
-from typing import TYPE_CHECKING
+
+import mujoco
 
 from simkit.scene import Atmosphere
 from simkit.sensors.base import Sensor, report_once
 from simkit.sensors.environment.atmosphere import MAX_ALTITUDE, MIN_ALTITUDE, AirColumn, air_column
-
-if TYPE_CHECKING:
-    import mujoco
 
 
 class AirSensor(Sensor, abc.ABC):

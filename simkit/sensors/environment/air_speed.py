@@ -3,23 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+import mujoco
 import numpy as np
 
 from simkit import msgs
 from simkit.diagnostics import Diagnostics
 from simkit.params import Params
 from simkit.pose import Vector
+from simkit.scene import SceneSensor
 from simkit.sensors.base import Product
 from simkit.sensors.environment.air_sensor import AirSensor
 from simkit.sensors.environment.point_velocity import point_velocity
 from simkit.sensors.noise import Noise, NoiseModel, read_noise
-
-if TYPE_CHECKING:
-    import mujoco
-
-    from simkit.scene import SceneSensor
 
 TYPE = "ros_gz_interfaces/msg/AirSpeed"
 _HECTO = 100.0  # Gazebo adds the noise to hectopascals

@@ -3,22 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+import mujoco
 import numpy as np
 
 from simkit import msgs
+from simkit.compiler import Compiled
 from simkit.diagnostics import Diagnostics
 from simkit.params import Params
+from simkit.scene import SceneSensor
 from simkit.sensors.base import Product, Sensor
 from simkit.sensors.environment.point_velocity import point_velocity
 from simkit.sensors.noise import Noise, NoiseModel, read_noise
-
-if TYPE_CHECKING:
-    import mujoco
-
-    from simkit.compiler import Compiled
-    from simkit.scene import SceneSensor
 
 TYPE = "ros_gz_interfaces/msg/Altimeter"
 

@@ -7,14 +7,12 @@ heading, counter-clockwise. What is far from the origin is therefore above the s
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
 from simkit.pose import Vector
-
-if TYPE_CHECKING:
-    from simkit.scene import SphericalCoordinates
+from simkit.scene import SphericalCoordinates
 
 Geodetic = tuple[float, float, float]
 """Latitude [rad], longitude [rad, from -π to π], height above the ellipsoid [m]."""

@@ -4,21 +4,19 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from simkit.compiler import Compiled
 from simkit.compiler.geom_groups import DRAWN_COLLISION, SEEN_AS_COLLISIONS, VISUAL
 from simkit.compiler.lights import spot_share
+from simkit.compiler.name_map import NameMap
 from simkit.pose import Pose, Vector
-
-if TYPE_CHECKING:
-    from simkit.compiler import Compiled
-    from simkit.compiler.name_map import NameMap
-    from simkit.runtime.handles.light import Light, LightState
-    from simkit.scene import SceneLight
+from simkit.runtime.handles.light import Light, LightState
+from simkit.scene import SceneLight
 
 LEAST_OPACITY: Final = 0.5
 """What is less opaque than this throws no shadow."""

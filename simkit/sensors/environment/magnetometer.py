@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+import mujoco
 import numpy as np
 
 from simkit import msgs
 from simkit.diagnostics import Diagnostics
 from simkit.params import Params
 from simkit.pose import Vector
-from simkit.scene import SceneWorld
+from simkit.scene import SceneSensor, SceneWorld
 from simkit.sensors.base import Product, Sensor, report_once
 from simkit.sensors.environment.geodesy import WorldOnPlanet
 from simkit.sensors.environment.magnetic_field import (
@@ -24,11 +24,6 @@ from simkit.sensors.environment.magnetic_field import (
     decimal_year,
 )
 from simkit.sensors.noise import Noise, ThreeAxes, read_axes
-
-if TYPE_CHECKING:
-    import mujoco
-
-    from simkit.scene import SceneSensor
 
 TYPE = "sensor_msgs/msg/MagneticField"
 _GAUSS = 1e4  # in a tesla

@@ -4,23 +4,20 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
+import mujoco
 import numpy as np
 
 from simkit import msgs
 from simkit.diagnostics import Diagnostics
 from simkit.params import Params
 from simkit.pose import Vector
+from simkit.scene import SceneSensor, SphericalCoordinates
 from simkit.sensors.base import Product, Sensor
 from simkit.sensors.environment.geodesy import WorldOnPlanet, east_north_up
 from simkit.sensors.environment.point_velocity import point_velocity
 from simkit.sensors.noise import Noise, NoiseModel, read_noise
-
-if TYPE_CHECKING:
-    import mujoco
-
-    from simkit.scene import SceneSensor, SphericalCoordinates
 
 FIX, VELOCITY, GPS = "sensor_msgs/msg/NavSatFix", "geometry_msgs/msg/Vector3Stamped", "gps_msgs/msg/GPSFix"
 _UNKNOWN, _DIAGONAL = 0, 2  # types of a position's covariance

@@ -4,20 +4,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
+import mujoco
 import numpy as np
 
+from simkit.compiler import Compiled
 from simkit.params import LARGEST, Params
 from simkit.pose import Vector, quat_from_rpy, quat_multiply
+from simkit.runtime.handles.light import Light, LightState
+from simkit.scene.geometry import Vec3
 from simkit.sensors.environment.illumination import Lamp, ShadowRay, falloff_share
-
-if TYPE_CHECKING:
-    import mujoco
-
-    from simkit.compiler import Compiled
-    from simkit.runtime.handles.light import Light, LightState
-    from simkit.scene.geometry import Vec3
 
 STANDARD_IRRADIANCE: Final = 1000.0
 """[W/m²] of a light of which nothing says it: that of standard test conditions (IEC 60904-3)."""

@@ -5,26 +5,22 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
+import mujoco
 import numpy as np
 
 from simkit import msgs
+from simkit.compiler import Compiled
 from simkit.diagnostics import NOWHERE, Diagnostics, did_you_mean
 from simkit.params import LARGEST, Params
 from simkit.pose import quat_from_rpy, quat_rotate, rpy_from_quat
+from simkit.runtime.handles.light import Light, LightMotion, LightState
+from simkit.scene import SceneSensor
 from simkit.sensors.base import Product, Sample, Sensor
 from simkit.sensors.environment import solar_irradiance
 from simkit.sensors.environment.solar_irradiance import NO_LIGHT, SolarOptions, SolarReading, SolarView
 from simkit.sensors.noise import Noise, NoiseModel, quantise, read_noise
 from simkit.sensors.sample import Memory
-
-if TYPE_CHECKING:
-    import mujoco
-
-    from simkit.compiler import Compiled
-    from simkit.runtime.handles.light import Light, LightMotion, LightState
-    from simkit.scene import SceneSensor
 
 TYPE = "sensor_msgs/msg/Imu"
 NUMBER = "std_msgs/msg/Float64"

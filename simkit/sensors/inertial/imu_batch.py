@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
-from typing import TYPE_CHECKING
 
+import mujoco
 import numpy as np
 
 from simkit import msgs
@@ -13,12 +13,8 @@ from simkit.sensors.bias_drift import NoiseInterval, NoiseState
 from simkit.sensors.inertial.imu_measurement import ImuMeasurement
 from simkit.sensors.inertial.inertial_kinematics import sensor_motion
 from simkit.sensors.sample import Sample
+from simkit.sensors.sampler import Sampler
 from simkit.sensors.sensor_batch import SensorBatch, form_batches
-
-if TYPE_CHECKING:
-    import mujoco
-
-    from simkit.sensors.sampler import Sampler
 
 TYPES = "sensor_msgs/msg/Imu", "geometry_msgs/msg/Vector3", "geometry_msgs/msg/Quaternion"
 _TYPES = *TYPES, "std_msgs/msg/Header", "builtin_interfaces/msg/Time"

@@ -5,13 +5,16 @@ from __future__ import annotations
 import struct
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
+import mujoco
 import numpy as np
 
+from simkit.compiler import Compiled
 from simkit.diagnostics import Diagnostics
 from simkit.params import Params
 from simkit.pose import Vector, quat_conjugate, quat_from_rpy, quat_multiply
+from simkit.scene import SceneSensor
 from simkit.sensors.base import Sensor
 from simkit.sensors.bias_drift import NoiseInterval
 from simkit.sensors.inertial.inertial_kinematics import (
@@ -24,12 +27,6 @@ from simkit.sensors.inertial.inertial_kinematics import (
 from simkit.sensors.inertial.orientation_reference import OrientationReference, read_reference, reference_orientation
 from simkit.sensors.noise import Noise, NoiseModel, ThreeAxes, read_axes, read_noise
 from simkit.sensors.sample import Memory
-
-if TYPE_CHECKING:
-    import mujoco
-
-    from simkit.compiler import Compiled
-    from simkit.scene import SceneSensor
 
 _unpack_numbers = struct.Struct("=31d").unpack  # of what is captured
 

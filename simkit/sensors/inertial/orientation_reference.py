@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
@@ -13,10 +12,8 @@ import numpy as np
 from simkit.diagnostics import NOWHERE, Diagnostics, Where, did_you_mean
 from simkit.params import Params
 from simkit.pose import IDENTITY, Pose, Vector, quat_from_rpy, quat_multiply
-
-if TYPE_CHECKING:
-    from simkit.runtime import Simulation
-    from simkit.scene import SceneModel, SceneSensor
+from simkit.runtime import Simulation
+from simkit.scene import SceneModel, SceneSensor
 
 WORLD = "world"
 # from east-north-up to the named axes

@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from simkit.diagnostics import Diagnostics, Where, did_you_mean
 from simkit.params import Params
+from simkit.scene import SceneSensor
 from simkit.sensors.presets import find, normalise_name, presets
 from simkit.sensors.presets.preset import Preset, Settings, format_value, outline
-
-if TYPE_CHECKING:
-    from simkit.scene import SceneSensor
 
 _OLD_BLOCKS = {"lidar": "ray", "navsat": "gps"}
 """Blocks with an older spelling: a preset's goes into the one that the file has."""

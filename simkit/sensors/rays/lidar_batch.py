@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Sequence
-from typing import TYPE_CHECKING
 
+import mujoco
 import numpy as np
 import numpy.typing as npt
 
@@ -15,9 +15,6 @@ from simkit.sensors.rays.numpy_rays import Shapes, cast_on_shapes, in_frame
 from simkit.sensors.rays.ray_culling import geom_half_sizes, reaches_between_cones
 from simkit.sensors.rays.ray_fan import RayFan
 from simkit.sensors.sensor_batch import MIN_MEMBERS, SensorBatch, form_batches
-
-if TYPE_CHECKING:
-    import mujoco
 
 _CHUNK = 1 << 16  # pairs of fan and shape that are looked at together
 _MARGIN = 1e-9

@@ -4,25 +4,21 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from simkit.compiler import Compiled
 from simkit.compiler.geom_groups import DRAWN_COLLISION, SEEN_AS_COLLISIONS, VISUAL
 from simkit.diagnostics import Diagnostics
 from simkit.pose import Vector
+from simkit.scene import SceneSensor
 from simkit.sensors.base import Sensor
 from simkit.sensors.noise import Noise, NoiseModel, UniformNoise
 from simkit.sensors.rays.lidar_options import LidarOptions, read_options
 from simkit.sensors.rays.ray_fan import RayFan, fan_directions
 from simkit.sensors.visibility_mask import ALL_VISIBLE, hidden_geoms
-
-if TYPE_CHECKING:
-    import mujoco
-
-    from simkit.compiler import Compiled
-    from simkit.scene import SceneSensor
 
 _BRIGHTEST = 2000.0  # of Gazebo's rendered lidars
 

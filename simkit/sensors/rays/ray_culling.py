@@ -8,16 +8,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
 import numpy.typing as npt
 
 from simkit.pose import Pose, Vector
-
-if TYPE_CHECKING:
-    from simkit.sensors.rays.ray_bundle import RayBundle
+from simkit.sensors.rays.ray_bundle import RayBundle
 
 _ROTARY_JOINTS = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_BALL))
 _MARGIN = 1e-9  # [m]

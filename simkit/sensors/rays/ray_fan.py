@@ -15,11 +15,13 @@ It is only Embree's float32 that says on which side of the edge of a mesh a ray 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
+import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from simkit.compiler.name_map import NameMap
 from simkit.pose import Pose, Vector
 from simkit.sensors.rays.embree_rays import MovingBodies, TriangleBody
 from simkit.sensors.rays.geom_types import Ids
@@ -34,11 +36,6 @@ from simkit.sensors.rays.numpy_rays import (
 from simkit.sensors.rays.ray_bundle import RayBundle, finite_limit_bits, reaches_plane
 from simkit.sensors.rays.ray_culling import NearbyGeoms, can_meet
 from simkit.sensors.rays.ray_targets import MAX_MOVING_BODIES, RayTargets
-
-if TYPE_CHECKING:
-    import mujoco
-
-    from simkit.compiler.name_map import NameMap
 
 MANY_RAYS: Final = 2048
 """From so many rays on NumPy is faster on shapes than the engine."""

@@ -4,19 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Final, TypeVar
+from typing import Final, TypeVar
 
+import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from simkit.compiler.name_map import NameMap
 from simkit.sensors.rays.embree_rays import TriangleBody, TriangleScene, has_embree
 from simkit.sensors.rays.geom_types import BOX, PLANE, SHAPES, SUPPORTED, TRIANGLES, Ids
 from simkit.sensors.rays.mujoco_rays import ReducedModelCaster, WholeModelCaster
-
-if TYPE_CHECKING:
-    import mujoco
-
-    from simkit.compiler.name_map import NameMap
 
 Key = TypeVar("Key")
 

@@ -4,24 +4,20 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+import mujoco
 import numpy as np
 
 from simkit import msgs
+from simkit.compiler import Compiled
 from simkit.compiler.geom_groups import SEEN_AS_COLLISIONS
 from simkit.diagnostics import Diagnostics
 from simkit.params import Params
 from simkit.pose import Vector
+from simkit.scene import SceneSensor
 from simkit.sensors.base import Product, Sensor
 from simkit.sensors.noise import Noise, NoiseModel, read_noise
 from simkit.sensors.rays.ray_fan import RayFan
-
-if TYPE_CHECKING:
-    import mujoco
-
-    from simkit.compiler import Compiled
-    from simkit.scene import SceneSensor
 
 TYPE = "sensor_msgs/msg/Range"
 ULTRASOUND = 0

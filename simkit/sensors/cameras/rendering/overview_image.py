@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
+import mujoco
 import numpy as np
 
 from simkit.pose import Vector
+from simkit.runtime import Simulation
 from simkit.sensors.cameras.rendering import render_thread
 from simkit.sensors.cameras.rendering.renderer import renderer_of
 from simkit.sensors.cameras.rendering.view import Colours, Shot, View, look_at
-
-if TYPE_CHECKING:
-    import mujoco
-
-    from simkit.runtime import Simulation
 
 
 def render_view(

@@ -6,13 +6,13 @@ import contextlib
 import logging
 import weakref
 from collections.abc import Callable, Generator, Sequence
-from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
 
 from simkit.errors import RenderError
 from simkit.pose import Vector
+from simkit.runtime import Simulation
 from simkit.sensors.cameras.rendering import frame_buffer, gl_context
 from simkit.sensors.cameras.rendering.gpu_model import GpuModel
 from simkit.sensors.cameras.rendering.lights_and_shadows import fit_shadow_maps, place_directional_lights
@@ -29,9 +29,6 @@ from simkit.sensors.cameras.rendering.sky_and_fog import Background, enable_fog
 from simkit.sensors.cameras.rendering.transparency import draw_transparent
 from simkit.sensors.cameras.rendering.view import Colours, Depths, Film, Ids, Shot, aim
 from simkit.sensors.environment.illumination import LEAST_OPACITY
-
-if TYPE_CHECKING:
-    from simkit.runtime import Simulation
 
 __all__ = ["Composition", "Renderer", "free_renderer", "renderer_of"]
 

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+import mujoco
 import numpy as np
 import numpy.typing as npt
 
 from simkit.pose import Vector
-
-if TYPE_CHECKING:
-    import mujoco
 
 Colours = npt.NDArray[np.uint8]
 Depths = npt.NDArray[np.float32]
