@@ -9,10 +9,8 @@ from __future__ import annotations
 import functools
 import re
 from collections.abc import Mapping
-from types import MappingProxyType
 
-from simkit.sensors.presets.preset import Preset
-from simkit.sensors.presets.preset_files import load_presets
+from simkit.sensors.presets.preset import Preset, load_presets
 
 __all__ = ["Preset", "find", "normalise_name", "presets"]
 
@@ -36,7 +34,7 @@ def _by_name() -> Mapping[str, Mapping[str, Preset]]:
             of_name = table.setdefault(normalise_name(name), {})
             if of_name.setdefault(preset.kind, preset) is not preset:
                 raise RuntimeError(f"{name!r} is {preset.name!r} and {of_name[preset.kind].name!r}")
-    return MappingProxyType(table)
+    return table
 
 
 def find(name: str) -> Mapping[str, Preset]:

@@ -1,10 +1,17 @@
-"""A preset: the published numbers of a device, as elements of an SDF file."""
+"""A preset: the published numbers of a device, as elements of an SDF file, loaded from the TOML files in `data/`.
+
+There is one file for each maker or family. Keys above the first `[[preset]]` of a file hold for all presets of that
+file. Settings are in SI units; `xyz` and `xy` stand for axes with the same settings. A comment gives the number of the
+data sheet where its unit differs.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import tomllib
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
+from pathlib import Path
+from typing import Any, Final
 
 Settings = Mapping[str, Any]
 """Elements of a `<sensor>` by name: a mapping is an element with children, `@name` in it an attribute."""
@@ -16,6 +23,8 @@ SENSOR_KINDS: Mapping[str, tuple[str, ...]] = {
 }
 """Sensor types that share a block; a kind that is not here is the one type of its name."""
 
+_FOLDER: Final = Path(__file__).parent / "data"
+_AXES: Final = ("xyz", "xy")
 _BLOCKS = {"depth_camera": "camera", "rgbd_camera": "camera"}
 
 
@@ -59,6 +68,34 @@ class Preset:
     def elements(self) -> Settings:
         """All of it: the settings, and the rate where there is one."""
         return {"update_rate": self.rate, **self.settings} if self.rate else self.settings
+
+
+def load_presets() -> Iterator[Preset]:
+    """Read every preset, file by file.
+
+    Raises:
+        TypeError: a preset has an unknown key or lacks one.
+    """
+    for file in sorted(_FOLDER.glob("*.toml")):
+        table = tomllib.loads(file.read_text(encoding="utf-8"))
+        entries = table.pop("preset")
+        for entry in entries:
+            yield _make_preset({**table, **entry})
+
+
+def _make_preset(fields: Settings) -> Preset:
+    lists = {name: tuple(value) for name, value in fields.items() if isinstance(value, list)}
+    return Preset(**{**fields, **lists, "settings": _expand_axes(fields["settings"])})
+
+
+def _expand_axes(settings: Settings) -> Settings:
+    """Give each axis of `xyz` and `xy` the settings that they have in common."""
+    expanded: dict[str, object] = {}
+    for key, value in settings.items():
+        value = _expand_axes(value) if isinstance(value, dict) else value
+        for name in key if key in _AXES else (key,):
+            expanded[name] = value
+    return expanded
 
 
 def outline(settings: Settings) -> str:
