@@ -59,7 +59,7 @@ class BareCamera:
         self._rectangle = mujoco.MjrRect(0, 0, self.view.width, self.view.height)
         self._option, self._aside = visuals_only_options(), mujoco.MjvCamera()
         self._scene = mujoco.MjvScene(self.model, self.model.ngeom + _SPARE_GEOMS)
-        composition = renderer_of(sim).compose(self.model, self.data, *sensor._frame_in_world(self.data))
+        composition = renderer_of(sim).composer.compose(self.model, self.data, *sensor._frame_in_world(self.data))
         self._scene.flags[:] = composition.scene.flags
         with self.current():
             self._context = _upload(self.model, renderer_of(sim))

@@ -205,7 +205,7 @@ class MultiCamera(RenderedCamera):
         super().bind(compiled)
         for eye in self.eyes:
             view = eye.options.model
-            renderer_of(self.sim).reserve(view.width, view.height)
+            renderer_of(self.sim).uploads.reserve(view.width, view.height)
 
     # ------------------------------------------------------------------ pictures
 

@@ -155,7 +155,7 @@ class RenderedCamera(RenderedSampler):
         self.finish_samples()
         super().bind(compiled)
         self._hidden_geoms = hidden_geoms(self.options.visibility_mask, compiled.names)
-        renderer_of(self.sim).reserve(self.options.model.width, self.options.model.height)
+        renderer_of(self.sim).uploads.reserve(self.options.model.width, self.options.model.height)
 
     def develop(self, films: Iterator[Film], notes: Memory) -> object:
         colours = next(films).colours

@@ -88,7 +88,7 @@ class RenderedSampler(Sensor):
         """What draws and develops the pictures of a state; it needs the state no more."""
         renderer = renderer_of(self.sim)
         smooth = self.options.anti_aliasing > 0
-        composition = renderer.compose(
+        composition = renderer.composer.compose(
             model, data, *self._frame_in_world(data), unseen=self._hidden_geoms, smooth=smooth
         )
         return functools.partial(self._expose, renderer, composition, self.shots(), self.take_notes(model, data))

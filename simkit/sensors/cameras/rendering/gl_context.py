@@ -25,14 +25,9 @@ from simkit.sensors.cameras.rendering import render_thread
 _HINT = "on Debian and Ubuntu: apt install libegl1 libgl1-mesa-dri (or libosmesa6); `simkit doctor` says more"
 _OFF = {"disable", "disabled", "off", "false", "0"}
 _ON = {"", "enable", "enabled", "on", "true", "1"}
-_LIBRARY_CHOICES = {
-    "egl": ("egl",),
-    "osmesa": ("osmesa",),
-    "glfw": ("glfw",),
-    "glx": ("glfw",),
-    "cgl": ("cgl",),
-    "wgl": ("glfw",),
-}
+_LIBRARIES = {"egl": "egl", "osmesa": "osmesa", "glfw": "glfw", "glx": "glfw", "cgl": "cgl", "wgl": "glfw"}
+"""Library of each renderer that `MUJOCO_GL` may name."""
+
 _PLATFORM_DEVICE = 0x313F
 
 _FORKED = (
@@ -166,10 +161,10 @@ def _candidates() -> tuple[str, ...]:
     platform = os.environ.get("PYOPENGL_PLATFORM", "").strip().lower()
     if wanted in _OFF:
         raise RenderError(f"rendering is switched off by MUJOCO_GL={wanted}; unset it")
-    if wanted not in (*_LIBRARY_CHOICES, *_ON):
-        raise RenderError(f"MUJOCO_GL={wanted}: no such renderer, allowed is one of {', '.join(_LIBRARY_CHOICES)}")
-    if wanted in _LIBRARY_CHOICES:
-        return _LIBRARY_CHOICES[wanted]
+    if wanted not in (*_LIBRARIES, *_ON):
+        raise RenderError(f"MUJOCO_GL={wanted}: no such renderer, allowed is one of {', '.join(_LIBRARIES)}")
+    if wanted in _LIBRARIES:
+        return (_LIBRARIES[wanted],)
     if sys.platform == "darwin":
         return ("cgl",)
     if sys.platform == "win32":

@@ -56,10 +56,10 @@ def render_view(
             decorate(scene)
 
     renderer = renderer_of(sim)
-    composition = renderer.compose(model, sim.engine.physics.fresh(), place, look_at(place, middle), prepare)
+    composition = renderer.composer.compose(model, sim.engine.physics.fresh(), place, look_at(place, middle), prepare)
     render_thread.drain()  # what it draws goes through the same buffers
     colours = renderer.draw(composition, Shot(view)).colours
-    renderer.give_back(composition)
+    renderer.composer.give_back(composition)
     assert colours is not None
     return colours.copy()
 

@@ -5,13 +5,12 @@ from __future__ import annotations
 import contextlib
 import logging
 import weakref
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Generator, Sequence
 
 import mujoco
 import numpy as np
 
 from simkit.errors import RenderError
-from simkit.pose import Vector
 from simkit.runtime import Simulation
 from simkit.sensors.cameras.rendering import frame_buffer, gl_context
 from simkit.sensors.cameras.rendering.gpu_model import GpuModel
@@ -72,6 +71,10 @@ class Renderer:
 
     Args:
         appearance: how the pictures look.
+
+    Attributes:
+        composer: takes what is drawn.
+        uploads: what the graphics library holds of the model.
     """
 
     def __init__(self, appearance: Appearance) -> None:
@@ -79,41 +82,13 @@ class Renderer:
         flags = [_FLAGS.mjRND_CULL_FACE]
         if appearance.quality.shadow_map:
             flags.append(_FLAGS.mjRND_SHADOW)
-        self._composer = Composer(flags)
-        self._uploads = GpuModel(appearance.quality)
+        self.composer = Composer(flags)
+        self.uploads = GpuModel(appearance.quality)
         self._backdrop = Background(appearance.surroundings)
-        self._rectangles: dict[tuple[int, int], mujoco.MjrRect] = {}
-        self._buffers: dict[tuple[int, int], tuple[Colours, Depths]] = {}
+        self._buffers: dict[tuple[int, int], tuple[mujoco.MjrRect, Colours, Depths]] = {}
         self._background_colour: Colours | None = None
         self._is_logged = False
         gl_context.hold_memory(self)
-
-    def reserve(self, width: int, height: int) -> None:
-        """Makes room for pictures of this size [px]."""
-        self._uploads.reserve(width, height)
-
-    def compose(
-        self,
-        model: mujoco.MjModel,
-        data: mujoco.MjData,
-        position: Vector,
-        rotation: Vector,
-        decorate: Callable[[mujoco.MjvScene], None] | None = None,
-        *,
-        unseen: Sequence[int] = (),
-        smooth: bool = True,
-    ) -> Composition:
-        """Takes what is to be drawn of a state; touches no OpenGL, and what it gives needs `data` no more.
-
-        Args:
-            model, data: with everything computed.
-            position: of the sensor in the world [m], shape (3,).
-            rotation: of the sensor's frame (x forward, y left, z up), shape (3, 3).
-            decorate: called with the `MjvScene`, to add geoms.
-            unseen: ids of geoms that are left out.
-            smooth: whether edges may be smoothed, where the quality does that.
-        """
-        return self._composer.compose(model, data, position, rotation, decorate, unseen, smooth)
 
     def films(self, composition: Composition, shots: Sequence[Shot]) -> Generator[Film, None, None]:
         """Draws the shots of a composition in turn; each film is good until the next is asked for.
@@ -127,7 +102,7 @@ class Renderer:
             for shot in shots:
                 yield self.draw(composition, shot)
         finally:
-            self.give_back(composition)
+            self.composer.give_back(composition)
 
     def draw(self, composition: Composition, shot: Shot) -> Film:
         """One picture.
@@ -139,10 +114,10 @@ class Renderer:
         with gl_context.current():
             try:
                 # with the buffers in the turn: another thread may draw for the same simulation
-                rectangle, (colours, depths) = self._buffer(view.width, view.height)
-                self._uploads.reserve(view.width, view.height)
+                rectangle, colours, depths = self._buffer(view.width, view.height)
+                self.uploads.reserve(view.width, view.height)
                 smooth = composition.smooth and not (shot.ids or shot.sharp)
-                context = self._uploads.context_of(composition.model, smooth)
+                context = self.uploads.context_of(composition.model, smooth)
                 # another simulation may have drawn, or have taken its buffers with it when it was closed
                 mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN, context)
                 position, rotation = composition.pose_of(shot)
@@ -177,19 +152,15 @@ class Renderer:
                 raise RenderError(f"drawing a picture failed: {error}", "SK-RENDER-002") from error
         return Film(view, colours[::-1], depths[::-1] if shot.depth else None)
 
-    def give_back(self, composition: Composition) -> None:
-        """Says that nothing more is drawn of it."""
-        self._composer.give_back(composition)
-
     def uploaded(self) -> list[mujoco.MjrContext]:
         """What it holds in the memory of the graphics library."""
-        return self._uploads.contexts()
+        return self.uploads.contexts()
 
     def free(self) -> None:
         """Gives the graphics memory back; a later picture takes it anew."""
         if gl_context.is_open():
             with gl_context.current():
-                self._uploads.free()
+                self.uploads.free()
                 self._backdrop.free()
 
     # ------------------------------------------------------------------ within
@@ -228,12 +199,12 @@ class Renderer:
         if depths.flat[empty] == 0:
             self._background_colour = colours.reshape(-1, 3)[empty].copy()
 
-    def _buffer(self, width: int, height: int) -> tuple[mujoco.MjrRect, tuple[Colours, Depths]]:
+    def _buffer(self, width: int, height: int) -> tuple[mujoco.MjrRect, Colours, Depths]:
         size = (width, height)
         if size not in self._buffers:
-            self._rectangles[size] = mujoco.MjrRect(0, 0, width, height)
-            self._buffers[size] = np.empty((height, width, 3), np.uint8), np.empty((height, width), np.float32)
-        return self._rectangles[size], self._buffers[size]
+            colours, depths = np.empty((height, width, 3), np.uint8), np.empty((height, width), np.float32)
+            self._buffers[size] = mujoco.MjrRect(0, 0, width, height), colours, depths
+        return self._buffers[size]
 
     def _log_renderer(self) -> None:
         """Once for each simulation: who draws, and what is left out."""
@@ -241,9 +212,8 @@ class Renderer:
             return
         self._is_logged = True
         quality = self._appearance.quality
-        text = (
-            f"without {quality.missing_features()}" if quality.missing_features() else "with shadows and smooth edges"
-        )
+        missing = quality.missing_features()
+        text = f"without {missing}" if missing else "with shadows and smooth edges"
         logging.getLogger("simkit").info(
             "renderer: %s; quality %s, %s", gl_context.describe_renderer(), quality.name, text
         )
@@ -252,36 +222,23 @@ class Renderer:
 # ---------------------------------------------------------------------- one for each simulation
 
 
-class _SimulationRenderers:
-    """The renderers of the simulations of this process, one for all cameras of a simulation."""
-
-    def __init__(self) -> None:
-        self._by_simulation: weakref.WeakKeyDictionary[Simulation, Renderer] = weakref.WeakKeyDictionary()
-
-    def find(self, sim: Simulation) -> Renderer:
-        found = self._by_simulation.get(sim)
-        if found is None:
-            found = self._by_simulation[sim] = Renderer(Appearance.of(sim.world))
-            weakref.finalize(sim, _free_quietly, found).atexit = False
-        return found
-
-    def free(self, sim: Simulation) -> None:
-        found = self._by_simulation.pop(sim, None)
-        if found is not None:
-            _free_quietly(found)
-
-
-_renderers = _SimulationRenderers()
+_renderers: weakref.WeakKeyDictionary[Simulation, Renderer] = weakref.WeakKeyDictionary()
 
 
 def renderer_of(sim: Simulation) -> Renderer:
     """Return the one renderer of a simulation, for all its cameras."""
-    return _renderers.find(sim)
+    found = _renderers.get(sim)
+    if found is None:
+        found = _renderers[sim] = Renderer(Appearance.of(sim.world))
+        weakref.finalize(sim, _free_quietly, found).atexit = False
+    return found
 
 
 def free_renderer(sim: Simulation) -> None:
     """Give back the graphics memory of a simulation that closes."""
-    _renderers.free(sim)
+    found = _renderers.pop(sim, None)
+    if found is not None:
+        _free_quietly(found)
 
 
 def _free_quietly(renderer: Renderer) -> None:

@@ -76,10 +76,20 @@ class Composer:
         position: Vector,
         rotation: Vector,
         decorate: Callable[[mujoco.MjvScene], None] | None = None,
+        *,
         unseen: Sequence[int] = (),
         smooth: bool = True,
     ) -> Composition:
-        """See `Renderer.compose`."""
+        """Takes what is to be drawn of a state; touches no OpenGL, and what it gives needs `data` no more.
+
+        Args:
+            model, data: with everything computed.
+            position: of the sensor in the world [m], shape (3,).
+            rotation: of the sensor's frame (x forward, y left, z up), shape (3, 3).
+            decorate: called with the `MjvScene`, to add geoms.
+            unseen: ids of geoms that are left out.
+            smooth: whether edges may be smoothed, where the quality does that.
+        """
         scene = self._spare_scene(model) if decorate is None else self._fresh_scene(model, _DECORATIONS)
         with keep_strongest_lights(model, data, position, rotation), _hide_geoms(model, unseen):
             mujoco.mjv_updateScene(model, data, self._option, None, self._aside, _ALL, scene)
@@ -155,14 +165,8 @@ def visuals_only_options() -> mujoco.MjvOption:
     option = mujoco.MjvOption()
     option.flags[:] = 0
     flags = mujoco.mjtVisFlag
-    for flag in (
-        flags.mjVIS_TEXTURE,
-        flags.mjVIS_STATIC,
-        flags.mjVIS_SKIN,
-        flags.mjVIS_FLEXEDGE,
-        flags.mjVIS_FLEXSKIN,
-    ):
-        option.flags[flag] = 1
+    shown = flags.mjVIS_TEXTURE, flags.mjVIS_STATIC, flags.mjVIS_SKIN, flags.mjVIS_FLEXEDGE, flags.mjVIS_FLEXSKIN
+    option.flags[list(map(int, shown))] = 1
     for groups in (option.geomgroup, option.sitegroup, option.jointgroup, option.tendongroup, option.actuatorgroup):
         groups[:] = 0
     for groups in (option.flexgroup, option.skingroup):  # only MuJoCo's own format has them; these are its defaults

@@ -120,7 +120,7 @@ def test_pictures_are_the_same_with_and_without_what_is_out_of_sight() -> None:
         shot = Shot(View(64, 48, -0.5, 0.5, -0.4, 0.4, 0.1, 50.0), depth=True)
         taken = []
         for culled in (True, False):
-            composition = renderer.compose(sim.mj_model, data, np.array((0.0, 0.0, 1.0)), np.eye(3))
+            composition = renderer.composer.compose(sim.mj_model, data, np.array((0.0, 0.0, 1.0)), np.eye(3))
             assert composition.bounds is not None
             if not culled:
                 composition.bounds = None
