@@ -1,4 +1,4 @@
-"""Options of the `<camera>` block of a file, with the range of its depths."""
+"""Options of the `<camera>` block of a file."""
 
 from __future__ import annotations
 
@@ -7,15 +7,11 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, TypeVar
 
-import numpy as np
-
 from simkit.diagnostics import did_you_mean
 from simkit.params import Params
 from simkit.pose import IDENTITY, Pose
 from simkit.sensors.cameras import image_messages
 from simkit.sensors.cameras.camera_model import MAX_PIXELS, CameraModel, read_camera_model
-from simkit.sensors.cameras.rendering.frame_buffer import clip_depths, clip_planes, depth_limits, depths_in_metres
-from simkit.sensors.cameras.rendering.view import Depths, View
 from simkit.sensors.cameras.saved_images import read_save
 from simkit.sensors.noise import NoiseModel, read_noise
 from simkit.sensors.topics_and_frames import check_topic
@@ -42,46 +38,6 @@ def read_depth_range(block: Params, model: CameraModel) -> tuple[float, float]:
         return near, far
     clip.error("SK-PARAM-002", f"found depths from {near:g} to {far:g} m, allowed is a <far> beyond <near>")
     return model.near, model.far
-
-
-class DepthRange:
-    """The range of depths of one camera.
-
-    What is as far from the camera as `<clip><far>`, in a straight line, has depth +inf; so has what is farther along
-    the axis than the depths' own range. What is nearer along the axis than both ranges begin has -inf
-    (gz-rendering, depth_camera_fs.glsl; gz-sensors, RgbdCameraSensor.cc).
-
-    Args:
-        options: of the camera.
-    """
-
-    def __init__(self, options: CameraOptions) -> None:
-        model = options.model
-        self._lowest = max(model.near, options.depth_near)
-        self._ends = model.near, model.far
-        left, up = model.rays()
-        squares = left * left + (up if up.ndim == 2 else up[:, None]) ** 2
-        stretch: Depths = np.sqrt(1 + squares, dtype=np.float32)
-        stretch[np.isnan(stretch)] = np.inf  # where a lens shows nothing
-        self._limit = depth_limits(min(options.depth_far, model.far), model.far, stretch)
-        self._least = float(self._limit.min())
-
-    def planes(self) -> tuple[float, float]:
-        """Clip planes to be drawn with [m]: what is too near is to be seen as such, not to be cut away."""
-        return clip_planes(*self._ends)
-
-    def metres(self, raw: Depths, view: View, out: Depths) -> Depths:
-        """Depths [m] of raw ones, shape (h, w).
-
-        Args:
-            raw: drawn through `view`, and bent where the camera's lens bends.
-            out: contiguous, to be written to.
-        """
-        return depths_in_metres(raw, view.near, view.far, self._lowest, self._limit, out, least=self._least)
-
-    def clip(self, depths: Depths) -> Depths:
-        """The same rule again in place, for depths [m] that noise was added to."""
-        return clip_depths(depths, self._lowest, self._limit, least=self._least)
 
 
 ModelReader = Callable[[Params, int, int], CameraModel]

@@ -19,9 +19,9 @@ from simkit.scene import SceneSensor
 from simkit.sensors.base import Product
 from simkit.sensors.cameras import depth_messages, image_messages
 from simkit.sensors.cameras.array_pool import ArrayPool
-from simkit.sensors.cameras.camera_options import DepthRange
 from simkit.sensors.cameras.camera_reading import CameraReading, NoisyCameraReading
 from simkit.sensors.cameras.depth_messages import DepthClouds
+from simkit.sensors.cameras.depth_range import DepthRange, clip_planes
 from simkit.sensors.cameras.disparity_noise import DisparityNoise, read_disparity_noise
 from simkit.sensors.cameras.image_noise import ImageNoise
 from simkit.sensors.cameras.rendered_camera import RenderedCamera
@@ -104,8 +104,10 @@ class RgbdCamera(RenderedCamera):
 
     def _drawn_view(self) -> View:
         if self._view is None:
-            self._range = DepthRange(self.options)
-            near, far = self._range.planes()
+            options = self.options
+            self._range = DepthRange(options.model, options.depth_near, options.depth_far)
+            # what is too near is to be seen as such, not to be cut away
+            near, far = clip_planes(options.model.near, options.model.far)
             self._view = replace(super()._drawn_view(), near=near, far=far)
         return self._view
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,8 @@ from renderer import NEEDS_RENDERER
 from sensor_worlds import box, cloud, colours, depths, noise, sensor, world
 
 import simkit
-from simkit.sensors.cameras.rendering.frame_buffer import depths_in_metres
+from simkit.sensors.cameras.camera_model import CameraModel
+from simkit.sensors.cameras.depth_range import DepthRange, clip_planes
 from simkit.sensors.cameras.rendering.overview_image import render_view
 
 pytestmark = NEEDS_RENDERER
@@ -316,10 +318,12 @@ def test_a_view_from_outside_shows_the_scene() -> None:
 
 
 def test_raw_depths_become_metres() -> None:
-    near, far = 0.01, 100.0
-    z = np.array(((0.01, 1.0), (99.0, 100.0)))
+    model = CameraModel(2, 2, 1e6, 1e6, 1.0, 1.0, 2e-6, 0.005, 100.0)
+    near, far = clip_planes(model.near, model.far)
+    z = np.array(((0.01, 1.0), (99.0, far)))
     raw = (near * (far - z) / (z * (far - near))).astype(np.float32)
-    found = depths_in_metres(raw, near, far)
+    view = replace(model.view(), near=near, far=far)
+    found = DepthRange(model, model.near, model.far).metres(raw, view, np.empty_like(raw))
     np.testing.assert_allclose(found[0], z[0], rtol=1e-5)
     assert found[1, 0] == pytest.approx(99.0, rel=1e-3)
     assert found[1, 1] == math.inf

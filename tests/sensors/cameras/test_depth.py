@@ -29,7 +29,7 @@ from renderer import NEEDS_RENDERER
 from sensor_worlds import box, cloud, colours, depths, noise, world
 
 import simkit
-from simkit.sensors.cameras.rendering.frame_buffer import clip_planes
+from simkit.sensors.cameras.depth_range import clip_planes
 
 pytestmark = NEEDS_RENDERER
 
