@@ -16,6 +16,7 @@ from simkit.compiler.name_map import NameMap
 from simkit.diagnostics import Diagnostics, Severity, Where
 from simkit.msgs.message_types import Message
 from simkit.msgs.topic_names import valid_topic
+from simkit.params import Params
 from simkit.pose import Pose, Vector
 from simkit.runtime import Simulation
 from simkit.runtime.engine.random_streams import RandomStreams
@@ -36,7 +37,7 @@ AnyNoiseProcess = TypeVar("AnyNoiseProcess", bound=NoiseProcess)
 
 
 class Sensor(Sampler):
-    """A sensor of a model. Derive, name `kinds`, read options in `__init__`, and implement `measure`.
+    """A sensor of a model. Derive, name `kinds`, read options in `read_options`, and implement `measure`.
 
     Attributes:
         kinds: `<sensor type>` names in files.
@@ -72,6 +73,7 @@ class Sensor(Sampler):
         for element in _COMMON_ELEMENTS:
             scene.params.child(element)
         self._read_common(scene)
+        self.options = self.read_options(scene.params)
 
     def _read_common(self, scene: SceneSensor) -> None:
         params = scene.params
@@ -84,6 +86,10 @@ class Sensor(Sampler):
         check_topic(self.timing.set_rate_topic, params, "set_rate_topic")
 
     # ------------------------------------------------------------------ what a kind says
+
+    def read_options(self, params: Params) -> object:
+        """Read the kind's own options from its `<sensor>`; called once, at the end of `__init__`."""
+        return self.options
 
     def describe(self) -> dict[str, object]:
         """Return the kind's block of `inspect --json`."""

@@ -84,11 +84,6 @@ def extend_options(options: CameraOptions, kind: type[AnyOptions], **more: Any) 
     return kind(**{field.name: getattr(options, field.name) for field in fields(CameraOptions)}, **more)
 
 
-def read_options(params: Params, read_model: ModelReader = read_camera_model, has_depth: bool = False) -> CameraOptions:
-    """The options of a `<sensor>` with one camera."""
-    return read_camera(params.block("camera"), read_model, has_depth)
-
-
 def read_camera(block: Params, read_model: ModelReader = read_camera_model, has_depth: bool = False) -> CameraOptions:
     """The options in a `<camera>` block.
 

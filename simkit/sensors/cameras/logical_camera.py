@@ -12,10 +12,9 @@ import numpy.typing as npt
 from simkit import msgs
 from simkit.compiler import Compiled
 from simkit.compiler.name_map import NameMap
-from simkit.diagnostics import Diagnostics
 from simkit.params import Params
 from simkit.pose import Pose, Vector, quat_multiply
-from simkit.scene import SceneModel, SceneSensor
+from simkit.scene import SceneModel
 from simkit.sensors.base import Product, Sensor
 
 IMAGE = "ros_gz_interfaces/msg/LogicalCameraImage"
@@ -55,21 +54,6 @@ class LogicalImage:
     models: tuple[tuple[str, Pose], ...]
 
 
-def read_options(params: Params) -> LogicalCameraOptions:
-    block = params.block("logical_camera")
-    near, far = block.number("near", 0.0, minimum=0.0), block.number("far", 1.0, minimum=0.0)
-    if near >= far:
-        block.error("SK-PARAM-002", f"found <near> {near:g} and <far> {far:g}, allowed is near < far")
-    fov, aspect = block.number("horizontal_fov", 1.0), block.number("aspect_ratio", 1.0)
-    if not 0 < fov < math.pi:
-        block.error("SK-PARAM-002", f"found <horizontal_fov> {fov:g}, allowed is an angle above 0 and below pi")
-        fov = 1.0
-    if aspect <= 0:
-        block.error("SK-PARAM-002", f"found <aspect_ratio> {aspect:g}, allowed is a number above 0")
-        aspect = 1.0
-    return LogicalCameraOptions(near, far, fov, aspect)
-
-
 class Frustum:
     """The part of space that a logical camera looks at.
 
@@ -107,10 +91,19 @@ class LogicalCamera(Sensor):
     example = "<logical_camera><far>5</far></logical_camera>"
     options: LogicalCameraOptions
 
-    def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
-        super().__init__(scene, diagnostics)
-        scene.params.child("logical_camera")
-        self.options = read_options(scene.params)
+    def read_options(self, params: Params) -> LogicalCameraOptions:
+        block = params.block("logical_camera")
+        near, far = block.number("near", 0.0, minimum=0.0), block.number("far", 1.0, minimum=0.0)
+        if near >= far:
+            block.error("SK-PARAM-002", f"found <near> {near:g} and <far> {far:g}, allowed is near < far")
+        fov, aspect = block.number("horizontal_fov", 1.0), block.number("aspect_ratio", 1.0)
+        if not 0 < fov < math.pi:
+            block.error("SK-PARAM-002", f"found <horizontal_fov> {fov:g}, allowed is an angle above 0 and below pi")
+            fov = 1.0
+        if aspect <= 0:
+            block.error("SK-PARAM-002", f"found <aspect_ratio> {aspect:g}, allowed is a number above 0")
+            aspect = 1.0
+        return LogicalCameraOptions(near, far, fov, aspect)
 
     def describe(self) -> dict[str, object]:
         """Lengths in m, angle in rad."""

@@ -113,21 +113,21 @@ class MultiCamera(RenderedCamera):
         super().__init__(scene, diagnostics)
         self._place()
 
-    def _read(self, scene: SceneSensor) -> CameraOptions:
-        blocks = scene.params.all("camera") or [scene.params.block("camera")]
+    def read_options(self, params: Params) -> CameraOptions:
+        blocks = params.all("camera") or [params.block("camera")]
         self.eyes: list[CameraUnit] = []
         for number, block in enumerate(blocks):
-            options = read_camera(block, type(self).read_model)
+            options = read_camera(block, self.read_model)
             self.eyes.append(CameraUnit(_free_name(self.eyes, options.name or f"camera_{number}", block), options))
         options = self.eyes[0].options
-        self._report_shared(scene)
+        self._report_shared()
         waiting = next((eye.options for eye in self.eyes if eye.options.triggered), options)
         saving = next((eye.options.save for eye in self.eyes if eye.options.save), None)
         return replace(
             options, pose=IDENTITY, triggered=waiting.triggered, trigger_topic=waiting.trigger_topic, save=saving
         )
 
-    def _report_shared(self, scene: SceneSensor) -> None:
+    def _report_shared(self) -> None:
         """Warns of what is one for all cameras of a sensor, and differs between these."""
         options = [eye.options for eye in self.eyes]
         differ: dict[str, set[object]] = {
@@ -139,7 +139,7 @@ class MultiCamera(RenderedCamera):
         for element, found in differ.items():
             if len(found) > 1:
                 message = f"the cameras of one sensor have one {element}, these have {len(found)}: the first is used"
-                self.diagnostics.warning("SK-SENSOR-125", message, scene.where, "a sensor for each")
+                self.diagnostics.warning("SK-SENSOR-125", message, self.scene.where, "a sensor for each")
 
     @property
     def reference(self) -> CameraUnit:

@@ -23,7 +23,7 @@ from simkit.sensors.base import Product
 from simkit.sensors.cameras import camera_trigger, image_messages
 from simkit.sensors.cameras.array_pool import ArrayPool
 from simkit.sensors.cameras.camera_model import CameraModel, read_camera_model
-from simkit.sensors.cameras.camera_options import CameraOptions, read_options
+from simkit.sensors.cameras.camera_options import CameraOptions, read_camera
 from simkit.sensors.cameras.camera_reading import CameraReading, NoisyCameraReading
 from simkit.sensors.cameras.camera_trigger import Trigger
 from simkit.sensors.cameras.image_distortion import ImageDistorter
@@ -50,8 +50,6 @@ class RenderedCamera(RenderedSampler):
 
     def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
         super().__init__(scene, diagnostics)
-        scene.params.child("camera")
-        self.options = self._read(scene)
         self.optical_frame_id = self.options.optical_frame_id
         self._trigger: Trigger | None = None
         self._baseline = 0.0
@@ -61,11 +59,11 @@ class RenderedCamera(RenderedSampler):
         """The optics in a `<camera>` block, for an image of `width` by `height` [px]."""
         return read_camera_model(params, width, height)
 
-    def _read(self, scene: SceneSensor) -> CameraOptions:
+    def read_options(self, params: Params) -> CameraOptions:
         """The options of the file; a camera that stands elsewhere in its sensor takes the sensor there."""
-        options = read_options(scene.params, type(self).read_model, self.has_depth)
+        options = read_camera(params.block("camera"), self.read_model, self.has_depth)
         if options.pose != IDENTITY:
-            self.scene = replace(scene, pose_link=scene.pose_link @ options.pose)
+            self.scene = replace(self.scene, pose_link=self.scene.pose_link @ options.pose)
         return options
 
     def describe(self) -> dict[str, object]:

@@ -42,17 +42,6 @@ class ContactOptions:
     topic: str
 
 
-def read_options(params: Params) -> ContactOptions:
-    block = params.block("contact")
-    named: dict[str, Where] = {}
-    for collision in block.all("collision"):
-        named.setdefault(collision.attribute("name") or collision.value, collision.where)
-    collisions = tuple((name, where) for name, where in named.items() if name)
-    topic = block.text("topic", "").replace("__default_topic__", "")
-    check_topic(topic, block)
-    return ContactOptions(collisions, topic)
-
-
 class Contact(Sensor):
     """`contact`: the contacts of collisions of its link, told where there are any.
 
@@ -71,9 +60,18 @@ class Contact(Sensor):
 
     def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
         super().__init__(scene, diagnostics)
-        self.options = read_options(scene.params)
         self.collisions: tuple[str, ...] = ()
         self._states_frame: str | None = None
+
+    def read_options(self, params: Params) -> ContactOptions:
+        block = params.block("contact")
+        named: dict[str, Where] = {}
+        for collision in block.all("collision"):
+            named.setdefault(collision.attribute("name") or collision.value, collision.where)
+        collisions = tuple((name, where) for name, where in named.items() if name)
+        topic = block.text("topic", "").replace("__default_topic__", "")
+        check_topic(topic, block)
+        return ContactOptions(collisions, topic)
 
     def describe(self) -> dict[str, object]:
         return {"contact": {"collisions": [name for name, _ in self.options.collisions]}}

@@ -11,11 +11,9 @@ import numpy as np
 
 from simkit import msgs
 from simkit.compiler import Compiled, SpecBuilder
-from simkit.diagnostics import Diagnostics
 from simkit.params import Params
 from simkit.pose import Vector
 from simkit.runtime.handles.joint_mechanics import joint_position, joint_velocity
-from simkit.scene import SceneSensor
 from simkit.sensors.base import Product, Sensor
 from simkit.sensors.noise import NoiseModel, quantise, read_noise
 from simkit.sensors.sample import Memory
@@ -58,26 +56,6 @@ class JointReading:
     velocity: Vector
 
 
-def read_options(params: Params) -> EncoderOptions:
-    block = params.block("encoder")
-    resolution = block.number("resolution", 0.0, minimum=0)
-    if block.has("counts_per_revolution"):
-        counts = block.number("counts_per_revolution", 1.0, minimum=1)
-        if block.has("resolution"):
-            block.error("SK-PARAM-002", "found <resolution> and <counts_per_revolution>, allowed is one of them")
-        resolution = 2 * math.pi / counts
-    velocity = block.block("velocity")
-    return EncoderOptions(
-        resolution=resolution,
-        absolute=block.boolean("absolute", True),
-        from_counts=velocity.choice("source", ("counts", "joint"), "counts") == "counts",
-        window=velocity.number("window", 0.0, minimum=0, maximum=60.0),
-        velocity_resolution=velocity.number("resolution", 0.0, minimum=0),
-        position_noise=read_noise(block.block("position")),
-        velocity_noise=read_noise(velocity),
-    )
-
-
 class Encoder(Sensor):
     """`encoder` (`<sensor type="custom" gz:type="encoder">`), under a joint: its position and velocity.
 
@@ -90,9 +68,24 @@ class Encoder(Sensor):
     belongs_to = ("joint",)
     options: EncoderOptions
 
-    def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
-        super().__init__(scene, diagnostics)
-        self.options = read_options(scene.params)
+    def read_options(self, params: Params) -> EncoderOptions:
+        block = params.block("encoder")
+        resolution = block.number("resolution", 0.0, minimum=0)
+        if block.has("counts_per_revolution"):
+            counts = block.number("counts_per_revolution", 1.0, minimum=1)
+            if block.has("resolution"):
+                block.error("SK-PARAM-002", "found <resolution> and <counts_per_revolution>, allowed is one of them")
+            resolution = 2 * math.pi / counts
+        velocity = block.block("velocity")
+        return EncoderOptions(
+            resolution=resolution,
+            absolute=block.boolean("absolute", True),
+            from_counts=velocity.choice("source", ("counts", "joint"), "counts") == "counts",
+            window=velocity.number("window", 0.0, minimum=0, maximum=60.0),
+            velocity_resolution=velocity.number("resolution", 0.0, minimum=0),
+            position_noise=read_noise(block.block("position")),
+            velocity_noise=read_noise(velocity),
+        )
 
     def describe(self) -> dict[str, object]:
         """What it counts in."""

@@ -9,11 +9,9 @@ import numpy as np
 
 from simkit import msgs
 from simkit.compiler import Compiled
-from simkit.diagnostics import Diagnostics
 from simkit.params import Params
 from simkit.pose import Vector
 from simkit.runtime.handles.joint_mechanics import torque_about, transmitted_wrench
-from simkit.scene import SceneSensor
 from simkit.sensors.base import Product, Sensor
 from simkit.sensors.noise import Noise, ThreeAxes, read_axes
 
@@ -45,17 +43,6 @@ class Wrench:
     torque: Vector
 
 
-def read_options(params: Params) -> ForceTorqueOptions:
-    block = params.block("force_torque")
-    direction = block.choice("measure_direction", ("child_to_parent", "parent_to_child"), "child_to_parent")
-    return ForceTorqueOptions(
-        frame=block.choice("frame", ("child", "parent", "sensor"), "child"),
-        from_parent=direction == "parent_to_child",
-        force=read_axes(block.block("force")),
-        torque=read_axes(block.block("torque")),
-    )
-
-
 class ForceTorque(Sensor):
     """`force_torque`, under a joint: what the parent link does to the child link through it, or the opposite.
 
@@ -73,9 +60,15 @@ class ForceTorque(Sensor):
     options: ForceTorqueOptions
     noise: Noise
 
-    def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
-        super().__init__(scene, diagnostics)
-        self.options = read_options(scene.params)
+    def read_options(self, params: Params) -> ForceTorqueOptions:
+        block = params.block("force_torque")
+        direction = block.choice("measure_direction", ("child_to_parent", "parent_to_child"), "child_to_parent")
+        return ForceTorqueOptions(
+            frame=block.choice("frame", ("child", "parent", "sensor"), "child"),
+            from_parent=direction == "parent_to_child",
+            force=read_axes(block.block("force")),
+            torque=read_axes(block.block("torque")),
+        )
 
     def describe(self) -> dict[str, object]:
         """Frame and direction."""

@@ -8,9 +8,7 @@ import mujoco
 import numpy as np
 
 from simkit import msgs
-from simkit.diagnostics import Diagnostics
 from simkit.params import Params
-from simkit.scene import SceneSensor
 from simkit.sensors.base import Product
 from simkit.sensors.environment.air_sensor import AirSensor
 from simkit.sensors.noise import Noise, NoiseModel, read_noise
@@ -31,12 +29,6 @@ class AirPressureOptions:
     pressure: NoiseModel
 
 
-def read_options(params: Params) -> AirPressureOptions:
-    block = params.block("air_pressure")
-    altitude = block.number("reference_altitude", 0.0, minimum=-1e9, maximum=1e9)
-    return AirPressureOptions(altitude, read_noise(block.block("pressure")))
-
-
 class AirPressure(AirSensor):
     """`air_pressure`: the pressure of the world's `<atmosphere>` at the height of the sensor's origin."""
 
@@ -45,9 +37,10 @@ class AirPressure(AirSensor):
     options: AirPressureOptions
     noise: Noise
 
-    def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
-        super().__init__(scene, diagnostics)
-        self.options = read_options(scene.params)
+    def read_options(self, params: Params) -> AirPressureOptions:
+        block = params.block("air_pressure")
+        altitude = block.number("reference_altitude", 0.0, minimum=-1e9, maximum=1e9)
+        return AirPressureOptions(altitude, read_noise(block.block("pressure")))
 
     def describe(self) -> dict[str, object]:
         """Height of the origin that the file gives [m], standard deviation [Pa]."""

@@ -8,10 +8,8 @@ import mujoco
 import numpy as np
 
 from simkit import msgs
-from simkit.diagnostics import Diagnostics
 from simkit.params import Params
 from simkit.pose import Vector
-from simkit.scene import SceneSensor
 from simkit.sensors.base import Product
 from simkit.sensors.environment.air_sensor import AirSensor
 from simkit.sensors.environment.point_velocity import point_velocity
@@ -36,10 +34,6 @@ class Flow:
     temperature: float
 
 
-def read_options(params: Params) -> AirSpeedOptions:
-    return AirSpeedOptions(read_noise(params.block("air_speed").block("pressure")))
-
-
 class AirSpeed(AirSensor):
     """`air_speed`: ½ρv·|v| with the speed v of the air along the sensor's x and its density ρ there.
 
@@ -52,9 +46,8 @@ class AirSpeed(AirSensor):
     options: AirSpeedOptions
     noise: Noise
 
-    def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
-        super().__init__(scene, diagnostics)
-        self.options = read_options(scene.params)
+    def read_options(self, params: Params) -> AirSpeedOptions:
+        return AirSpeedOptions(read_noise(params.block("air_speed").block("pressure")))
 
     def describe(self) -> dict[str, object]:
         """Standard deviation [Pa]."""

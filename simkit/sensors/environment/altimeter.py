@@ -9,9 +9,7 @@ import numpy as np
 
 from simkit import msgs
 from simkit.compiler import Compiled
-from simkit.diagnostics import Diagnostics
 from simkit.params import Params
-from simkit.scene import SceneSensor
 from simkit.sensors.base import Product, Sensor
 from simkit.sensors.environment.point_velocity import point_velocity
 from simkit.sensors.noise import Noise, NoiseModel, read_noise
@@ -35,14 +33,6 @@ class Climb:
     velocity: float
 
 
-def read_options(params: Params) -> AltimeterOptions:
-    block = params.block("altimeter")
-    return AltimeterOptions(
-        position=read_noise(block.block("vertical_position")),
-        velocity=read_noise(block.block("vertical_velocity")),
-    )
-
-
 class Altimeter(Sensor):
     """`altimeter`: height and rate of climb of the sensor's own origin, along the world's z.
 
@@ -56,9 +46,12 @@ class Altimeter(Sensor):
     noise: Noise
     _reference: float | None = None
 
-    def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
-        super().__init__(scene, diagnostics)
-        self.options = read_options(scene.params)
+    def read_options(self, params: Params) -> AltimeterOptions:
+        block = params.block("altimeter")
+        return AltimeterOptions(
+            position=read_noise(block.block("vertical_position")),
+            velocity=read_noise(block.block("vertical_velocity")),
+        )
 
     def describe(self) -> dict[str, object]:
         """Standard deviations [m, m/s]."""

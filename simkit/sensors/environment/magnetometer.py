@@ -8,10 +8,9 @@ import mujoco
 import numpy as np
 
 from simkit import msgs
-from simkit.diagnostics import Diagnostics
 from simkit.params import Params
 from simkit.pose import Vector
-from simkit.scene import SceneSensor, SceneWorld
+from simkit.scene import SceneWorld
 from simkit.sensors.base import Product, Sensor, report_once
 from simkit.sensors.environment.geodesy import WorldOnPlanet
 from simkit.sensors.environment.magnetic_field import (
@@ -44,11 +43,6 @@ class MagnetometerOptions:
     year: float
 
 
-def read_options(params: Params) -> MagnetometerOptions:
-    block = params.block("magnetometer")
-    return MagnetometerOptions(read_axes(block), _read_year(block))
-
-
 def _read_year(block: Params) -> float:
     given = block.child("date")
     if given is None:
@@ -78,9 +72,9 @@ class Magnetometer(Sensor):
     options: MagnetometerOptions
     noise: Noise
 
-    def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
-        super().__init__(scene, diagnostics)
-        self.options = read_options(scene.params)
+    def read_options(self, params: Params) -> MagnetometerOptions:
+        block = params.block("magnetometer")
+        return MagnetometerOptions(read_axes(block), _read_year(block))
 
     def describe(self) -> dict[str, object]:
         """Decimal year of the Earth's field, standard deviations [T]."""

@@ -10,10 +10,9 @@ import mujoco
 import numpy as np
 
 from simkit import msgs
-from simkit.diagnostics import Diagnostics
 from simkit.params import Params
 from simkit.pose import Vector
-from simkit.scene import SceneSensor, SphericalCoordinates
+from simkit.scene import SphericalCoordinates
 from simkit.sensors.base import Product, Sensor
 from simkit.sensors.environment.geodesy import WorldOnPlanet, east_north_up
 from simkit.sensors.environment.point_velocity import point_velocity
@@ -57,17 +56,6 @@ class NavSatReading:
     velocity: Vector
 
 
-def read_options(params: Params) -> NavSatOptions:
-    block = params.child("navsat") or params.block("gps")
-    position, velocity = block.block("position_sensing"), block.block("velocity_sensing")
-    return NavSatOptions(
-        horizontal_position=read_noise(position.block("horizontal")),
-        vertical_position=read_noise(position.block("vertical")),
-        horizontal_velocity=read_noise(velocity.block("horizontal")),
-        vertical_velocity=read_noise(velocity.block("vertical")),
-    )
-
-
 class NavSat(Sensor):
     """`navsat`, `gps`: a receiver in a world with `<spherical_coordinates>`; in one without it gives nothing.
 
@@ -80,9 +68,15 @@ class NavSat(Sensor):
     options: NavSatOptions
     noise: Noise
 
-    def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
-        super().__init__(scene, diagnostics)
-        self.options = read_options(scene.params)
+    def read_options(self, params: Params) -> NavSatOptions:
+        block = params.child("navsat") or params.block("gps")
+        position, velocity = block.block("position_sensing"), block.block("velocity_sensing")
+        return NavSatOptions(
+            horizontal_position=read_noise(position.block("horizontal")),
+            vertical_position=read_noise(position.block("vertical")),
+            horizontal_velocity=read_noise(velocity.block("horizontal")),
+            vertical_velocity=read_noise(velocity.block("vertical")),
+        )
 
     def describe(self) -> dict[str, object]:
         """Standard deviations [m, m/s]."""

@@ -42,16 +42,6 @@ class SolarSensorOptions:
     noise: NoiseModel
 
 
-def read_options(params: Params) -> SolarSensorOptions:
-    block = params.block("solar")
-    noise, plain = read_noise(block), block.number("angular_noise", 0.0, minimum=0, maximum=LARGEST)
-    if plain > 0:
-        noise = replace(noise, stddev=math.hypot(noise.stddev, plain))
-    return SolarSensorOptions(
-        block.text("light_name", ""), solar_irradiance.read_solar_options(block, "direction"), noise
-    )
-
-
 class SolarSensor(Sensor):
     """`solar_irradiance`: the direction of a light as an orientation whose x axis points at it.
 
@@ -67,11 +57,19 @@ class SolarSensor(Sensor):
 
     def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
         super().__init__(scene, diagnostics)
-        self.options = options = read_options(scene.params)
         # rounding is of the angles and not of their errors
-        self._precision = np.array((1.0, 1.0)) * options.noise.precision
+        self._precision = np.full(2, self.options.noise.precision)
         self._motions: list[tuple[int, LightMotion | None]] = []
         self._view: SolarView | None = None
+
+    def read_options(self, params: Params) -> SolarSensorOptions:
+        block = params.block("solar")
+        noise, plain = read_noise(block), block.number("angular_noise", 0.0, minimum=0, maximum=LARGEST)
+        if plain > 0:
+            noise = replace(noise, stddev=math.hypot(noise.stddev, plain))
+        return SolarSensorOptions(
+            block.text("light_name", ""), solar_irradiance.read_solar_options(block, "direction"), noise
+        )
 
     def describe(self) -> dict[str, object]:
         options, view = self.options, self.options.view

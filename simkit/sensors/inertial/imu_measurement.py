@@ -11,10 +11,8 @@ import mujoco
 import numpy as np
 
 from simkit.compiler import Compiled
-from simkit.diagnostics import Diagnostics
 from simkit.params import Params
 from simkit.pose import Vector, quat_conjugate, quat_from_rpy, quat_multiply
-from simkit.scene import SceneSensor
 from simkit.sensors.base import Sensor
 from simkit.sensors.bias_drift import NoiseInterval
 from simkit.sensors.inertial.inertial_kinematics import (
@@ -72,17 +70,6 @@ class ImuReading(NamedTuple):
         return np.array(self.motion[3:])
 
 
-def read_options(params: Params) -> ImuOptions:
-    block = params.block("imu")
-    return ImuOptions(
-        angular_velocity=_read_axis_noise(block.block("angular_velocity")),
-        linear_acceleration=_read_axis_noise(block.block("linear_acceleration")),
-        orientation=_read_axis_noise(block.block("orientation")),
-        reference=read_reference(block),
-        enable_orientation=block.boolean("enable_orientation", True),
-    )
-
-
 def _read_axis_noise(quantity: Params) -> ThreeAxes:
     """`<x>`, `<y>`, `<z>` with a `<noise>` each; one `<noise>` beside them is for the axes that have none."""
     return read_axes(quantity, read_noise(quantity))
@@ -101,9 +88,15 @@ class ImuMeasurement(Sensor):
     options: ImuOptions
     noise: Noise
 
-    def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
-        super().__init__(scene, diagnostics)
-        self.options = read_options(scene.params)
+    def read_options(self, params: Params) -> ImuOptions:
+        block = params.block("imu")
+        return ImuOptions(
+            angular_velocity=_read_axis_noise(block.block("angular_velocity")),
+            linear_acceleration=_read_axis_noise(block.block("linear_acceleration")),
+            orientation=_read_axis_noise(block.block("orientation")),
+            reference=read_reference(block),
+            enable_orientation=block.boolean("enable_orientation", True),
+        )
 
     def describe(self) -> dict[str, object]:
         reference = self.options.reference

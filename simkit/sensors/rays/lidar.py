@@ -13,8 +13,7 @@ from simkit import msgs
 from simkit.sensors.base import Product
 from simkit.sensors.point_cloud_messages import LEGACY_CLOUD_TYPE, legacy_point_cloud, point_cloud
 from simkit.sensors.rays.lidar_batch import form_lidar_batches
-from simkit.sensors.rays.lidar_measurement import LidarMeasurement, LidarReading
-from simkit.sensors.rays.lidar_options import MAX_RANGE
+from simkit.sensors.rays.lidar_measurement import MAX_RANGE, LidarMeasurement, LidarReading
 
 SCAN, CLOUD = "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/PointCloud2"
 RANGE = "sensor_msgs/msg/Range"

@@ -60,19 +60,6 @@ class SonarReading:
     hit: str
 
 
-def read_options(params: Params) -> SonarOptions:
-    block = params.block("sonar")
-    geometry = block.choice("geometry", ("cone", "sphere"), "cone")
-    low = block.number("min", 0.0, minimum=0)
-    high = block.number("max", 1.0, minimum=0, maximum=_MAX_RANGE)
-    if not high > low:
-        block.error("SK-PARAM-002", f"found a range from {low:g} to {high:g} m, allowed is a <max> above <min>")
-        low, high = 0.0, 1.0
-    radius = block.number("radius", 0.5, minimum=0)
-    half_angle = math.atan2(radius, high) if geometry == "cone" else math.pi
-    return SonarOptions(half_angle, _read_axis(block), low, high, read_noise(block))
-
-
 def _read_axis(block: Params) -> tuple[float, float, float]:
     x, y, z = block.vector3("axis", (0.0, 0.0, -1.0))
     length = math.hypot(x, y, z)
@@ -97,9 +84,20 @@ class Sonar(Sensor):
 
     def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
         super().__init__(scene, diagnostics)
-        self.options = options = read_options(scene.params)
-        self._directions = cone_directions(options.half_angle, options.axis)
-        self._fan = RayFan(self._directions, SEEN_AS_COLLISIONS, options.range_max)
+        options = self.options
+        self._fan = RayFan(cone_directions(options.half_angle, options.axis), SEEN_AS_COLLISIONS, options.range_max)
+
+    def read_options(self, params: Params) -> SonarOptions:
+        block = params.block("sonar")
+        geometry = block.choice("geometry", ("cone", "sphere"), "cone")
+        low = block.number("min", 0.0, minimum=0)
+        high = block.number("max", 1.0, minimum=0, maximum=_MAX_RANGE)
+        if not high > low:
+            block.error("SK-PARAM-002", f"found a range from {low:g} to {high:g} m, allowed is a <max> above <min>")
+            low, high = 0.0, 1.0
+        radius = block.number("radius", 0.5, minimum=0)
+        half_angle = math.atan2(radius, high) if geometry == "cone" else math.pi
+        return SonarOptions(half_angle, _read_axis(block), low, high, read_noise(block))
 
     def describe(self) -> dict[str, object]:
         o = self.options
