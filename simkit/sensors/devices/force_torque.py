@@ -12,11 +12,10 @@ from simkit.compiler import Compiled
 from simkit.params import Params
 from simkit.pose import Vector
 from simkit.runtime.handles.joint_mechanics import torque_about, transmitted_wrench
-from simkit.sensors.base import Product, Sensor
-from simkit.sensors.noise import Noise, ThreeAxes, read_axes
+from simkit.sensors.noise import ThreeAxes, read_axes
+from simkit.sensors.vector_sensor import VectorSensor
 
-TYPE = "geometry_msgs/msg/WrenchStamped"
-_TYPES = TYPE, "geometry_msgs/msg/Wrench", "geometry_msgs/msg/Vector3"
+_TYPES = "geometry_msgs/msg/WrenchStamped", "geometry_msgs/msg/Wrench", "geometry_msgs/msg/Vector3"
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,15 +34,7 @@ class ForceTorqueOptions:
     torque: ThreeAxes
 
 
-@dataclass(frozen=True, slots=True)
-class Wrench:
-    """Force [N] and torque [N·m], shape (3,) each."""
-
-    force: Vector
-    torque: Vector
-
-
-class ForceTorque(Sensor):
+class ForceTorque(VectorSensor):
     """`force_torque`, under a joint: what the parent link does to the child link through it, or the opposite.
 
     The torque is about the sensor's origin. Gazebo's formula gives that only where the sensor is not turned against the
@@ -52,13 +43,13 @@ class ForceTorque(Sensor):
 
     kinds = ("force_torque",)
     example = "<force_torque/>"
+    product, message_type = "forcetorque", _TYPES[0]
     belongs_to = ("joint",)
     has_dynamic_bias = True
     needs_acceleration = True
     # a load that sleeps on something that never moves would weigh nothing
     reads_contacts = True
     options: ForceTorqueOptions
-    noise: Noise
 
     def read_options(self, params: Params) -> ForceTorqueOptions:
         block = params.block("force_torque")
@@ -99,13 +90,8 @@ class ForceTorque(Sensor):
         self._is_turned = not np.array_equal(self._axes_turn, np.eye(3))
         self._viewed: mujoco.MjData | None = None
 
-    def products(self) -> dict[str, Product]:
-        return {"forcetorque": Product(TYPE, self._message_of)}
-
-    def default_topics(self) -> dict[str, str]:
-        return {"forcetorque": self._default_topic("forcetorque")}
-
-    def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> Wrench:
+    def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> Vector:
+        """Force [N] and torque [N·m], six numbers."""
         if data is not self._viewed:
             self._bind_views(model, data)
         if self.sim.world.gazebo_quirks or self._joint.moved_body <= 0:
@@ -116,7 +102,7 @@ class ForceTorque(Sensor):
         axes = self._axes @ self._axes_turn if self._is_turned else self._axes
         if not self.options.from_parent:
             axes = -axes
-        return Wrench(force @ axes, torque @ axes)
+        return np.concatenate((force @ axes, torque @ axes))
 
     def _bind_views(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
         """Chooses what a measurement is made of: views of the data, which are got once."""
@@ -140,14 +126,8 @@ class ForceTorque(Sensor):
         arm = (self._offset_position - self._joint_frame.position) @ self._joint_frame.matrix
         return force, torque - turn @ np.cross(arm, force @ turn)
 
-    def perturb(self, reading: Wrench, index: int) -> Wrench:
-        if self.noise.is_silent:
-            return reading
-        values = self.noise.apply(np.concatenate((reading.force, reading.torque)), index)
-        return Wrench(values[:3], values[3:])
-
-    def _message_of(self, reading: Wrench, time_ns: int) -> msgs.WrenchStamped:
+    def _message_of(self, reading: Vector, time_ns: int) -> msgs.WrenchStamped:
         stamped, wrench, vector = msgs.types_of(*_TYPES)
-        force, torque = vector(*reading.force.tolist()), vector(*reading.torque.tolist())
+        force, torque = vector(*reading[:3].tolist()), vector(*reading[3:].tolist())
         message: msgs.WrenchStamped = stamped(msgs.header(time_ns, self.frame_id), wrench(force, torque))
         return message

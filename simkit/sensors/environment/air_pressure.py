@@ -9,11 +9,9 @@ import numpy as np
 
 from simkit import msgs
 from simkit.params import Params
-from simkit.sensors.base import Product
+from simkit.pose import Vector
 from simkit.sensors.environment.air_sensor import AirSensor
-from simkit.sensors.noise import Noise, NoiseModel, read_noise
-
-TYPE = "sensor_msgs/msg/FluidPressure"
+from simkit.sensors.noise import NoiseModel, read_noise
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,8 +32,8 @@ class AirPressure(AirSensor):
 
     kinds = ("air_pressure",)
     example = "<air_pressure/>"
+    product, message_type = "air_pressure", "sensor_msgs/msg/FluidPressure"
     options: AirPressureOptions
-    noise: Noise
 
     def read_options(self, params: Params) -> AirPressureOptions:
         block = params.block("air_pressure")
@@ -58,23 +56,11 @@ class AirPressure(AirSensor):
             where = self.scene.params.block("air_pressure").block("reference_altitude").where
             self.diagnostics.warning("SK-SENSOR-062", message, where, "put the model at that height")
 
-    def products(self) -> dict[str, Product]:
-        return {"air_pressure": Product(TYPE, self._message_of)}
+    def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> Vector:
+        return np.array((self._column.at(self._height(data)).pressure,))
 
-    def default_topics(self) -> dict[str, str]:
-        return {"air_pressure": self._default_topic("air_pressure")}
-
-    def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> float:
-        return self._column.at(self._height(data)).pressure
-
-    def perturb(self, reading: float, index: int) -> float:
-        if self.noise.is_silent:
-            return reading
-        return float(self.noise.apply(np.array((reading,)), index)[0])
-
-    def _message_of(self, reading: float, time_ns: int) -> msgs.FluidPressure:
+    def _message_of(self, reading: Vector, time_ns: int) -> msgs.FluidPressure:
         variance = self.noise.variance()
         if self.sim.world.gazebo_quirks:
             variance = variance**0.25  # the root of the deviation
-        message: msgs.FluidPressure = msgs.type_of(TYPE)(msgs.header(time_ns, self.frame_id), reading, variance)
-        return message
+        return msgs.FluidPressure(msgs.header(time_ns, self.frame_id), float(reading[0]), variance)

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import abc
-
 import mujoco
 
 from simkit.scene import Atmosphere
-from simkit.sensors.base import Sensor, report_once
+from simkit.sensors.base import report_once
 from simkit.sensors.environment.atmosphere import MAX_ALTITUDE, MIN_ALTITUDE, AirColumn, air_column
+from simkit.sensors.vector_sensor import VectorSensor
 
 
-class AirSensor(Sensor, abc.ABC):
+class AirSensor(VectorSensor):
     """A sensor of the air around it.
 
     Its height above sea level is its z in the world plus what the sensor says itself of the world's origin. Gazebo

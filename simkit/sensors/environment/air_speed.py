@@ -10,12 +10,10 @@ import numpy as np
 from simkit import msgs
 from simkit.params import Params
 from simkit.pose import Vector
-from simkit.sensors.base import Product
 from simkit.sensors.environment.air_sensor import AirSensor
 from simkit.sensors.environment.point_velocity import point_velocity
-from simkit.sensors.noise import Noise, NoiseModel, read_noise
+from simkit.sensors.noise import NoiseModel, read_noise
 
-TYPE = "ros_gz_interfaces/msg/AirSpeed"
 _HECTO = 100.0  # Gazebo adds the noise to hectopascals
 
 
@@ -24,14 +22,6 @@ class AirSpeedOptions:
     """The `<air_speed>` block: noise of the pressure [Pa]."""
 
     pressure: NoiseModel
-
-
-@dataclass(frozen=True, slots=True)
-class Flow:
-    """Dynamic pressure [Pa], negative where the air comes from behind, and temperature [K]."""
-
-    pressure: float
-    temperature: float
 
 
 class AirSpeed(AirSensor):
@@ -43,8 +33,8 @@ class AirSpeed(AirSensor):
 
     kinds = ("air_speed",)
     example = "<air_speed/>"
+    product, message_type = "air_speed", "ros_gz_interfaces/msg/AirSpeed"
     options: AirSpeedOptions
-    noise: Noise
 
     def read_options(self, params: Params) -> AirSpeedOptions:
         return AirSpeedOptions(read_noise(params.block("air_speed").block("pressure")))
@@ -60,19 +50,14 @@ class AirSpeed(AirSensor):
         self._unit = _HECTO if quirks else 1.0
         self.noise = self._make_noise((self.options.pressure,), "air_speed")
 
-    def products(self) -> dict[str, Product]:
-        return {"air_speed": Product(TYPE, self._message_of)}
-
-    def default_topics(self) -> dict[str, str]:
-        return {"air_speed": self._default_topic("air_speed")}
-
-    def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> Flow:
+    def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> Vector:
+        """Dynamic pressure [Pa], negative where the air comes from behind, and temperature [K]."""
         body = self._body
         rotation = data.xmat[body].reshape(3, 3)
         velocity = point_velocity(model, data, body, rotation @ self._offset_position)
         speed = float((velocity - self._wind(data)) @ (rotation @ self._offset_rotation[:, 0]))
         air = self._column.at(self._height(data))
-        return Flow(0.5 * air.density * speed * abs(speed), air.temperature)
+        return np.array((0.5 * air.density * speed * abs(speed), air.temperature))
 
     def _wind(self, data: mujoco.MjData) -> Vector:
         """Velocity of the air [m/s] in the step that led to a state, shape (3,); Gazebo's sensor knows of none."""
@@ -80,14 +65,10 @@ class AirSpeed(AirSensor):
             return np.zeros(3)
         return np.array(self.sim.engine.wind.at(max(round(data.time / self.sim.timestep) - 1, 0)))
 
-    def perturb(self, reading: Flow, index: int) -> Flow:
+    def perturb(self, reading: Vector, index: int) -> Vector:
         if self.noise.is_silent:
             return reading
-        pressure = float(self.noise.apply(np.array((reading.pressure / self._unit,)), index)[0])
-        return Flow(pressure * self._unit, reading.temperature)
+        return np.append(self.noise.apply(reading[:1] / self._unit, index) * self._unit, reading[1])
 
-    def _message_of(self, reading: Flow, time_ns: int) -> msgs.AirSpeed:
-        message: msgs.AirSpeed = msgs.type_of(TYPE)(
-            msgs.header(time_ns, self.frame_id), reading.pressure, reading.temperature
-        )
-        return message
+    def _message_of(self, reading: Vector, time_ns: int) -> msgs.AirSpeed:
+        return msgs.AirSpeed(msgs.header(time_ns, self.frame_id), *reading.tolist())

@@ -10,11 +10,10 @@ import numpy as np
 from simkit import msgs
 from simkit.compiler import Compiled
 from simkit.params import Params
-from simkit.sensors.base import Product, Sensor
+from simkit.pose import Vector
 from simkit.sensors.environment.point_velocity import point_velocity
-from simkit.sensors.noise import Noise, NoiseModel, read_noise
-
-TYPE = "ros_gz_interfaces/msg/Altimeter"
+from simkit.sensors.noise import NoiseModel, read_noise
+from simkit.sensors.vector_sensor import VectorSensor
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,15 +24,7 @@ class AltimeterOptions:
     velocity: NoiseModel
 
 
-@dataclass(frozen=True, slots=True)
-class Climb:
-    """Height above the reference [m] and its rate [m/s]."""
-
-    position: float
-    velocity: float
-
-
-class Altimeter(Sensor):
+class Altimeter(VectorSensor):
     """`altimeter`: height and rate of climb of the sensor's own origin, along the world's z.
 
     The reference is the height [m] of the sensor when it came into the world, at the load or the spawn. Nothing changes
@@ -42,8 +33,8 @@ class Altimeter(Sensor):
 
     kinds = ("altimeter",)
     example = "<altimeter/>"
+    product, message_type = "altimeter", "ros_gz_interfaces/msg/Altimeter"
     options: AltimeterOptions
-    noise: Noise
     _reference: float | None = None
 
     def read_options(self, params: Params) -> AltimeterOptions:
@@ -72,25 +63,12 @@ class Altimeter(Sensor):
         assert self._reference is not None
         return self._reference
 
-    def products(self) -> dict[str, Product]:
-        return {"altimeter": Product(TYPE, self._message_of)}
-
-    def default_topics(self) -> dict[str, str]:
-        return {"altimeter": self._default_topic("altimeter")}
-
-    def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> Climb:
+    def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> Vector:
+        """Height above the reference [m] and its rate [m/s]."""
         body = self._body
         lever = data.xmat[body].reshape(3, 3) @ self._offset_position
         velocity = point_velocity(model, data, body, lever)
-        return Climb(float(data.xpos[body][2] + lever[2]) - self.reference, float(velocity[2]))
+        return np.array((data.xpos[body][2] + lever[2] - self.reference, velocity[2]))
 
-    def perturb(self, reading: Climb, index: int) -> Climb:
-        if self.noise.is_silent:
-            return reading
-        position, velocity = self.noise.apply(np.array((reading.position, reading.velocity)), index).tolist()
-        return Climb(position, velocity)
-
-    def _message_of(self, reading: Climb, time_ns: int) -> msgs.Altimeter:
-        header = msgs.header(time_ns, self.frame_id)
-        message: msgs.Altimeter = msgs.type_of(TYPE)(header, reading.position, reading.velocity, self.reference)
-        return message
+    def _message_of(self, reading: Vector, time_ns: int) -> msgs.Altimeter:
+        return msgs.Altimeter(msgs.header(time_ns, self.frame_id), *reading.tolist(), self.reference)

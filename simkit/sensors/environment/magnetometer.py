@@ -11,7 +11,7 @@ from simkit import msgs
 from simkit.params import Params
 from simkit.pose import Vector
 from simkit.scene import SceneWorld
-from simkit.sensors.base import Product, Sensor, report_once
+from simkit.sensors.base import report_once
 from simkit.sensors.environment.geodesy import WorldOnPlanet
 from simkit.sensors.environment.magnetic_field import (
     DEFAULT_DATE,
@@ -22,9 +22,10 @@ from simkit.sensors.environment.magnetic_field import (
     EarthField,
     decimal_year,
 )
-from simkit.sensors.noise import Noise, ThreeAxes, read_axes
+from simkit.sensors.noise import ThreeAxes, read_axes
+from simkit.sensors.vector_sensor import VectorSensor
 
-TYPE = "sensor_msgs/msg/MagneticField"
+_TYPES = "sensor_msgs/msg/MagneticField", "geometry_msgs/msg/Vector3"
 _GAUSS = 1e4  # in a tesla
 _EARTH = "EARTH_WGS84"
 _SYSTEM = "magnetometer-system"
@@ -59,7 +60,7 @@ def _read_year(block: Params) -> float:
     return DEFAULT_DATE
 
 
-class Magnetometer(Sensor):
+class Magnetometer(VectorSensor):
     """`magnetometer`: the world's `<magnetic_field>`, or the Earth's at the place of its `<spherical_coordinates>`.
 
     In tesla, in the sensor's axes. Settings of the world's Magnetometer system that Gazebo has by default (gauss
@@ -69,8 +70,8 @@ class Magnetometer(Sensor):
 
     kinds = ("magnetometer",)
     example = "<magnetometer/>"
+    product, message_type = "magnetometer", _TYPES[0]
     options: MagnetometerOptions
-    noise: Noise
 
     def read_options(self, params: Params) -> MagnetometerOptions:
         block = params.block("magnetometer")
@@ -119,12 +120,6 @@ class Magnetometer(Sensor):
             sine, cosine = np.sin(place.heading), np.cos(place.heading)
             self._to_world = np.array(((sine, cosine, 0.0), (cosine, -sine, 0.0), (0.0, 0.0, -1.0)))
 
-    def products(self) -> dict[str, Product]:
-        return {"magnetometer": Product(TYPE, self._message_of)}
-
-    def default_topics(self) -> dict[str, str]:
-        return {"magnetometer": self._default_topic("magnetometer")}
-
     def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> Vector:
         position, rotation = self._frame_in_world(data)
         field = self._uniform
@@ -133,11 +128,8 @@ class Magnetometer(Sensor):
         seen: Vector = field @ rotation
         return seen
 
-    def perturb(self, reading: Vector, index: int) -> Vector:
-        return reading if self.noise.is_silent else self.noise.apply(reading, index)
-
     def _message_of(self, reading: Vector, time_ns: int) -> msgs.MagneticField:
-        field, vector = msgs.types_of(TYPE, "geometry_msgs/msg/Vector3")
+        field, vector = msgs.types_of(*_TYPES)
         header = msgs.header(time_ns, self.frame_id)
         message: msgs.MagneticField = field(header, vector(*reading.tolist()), self.noise.covariance())
         return message
