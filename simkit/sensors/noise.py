@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from operator import add, mul
 from typing import TYPE_CHECKING
 
@@ -84,6 +84,10 @@ class NoiseModel:
         return replace(self, dynamic_bias_stddev=dynamic, precision=precision)
 
 
+_NUMBERS = tuple(field.name for field in fields(NoiseModel) if field.name != "is_quantized")
+_SIGNED = ("mean", "bias_mean")
+_UNBOUNDED = ("dynamic_bias_correlation_time", "precision", "correlation_time")
+
 NO_NOISE = NoiseModel()
 ThreeAxes = tuple[NoiseModel, NoiseModel, NoiseModel]
 
@@ -110,20 +114,11 @@ def read_noise(owner: Params, default: str = "none") -> NoiseModel:
             params.diagnostics.warning("SK-SENSOR-020", "<noise> without a type is none", params.where, hint)
         params.mark_all_read()
         return NO_NOISE
-    model = NoiseModel(
-        mean=params.number("mean", 0.0, minimum=-LARGEST, maximum=LARGEST),
-        stddev=params.number("stddev", 0.0, minimum=0, maximum=LARGEST),
-        bias_mean=params.number("bias_mean", 0.0, minimum=-LARGEST, maximum=LARGEST),
-        bias_stddev=params.number("bias_stddev", 0.0, minimum=0, maximum=LARGEST),
-        dynamic_bias_stddev=params.number("dynamic_bias_stddev", 0.0, minimum=0, maximum=LARGEST),
-        dynamic_bias_correlation_time=params.number("dynamic_bias_correlation_time", 0.0, minimum=0),
-        precision=params.number("precision", 0.0, minimum=0),
-        noise_density=params.number("noise_density", 0.0, minimum=0, maximum=LARGEST),
-        random_walk=params.number("random_walk", 0.0, minimum=0, maximum=LARGEST),
-        bias_instability=params.number("bias_instability", 0.0, minimum=0, maximum=LARGEST),
-        correlation_time=params.number("correlation_time", 0.0, minimum=0),
-        is_quantized=kind == "gaussian_quantized",
-    )
+    values = {}
+    for name in _NUMBERS:
+        lowest = -LARGEST if name in _SIGNED else 0
+        values[name] = params.number(name, 0.0, minimum=lowest, maximum=None if name in _UNBOUNDED else LARGEST)
+    model = NoiseModel(**values, is_quantized=kind == "gaussian_quantized")
     return _prefer_data_sheet(model, params) if in_our_words else model
 
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import Final
 
 from simkit.diagnostics import Diagnostics
@@ -154,7 +153,7 @@ def _read_tracking(tracking: Params, far: float) -> tuple[Mapping[str, TrackingM
                 message = f"found a layer from {near:g} to {end:g}, allowed is near < far ≤ the maximum range {far:g}"
                 bounds.error("SK-PARAM-002", message)
             layer = (near, end, mode.integer("bins", layer[2], minimum=1))
-    return MappingProxyType(modes), layer
+    return modes, layer
 
 
 def _read_tag(params: Params) -> None:
@@ -163,15 +162,13 @@ def _read_tag(params: Params) -> None:
         params.child(name)
 
 
-UNSIMULATED_READERS: Final[Mapping[str, Callable[[Params], object]]] = MappingProxyType(
-    {
-        "rfid": _read_tag,
-        "rfidtag": _read_tag,
-        "wireless_transmitter": read_transceiver,
-        "wireless_receiver": read_transceiver,
-        "dvl": read_dvl,
-    }
-)
+UNSIMULATED_READERS: Final[Mapping[str, Callable[[Params], object]]] = {
+    "rfid": _read_tag,
+    "rfidtag": _read_tag,
+    "wireless_transmitter": read_transceiver,
+    "wireless_receiver": read_transceiver,
+    "dvl": read_dvl,
+}
 """Reader of each kind's own block."""
 
 

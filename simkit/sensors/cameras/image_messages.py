@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from types import MappingProxyType
 
 import numpy as np
 import numpy.typing as npt
@@ -14,17 +13,15 @@ from simkit.sensors.cameras.camera_model import CameraModel
 
 IMAGE_TYPE = "sensor_msgs/msg/Image"
 
-ENCODINGS: Mapping[str, str] = MappingProxyType(
-    {
-        "R8G8B8": "rgb8", "RGB_INT8": "rgb8", "B8G8R8": "bgr8", "BGR_INT8": "bgr8",
-        "L8": "mono8", "L_INT8": "mono8", "L16": "mono16", "L_INT16": "mono16", "L_UINT16": "mono16",
-        "RGBA_INT8": "rgba8", "BGRA_INT8": "bgra8",
-        "R16G16B16": "rgb16", "RGB_INT16": "rgb16", "BGR_INT16": "bgr16",
-        "R_FLOAT32": "32FC1", "RGB_FLOAT32": "32FC3",
-        "BAYER_RGGB8": "bayer_rggb8", "BAYER_BGGR8": "bayer_bggr8",
-        "BAYER_GBRG8": "bayer_gbrg8", "BAYER_GRBG8": "bayer_grbg8",
-    }
-)  # fmt: skip
+ENCODINGS: Mapping[str, str] = {
+    "R8G8B8": "rgb8", "RGB_INT8": "rgb8", "B8G8R8": "bgr8", "BGR_INT8": "bgr8",
+    "L8": "mono8", "L_INT8": "mono8", "L16": "mono16", "L_INT16": "mono16", "L_UINT16": "mono16",
+    "RGBA_INT8": "rgba8", "BGRA_INT8": "bgra8",
+    "R16G16B16": "rgb16", "RGB_INT16": "rgb16", "BGR_INT16": "bgr16",
+    "R_FLOAT32": "32FC1", "RGB_FLOAT32": "32FC3",
+    "BAYER_RGGB8": "bayer_rggb8", "BAYER_BGGR8": "bayer_bggr8",
+    "BAYER_GBRG8": "bayer_gbrg8", "BAYER_GRBG8": "bayer_grbg8",
+}  # fmt: skip
 """SDF's image formats (sdformat, Camera.cc, and Classic's spellings) and what ROS calls them."""
 
 WITHOUT_ENCODING = ("R_FLOAT16", "RGB_FLOAT16", "RGB_INT32", "BGR_INT32")
@@ -99,13 +96,11 @@ def _bayer_mosaic(colours: npt.NDArray[np.uint8], encoding: str) -> npt.NDArray[
     return out
 
 
-_PIXELS: Mapping[str, tuple[str, int]] = MappingProxyType(
-    {
-        "rgb8": ("u1", 3), "bgr8": ("u1", 3), "rgba8": ("u1", 4), "bgra8": ("u1", 4), "mono8": ("u1", 1),
-        "8UC1": ("u1", 1), "mono16": ("<u2", 1), "16UC1": ("<u2", 1), "rgb16": ("<u2", 3), "bgr16": ("<u2", 3),
-        "32FC1": ("<f4", 1), "32FC3": ("<f4", 3),
-    }
-)  # fmt: skip
+_PIXELS: Mapping[str, tuple[str, int]] = {
+    "rgb8": ("u1", 3), "bgr8": ("u1", 3), "rgba8": ("u1", 4), "bgra8": ("u1", 4), "mono8": ("u1", 1),
+    "8UC1": ("u1", 1), "mono16": ("<u2", 1), "16UC1": ("<u2", 1), "rgb16": ("<u2", 3), "bgr16": ("<u2", 3),
+    "32FC1": ("<f4", 1), "32FC3": ("<f4", 3),
+}  # fmt: skip
 
 
 def pixels_of(message: msgs.Image) -> Pixels:

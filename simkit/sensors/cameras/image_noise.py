@@ -1,10 +1,11 @@
-"""Gaussian noise on pictures: fresh for every pixel of every frame, by 16-bit random words and a table."""
+"""Readings of cameras, and Gaussian noise fresh for every pixel of every frame, by random words and a table."""
 
 from __future__ import annotations
 
 import functools
 import threading
 from collections.abc import Iterator
+from dataclasses import dataclass
 from statistics import NormalDist
 from typing import Any
 
@@ -14,6 +15,29 @@ import numpy.typing as npt
 from simkit.runtime.engine.random_streams import RandomStreams
 from simkit.sensors.cameras.array_pool import AnyArray, ArrayPool
 from simkit.sensors.noise import NoiseModel
+
+
+@dataclass(frozen=True)
+class CameraReading:
+    """Colours (h, w, 3), or brightness (h, w); depths (h, w) along the optical axis [m], None for a plain camera."""
+
+    colours: npt.NDArray[np.uint8]
+    depths: npt.NDArray[np.float32] | None
+
+
+class NoisyCameraReading:
+    """Colours with noise, drawn when they are first asked for."""
+
+    def __init__(self, picture: CameraReading, noise: ImageNoise, index: int) -> None:
+        self._picture, self._noise, self._index = picture, noise, index
+        self._colours: npt.NDArray[np.uint8] | None = None
+
+    @property
+    def colours(self) -> npt.NDArray[np.uint8]:
+        if self._colours is None:
+            self._colours = self._noise.on_colours(self._picture.colours, self._index)
+        return self._colours
+
 
 _WORDS = 1 << 16
 _LONGEST = 1e30  # [m] of a depth's noise, which has 32 bits

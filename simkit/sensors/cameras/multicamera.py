@@ -22,10 +22,9 @@ from simkit.sensors.cameras import image_messages
 from simkit.sensors.cameras.array_pool import ArrayPool
 from simkit.sensors.cameras.camera_model import CameraModel
 from simkit.sensors.cameras.camera_options import CameraOptions, read_camera
-from simkit.sensors.cameras.camera_reading import CameraReading, NoisyCameraReading
 from simkit.sensors.cameras.image_distortion import ImageDistorter
 from simkit.sensors.cameras.image_messages import CameraInfoMaker
-from simkit.sensors.cameras.image_noise import ImageNoise
+from simkit.sensors.cameras.image_noise import CameraReading, ImageNoise, NoisyCameraReading
 from simkit.sensors.cameras.rendered_camera import RenderedCamera
 from simkit.sensors.cameras.rendering.renderer import renderer_of
 from simkit.sensors.cameras.rendering.view import Film, Shot

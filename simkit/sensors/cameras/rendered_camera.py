@@ -20,15 +20,13 @@ from simkit.pose import IDENTITY, Pose
 from simkit.runtime import Simulation
 from simkit.scene import SceneSensor
 from simkit.sensors.base import Product
-from simkit.sensors.cameras import camera_trigger, image_messages
+from simkit.sensors.cameras import image_messages
 from simkit.sensors.cameras.array_pool import ArrayPool
 from simkit.sensors.cameras.camera_model import CameraModel, read_camera_model
 from simkit.sensors.cameras.camera_options import CameraOptions, read_camera
-from simkit.sensors.cameras.camera_reading import CameraReading, NoisyCameraReading
-from simkit.sensors.cameras.camera_trigger import Trigger
 from simkit.sensors.cameras.image_distortion import ImageDistorter
 from simkit.sensors.cameras.image_messages import CameraInfoMaker
-from simkit.sensors.cameras.image_noise import ImageNoise
+from simkit.sensors.cameras.image_noise import CameraReading, ImageNoise, NoisyCameraReading
 from simkit.sensors.cameras.rendered_sampler import RenderedSampler
 from simkit.sensors.cameras.rendering import render_thread
 from simkit.sensors.cameras.rendering.renderer import renderer_of
@@ -37,6 +35,33 @@ from simkit.sensors.cameras.saved_images import ImageSaver
 from simkit.sensors.sample import Memory, Reading
 from simkit.sensors.topics_and_frames import OPTICAL_POSE, sibling_topic
 from simkit.sensors.visibility_mask import hidden_geoms
+
+TRIGGER_TYPES = ("std_msgs/msg/Bool", "std_msgs/msg/Empty")
+
+
+class Trigger:
+    """Messages that each call for a picture at the next due time.
+
+    Attributes:
+        pending: pictures that are called for.
+        counts: whether messages that come in before a due time give a picture each, at that and the next ones; else
+            they give one.
+    """
+
+    def __init__(self) -> None:
+        self.pending = 0
+        self.counts = False
+
+    def on_message(self, _: object) -> None:
+        """Call for a picture, whatever the message says."""
+        self.pending = self.pending + 1 if self.counts else 1
+
+    def take(self) -> bool:
+        """Whether a picture is called for now, which is one less then."""
+        if self.pending == 0:
+            return False
+        self.pending -= 1
+        return True
 
 
 class RenderedCamera(RenderedSampler):
@@ -132,7 +157,7 @@ class RenderedCamera(RenderedSampler):
         given = self.options.trigger_topic
         return valid_topic(given or (self.scene.topic or self.topic) + "/trigger")
 
-    def trigger_on(self, topic: str, types: Sequence[str] = camera_trigger.TRIGGER_TYPES, counts: bool = False) -> None:
+    def trigger_on(self, topic: str, types: Sequence[str] = TRIGGER_TYPES, counts: bool = False) -> None:
         """Takes pictures only when messages call for them, on this topic too where there is one already.
 
         Args:
@@ -143,7 +168,7 @@ class RenderedCamera(RenderedSampler):
         if self._trigger is None:
             self._trigger = Trigger()
         self._trigger.counts = counts
-        self._trigger.listen(self.sim.communication.bus, topic, types)
+        self.sim.communication.bus.listen(topic, types, self._trigger.on_message)
 
     def accepts(self, tick: int) -> bool:
         return self._trigger is None or self._trigger.take()

@@ -19,11 +19,10 @@ from simkit.scene import SceneSensor
 from simkit.sensors.base import Product
 from simkit.sensors.cameras import depth_messages, image_messages
 from simkit.sensors.cameras.array_pool import ArrayPool
-from simkit.sensors.cameras.camera_reading import CameraReading, NoisyCameraReading
 from simkit.sensors.cameras.depth_messages import DepthClouds
 from simkit.sensors.cameras.depth_range import DepthRange, clip_planes
 from simkit.sensors.cameras.disparity_noise import DisparityNoise, read_disparity_noise
-from simkit.sensors.cameras.image_noise import ImageNoise
+from simkit.sensors.cameras.image_noise import CameraReading, ImageNoise, NoisyCameraReading
 from simkit.sensors.cameras.rendered_camera import RenderedCamera
 from simkit.sensors.cameras.rendering.render_quality import Appearance
 from simkit.sensors.cameras.rendering.view import Colours, Depths, Film, Shot, View

@@ -8,8 +8,8 @@ from simkit.params import Params
 from simkit.runtime import Simulation
 from simkit.sensors.cameras import image_messages
 from simkit.sensors.cameras.camera import Camera
-from simkit.sensors.cameras.camera_reading import CameraReading
 from simkit.sensors.cameras.cube_map import CubeMap
+from simkit.sensors.cameras.image_noise import CameraReading
 from simkit.sensors.cameras.rendering.view import Film, Shot
 from simkit.sensors.cameras.wide_angle_lens import WideAngleModel, read_wide_angle_model
 

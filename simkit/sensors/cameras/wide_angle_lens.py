@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from types import MappingProxyType
 from typing import Final
 
 import numpy as np
@@ -72,18 +71,16 @@ class Lens:
         return replace(self, f=1.0 / float(unit.radius(np.array(hfov / 2))))
 
 
-LENSES: Final[Mapping[str, Lens]] = MappingProxyType(
-    {
-        name: Lens(name, c, c, 0.0, 1.0, function)
-        for name, c, function in (
-            ("gnomonical", 1.0, "tan"),
-            ("stereographic", 2.0, "tan"),
-            ("equidistant", 1.0, "id"),
-            ("equisolid_angle", 2.0, "sin"),
-            ("orthographic", 1.0, "sin"),
-        )
-    }
-)
+LENSES: Final[Mapping[str, Lens]] = {
+    name: Lens(name, c, c, 0.0, 1.0, function)
+    for name, c, function in (
+        ("gnomonical", 1.0, "tan"),
+        ("stereographic", 2.0, "tan"),
+        ("equidistant", 1.0, "id"),
+        ("equisolid_angle", 2.0, "sin"),
+        ("orthographic", 1.0, "sin"),
+    )
+}
 """Lenses by SDF's names, unscaled."""
 
 

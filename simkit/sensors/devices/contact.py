@@ -19,8 +19,7 @@ from simkit.runtime.contact.collision_contacts import CollisionTable, collision_
 from simkit.scene import SceneModel, SceneSensor, SceneWorld
 from simkit.sensors.base import Product, Sensor
 from simkit.sensors.devices.collision_names import find_collision
-from simkit.sensors.devices.contact_messages import contacts_message, states_message
-from simkit.sensors.devices.contact_reading import ContactReading, RawContacts
+from simkit.sensors.devices.contact_reading import ContactReading, RawContacts, contacts_message, states_message
 from simkit.sensors.topics_and_frames import check_topic
 
 CONTACTS: Final = "ros_gz_interfaces/msg/Contacts"

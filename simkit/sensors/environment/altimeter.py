@@ -71,4 +71,5 @@ class Altimeter(VectorSensor):
         return np.array((data.xpos[body][2] + lever[2] - self.reference, velocity[2]))
 
     def _message_of(self, reading: Vector, time_ns: int) -> msgs.Altimeter:
-        return msgs.Altimeter(msgs.header(time_ns, self.frame_id), *reading.tolist(), self.reference)
+        height, rate = reading.tolist()
+        return msgs.Altimeter(msgs.header(time_ns, self.frame_id), height, rate, self.reference)

@@ -18,8 +18,7 @@ import numpy.typing as npt
 from simkit.pose import Vector
 from simkit.sensors.rays.geom_types import BOX, HFIELD, MESH, Ids
 from simkit.sensors.rays.numpy_rays import rotate_vectors
-from simkit.sensors.rays.ray_bundle import RayBundle
-from simkit.sensors.rays.ray_culling import reaches_between_cones
+from simkit.sensors.rays.ray_culling import RayBundle, reaches_between_cones
 
 Faces = npt.NDArray[np.int32]
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Self
 
 import numpy as np
 import numpy.typing as npt
@@ -12,8 +11,9 @@ import numpy.typing as npt
 from simkit import msgs
 from simkit.sensors.base import Product
 from simkit.sensors.point_cloud_messages import LEGACY_CLOUD_TYPE, legacy_point_cloud, point_cloud
-from simkit.sensors.rays.lidar_batch import form_lidar_batches
+from simkit.sensors.rays.lidar_batch import LidarBatch, lidar_batch_key
 from simkit.sensors.rays.lidar_measurement import MAX_RANGE, LidarMeasurement, LidarReading
+from simkit.sensors.sensor_batch import form_batches
 
 SCAN, CLOUD = "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/PointCloud2"
 RANGE = "sensor_msgs/msg/Range"
@@ -43,9 +43,9 @@ class Lidar(LidarMeasurement):
     field_of_view: float | None = None
 
     @classmethod
-    def make_batches(cls, sensors: Sequence[Self]) -> None:
+    def make_batches(cls, sensors: Sequence[LidarMeasurement]) -> None:
         if cls is Lidar:
-            form_lidar_batches(sensors)
+            form_batches(sensors, LidarBatch, lidar_batch_key)
 
     def products(self) -> dict[str, Product]:
         return {

@@ -14,7 +14,7 @@ from simkit.sensors.rays.lidar_measurement import LidarMeasurement, LidarReading
 from simkit.sensors.rays.numpy_rays import Shapes, cast_on_shapes, in_frame
 from simkit.sensors.rays.ray_culling import geom_half_sizes, reaches_between_cones
 from simkit.sensors.rays.ray_fan import RayFan
-from simkit.sensors.sensor_batch import MIN_MEMBERS, SensorBatch, form_batches
+from simkit.sensors.sensor_batch import MIN_MEMBERS, SensorBatch
 
 _CHUNK = 1 << 16  # pairs of fan and shape that are looked at together
 _MARGIN = 1e-9
@@ -123,12 +123,8 @@ def fan_batch_key(fan: RayFan) -> tuple[object, ...] | None:
     return fan.directions.tobytes(), fan.reach, id(fan._targets), fan._bounds
 
 
-def form_lidar_batches(lidars: Sequence[LidarMeasurement]) -> None:
-    """Make batches of lidars that are alike."""
-    form_batches(lidars, LidarBatch, _batch_key)
-
-
-def _batch_key(lidar: LidarMeasurement) -> Hashable | None:
+def lidar_batch_key(lidar: LidarMeasurement) -> Hashable | None:
+    """What lidars have in common that may be measured together; None for one that is measured alone."""
     common = fan_batch_key(lidar._fan)
     return None if common is None else (*common, lidar._start, lidar.sees_visuals)
 

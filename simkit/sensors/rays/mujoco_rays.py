@@ -11,8 +11,15 @@ import numpy.typing as npt
 
 from simkit.pose import Pose, Vector
 from simkit.sensors.rays.geom_types import Ids
-from simkit.sensors.rays.ray_bundle import RayBundle, RayHits, reaches_plane
-from simkit.sensors.rays.ray_culling import ENDLESS, can_meet, geom_half_sizes, reaches_between_cones
+from simkit.sensors.rays.ray_culling import (
+    ENDLESS,
+    RayBundle,
+    RayHits,
+    can_meet,
+    geom_half_sizes,
+    reaches_between_cones,
+    reaches_plane,
+)
 
 _SEEN, _UNSEEN = 0, 1  # geom groups of the copy
 _INFINITE = np.array(np.inf)

@@ -1,4 +1,4 @@
-"""Geoms that a fan of rays can meet: a geom that stays above or below it at all joint positions is left out.
+"""Rays from one point, and geoms that they can meet: one that stays above or below all of them is left out.
 
 A sensor's own robot is tied to it by joints. What no joint moves against the sensor keeps its place in the fan's frame;
 what hinges and ball joints move stays within a sphere around the first of them, whose radius grows along the chain.
@@ -7,6 +7,7 @@ what hinges and ball joints move stays within a sphere around the first of them,
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import mujoco
@@ -14,7 +15,50 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.pose import Pose, Vector
-from simkit.sensors.rays.ray_bundle import RayBundle
+
+
+@dataclass(slots=True)  # not frozen: that would cost a microsecond for each cast
+class RayBundle:
+    """Rays from one point.
+
+    Attributes:
+        origin: in the world, shape (3,) [m].
+        directions: in the world, unit vectors, shape (n, 3).
+        start: how far from the origin they begin [m].
+        reach: what is farther does not count [m].
+        limit: its bits (see `finite_limit_bits`).
+        axis: unit vector in the world, shape (3,).
+        lowest, highest: angles between which the rays leave the plane across the axis [rad].
+    """
+
+    origin: Vector
+    directions: Vector
+    start: float
+    reach: float
+    limit: npt.NDArray[np.uint64]
+    axis: Vector
+    lowest: float
+    highest: float
+
+
+RayHits = tuple[Vector, npt.NDArray[np.int32], npt.NDArray[np.bool_]]
+"""Distances [m], infinite where nothing is hit; geoms, -1 for nothing; and where the distances are infinite."""
+
+
+def reaches_plane(rays: RayBundle, point: Sequence[float], normal: Sequence[float]) -> bool:
+    """Whether a ray may come down on a plane through a point within the reach; never wrongly False."""
+    (x, y, z), (ax, ay, az), (nx, ny, nz) = rays.origin.tolist(), rays.axis.tolist(), normal
+    height = nx * (x - point[0]) + ny * (y - point[1]) + nz * (z - point[2])
+    steepest = max(abs(rays.lowest), abs(rays.highest))
+    tilt = math.acos(min(1.0, abs(nx * ax + ny * ay + nz * az))) + steepest
+    fall = rays.reach * math.sin(tilt) if tilt < math.pi / 2 else rays.reach
+    return bool(0.0 <= height <= fall * (1 + 1e-9) + 1e-9)
+
+
+def finite_limit_bits(reach: float) -> npt.NDArray[np.uint64]:
+    """The bits of the longest finite distance that counts, for comparing many at once."""
+    return np.array(min(reach, float(np.finfo(np.float64).max))).view(np.uint64)
+
 
 _ROTARY_JOINTS = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_BALL))
 _MARGIN = 1e-9  # [m]

@@ -33,8 +33,7 @@ from simkit.sensors.rays.numpy_rays import (
     in_frame,
     rotate_vectors,
 )
-from simkit.sensors.rays.ray_bundle import RayBundle, finite_limit_bits, reaches_plane
-from simkit.sensors.rays.ray_culling import NearbyGeoms, can_meet
+from simkit.sensors.rays.ray_culling import NearbyGeoms, RayBundle, can_meet, finite_limit_bits, reaches_plane
 from simkit.sensors.rays.ray_targets import MAX_MOVING_BODIES, RayTargets
 
 MANY_RAYS: Final = 2048

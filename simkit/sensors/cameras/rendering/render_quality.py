@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import Final
 
 from simkit.scene import SceneWorld, Surroundings
@@ -31,13 +30,11 @@ class Quality:
         return " and ".join(parts)
 
 
-QUALITIES: Final[Mapping[str, Quality]] = MappingProxyType(
-    {
-        "fast": Quality("fast", 0, 0, 28),
-        "gazebo": Quality("gazebo", 4, 2048, 32),
-        "high": Quality("high", 8, 4096, 64),
-    }
-)
+QUALITIES: Final[Mapping[str, Quality]] = {
+    "fast": Quality("fast", 0, 0, 28),
+    "gazebo": Quality("gazebo", 4, 2048, 32),
+    "high": Quality("high", 8, 4096, 64),
+}
 
 
 @dataclass(frozen=True, slots=True)
