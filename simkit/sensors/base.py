@@ -9,6 +9,7 @@ from itertools import chain
 from typing import ClassVar, TypeVar
 
 import mujoco
+import numpy as np
 
 from simkit import msgs
 from simkit.compiler import Compiled, SpecBuilder
@@ -32,6 +33,7 @@ __all__ = ["Product", "Sample", "Sensor"]
 
 _COMMON_ELEMENTS = ("visualize", "pose", "update_rate", "topic")
 _RATE_TYPE = "std_msgs/msg/Float64"
+_BODY = int(mujoco.mjtObj.mjOBJ_XBODY)
 
 AnyNoiseProcess = TypeVar("AnyNoiseProcess", bound=NoiseProcess)
 
@@ -123,21 +125,24 @@ class Sensor(Sampler):
     @property
     def truth(self) -> Message:
         """The newest message as it would be without noise, or None before the first."""
-        sample = self._sample
+        sample = self._finished_sample()
         if sample is None:
             return None
-        self._finish_sample(sample)
         if sample.truth_message is None:
             sample.truth_message = self._make_message(sample, next(iter(self._topics)), sample.truth)
         return sample.truth_message
 
+    def _finished_sample(self) -> Sample | None:
+        """The newest sample, with its readings, or None before the first."""
+        sample = self._sample
+        if sample is not None:
+            self._finish_sample(sample)
+        return sample
+
     def _true_reading(self) -> Reading | None:
         """The newest reading, without noise, or None before the first."""
-        sample = self._sample
-        if sample is None:
-            return None
-        self._finish_sample(sample)
-        return sample.truth
+        sample = self._finished_sample()
+        return None if sample is None else sample.truth
 
     @property
     def pose(self) -> Pose:
@@ -302,6 +307,14 @@ class Sensor(Sampler):
         """Return the position (3,) [m] and the rotation matrix (3, 3) of the sensor in the world."""
         rotation = data.xmat[self._body].reshape(3, 3)
         return data.xpos[self._body] + rotation @ self._offset_position, rotation @ self._offset_rotation
+
+    def _velocity_in_world(self, model: mujoco.MjModel, data: mujoco.MjData, lever: Vector) -> Vector:
+        """Return the velocity [m/s] in the world of the point at `lever` (world axes, [m]) from the body's origin."""
+        motion = np.empty(6)
+        mujoco.mj_objectVelocity(model, data, _BODY, self._body, motion, 0)
+        wx, wy, wz, vx, vy, vz = motion.tolist()
+        x, y, z = lever.tolist()
+        return np.array((vx + wy * z - wz * y, vy + wz * x - wx * z, vz + wx * y - wy * x))
 
     def _find_link(self, names: NameMap) -> str:
         """Return the link that the sensor is on; for a joint's sensor the joint's child link."""

@@ -173,12 +173,12 @@ class RgbdCamera(RenderedCamera):
     @property
     def depth(self) -> Depths | None:
         """Depths along the optical axis of the newest picture [m], shape (h, w), or None before the first."""
-        return _locked(self._newest_depths(self._noisy_reading()))
+        return _locked_depths(self._noisy_reading())
 
     @property
     def true_depth(self) -> Depths | None:
         """The same without noise."""
-        return _locked(self._newest_depths(self._true_reading()))
+        return _locked_depths(self._true_reading())
 
     @property
     def points(self) -> npt.NDArray[np.float32] | None:
@@ -189,14 +189,8 @@ class RgbdCamera(RenderedCamera):
     def _noisy_reading(self) -> Reading | None:
         if self._failure is not None:
             raise self._failure
-        sample = self._sample
-        if sample is None:
-            return None
-        self._finish_sample(sample)
-        return sample.noisy
-
-    def _newest_depths(self, reading: Reading | None) -> Depths | None:
-        return None if reading is None else reading.depths
+        sample = self._finished_sample()
+        return None if sample is None else sample.noisy
 
     def perturb(self, reading: CameraReading, index: int) -> object:
         if self._noise.is_silent and (self._disparity is None or self._disparity.is_silent):
@@ -273,10 +267,10 @@ class RgbdCamera(RenderedCamera):
         return 2 * math.acos(min(abs(float(pose.quaternion[0])), 1.0))
 
 
-def _locked(array: Depths | None) -> Depths | None:
-    """A view that cannot be written to: messages share the memory."""
-    if array is None:
+def _locked_depths(reading: Reading | None) -> Depths | None:
+    """A view of a reading's depths that cannot be written to: messages share the memory."""
+    if reading is None:
         return None
-    view = array.view()
+    view: Depths = reading.depths.view()
     view.flags.writeable = False
     return view

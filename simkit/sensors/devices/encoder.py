@@ -185,8 +185,7 @@ class Encoder(Sensor):
         header = msgs.header(time_ns, self.frame_id)
         # each message its own arrays: who receives one may keep or change it
         values = reading.position.copy(), reading.velocity.copy(), np.zeros(0)
-        message: msgs.JointState = msgs.type_of(TYPE)(header, list(self._names), *values)
-        return message
+        return msgs.JointState(header, list(self._names), *values)
 
 
 class CountHistory:

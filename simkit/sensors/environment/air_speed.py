@@ -11,7 +11,6 @@ from simkit import msgs
 from simkit.params import Params
 from simkit.pose import Vector
 from simkit.sensors.environment.air_sensor import AirSensor
-from simkit.sensors.environment.point_velocity import point_velocity
 from simkit.sensors.noise import NoiseModel, read_noise
 
 _HECTO = 100.0  # Gazebo adds the noise to hectopascals
@@ -52,9 +51,8 @@ class AirSpeed(AirSensor):
 
     def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> Vector:
         """Dynamic pressure [Pa], negative where the air comes from behind, and temperature [K]."""
-        body = self._body
-        rotation = data.xmat[body].reshape(3, 3)
-        velocity = point_velocity(model, data, body, rotation @ self._offset_position)
+        rotation = data.xmat[self._body].reshape(3, 3)
+        velocity = self._velocity_in_world(model, data, rotation @ self._offset_position)
         speed = float((velocity - self._wind(data)) @ (rotation @ self._offset_rotation[:, 0]))
         air = self._column.at(self._height(data))
         return np.array((0.5 * air.density * speed * abs(speed), air.temperature))

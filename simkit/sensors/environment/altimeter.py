@@ -11,7 +11,6 @@ from simkit import msgs
 from simkit.compiler import Compiled
 from simkit.params import Params
 from simkit.pose import Vector
-from simkit.sensors.environment.point_velocity import point_velocity
 from simkit.sensors.noise import NoiseModel, read_noise
 from simkit.sensors.vector_sensor import VectorSensor
 
@@ -67,7 +66,7 @@ class Altimeter(VectorSensor):
         """Height above the reference [m] and its rate [m/s]."""
         body = self._body
         lever = data.xmat[body].reshape(3, 3) @ self._offset_position
-        velocity = point_velocity(model, data, body, lever)
+        velocity = self._velocity_in_world(model, data, lever)
         return np.array((data.xpos[body][2] + lever[2] - self.reference, velocity[2]))
 
     def _message_of(self, reading: Vector, time_ns: int) -> msgs.Altimeter:

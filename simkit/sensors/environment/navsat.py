@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import Final
 
 import mujoco
@@ -15,7 +15,6 @@ from simkit.pose import Vector
 from simkit.scene import SphericalCoordinates
 from simkit.sensors.base import Product, Sensor
 from simkit.sensors.environment.geodesy import WorldOnPlanet, east_north_up
-from simkit.sensors.environment.point_velocity import point_velocity
 from simkit.sensors.noise import Noise, NoiseModel, read_noise
 
 FIX, VELOCITY, GPS = "sensor_msgs/msg/NavSatFix", "geometry_msgs/msg/Vector3Stamped", "gps_msgs/msg/GPSFix"
@@ -70,25 +69,16 @@ class NavSat(Sensor):
 
     def read_options(self, params: Params) -> NavSatOptions:
         block = params.child("navsat") or params.block("gps")
-        position, velocity = block.block("position_sensing"), block.block("velocity_sensing")
-        return NavSatOptions(
-            horizontal_position=read_noise(position.block("horizontal")),
-            vertical_position=read_noise(position.block("vertical")),
-            horizontal_velocity=read_noise(velocity.block("horizontal")),
-            vertical_velocity=read_noise(velocity.block("vertical")),
-        )
+        noises = {
+            f"{axis}_{quantity}": read_noise(block.block(f"{quantity}_sensing").block(axis))
+            for quantity in ("position", "velocity")
+            for axis in ("horizontal", "vertical")
+        }
+        return NavSatOptions(**noises)
 
     def describe(self) -> dict[str, object]:
         """Standard deviations [m, m/s]."""
-        options = self.options
-        return {
-            "navsat": {
-                "horizontal_position_stddev": options.horizontal_position.stddev,
-                "vertical_position_stddev": options.vertical_position.stddev,
-                "horizontal_velocity_stddev": options.horizontal_velocity.stddev,
-                "vertical_velocity_stddev": options.vertical_velocity.stddev,
-            }
-        }
+        return {"navsat": {f"{f.name}_stddev": getattr(self.options, f.name).stddev for f in fields(NavSatOptions)}}
 
     def prepare(self) -> None:
         options, place = self.options, self.sim.world.spherical_coordinates
@@ -144,7 +134,7 @@ class NavSat(Sensor):
         body = self._body
         lever = data.xmat[body].reshape(3, 3) @ self._offset_position
         position = data.xpos[body] + lever
-        velocity = point_velocity(model, data, body, lever)
+        velocity = self._velocity_in_world(model, data, lever)
         latitude, longitude, altitude = place.geodetic(position)
         if not self._quirks:
             velocity = (place.axes @ velocity) @ east_north_up(latitude, longitude)
@@ -185,23 +175,20 @@ class NavSat(Sensor):
         return (np.zeros(9), _UNKNOWN) if self._quirks else (self.noise.covariance(), _DIAGONAL)
 
     def _fix_of(self, reading: NavSatReading, time_ns: int) -> msgs.NavSatFix:
-        status = msgs.type_of("sensor_msgs/msg/NavSatStatus")(status=_STATUS_FIX, service=_SERVICE_GPS)
         covariance, kind = self._covariance()
-        message: msgs.NavSatFix = msgs.type_of(FIX)(
+        return msgs.NavSatFix(
             header=msgs.header(time_ns, self.frame_id),
-            status=status,
+            status=msgs.NavSatStatus(_STATUS_FIX, _SERVICE_GPS),
             latitude=math.degrees(reading.latitude),
             longitude=math.degrees(reading.longitude),
             altitude=reading.altitude,
             position_covariance=covariance,
             position_covariance_type=kind,
         )
-        return message
 
     def _velocity_of(self, reading: NavSatReading, time_ns: int) -> msgs.Vector3Stamped:
-        vector = msgs.type_of("geometry_msgs/msg/Vector3")(*reading.velocity.tolist())
-        message: msgs.Vector3Stamped = msgs.type_of(VELOCITY)(msgs.header(time_ns, self.frame_id), vector)
-        return message
+        vector = msgs.Vector3(*reading.velocity.tolist())
+        return msgs.Vector3Stamped(msgs.header(time_ns, self.frame_id), vector)
 
     def _gps_fix_of(self, reading: NavSatReading, time_ns: int) -> msgs.GPSFix:
         east, north, up = reading.velocity.tolist()

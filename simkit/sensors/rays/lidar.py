@@ -11,6 +11,7 @@ import numpy.typing as npt
 from simkit import msgs
 from simkit.sensors.base import Product
 from simkit.sensors.point_cloud_messages import LEGACY_CLOUD_TYPE, legacy_point_cloud, point_cloud
+from simkit.sensors.rays.geom_types import Ids
 from simkit.sensors.rays.lidar_batch import LidarBatch, lidar_batch_key
 from simkit.sensors.rays.lidar_measurement import MAX_RANGE, LidarMeasurement, LidarReading
 from simkit.sensors.sensor_batch import form_batches
@@ -90,8 +91,7 @@ class Lidar(LidarMeasurement):
     def _organised_cloud(self, reading: LidarReading, time_ns: int) -> msgs.PointCloud2:
         """Every ray, layer by layer from the lowest; rays without a reading are not finite."""
         height, width = self.options.vertical.samples, self.options.horizontal.samples
-        points = np.empty(self._fan.count, dtype=_RING_POINT)
-        self._fill(points, reading, slice(None))
+        points = self._points(reading, slice(None), _RING_POINT)
         points["ring"] = np.repeat(np.arange(height, dtype=np.uint16), width)
         dense = bool(np.isfinite(reading.ranges).all())
         return point_cloud(msgs.header(time_ns, self.frame_id), points, height, width, dense)
@@ -99,16 +99,18 @@ class Lidar(LidarMeasurement):
     def _cloud_of_hits(self, reading: LidarReading, time_ns: int) -> msgs.PointCloud2:
         """Only rays with a reading, in one row."""
         hit = np.flatnonzero(np.isfinite(reading.ranges))
-        points = np.empty(len(hit), dtype=_POINT)
-        self._fill(points, reading, hit)
-        return point_cloud(msgs.header(time_ns, self.frame_id), points, 1, len(hit), True)
+        return point_cloud(msgs.header(time_ns, self.frame_id), self._points(reading, hit, _POINT), 1, len(hit), True)
 
-    def _fill(self, points: npt.NDArray[np.void], reading: LidarReading, which: npt.NDArray[np.intp] | slice) -> None:
+    def _points(self, reading: LidarReading, which: Ids | slice, dtype: np.dtype[np.void]) -> npt.NDArray[np.void]:
+        """Points of some rays; what else there is in them is 0."""
+        ranges = reading.ranges[which]
+        points = np.zeros(len(ranges), dtype)
         with np.errstate(invalid="ignore"):
-            places = self._directions[which] * reading.ranges[which, None]
+            places = self._directions[which] * ranges[:, None]
         for axis, name in enumerate("xyz"):
             points[name] = places[:, axis]
         points["intensity"] = np.maximum(reading.intensities[which], self.min_intensity)
+        return points
 
     def _velodyne_cloud(self, reading: LidarReading, time_ns: int) -> msgs.PointCloud2:
         """Points within `cloud_range`, layer by layer from the lowest, or every ray, not a number where it has none."""
@@ -116,8 +118,7 @@ class Lidar(LidarMeasurement):
         low, high = self.cloud_range
         wanted = (reading.ranges > low) & (reading.ranges < high) & (reading.intensities >= self.min_intensity)
         which = np.arange(self._fan.count) if self.keeps_order else np.flatnonzero(wanted)
-        points = np.zeros(len(which), dtype=_WIDE_POINT)
-        self._fill(points, reading, which)
+        points = self._points(reading, which, _WIDE_POINT)
         points["ring"] = which // width
         if not self.keeps_order:
             return point_cloud(msgs.header(time_ns, self.frame_id), points, 1, len(points), True)

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from simkit.pose import Vector
 from simkit.sensors.rays.geom_types import Ids
 from simkit.sensors.rays.lidar_measurement import LidarMeasurement, LidarReading
-from simkit.sensors.rays.numpy_rays import Shapes, cast_on_shapes, in_frame
+from simkit.sensors.rays.numpy_rays import cast_on_shapes
 from simkit.sensors.rays.ray_culling import geom_half_sizes, reaches_between_cones
 from simkit.sensors.rays.ray_fan import RayFan
 from simkit.sensors.sensor_batch import MIN_MEMBERS, SensorBatch
@@ -20,67 +20,71 @@ _CHUNK = 1 << 16  # pairs of fan and shape that are looked at together
 _MARGIN = 1e-9
 
 
-class FanBatch:
-    """Fans of the same directions, reach and targets, each on a robot of its own; to the same bits as one by one.
+def lidar_batch_key(lidar: LidarMeasurement) -> Hashable | None:
+    """What lidars have in common that may be measured together; None for one whose rays are not cast in NumPy."""
+    fan = lidar._fan
+    if fan._by_engine or fan._targets.needs_engine or fan._grid is None:
+        return None
+    common = fan.directions.tobytes(), fan.reach, id(fan._targets), fan._bounds
+    return (*common, lidar._start, lidar.sees_visuals)
 
-    Args:
-        fans: bound, each one `fan_batch_key`.
-    """
 
-    def __init__(self, fans: Sequence[RayFan]) -> None:
-        first = fans[0]
-        self._fans, self._targets, self._count = list(fans), first._targets, first.count
-        model, which = self._targets.model, self._targets.shapes
-        self._which, self._geoms = which, self._targets.geoms[which]
-        self._carriers = self._targets.carriers[which]
-        self._radii, self._halves = model.geom_rbound[self._geoms], geom_half_sizes(model, self._geoms)
+class LidarBatch(SensorBatch[LidarMeasurement]):
+    """Lidars of one make, each on a robot of its own; those that somebody reads cast together."""
 
-    def cast(
-        self, chosen: Sequence[int], data: mujoco.MjData, origins: Vector, rotations: Vector, start: float
-    ) -> None:
-        """Makes `distances`, `hits` and `infinite` of these fans anew.
+    def __init__(self, members: Sequence[LidarMeasurement]) -> None:
+        super().__init__(members)
+        self._start, self._targets = members[0]._start, members[0]._fan._targets
+        self._which = self._targets.shapes
+        self._geoms, self._carriers = self._targets.geoms[self._which], self._targets.carriers[self._which]
+        self._radii = self.model.geom_rbound[self._geoms]
+        self._halves = geom_half_sizes(self.model, self._geoms)
+        self._readings: dict[int, LidarReading] = {}
+
+    def capture_all(self, data: mujoco.MjData) -> None:
+        read = [place for place, lidar in enumerate(self.members) if lidar.is_read_now]
+        self._readings.clear()
+        if len(read) < MIN_MEMBERS:
+            for place in read:
+                self._readings[place] = self.members[place].measure(self.model, data)
+            return
+        places = [self.members[place]._place(data) for place in read]
+        origins, rotations = (np.array(part) for part in zip(*places, strict=True))
+        self._cast([self.members[place]._fan for place in read], data, origins, rotations)
+        for place in read:
+            self._readings[place] = self.members[place].reading_of_cast()
+
+    def captured(self, place: int) -> LidarReading:
+        reading = self._readings.pop(place, None)
+        # somebody has begun to read within this step
+        return self.members[place].measure_now() if reading is None else reading
+
+    def _cast(self, fans: Sequence[RayFan], data: mujoco.MjData, origins: Vector, rotations: Vector) -> None:
+        """Makes `distances`, `hits` and `infinite` of some fans anew, to the same bits as one by one.
 
         Args:
-            chosen: numbers of the fans, k of them.
+            fans: k of them.
             data: with up-to-date places.
             origins: where distances are counted from, shape (k, 3) [m].
             rotations: of the fans' frames, shape (k, 3, 3).
-            start: how far from there the rays begin [m].
         """
-        fans, count = [self._fans[i] for i in chosen], self._count
+        first, start = fans[0], self._start
+        count, directions = first.count, first._fan
+        assert directions is not None
         best, hits = np.full(len(fans) * count, np.inf), np.full(len(fans) * count, -1, dtype=np.int32)
         for i, fan in enumerate(fans):
             mine = slice(i * count, (i + 1) * count)
             fan.distances, fan.hits = best[mine], hits[mine]
-            fan._cast_on_planes_and_triangles(self._targets, data, fan._rays(origins[i], rotations[i], start))
+            fan._cast_on_planes_and_triangles(data, fan._rays(origins[i], rotations[i], start))
         for of, shapes in self._near(fans, data, origins, rotations):
-            self._cast(fans[0], data, origins, rotations, start, of, shapes, best, hits)
+            found = self._targets.shapes_in_frame(
+                data, self._which.take(shapes), origins.take(of, 0), rotations.take(of, 0)
+            )
+            cast_on_shapes(directions, found, first.reach, start, best, hits, of * count)
         for fan in fans:
             # who keeps one scan does not keep those of all
             fan.distances, fan.hits = fan.distances.copy(), fan.hits.copy()
             fan._end()
-
-    def _cast(
-        self,
-        fan: RayFan,
-        data: mujoco.MjData,
-        origins: Vector,
-        rotations: Vector,
-        start: float,
-        of: Ids,
-        shapes: Ids,
-        best: Vector,
-        hits: npt.NDArray[np.int32],
-    ) -> None:
-        """Casts on pairs of fan (`of`) and shape."""
-        model, geoms = self._targets.model, self._geoms.take(shapes)
-        turns = data.geom_xmat.take(geoms, 0).reshape(-1, 3, 3)
-        placed = in_frame(data.geom_xpos.take(geoms, 0), turns, origins.take(of, 0), rotations.take(of, 0))
-        kinds = self._targets.types.take(self._which.take(shapes))
-        sizes, radii = model.geom_size.take(geoms, 0), self._radii.take(shapes)
-        found = Shapes(kinds, sizes, *placed, radii, geoms.astype(np.int32))
-        assert fan._fan is not None
-        cast_on_shapes(fan._fan, found, fan.reach, start, best, hits, of * self._count)
 
     def _near(
         self, fans: Sequence[RayFan], data: mujoco.MjData, origins: Vector, rotations: Vector
@@ -114,43 +118,3 @@ class FanBatch:
             return flat
         side = np.sqrt(np.maximum(square - height * height, 0.0))
         return reaches_between_cones(height, side, radii, lowest, highest)
-
-
-def fan_batch_key(fan: RayFan) -> tuple[object, ...] | None:
-    """What fans have in common that may be cast together; None for one that is not cast in NumPy."""
-    if fan._by_engine or fan._targets.needs_engine or fan._grid is None:
-        return None
-    return fan.directions.tobytes(), fan.reach, id(fan._targets), fan._bounds
-
-
-def lidar_batch_key(lidar: LidarMeasurement) -> Hashable | None:
-    """What lidars have in common that may be measured together; None for one that is measured alone."""
-    common = fan_batch_key(lidar._fan)
-    return None if common is None else (*common, lidar._start, lidar.sees_visuals)
-
-
-class LidarBatch(SensorBatch[LidarMeasurement]):
-    """Lidars that differ in place alone; those that somebody reads cast together."""
-
-    def __init__(self, members: Sequence[LidarMeasurement]) -> None:
-        super().__init__(members)
-        self._fans, self._start = FanBatch([lidar._fan for lidar in members]), members[0]._start
-        self._readings: dict[int, LidarReading] = {}
-
-    def capture_all(self, data: mujoco.MjData) -> None:
-        read = [place for place, lidar in enumerate(self.members) if lidar.is_read_now]
-        self._readings.clear()
-        if len(read) < MIN_MEMBERS:
-            for place in read:
-                self._readings[place] = self.members[place].measure(self.model, data)
-            return
-        places = [self.members[place]._place(data) for place in read]
-        origins, rotations = (np.array(part) for part in zip(*places, strict=True))
-        self._fans.cast(read, data, origins, rotations, self._start)
-        for place in read:
-            self._readings[place] = self.members[place].reading_of_cast()
-
-    def captured(self, place: int) -> LidarReading:
-        reading = self._readings.pop(place, None)
-        # somebody has begun to read within this step
-        return self.members[place].measure_now() if reading is None else reading

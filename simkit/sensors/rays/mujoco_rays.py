@@ -11,15 +11,7 @@ import numpy.typing as npt
 
 from simkit.pose import Pose, Vector
 from simkit.sensors.rays.geom_types import Ids
-from simkit.sensors.rays.ray_culling import (
-    ENDLESS,
-    RayBundle,
-    RayHits,
-    can_meet,
-    geom_half_sizes,
-    reaches_between_cones,
-    reaches_plane,
-)
+from simkit.sensors.rays.ray_culling import ENDLESS, NearbyGeoms, RayBundle, RayHits, can_meet, reaches_plane
 
 _SEEN, _UNSEEN = 0, 1  # geom groups of the copy
 _INFINITE = np.array(np.inf)
@@ -102,6 +94,7 @@ class ReducedModelCaster:
 
     Attributes:
         ids: geoms of the compiled model by those here; the last, -1, is for none.
+        movers: geoms of the compiled model that do not stand still, shape (k,).
     """
 
     def __init__(self, model: mujoco.MjModel, geoms: Ids, types: Ids, carriers: Ids, bodies: Sequence[int]) -> None:
@@ -114,9 +107,7 @@ class ReducedModelCaster:
         kept = np.unique(carriers[first:])
         self._model, self.ids = model, np.append(full, -1).astype(np.int32)
         # carrier 0 stands where it is; all the others are looked up when they are needed
-        self._full, self._carriers = full[first:], carriers[first:]
-        self._halves = geom_half_sizes(model, self._full)
-        self._radii = np.linalg.norm(self._halves, axis=1)
+        self.movers, self._carriers = full[first:], carriers[first:]
         self._bodies = np.array([bodies[c] for c in kept], dtype=np.intp)
         self._firsts = np.searchsorted(self._carriers, kept)  # of each one's geoms
         data = self._all[1]
@@ -137,45 +128,28 @@ class ReducedModelCaster:
         """
         met = self._carriers != carrier
         if offset is not None:
-            met &= can_meet(self._model, body, offset, self._full, lowest, highest)
+            met &= can_meet(self._model, body, offset, self.movers, lowest, highest)
         return np.flatnonzero(met)
 
-    def cast(self, data: mujoco.MjData, rays: RayBundle, sight: Ids) -> RayHits:
-        """Casts through planes, what stands still, and the movers in `sight`.
+    def cast(self, data: mujoco.MjData, rays: RayBundle, nearby: NearbyGeoms) -> RayHits:
+        """Casts through planes, what stands still, and those of `movers` that are in `nearby`.
 
         Geoms are positions in `ids`.
         """
-        met = self._movers_met(data, rays, sight) if sight.size else None
-        if met is None:
+        found = nearby.met(data, rays)
+        if not found.size:
             groups = _SOLIDS_AND_PLANES if self._planes and self._reaches_plane(rays) else _SOLIDS
             return _cast(*self._alone, rays, groups)
+        met = np.zeros(len(self.movers), dtype=np.bool_)
+        met[found] = True
         self._move(data, met)
         return _cast(*self._all, rays, _SOLIDS_AND_PLANES)
-
-    def _movers_met(self, data: mujoco.MjData, rays: RayBundle, sight: Ids) -> npt.NDArray[np.bool_] | None:
-        """Which of the movers in sight rays may meet where they are now; None for nothing at all."""
-        geoms = self._full[sight]
-        places = data.geom_xpos.take(geoms, 0)
-        places -= rays.origin
-        height = places @ rays.axis
-        if rays.lowest == rays.highest == 0.0:
-            extent = np.abs(rays.axis @ data.geom_xmat.take(geoms, 0).reshape(-1, 3, 3))
-            extent *= self._halves[sight]
-            in_sight = np.abs(height) <= extent.sum(axis=1) + 1e-9
-        else:
-            side = np.sqrt(np.maximum(np.einsum("ij,ij->i", places, places) - height * height, 0.0))
-            in_sight = reaches_between_cones(height, side, self._radii[sight], rays.lowest, rays.highest)
-        if not in_sight.any():
-            return None
-        met = np.zeros(len(self._full), dtype=np.bool_)
-        met[sight[in_sight]] = True
-        return met
 
     def _move(self, data: mujoco.MjData, met: npt.NDArray[np.bool_]) -> None:
         """Puts movers in their places; far away those that no ray meets, where the engine passes them over soonest."""
         # the sizes fit, so this is memory copied to memory; "clip" only spares NumPy a buffer
-        data.geom_xpos.take(self._full, 0, self._geom_xpos, "clip")
-        data.geom_xmat.take(self._full, 0, self._geom_xmat, "clip")
+        data.geom_xpos.take(self.movers, 0, self._geom_xpos, "clip")
+        data.geom_xmat.take(self.movers, 0, self._geom_xmat, "clip")
         self._geom_xpos[~met] = ENDLESS
         xipos, xpos, ximat, xmat = self._places
         data.xpos.take(self._bodies, 0, xpos, "clip")

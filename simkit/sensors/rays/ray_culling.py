@@ -106,17 +106,19 @@ def geom_half_sizes(model: mujoco.MjModel, geoms: npt.NDArray[np.intp]) -> Vecto
 
 
 class NearbyGeoms:
-    """Shapes, and which of them a fan may meet where they are now.
+    """Planes and shapes, and which of them a fan may meet where they are now.
 
     Args:
         model: compiled.
-        which: numbers of the shapes, shape (m,).
+        which: numbers of the geoms, shape (m,).
         geoms: theirs, shape (m,).
     """
 
     def __init__(self, model: mujoco.MjModel, which: npt.NDArray[np.intp], geoms: npt.NDArray[np.intp]) -> None:
         self._which, self._geoms = which, geoms
-        self._radii, self._halves = model.geom_rbound[geoms], geom_half_sizes(model, geoms)
+        bounds = model.geom_rbound[geoms]
+        # a plane has no radius: it has no end
+        self._radii, self._halves = np.where(bounds > 0, bounds, ENDLESS), geom_half_sizes(model, geoms)
 
     def met(self, data: mujoco.MjData, rays: RayBundle) -> npt.NDArray[np.intp]:
         """Numbers of those within reach and between the ends of the fan; never one too few."""

@@ -27,10 +27,8 @@ from simkit.sensors.rays.embree_rays import MovingBodies, TriangleBody
 from simkit.sensors.rays.geom_types import Ids
 from simkit.sensors.rays.numpy_rays import (
     FanDirections,
-    Shapes,
     cast_on_plane,
     cast_on_shapes,
-    in_frame,
     rotate_vectors,
 )
 from simkit.sensors.rays.ray_culling import NearbyGeoms, RayBundle, can_meet, finite_limit_bits, reaches_plane
@@ -77,7 +75,6 @@ class RayFan:
         self._clear()
         self.infinite = np.full(self.count, True)
         self.ids = np.array((-1,), dtype=np.int32)
-        self._sight: Ids | None = None
         self._nearby: NearbyGeoms | None = None
         self._standing: list[TriangleBody] | None = None
         self._movers = MovingBodies([])
@@ -122,7 +119,7 @@ class RayFan:
         if self._carrier < 0 and not self._targets.needs_engine:
             self._targets = self._find_targets(model, names, (*hidden, *self._own))
             self._carrier = 0
-        self._offset, self._sight, self._standing, self._nearby = offset, None, None, None
+        self._offset, self._standing, self._nearby = offset, None, None
         targets = self._targets
         # only the reduced model has numbers of its own
         self.ids = np.append(np.arange(model.ngeom), -1).astype(np.int32)
@@ -159,9 +156,10 @@ class RayFan:
         if self._by_engine:
             shapes = targets.shapes_by_engine
             if shapes is not None:
-                if self._sight is None:
-                    self._sight = shapes.sight(self._carrier, self.body, self._offset, *self._bounds)
-                self.distances, self.hits, self.infinite = shapes.cast(data, rays, self._sight)
+                if self._nearby is None:
+                    sight = shapes.sight(self._carrier, self.body, self._offset, *self._bounds)
+                    self._nearby = NearbyGeoms(targets.model, sight, shapes.movers[sight])
+                self.distances, self.hits, self.infinite = shapes.cast(data, rays, self._nearby)
                 if not targets.triangles_for_engine:
                     self.ids = shapes.ids
                     return
@@ -171,8 +169,8 @@ class RayFan:
             self._cast_on_triangles(targets.triangles_for_engine, data, rays)
         else:
             self._clear()
-            self._cast_on_planes_and_triangles(targets, data, rays)
-            self._cast_on_shapes(targets, data, rays, rotation)
+            self._cast_on_planes_and_triangles(data, rays)
+            self._cast_on_shapes(data, rays, rotation)
         self._end()
 
     def _rays(self, origin: Vector, rotation: Vector, start: float) -> RayBundle:
@@ -187,13 +185,10 @@ class RayFan:
         self.hits = np.full(self.count, -1, dtype=np.int32)
         self.distances = np.full(self.count, np.inf)
 
-    def _cast_on_planes_and_triangles(self, targets: RayTargets, data: mujoco.MjData, rays: RayBundle) -> None:
+    def _cast_on_planes_and_triangles(self, data: mujoco.MjData, rays: RayBundle) -> None:
         """On all but shapes, in NumPy and by Embree."""
+        best, targets = self.distances, self._targets
         self._cast_on_triangles(targets.triangles_and_boxes, data, rays)
-        self._cast_on_planes(targets, data, rays)
-
-    def _cast_on_planes(self, targets: RayTargets, data: mujoco.MjData, rays: RayBundle) -> None:
-        best = self.distances
         for i in targets.planes.tolist():
             if self._carrier and targets.carriers[i] == self._carrier:
                 continue
@@ -207,21 +202,18 @@ class RayFan:
                 np.copyto(best, found, where=nearer)
                 self.hits[nearer] = geom
 
-    def _cast_on_shapes(self, targets: RayTargets, data: mujoco.MjData, rays: RayBundle, rotation: Vector) -> None:
-        model, which = targets.model, targets.shapes
+    def _cast_on_shapes(self, data: mujoco.MjData, rays: RayBundle, rotation: Vector) -> None:
+        targets = self._targets
         if self._nearby is None:
+            which = targets.shapes
             if self._carrier:
                 which = which[targets.carriers[which] != self._carrier]
-            self._nearby = NearbyGeoms(model, which, targets.geoms[which])
+            self._nearby = NearbyGeoms(targets.model, which, targets.geoms[which])
         which = self._nearby.met(data, rays)
         if not len(which):
             return
         assert self._fan is not None
-        geoms = targets.geoms[which]
-        turns = data.geom_xmat.take(geoms, 0).reshape(-1, 3, 3)
-        placed = in_frame(data.geom_xpos.take(geoms, 0), turns, rays.origin, rotation)
-        kinds, sizes, radii = targets.types.take(which), model.geom_size.take(geoms, 0), model.geom_rbound.take(geoms)
-        shapes = Shapes(kinds, sizes, *placed, radii, geoms.astype(np.int32))
+        shapes = targets.shapes_in_frame(data, which, rays.origin, rotation)
         cast_on_shapes(self._fan, shapes, rays.reach, rays.start, self.distances, self.hits)
 
     def _cast_on_triangles(self, bodies: list[TriangleBody], data: mujoco.MjData, rays: RayBundle) -> None:

@@ -11,9 +11,11 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.compiler.name_map import NameMap
+from simkit.pose import Vector
 from simkit.sensors.rays.embree_rays import TriangleBody, TriangleScene, has_embree
 from simkit.sensors.rays.geom_types import BOX, PLANE, SHAPES, SUPPORTED, TRIANGLES, Ids
 from simkit.sensors.rays.mujoco_rays import ReducedModelCaster, WholeModelCaster
+from simkit.sensors.rays.numpy_rays import Shapes, in_frame
 
 Key = TypeVar("Key")
 
@@ -82,6 +84,14 @@ class RayTargets:
     def has_embree(self) -> bool:
         """Whether Embree may be used; it is loaded where this is asked first."""
         return self._use_embree and has_embree()
+
+    def shapes_in_frame(self, data: mujoco.MjData, which: Ids, origin: Vector, rotation: Vector) -> Shapes:
+        """Shapes by their positions in `geoms`, in a frame or in one frame each; see `in_frame`."""
+        model, geoms = self.model, self.geoms.take(which)
+        turns = data.geom_xmat.take(geoms, 0).reshape(-1, 3, 3)
+        placed = in_frame(data.geom_xpos.take(geoms, 0), turns, origin, rotation)
+        sizes, radii = model.geom_size.take(geoms, 0), model.geom_rbound.take(geoms)
+        return Shapes(self.types.take(which), sizes, *placed, radii, geoms.astype(np.int32))
 
     # ------------------------------------------------------------------ the ways to trace them, made when first used
 
