@@ -298,10 +298,8 @@ class Sensor(Sampler):
 
     def _default_topic(self, suffix: str) -> str:
         """Return `<topic>` where the file gives it, else Gazebo's default."""
-        return valid_topic(self.scene.topic) if self.scene.topic else self._entity_topic(suffix)
-
-    def _entity_topic(self, suffix: str) -> str:
-        return entity_topic(self.sim.world.name, self.scene, suffix)
+        given = self.scene.topic
+        return valid_topic(given) if given else entity_topic(self.sim.world.name, self.scene, suffix)
 
     def _frame_in_world(self, data: mujoco.MjData) -> tuple[Vector, Vector]:
         """Return the position (3,) [m] and the rotation matrix (3, 3) of the sensor in the world."""

@@ -24,7 +24,6 @@ from simkit.sensors.bias_drift import (
     gauss_markov_drift,
     instability_drift,
 )
-from simkit.sensors.sample import Memory
 
 if TYPE_CHECKING:
     from simkit.runtime.engine.random_streams import RandomStream, RandomStreams
@@ -301,12 +300,6 @@ class Noise:
     def offset(self) -> float:
         """What the first channel has besides white noise."""
         return float(self.state.constant[0])
-
-    def memory(self) -> object:
-        return self.state
-
-    def remember(self, memory: Memory) -> None:
-        self.state = memory
 
 
 class UniformNoise(Noise):

@@ -16,12 +16,9 @@ DATATYPES = {"u1": 2, "i2": 3, "u2": 4, "i4": 5, "u4": 6, "f4": 7, "f8": 8}
 
 @functools.lru_cache(maxsize=32)
 def _fields(dtype: np.dtype[np.void]) -> tuple[msgs.PointField, ...]:
-    field = msgs.type_of("sensor_msgs/msg/PointField")
     assert dtype.fields is not None
-    assert dtype.names is not None
-    return tuple(
-        field(name, dtype.fields[name][1], DATATYPES[dtype.fields[name][0].str[1:]], 1) for name in dtype.names
-    )
+    fields = [(name, *dtype.fields[name]) for name in dtype.names or ()]
+    return tuple(msgs.PointField(name, offset, DATATYPES[kind.str[1:]], 1) for name, kind, offset, *_ in fields)
 
 
 def point_cloud(
@@ -36,11 +33,8 @@ def point_cloud(
     """
     step = points.dtype.itemsize
     data = points.view(np.uint8).reshape(-1) if points.size else np.empty(0, dtype=np.uint8)
-    make = msgs.type_of("sensor_msgs/msg/PointCloud2")
-    message: msgs.PointCloud2 = make(
-        header, height, width, list(_fields(points.dtype)), False, step, step * width, data, is_dense
-    )
-    return message
+    fields = list(_fields(points.dtype))
+    return msgs.PointCloud2(header, height, width, fields, False, step, step * width, data, is_dense)
 
 
 def legacy_point_cloud(header: msgs.Header, places: Vector, intensities: Vector) -> msgs.PointCloud:
@@ -51,9 +45,6 @@ def legacy_point_cloud(header: msgs.Header, places: Vector, intensities: Vector)
         places: [m], shape (n, 3).
         intensities: shape (n,), its only channel.
     """
-    point, channel = msgs.type_of("geometry_msgs/msg/Point32"), msgs.type_of("sensor_msgs/msg/ChannelFloat32")
+    point = msgs.Point32
     points = [point(*place) for place in places.tolist()]
-    message: msgs.PointCloud = msgs.type_of(LEGACY_CLOUD_TYPE)(
-        header, points, [channel("intensity", intensities.astype(np.float32))]
-    )
-    return message
+    return msgs.PointCloud(header, points, [msgs.ChannelFloat32("intensity", intensities.astype(np.float32))])

@@ -88,12 +88,6 @@ class NoiseProcess(Protocol):
     def set_interval(self, interval: float) -> None:
         """Set the time between samples [s] that is assumed where nothing else is known."""
 
-    def memory(self) -> object:
-        """Return the state, for `remember`."""
-
-    def remember(self, memory: Memory) -> None:
-        """Restore the state that `memory` returned."""
-
 
 class Batch(Protocol):
     """What a sampler needs of the batch that it is a member of; see `simkit.sensors.sensor_batch`."""

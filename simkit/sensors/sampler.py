@@ -103,12 +103,12 @@ class Sampler(abc.ABC):
 
     def memory(self) -> object:
         """Return the state that continues from sample to sample, as values that nobody writes to."""
-        return tuple(noise.memory() for noise in self._noises)
+        return tuple(noise.state for noise in self._noises)
 
     def remember(self, memory: Memory) -> None:
         """Restore the state that `memory` returned."""
         for noise, state in zip(self._noises, memory, strict=True):
-            noise.remember(state)
+            noise.state = state
 
     def accepts(self, tick: int) -> bool:
         """Check whether there is a sample at a due tick."""

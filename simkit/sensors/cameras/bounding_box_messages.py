@@ -35,8 +35,7 @@ def detections_2d(header: msgs.Header, boxes: Sequence[Box2D]) -> msgs.Detection
         middle = centre(corner((box.left + box.right) / 2, (box.top + box.bottom) / 2), 0.0)
         frame = box_of(middle, box.right - box.left, box.bottom - box.top)
         found.append(one(header, [_hypothesis(box.item.label)], frame, box.item.model))
-    message: msgs.Detection2DArray = msgs.type_of(TYPE_2D)(header, found)
-    return message
+    return msgs.Detection2DArray(header, found)
 
 
 def detections_3d(header: msgs.Header, boxes: Sequence[Box3D], *, in_ogre_axes: bool = False) -> msgs.Detection3DArray:
@@ -56,8 +55,7 @@ def detections_3d(header: msgs.Header, boxes: Sequence[Box3D], *, in_ogre_axes: 
         w, x, y, z = quaternion.tolist()
         frame = box_of(pose(point(*centre.tolist()), turn(x, y, z, w)), vector(*box.size.tolist()))
         found.append(one(header, [_hypothesis(box.item.label)], frame, box.item.model))
-    message: msgs.Detection3DArray = msgs.type_of(TYPE_3D)(header, found)
-    return message
+    return msgs.Detection3DArray(header, found)
 
 
 def boxes_as_csv(message: Message) -> bytes:

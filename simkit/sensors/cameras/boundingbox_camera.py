@@ -27,23 +27,19 @@ from simkit.sensors.cameras.bounding_boxes import (
     visible_boxes,
 )
 from simkit.sensors.cameras.camera_options import CameraOptions, extend_options
-from simkit.sensors.cameras.label_camera import Keyword, LabelCamera, read_keyword
+from simkit.sensors.cameras.label_camera import LabelCamera, read_keyword
 from simkit.sensors.cameras.labelled_objects import LabelledObjects
 from simkit.sensors.cameras.rendering.view import Film, Ids, Shot
 
 _VISIBLE, _FULL, _SPACE = "visible_2d", "full_2d", "3d"
-_BOX_TYPE: Final = Keyword(
-    "box_type",
-    {
-        "2d": _VISIBLE,
-        "visible_2d": _VISIBLE,
-        "visible_box_2d": _VISIBLE,
-        "full_2d": _FULL,
-        "full_box_2d": _FULL,
-        "3d": _SPACE,
-    },
-    "2d",
-)
+_BOX_TYPES: Final = {
+    "2d": _VISIBLE,
+    "visible_2d": _VISIBLE,
+    "visible_box_2d": _VISIBLE,
+    "full_2d": _FULL,
+    "full_box_2d": _FULL,
+    "3d": _SPACE,
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +79,7 @@ class BoundingBoxCamera(LabelCamera):
     def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
         super().__init__(scene, diagnostics)
         self.options: BoundingBoxOptions = extend_options(
-            self.options, BoundingBoxOptions, type=read_keyword(scene.params, _BOX_TYPE)
+            self.options, BoundingBoxOptions, type=read_keyword(scene.params, "box_type", _BOX_TYPES, "2d")
         )
         self._shapes: LabelledShapes | None = None
 
@@ -100,7 +96,7 @@ class BoundingBoxCamera(LabelCamera):
             "boundingbox": Product(kind, self._boxes_message),
             "image": Product(image_messages.IMAGE_TYPE, self._image_message),
             "camera_info": self._info_product(),
-            "picture": self._picture_product(),
+            "picture": self._colour_product(),
         }
 
     def default_topics(self) -> dict[str, str]:
@@ -161,7 +157,7 @@ class BoundingBoxCamera(LabelCamera):
 
     def _boxes_message(self, reading: Boxes, time_ns: int) -> msgs.Detection2DArray | msgs.Detection3DArray:
         if self.options.type == _SPACE:
-            header = self._header(time_ns)
+            header = msgs.header(time_ns, self.frame_id)
             space = [box for box in reading.boxes if isinstance(box, Box3D)]
             return bounding_box_messages.detections_3d(header, space, in_ogre_axes=self._is_gazebos)
         flat = [box for box in reading.boxes if isinstance(box, Box2D)]

@@ -93,7 +93,7 @@ class CameraModel:
             where `is_bent`. NaN where the lens shows nothing.
         """
         if self.is_distorted:
-            x, y = _directions(self)
+            x, y = self.directions()
             return -x.astype(np.float32), -y.astype(np.float32)
         left = -(np.arange(self.width) + 0.5 - self.cx) / self.fx
         up = -(np.arange(self.height) + 0.5 - self.cy) / self.fy
@@ -104,7 +104,18 @@ class CameraModel:
 
         NaN where the lens shows nothing.
         """
-        return _directions(self)
+        y, x = np.meshgrid(
+            (np.arange(self.height) + 0.5 - self.cy) / self.fy,
+            (np.arange(self.width) + 0.5 - self.cx) / self.fx,
+            indexing="ij",
+        )
+        x = x - self.skew / self.fx * y
+        lens = self.distortion
+        if lens:
+            off_x, off_y = _centre(self)
+            x, y = undistort(x - off_x, y - off_y, lens)
+            x, y = x + off_x, y + off_y
+        return x, y
 
     def seen_at(self, x: Vector, y: Vector) -> tuple[Vector, Vector]:
         """Where points of the plane at distance 1 are seen [px]: x to the right and y downwards."""
@@ -125,21 +136,6 @@ class CameraModel:
         fx, fy, cx, cy = self.rectified or (self.fx, self.fy, self.cx, self.cy)
         skew = 0.0 if self.rectified else -self.skew
         return replace(self, fx=fx, fy=fy, cx=cx, cy=cy, skew=skew, distortion=NO_DISTORTION, info_model=info_model)
-
-
-def _directions(model: CameraModel) -> tuple[Vector, Vector]:
-    y, x = np.meshgrid(
-        (np.arange(model.height) + 0.5 - model.cy) / model.fy,
-        (np.arange(model.width) + 0.5 - model.cx) / model.fx,
-        indexing="ij",
-    )
-    x = x - model.skew / model.fx * y
-    lens = model.distortion
-    if lens:
-        off_x, off_y = _centre(model)
-        x, y = undistort(x - off_x, y - off_y, lens)
-        x, y = x + off_x, y + off_y
-    return x, y
 
 
 def _centre(model: CameraModel) -> tuple[float, float]:
@@ -249,7 +245,7 @@ def _check_fold(block: Params, model: CameraModel) -> None:
         cy=model.cy / coarse,
         skew=model.skew / coarse,
     )
-    x, _ = _directions(steps)
+    x, _ = steps.directions()
     lost = np.count_nonzero(np.isnan(x)) / x.size
     if lost > 0:
         message = f"the distortion folds back within the picture: {lost:.0%} of it has no ray and stays black"

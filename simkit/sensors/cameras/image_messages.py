@@ -52,10 +52,7 @@ def image_message(header: msgs.Header, pixels: Pixels, encoding: str) -> msgs.Im
     """A message of pixels, shape (h, w) or (h, w, n), in their own byte order (little-endian)."""
     data = np.ascontiguousarray(pixels)
     height, width = data.shape[:2]
-    message: msgs.Image = msgs.type_of(IMAGE_TYPE)(
-        header, height, width, encoding, 0, data.nbytes // height, data.reshape(-1).view(np.uint8)
-    )
-    return message
+    return msgs.Image(header, height, width, encoding, 0, data.nbytes // height, data.reshape(-1).view(np.uint8))
 
 
 def colour_message(header: msgs.Header, colours: npt.NDArray[np.uint8], encoding: str) -> msgs.Image:

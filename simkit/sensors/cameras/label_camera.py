@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import ClassVar, Final
 
@@ -15,8 +15,6 @@ from simkit.msgs.message_types import Message
 from simkit.params import Params
 from simkit.runtime import Simulation, WorldStructure
 from simkit.scene import SceneSensor
-from simkit.sensors.base import Product
-from simkit.sensors.cameras import image_messages
 from simkit.sensors.cameras.bounding_box_messages import TYPE_2D, TYPE_3D, boxes_as_csv
 from simkit.sensors.cameras.labelled_objects import LabelledObjects, find_labelled_objects
 from simkit.sensors.cameras.rendered_camera import RenderedCamera
@@ -118,10 +116,6 @@ class LabelCamera(RenderedCamera):
     def _make_image_saver(self, folder: Path, name: str) -> ImageSaver:
         return DatasetSaver(self.sim, self.scene, folder, name)
 
-    def _picture_product(self) -> Product:
-        """The picture as it is saved beside what is told of it; it has no topic."""
-        return Product(image_messages.IMAGE_TYPE, self._colour_message)
-
     def _picture(self, film: Film) -> npt.NDArray[np.uint8]:
         """The colours of a film, through the lens."""
         assert film.colours is not None
@@ -143,26 +137,19 @@ class LabelCamera(RenderedCamera):
             sim.engine.reports.warning("SK-SENSOR-132", message, self.scene.where, f"in a <model> or <visual>: {hint}")
 
 
-@dataclass(frozen=True, slots=True)
-class Keyword:
-    """An element that says what a camera tells, and the words that it may hold: each with what it means."""
+def read_keyword(params: Params, element: str, meanings: Mapping[str, str], default: str) -> str:
+    """The meaning of a word in `<camera>`, or in `<sensor>`, where older files have it; in any case of letters.
 
-    element: str
-    meanings: dict[str, str]
-    default: str
-
-
-def read_keyword(params: Params, word: Keyword) -> str:
-    """The meaning of a word in `<camera>`, or in `<sensor>`, where older files have it; in any case of letters."""
+    Args:
+        element: says what a camera tells.
+        meanings: the words that it may hold, each with what it means.
+    """
     camera = params.block("camera")
-    place = camera if camera.has(word.element) or not params.has(word.element) else params
-    found = place.child(word.element)
-    if found is None:
-        return word.meanings[word.default]
-    given = found.value.strip().lower()
-    if given not in word.meanings:
-        allowed: Sequence[str] = tuple(word.meanings)
-        message = f"found <{word.element}>{found.value}</{word.element}>, allowed is one of {', '.join(allowed)}"
-        found.error("SK-PARAM-002", message, did_you_mean(given, allowed))
-        return word.meanings[word.default]
-    return word.meanings[given]
+    place = camera if camera.has(element) or not params.has(element) else params
+    found = place.child(element)
+    given = default if found is None else found.value.strip().lower()
+    if found is not None and given not in meanings:
+        message = f"found <{element}>{found.value}</{element}>, allowed is one of {', '.join(meanings)}"
+        found.error("SK-PARAM-002", message, did_you_mean(given, tuple(meanings)))
+        given = default
+    return meanings[given]

@@ -18,7 +18,6 @@ from simkit.scene import SceneModel
 from simkit.sensors.base import Product, Sensor
 
 IMAGE = "ros_gz_interfaces/msg/LogicalCameraImage"
-MODEL = "ros_gz_interfaces/msg/LogicalCameraImageModel"
 FRUSTUM = "simkit_msgs/msg/LogicalCameraSensor"
 
 _ROUNDING = 1e-9
@@ -113,12 +112,7 @@ class LogicalCamera(Sensor):
 
     def prepare(self) -> None:
         self._frustum = Frustum(self.options, self.sim.world.gazebo_quirks)
-        self._image_type, self._model_type = msgs.type_of(IMAGE), msgs.type_of(MODEL)
-        self._frustum_type = msgs.type_of(FRUSTUM)
-        self._pose_type = msgs.type_of("geometry_msgs/msg/Pose")
-        self._point_type, self._quaternion_type = (
-            msgs.type_of(f"geometry_msgs/msg/{name}") for name in ("Point", "Quaternion")
-        )
+        self._pose_types = msgs.Pose, msgs.Point, msgs.Quaternion
 
     def bind(self, compiled: Compiled) -> None:
         super().bind(compiled)
@@ -174,19 +168,14 @@ class LogicalCamera(Sensor):
 
     def _pose_message(self, pose: Pose) -> msgs.Pose:
         w, x, y, z = pose.quaternion.tolist()
-        point, quaternion = self._point_type(*pose.position.tolist()), self._quaternion_type(x, y, z, w)
-        message: msgs.Pose = self._pose_type(point, quaternion)
-        return message
+        make, point, quaternion = self._pose_types
+        return make(point(*pose.position.tolist()), quaternion(x, y, z, w))
 
     def _image_message(self, reading: LogicalImage, time_ns: int) -> msgs.LogicalCameraImage:
-        models = [self._model_type(name, self._pose_message(pose)) for name, pose in reading.models]
-        message: msgs.LogicalCameraImage = self._image_type(
-            msgs.header(time_ns, self.frame_id), self._pose_message(reading.pose), models
-        )
-        return message
+        model = msgs.LogicalCameraImageModel
+        models = [model(name, self._pose_message(pose)) for name, pose in reading.models]
+        return msgs.LogicalCameraImage(msgs.header(time_ns, self.frame_id), self._pose_message(reading.pose), models)
 
     def _frustum_message(self, _: object, time_ns: int) -> msgs.LogicalCameraSensor:
-        o = self.options
-        header = msgs.header(time_ns, self.frame_id)
-        message: msgs.LogicalCameraSensor = self._frustum_type(header, o.near, o.far, o.horizontal_fov, o.aspect_ratio)
-        return message
+        o, header = self.options, msgs.header(time_ns, self.frame_id)
+        return msgs.LogicalCameraSensor(header, o.near, o.far, o.horizontal_fov, o.aspect_ratio)

@@ -238,9 +238,6 @@ class RenderedCamera(RenderedSampler):
 
     # ------------------------------------------------------------------ messages
 
-    def _header(self, time_ns: int) -> msgs.Header:
-        return msgs.header(time_ns, self.frame_id)
-
     def _colour_product(self) -> Product:
         return Product(image_messages.IMAGE_TYPE, self._colour_message)
 

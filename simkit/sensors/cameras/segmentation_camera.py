@@ -20,7 +20,7 @@ from simkit.scene import SceneSensor
 from simkit.sensors.base import Product
 from simkit.sensors.cameras import image_messages, label_camera
 from simkit.sensors.cameras.camera_options import CameraOptions, extend_options
-from simkit.sensors.cameras.label_camera import Keyword, LabelCamera, read_keyword
+from simkit.sensors.cameras.label_camera import LabelCamera, read_keyword
 from simkit.sensors.cameras.labelled_objects import LabelledObjects
 from simkit.sensors.cameras.rendering.view import Film, Ids, Shot
 
@@ -66,9 +66,7 @@ def _random_channels(seed: int) -> Iterator[int]:
 
 Pixels = npt.NDArray[np.uint8]
 
-_SEGMENTATION_TYPE: Final = Keyword(
-    "segmentation_type", {"semantic": "semantic", "instance": "panoptic", "panoptic": "panoptic"}, "semantic"
-)
+_TYPES: Final = {"semantic": "semantic", "instance": "panoptic", "panoptic": "panoptic"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,7 +125,7 @@ class SegmentationCamera(LabelCamera):
     def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
         super().__init__(scene, diagnostics)
         self.options: SegmentationOptions = extend_options(
-            self.options, SegmentationOptions, type=read_keyword(scene.params, _SEGMENTATION_TYPE)
+            self.options, SegmentationOptions, type=read_keyword(scene.params, "segmentation_type", _TYPES, "semantic")
         )
         self._palette: Palette | None = None
         self._palette_of: LabelledObjects | None = None
@@ -140,7 +138,7 @@ class SegmentationCamera(LabelCamera):
             "labels_map": Product(image_messages.IMAGE_TYPE, self._labels_message),
             "colored_map": Product(image_messages.IMAGE_TYPE, self._colours_message),
             "camera_info": self._info_product(),
-            "picture": self._picture_product(),
+            "picture": self._colour_product(),
         }
 
     def default_topics(self) -> dict[str, str]:

@@ -142,22 +142,9 @@ class _Types(NamedTuple):
 @cache
 def _types() -> _Types:
     return _Types(
-        *(
-            msgs.type_of(name)
-            for name in (
-                "geometry_msgs/msg/Vector3",
-                "geometry_msgs/msg/Wrench",
-                "ros_gz_interfaces/msg/JointWrench",
-                "ros_gz_interfaces/msg/Entity",
-                "ros_gz_interfaces/msg/Contact",
-                "ros_gz_interfaces/msg/Contacts",
-                "gazebo_msgs/msg/ContactState",
-                "gazebo_msgs/msg/ContactsState",
-                "std_msgs/msg/String",
-                "std_msgs/msg/UInt32",
-            )
-        )
-    )
+        msgs.Vector3, msgs.Wrench, msgs.JointWrench, msgs.Entity, msgs.Contact, msgs.Contacts, msgs.ContactState,
+        msgs.ContactsState, msgs.String, msgs.UInt32,
+    )  # fmt: skip
 
 
 def contacts_message(reading: ContactReading, header: msgs.Header, is_named: bool = True) -> msgs.Contacts:
@@ -167,8 +154,7 @@ def contacts_message(reading: ContactReading, header: msgs.Header, is_named: boo
         is_named: whether the collisions' names are said, and not only their ids.
     """
     types = _types()
-    message: msgs.Contacts = types.contacts(header, [_contact(types, pair, header, is_named) for pair in reading.pairs])
-    return message
+    return types.contacts(header, [_contact(types, pair, header, is_named) for pair in reading.pairs])
 
 
 def _contact(types: _Types, pair: ContactPair, header: msgs.Header, is_named: bool) -> msgs.Contact:
@@ -181,7 +167,7 @@ def _contact(types: _Types, pair: ContactPair, header: msgs.Header, is_named: bo
         on_first = wrench(vector(fx, fy, fz), vector(tx, ty, tz))
         on_second = wrench(vector(-fx, -fy, -fz), vector(-tx, -ty, -tz))
         wrenches.append(types.joint_wrench(header, names[0], ids[0], names[1], ids[1], on_first, on_second))
-    message: msgs.Contact = types.contact(
+    return types.contact(
         types.entity(pair.ids[0], one, _COLLISION),
         types.entity(pair.ids[1], other, _COLLISION),
         [vector(*p) for p in pair.positions.tolist()],
@@ -189,7 +175,6 @@ def _contact(types: _Types, pair: ContactPair, header: msgs.Header, is_named: bo
         pair.depths,
         wrenches,
     )
-    return message
 
 
 def states_message(reading: ContactReading, header: msgs.Header) -> msgs.ContactsState:
@@ -199,8 +184,7 @@ def states_message(reading: ContactReading, header: msgs.Header) -> msgs.Contact
     """
     types, count = _types(), len(reading.pairs)
     states = [_state(types, pair, reading, header, f"{i + 1}/{count}") for i, pair in enumerate(reading.pairs)]
-    message: msgs.ContactsState = types.states(header, states)
-    return message
+    return types.states(header, states)
 
 
 def _state(
@@ -216,7 +200,7 @@ def _state(
     total_force, total_torque = vectors(np.stack([forces.sum(axis=0), torques.sum(axis=0)]))
     own, other, stamp = pair.collision1, pair.collision2, header.stamp
     info = f"Debug:  i: ({which})     my geom: [{own}]  other geom: [{other}]"
-    message: msgs.ContactState = types.state(
+    return types.state(
         f"{info}        time: [{stamp.sec}.{stamp.nanosec}]\n",
         own,
         other,
@@ -226,4 +210,3 @@ def _state(
         vectors(pair.normals @ axes),
         pair.depths,
     )
-    return message

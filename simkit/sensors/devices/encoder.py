@@ -16,7 +16,6 @@ from simkit.pose import Vector
 from simkit.runtime.handles.joint_mechanics import joint_position, joint_velocity
 from simkit.sensors.base import Product, Sensor
 from simkit.sensors.noise import NoiseModel, quantise, read_noise
-from simkit.sensors.sample import Memory
 
 TYPE = "sensor_msgs/msg/JointState"
 _ROTARY_TYPES = ("revolute", "continuous", "universal", "revolute2", "ball", "screw")
@@ -225,9 +224,3 @@ class CountHistory:
 
     def set_interval(self, interval: float) -> None:
         """Its samples tell their own time."""
-
-    def memory(self) -> object:
-        return self.state
-
-    def remember(self, memory: Memory) -> None:
-        self.state = memory

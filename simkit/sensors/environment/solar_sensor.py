@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import mujoco
@@ -94,19 +93,12 @@ class SolarSensor(Sensor):
             solar_irradiance.report_unused_options(self.scene.params.block("solar"), self.options.view, self.light)
 
     def products(self) -> dict[str, Product]:
-        number, truth_value, text = msgs.types_of(NUMBER, "std_msgs/msg/Bool", "std_msgs/msg/String")
-
-        def part(
-            make: Callable[[object], object], of: Callable[[SolarReading], object]
-        ) -> Callable[[SolarReading, int], object]:
-            return lambda reading, _: make(of(reading))
-
         return {
             "direction": Product(TYPE, self._message_of),
-            "valid": Product("std_msgs/msg/Bool", part(truth_value, lambda r: r.is_valid)),
-            "irradiance": Product(NUMBER, part(number, lambda r: r.irradiance)),
-            "power": Product(NUMBER, part(number, lambda r: r.power)),
-            "shadow": Product("std_msgs/msg/String", part(text, lambda r: r.shadow)),
+            "valid": Product("std_msgs/msg/Bool", lambda reading, _: msgs.Bool(reading.is_valid)),
+            "irradiance": Product(NUMBER, lambda reading, _: msgs.Float64(reading.irradiance)),
+            "power": Product(NUMBER, lambda reading, _: msgs.Float64(reading.power)),
+            "shadow": Product("std_msgs/msg/String", lambda reading, _: msgs.String(reading.shadow)),
         }
 
     def default_topics(self) -> dict[str, str]:

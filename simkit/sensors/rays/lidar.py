@@ -144,17 +144,13 @@ class Lidar(LidarMeasurement):
     def _range_message(self, reading: LidarReading, time_ns: int) -> msgs.Range:
         """The nearest of all rays."""
         o = self.options
-        message: msgs.Range = msgs.make(
-            RANGE,
+        view = max(o.horizontal.high - o.horizontal.low, o.vertical.high - o.vertical.low)
+        return msgs.Range(
             header=msgs.header(time_ns, self.frame_id),
             radiation_type=self.radiation,
-            field_of_view=self._view_of_rays() if self.field_of_view is None else self.field_of_view,
+            field_of_view=view if self.field_of_view is None else self.field_of_view,
             min_range=o.range_min,
             max_range=o.range_max,
             range=float(reading.ranges.min()),
+            variance=0.0,
         )
-        return message
-
-    def _view_of_rays(self) -> float:
-        o = self.options
-        return max(o.horizontal.high - o.horizontal.low, o.vertical.high - o.vertical.low)

@@ -8,7 +8,7 @@ there, shape (3, n): an operation then runs through long rows. Of a single shape
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -198,8 +198,7 @@ def _expand_runs(of: Ids, starts: Ids, counts: Ids) -> Iterator[tuple[Ids, Ids]]
         done = stop
 
 
-@dataclass(frozen=True, slots=True)
-class Shapes:
+class Shapes(NamedTuple):
     """Shapes in a sensor's frame.
 
     Attributes:
@@ -219,14 +218,7 @@ class Shapes:
     geoms: npt.NDArray[np.int32]
 
     def only(self, which: Ids) -> Shapes:
-        return Shapes(
-            self.kinds[which],
-            self.sizes[which],
-            self.positions[which],
-            self.turns[which],
-            self.radii[which],
-            self.geoms[which],
-        )
+        return self._make(column[which] for column in self)
 
 
 def in_frame(places: Vector, turns: Vector, origin: Vector, rotation: Vector) -> tuple[Vector, Vector]:

@@ -152,8 +152,7 @@ class Sonar(Sensor):
 
     def _message_of(self, reading: SonarReading, time_ns: int) -> msgs.Range:
         o = self.options
-        message: msgs.Range = msgs.make(
-            TYPE,
+        return msgs.Range(
             header=msgs.header(time_ns, self.frame_id),
             radiation_type=ULTRASOUND,
             field_of_view=2 * o.half_angle,
@@ -162,7 +161,6 @@ class Sonar(Sensor):
             range=reading.range,
             variance=min(self.noise.variance(), _MAX_RANGE),
         )
-        return message
 
 
 def cone_directions(half_angle: float, axis: tuple[float, float, float]) -> Vector:
