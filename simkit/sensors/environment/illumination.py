@@ -17,6 +17,7 @@ from simkit.compiler.name_map import NameMap
 from simkit.pose import Pose, Vector
 from simkit.runtime.handles.light import Light, LightState
 from simkit.scene import SceneLight
+from simkit.sensors.temporary_values import temporary_values
 
 LEAST_OPACITY: Final = 0.5
 """What is less opaque than this throws no shadow."""
@@ -129,15 +130,10 @@ class ShadowRay:
 
         The ray ends at the lamp; a parallel one passes through the whole scene.
         """
-        groups, casters = model.geom_group, self._casters
-        if not len(casters):
+        if not len(self._casters):
             return ""
-        kept = groups[casters]
-        groups[casters] = _OPEN_GROUP
-        try:
+        with temporary_values(model.geom_group, self._casters, _OPEN_GROUP):
             hit = mujoco.mj_ray(model, data, origin, beam.direction, self._groups, 1, -1, self._geom, None)
-        finally:
-            groups[casters] = kept
         if not 0.0 <= hit < beam.distance:
             return ""
         return str(self._names.geom_owner(int(self._geom[0]))[1])

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from simkit.pose import Pose, Vector
 from simkit.sensors.rays.geom_types import Ids
 from simkit.sensors.rays.ray_culling import ENDLESS, NearbyGeoms, RayBundle, RayHits, can_meet, reaches_plane
+from simkit.sensors.temporary_values import temporary_values
 
 _SEEN, _UNSEEN = 0, 1  # geom groups of the copy
 _INFINITE = np.array(np.inf)
@@ -71,14 +72,8 @@ class WholeModelCaster:
             body: not hit, where it moves.
             own: geoms that are not hit where it does not: excluding the body would exclude the world.
         """
-        hidden = list(own) if body <= 0 else []
-        groups = self.model.geom_group
-        kept = groups[hidden]
-        groups[hidden] = _UNSEEN
-        try:
+        with temporary_values(self.model.geom_group, own if body <= 0 else (), _UNSEEN):
             return _cast(self.model, data, rays, _SOLIDS, body if body > 0 else -1)
-        finally:
-            groups[hidden] = kept
 
 
 class ReducedModelCaster:

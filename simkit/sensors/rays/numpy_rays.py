@@ -218,7 +218,7 @@ class Shapes(NamedTuple):
     geoms: npt.NDArray[np.int32]
 
     def only(self, which: Ids) -> Shapes:
-        return self._make(column[which] for column in self)
+        return Shapes._make(column[which] for column in self)
 
 
 def in_frame(places: Vector, turns: Vector, origin: Vector, rotation: Vector) -> tuple[Vector, Vector]:

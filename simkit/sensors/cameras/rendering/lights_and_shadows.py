@@ -11,6 +11,7 @@ import numpy as np
 
 from simkit.compiler.lights import MOST_LIGHTS
 from simkit.pose import Vector
+from simkit.sensors.temporary_values import temporary_values
 
 _AHEAD: Final = 3.0  # [m]; what a camera looks at lies about there
 _REACH: Final = 15.0  # [m]; shadows around a camera, where the scene is larger
@@ -72,13 +73,8 @@ def keep_strongest_lights(
         best = np.maximum(best, np.where(far <= np.asarray(model.light_range)[shining], share, 1e-6 * share))
     suns = np.asarray(model.light_type)[shining] == _DIRECTIONAL
     order = np.argsort(-np.where(suns, 1e9 * strength, strength * best), kind="stable")
-    kept = active.copy()
-    active[:] = 0
-    active[shining[order[:MOST_LIGHTS]]] = 1
-    try:
+    with temporary_values(active, shining[order[MOST_LIGHTS:]], 0):
         yield
-    finally:
-        active[:] = kept
 
 
 def convert_point_lights(scene: mujoco.MjvScene) -> None:

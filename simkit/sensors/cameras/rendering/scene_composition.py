@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import contextlib
 import threading
 from bisect import bisect_left
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from typing import Final
 
 import mujoco
@@ -18,6 +17,7 @@ from simkit.sensors.cameras.rendering.lights_and_shadows import convert_point_li
 from simkit.sensors.cameras.rendering.transparency import DRAWN_HERE
 from simkit.sensors.cameras.rendering.view import Shot, View
 from simkit.sensors.cameras.rendering.view_culling import Bounds, bounds_of
+from simkit.sensors.temporary_values import temporary_values
 
 SOLID: Final = 0.995
 """The engine draws what is less opaque than this as something to be seen through."""
@@ -93,7 +93,8 @@ class Composer:
             smooth: whether edges may be smoothed, where the quality does that.
         """
         scene = self._spare_scene(model) if decorate is None else self._fresh_scene(model, _DECORATIONS)
-        with keep_strongest_lights(model, data, position, rotation), _hide_geoms(model, unseen):
+        hidden = temporary_values(model.geom_group, unseen, _NOWHERE)
+        with keep_strongest_lights(model, data, position, rotation), hidden:
             mujoco.mjv_updateScene(model, data, self._option, None, self._aside, _ALL, scene)
             bounds = bounds_of(model, data, scene, self._option.geomgroup) if self._culls else None
         if _POINT in model.light_type:
@@ -133,21 +134,6 @@ class Composer:
         scene.flags[:] = 0
         scene.flags[self._flags] = 1
         return scene
-
-
-@contextmanager
-def _hide_geoms(model: mujoco.MjModel, geoms: Sequence[int]) -> Iterator[None]:
-    """While it lasts, these are in no group that is drawn."""
-    if not len(geoms):
-        yield
-        return
-    groups = model.geom_group
-    kept = groups[geoms]
-    groups[geoms] = _NOWHERE
-    try:
-        yield
-    finally:
-        groups[geoms] = kept
 
 
 def _has_transparent_geoms(model: mujoco.MjModel) -> bool:
@@ -205,19 +191,12 @@ def transparent_shapes(composition: Composition) -> list[int]:
     return [i for i in composition.glassy if int(geoms[i].type) in DRAWN_HERE]
 
 
-@contextlib.contextmanager
-def draw_plain_colours(scene: mujoco.MjvScene) -> Iterator[None]:
+def draw_plain_colours(scene: mujoco.MjvScene) -> AbstractContextManager[None]:
     """While it lasts, shapes are drawn in plain colours, without light and shadow."""
-    kept = scene.flags.copy()
-    scene.flags[_FLAGS.mjRND_SHADOW] = 0
-    scene.flags[_FLAGS.mjRND_SEGMENT] = scene.flags[_FLAGS.mjRND_IDCOLOR] = 1
-    try:
-        yield
-    finally:
-        scene.flags[:] = kept
+    return temporary_values(scene.flags, (_FLAGS.mjRND_SHADOW, _FLAGS.mjRND_SEGMENT, _FLAGS.mjRND_IDCOLOR), (0, 1, 1))
 
 
-@contextlib.contextmanager
+@contextmanager
 def hide_shapes(scene: mujoco.MjvScene, places: Sequence[int]) -> Iterator[None]:
     """While it lasts, these shapes of the list are not drawn."""
     geoms = scene.geoms if places else ()
@@ -231,7 +210,7 @@ def hide_shapes(scene: mujoco.MjvScene, places: Sequence[int]) -> Iterator[None]
             geoms[i].type = kind
 
 
-@contextlib.contextmanager
+@contextmanager
 def make_transparent(scene: mujoco.MjvScene, places: Sequence[int]) -> Iterator[None]:
     """While it lasts, these shapes of the list can be seen through altogether."""
     geoms = scene.geoms if places else ()
