@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.pose import Vector
+from simkit.sensors.rays.embree_rays import heightmap_grid, mesh_triangles
 
 Pairs = npt.NDArray[np.int32]
 
@@ -51,26 +52,12 @@ def geom_corners(model: mujoco.MjModel, geom: int) -> Corners:
         square = np.array(((-x, -y, 0.0), (x, -y, 0.0), (x, y, 0.0), (-x, y, 0.0)))
         return Corners(square, np.array(((0, 1), (1, 2), (2, 3), (3, 0)), np.int32))
     if kind in (_KINDS.mjGEOM_MESH, _KINDS.mjGEOM_SDF):
-        return _mesh(model, int(model.geom_dataid[geom]))
+        points, faces = mesh_triangles(model, int(model.geom_dataid[geom]))
+        return Corners(points, _unique_edges(faces))
     if kind == _KINDS.mjGEOM_HFIELD:
-        return _ground(model, int(model.geom_dataid[geom]))
+        grid = heightmap_grid(model, int(model.geom_dataid[geom]))
+        return Corners(grid.reshape(-1, 3), _grid_edges(*grid.shape[:2]))
     return Corners(CUBE * size, CUBE_EDGES)
-
-
-def _mesh(model: mujoco.MjModel, number: int) -> Corners:
-    first, count = int(model.mesh_vertadr[number]), int(model.mesh_vertnum[number])
-    start, faces = int(model.mesh_faceadr[number]), int(model.mesh_facenum[number])
-    points = np.array(model.mesh_vert[first : first + count], dtype=np.float64)
-    return Corners(points, _unique_edges(np.asarray(model.mesh_face[start : start + faces])))
-
-
-def _ground(model: mujoco.MjModel, number: int) -> Corners:
-    rows, columns, first = (int(a[number]) for a in (model.hfield_nrow, model.hfield_ncol, model.hfield_adr))
-    half_x, half_y, height, _ = model.hfield_size[number]
-    data = model.hfield_data[first : first + rows * columns].reshape(rows, columns)
-    x, y = np.meshgrid(np.linspace(-half_x, half_x, columns), np.linspace(-half_y, half_y, rows))
-    points = np.stack((x, y, data * height), axis=-1).reshape(-1, 3)
-    return Corners(points, _grid_edges(rows, columns))
 
 
 def _grid_edges(rows: int, columns: int, is_closed: bool = False) -> Pairs:

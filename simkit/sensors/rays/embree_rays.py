@@ -205,11 +205,7 @@ def triangles_of(model: mujoco.MjModel, geom: int) -> tuple[Vector, Faces]:
     """Vertices [m], shape (n, 3), and faces, shape (m, 3), of a geom in its body's frame."""
     kind = int(model.geom_type[geom])
     if kind == MESH:
-        mesh = int(model.geom_dataid[geom])
-        first, count = int(model.mesh_vertadr[mesh]), int(model.mesh_vertnum[mesh])
-        vertices = model.mesh_vert[first : first + count].astype(np.float64)
-        first, count = int(model.mesh_faceadr[mesh]), int(model.mesh_facenum[mesh])
-        faces = model.mesh_face[first : first + count]
+        vertices, faces = mesh_triangles(model, int(model.geom_dataid[geom]))
     elif kind == BOX:
         vertices, faces = _CUBE * model.geom_size[geom], _CUBE_FACES
     else:
@@ -220,14 +216,27 @@ def triangles_of(model: mujoco.MjModel, geom: int) -> tuple[Vector, Faces]:
     return vertices @ turn.reshape(3, 3).T + model.geom_pos[geom], np.asarray(faces, dtype=np.int32)
 
 
+def mesh_triangles(model: mujoco.MjModel, mesh: int) -> tuple[Vector, Faces]:
+    """Vertices [m], shape (n, 3), and faces, shape (m, 3), of a mesh of the compiled model."""
+    first, count = int(model.mesh_vertadr[mesh]), int(model.mesh_vertnum[mesh])
+    start, faces = int(model.mesh_faceadr[mesh]), int(model.mesh_facenum[mesh])
+    return model.mesh_vert[first : first + count].astype(np.float64), np.asarray(model.mesh_face[start : start + faces])
+
+
+def heightmap_grid(model: mujoco.MjModel, field: int) -> Vector:
+    """Points of a heightmap's surface [m], shape (rows, columns, 3)."""
+    rows, columns, first = (int(a[field]) for a in (model.hfield_nrow, model.hfield_ncol, model.hfield_adr))
+    half_x, half_y, height, _ = model.hfield_size[field].tolist()
+    z = model.hfield_data[first : first + rows * columns].astype(np.float64).reshape(rows, columns) * height
+    x, y = np.meshgrid(np.linspace(-half_x, half_x, columns), np.linspace(-half_y, half_y, rows))
+    return np.stack((x, y, z), axis=-1)
+
+
 def _heightmap_triangles(model: mujoco.MjModel, field: int) -> tuple[Vector, Faces]:
     """The surface, each cell cut from its first to its last corner, the skirt around it and the base below."""
-    rows, columns = int(model.hfield_nrow[field]), int(model.hfield_ncol[field])
-    half_x, half_y, height, depth = model.hfield_size[field].tolist()
-    first = int(model.hfield_adr[field])
-    z = model.hfield_data[first : first + rows * columns].astype(np.float64) * height
-    x, y = np.meshgrid(np.linspace(-half_x, half_x, columns), np.linspace(-half_y, half_y, rows))
-    surface = np.column_stack((x.ravel(), y.ravel(), z))
+    points = heightmap_grid(model, field)
+    (rows, columns, _), surface = points.shape, points.reshape(-1, 3)
+    half_x, half_y, _, depth = model.hfield_size[field].tolist()
     cell = (np.arange(rows - 1)[:, None] * columns + np.arange(columns - 1)).ravel()
     right, above, across = cell + 1, cell + columns, cell + columns + 1
     tops = np.concatenate((np.column_stack((cell, right, across)), np.column_stack((cell, across, above))))

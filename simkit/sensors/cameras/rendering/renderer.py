@@ -5,16 +5,18 @@ from __future__ import annotations
 import contextlib
 import logging
 import weakref
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final
 
 import mujoco
 import numpy as np
 
 from simkit.errors import RenderError
 from simkit.runtime import Simulation
+from simkit.scene import SceneWorld, Surroundings
 from simkit.sensors.cameras.rendering import frame_buffer, gl_context
 from simkit.sensors.cameras.rendering.lights_and_shadows import fit_shadow_maps, place_directional_lights
-from simkit.sensors.cameras.rendering.render_quality import Appearance, Quality
 from simkit.sensors.cameras.rendering.scene_composition import (
     Composer,
     Composition,
@@ -28,6 +30,47 @@ from simkit.sensors.cameras.rendering.sky_and_fog import Background, enable_fog
 from simkit.sensors.cameras.rendering.transparency import draw_transparent
 from simkit.sensors.cameras.rendering.view import Colours, Depths, Film, Ids, Shot, aim
 from simkit.sensors.environment.illumination import LEAST_OPACITY
+
+
+@dataclass(frozen=True, slots=True)
+class Quality:
+    """What is spent on a picture.
+
+    Attributes:
+        samples: of each pixel, which smooth edges; 0 takes one. A driver has a highest number of its own.
+        shadow_map: width of the picture that a light has of what it falls on [px]; 0 draws no shadows.
+        slices: sides of what is round.
+    """
+
+    name: str
+    samples: int
+    shadow_map: int
+    slices: int
+
+    def missing_features(self) -> str:
+        """In words: what Gazebo would draw."""
+        parts = [word for word, there in (("shadows", self.shadow_map), ("smooth edges", self.samples)) if not there]
+        return " and ".join(parts)
+
+
+QUALITIES: Final[Mapping[str, Quality]] = {
+    "fast": Quality("fast", 0, 0, 28),
+    "gazebo": Quality("gazebo", 4, 2048, 32),
+    "high": Quality("high", 8, 4096, 64),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Appearance:
+    """The look of one world."""
+
+    surroundings: Surroundings
+    quality: Quality
+
+    @classmethod
+    def of(cls, world: SceneWorld) -> Appearance:
+        """What the file says."""
+        return cls(world.surroundings, QUALITIES[world.quality])
 
 
 class GpuModel:
