@@ -105,8 +105,8 @@ class LabelCamera(RenderedCamera):
     def seen(self, film: Film) -> Ids:
         """The geom at each pixel of the camera's picture, -1 where there is none."""
         assert film.ids is not None
-        if self._distorter:
-            return self._distorter.distort_ids(film.ids)
+        if self._pictures.distorter:
+            return self._pictures.distorter.distort_ids(film.ids)
         return film.ids
 
     def attach(self, sim: Simulation) -> None:
@@ -119,9 +119,9 @@ class LabelCamera(RenderedCamera):
     def _picture(self, film: Film) -> npt.NDArray[np.uint8]:
         """The colours of a film, through the lens."""
         assert film.colours is not None
-        kept = self._spare_colours.take()
-        if self._distorter:
-            return self._distorter.distort(film.colours, kept)
+        kept = self._pictures.spares.take()
+        if self._pictures.distorter:
+            return self._pictures.distorter.distort(film.colours, kept)
         np.copyto(kept, film.colours)
         return kept
 

@@ -19,13 +19,11 @@ from simkit.runtime import Simulation
 from simkit.scene import SceneSensor
 from simkit.sensors.base import Product
 from simkit.sensors.cameras import image_messages
-from simkit.sensors.cameras.array_pool import ArrayPool
 from simkit.sensors.cameras.camera_model import CameraModel
 from simkit.sensors.cameras.camera_options import CameraOptions, read_camera
-from simkit.sensors.cameras.image_distortion import ImageDistorter
 from simkit.sensors.cameras.image_messages import CameraInfoMaker
-from simkit.sensors.cameras.image_noise import CameraReading, ImageNoise, NoisyCameraReading
-from simkit.sensors.cameras.rendered_camera import RenderedCamera
+from simkit.sensors.cameras.image_noise import CameraReading
+from simkit.sensors.cameras.rendered_camera import PictureMaker, RenderedCamera
 from simkit.sensors.cameras.rendering.renderer import renderer_of
 from simkit.sensors.cameras.rendering.view import Film, Shot
 from simkit.sensors.sample import Reading
@@ -45,17 +43,12 @@ class CameraUnit:
     def __init__(self, name: str, options: CameraOptions) -> None:
         self.name, self.options = name, options
         self.beside = (0.0, 0.0)  # how far left of the reference and above it, where P tells that [m]
-        self._shot: Shot | None = None
 
     def open(self, sim: Simulation, scoped: str) -> None:
         """Once, when the simulation is known."""
         if sim.world.gazebo_quirks:
             self.options = replace(self.options, model=self.options.model.as_gazebo())
-        model = self.options.model
-        self.noise = ImageNoise(
-            self.options.noise, sim.engine.streams, f"{scoped}::{self.name}", as_ogre=sim.world.gazebo_quirks
-        )
-        self._spares = ArrayPool((model.height, model.width, 3), np.uint8)
+        self._pictures = PictureMaker(self.options, sim, f"{scoped}::{self.name}")
         self.update_camera_info()
 
     def update_camera_info(self) -> None:
@@ -68,33 +61,18 @@ class CameraUnit:
 
     @property
     def shot(self) -> Shot:
-        """What is drawn; found out at the first picture, since a lens takes a while."""
-        if self._shot is None:
-            model, pose = self.options.model, self.options.pose
-            self._distorter = ImageDistorter(model) if model.is_distorted else None
-            view = self._distorter.view() if self._distorter else model.view()
-            self._shot = Shot(view, position=np.asarray(pose.position), rotation=pose.matrix)
-        return self._shot
+        """What is drawn."""
+        pose = self.options.pose
+        return Shot(self._pictures.view, position=np.asarray(pose.position), rotation=pose.matrix)
 
     def develop(self, film: Film) -> CameraReading:
         """The picture without noise, in arrays of its own."""
-        colours = film.colours
-        assert colours is not None
-        if self._distorter:
-            colours = self._distorter.distort(colours)
-        if image_messages.is_grey(self.options.encoding):
-            return CameraReading(image_messages.grey(colours), None)
-        if not self._distorter:
-            kept = self._spares.take()
-            np.copyto(kept, colours)
-            colours = kept
-        return CameraReading(colours, None)
+        assert film.colours is not None
+        return CameraReading(self._pictures.develop(film.colours), None)
 
     def perturb(self, picture: CameraReading, index: int) -> object:
         """The picture with the noise of a sample."""
-        if self.noise.is_silent:
-            return picture
-        return NoisyCameraReading(picture, self.noise, index)
+        return self._pictures.perturb(picture, index)
 
 
 class MultiCamera(RenderedCamera):

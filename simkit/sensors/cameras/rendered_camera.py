@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import cached_property
 from pathlib import Path
 from typing import ClassVar
 
@@ -64,6 +65,47 @@ class Trigger:
         return True
 
 
+class PictureMaker:
+    """Lens, noise and memory of the pictures of one camera.
+
+    Args:
+        options: of the camera.
+        sim: the simulation.
+        name: of its random streams.
+    """
+
+    def __init__(self, options: CameraOptions, sim: Simulation, name: str) -> None:
+        self._model, self._encoding = options.model, options.encoding
+        self.noise = ImageNoise(options.noise, sim.engine.streams, name, as_ogre=sim.world.gazebo_quirks)
+        self.spares = ArrayPool((options.model.height, options.model.width, 3), np.uint8)
+
+    @cached_property
+    def distorter(self) -> ImageDistorter | None:
+        """The lens; found out at the first picture, since it takes a while. None where it bends nothing."""
+        return ImageDistorter(self._model) if self._model.is_distorted else None
+
+    @cached_property
+    def view(self) -> View:
+        """The frustum that is drawn."""
+        return self.distorter.view() if self.distorter else self._model.view()
+
+    def develop(self, colours: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
+        """Colours (h, w, 3) that were drawn, through the lens, in memory of their own; brightness (h, w) for grey."""
+        if self.distorter:
+            colours = self.distorter.distort(colours)
+        if image_messages.is_grey(self._encoding):
+            return image_messages.grey(colours)
+        if self.distorter:
+            return colours
+        kept: npt.NDArray[np.uint8] = self.spares.take()
+        np.copyto(kept, colours)
+        return kept
+
+    def perturb(self, picture: CameraReading, index: int) -> object:
+        """The picture with the noise of a sample."""
+        return picture if self.noise.is_silent else NoisyCameraReading(picture, self.noise, index)
+
+
 class RenderedCamera(RenderedSampler):
     """A camera: looks along its x axis, y to its left, z up.
 
@@ -103,22 +145,15 @@ class RenderedCamera(RenderedSampler):
             self.options = replace(self.options, model=self.options.model.as_gazebo())
             self.optical_frame_id = ""  # gz-sensors' main branch passes it over (CameraSensor.cc, OpticalFrameId)
         options = self.options
-        self._noise = ImageNoise(options.noise, sim.engine.streams, self.scoped, as_ogre=sim.world.gazebo_quirks)
-        self._view: View | None = None
+        self._pictures = PictureMaker(options, sim, self.scoped)
         self._info = CameraInfoMaker(options.model, self._baseline)
-        size = options.model.height, options.model.width
-        self._spare_colours = ArrayPool((*size, 3), np.uint8)
         super().attach(sim)
         if options.triggered:
             self.trigger_on(self._trigger_topic())
 
     def _drawn_view(self) -> View:
-        """The frustum; found out at the first picture, since a lens takes a while."""
-        if self._view is None:
-            model = self.options.model
-            self._distorter = ImageDistorter(model) if model.is_distorted else None
-            self._view = self._distorter.view() if self._distorter else model.view()
-        return self._view
+        """The frustum that is drawn."""
+        return self._pictures.view
 
     def shots(self) -> Sequence[Shot]:
         """What is drawn for one sample."""
@@ -183,24 +218,10 @@ class RenderedCamera(RenderedSampler):
     def develop(self, films: Iterator[Film], notes: Memory) -> object:
         colours = next(films).colours
         assert colours is not None
-        return CameraReading(self._develop_colours(colours), None)
-
-    def _develop_colours(self, colours: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
-        """Colours (h, w, 3) that were drawn, through the lens, in memory of their own; brightness (h, w) for grey."""
-        if self._distorter:
-            colours = self._distorter.distort(colours)
-        if image_messages.is_grey(self.options.encoding):
-            return image_messages.grey(colours)
-        if self._distorter:
-            return colours
-        kept: npt.NDArray[np.uint8] = self._spare_colours.take()
-        np.copyto(kept, colours)
-        return kept
+        return CameraReading(self._pictures.develop(colours), None)
 
     def perturb(self, reading: Reading, index: int) -> object:
-        if self._noise.is_silent:
-            return reading
-        return NoisyCameraReading(reading, self._noise, index)
+        return self._pictures.perturb(reading, index)
 
     def memory(self) -> object:
         return self._trigger.pending if self._trigger else 0

@@ -89,6 +89,7 @@ class RgbdCamera(RenderedCamera):
     def attach(self, sim: Simulation) -> None:
         disparity, model = self._disparity_options, self.options.model
         self._disparity = DisparityNoise(disparity, sim.engine.streams, self.scoped) if disparity else None
+        self._view: View | None = None
         self._spare_depths = ArrayPool((model.height, model.width), np.float32)
         # of several samples of a pixel only one has a depth, and not in its middle
         self._is_blended = self.options.anti_aliasing > 0 and Appearance.of(sim.world).quality.samples > 0
@@ -118,13 +119,13 @@ class RgbdCamera(RenderedCamera):
 
     def develop(self, films: Iterator[Film], notes: object) -> object:
         film = next(films)
-        colours = _NO_COLOURS if film.colours is None else self._develop_colours(film.colours)
+        colours = _NO_COLOURS if film.colours is None else self._pictures.develop(film.colours)
         if film.depths is None:
             film = next(films)
         raw = film.depths
         assert raw is not None
-        if self._distorter:
-            raw = self._distorter.distort_depths(raw)
+        if self._pictures.distorter:
+            raw = self._pictures.distorter.distort_depths(raw)
         return CameraReading(colours, self._range.metres(raw, film.view, self._spare_depths.take()))
 
     def products(self) -> dict[str, Product]:
@@ -193,16 +194,16 @@ class RgbdCamera(RenderedCamera):
         return None if sample is None else sample.noisy
 
     def perturb(self, reading: CameraReading, index: int) -> object:
-        if self._noise.is_silent and (self._disparity is None or self._disparity.is_silent):
+        if self._pictures.noise.is_silent and (self._disparity is None or self._disparity.is_silent):
             return reading
-        return NoisyDepths(reading, self._noise, index, self._noisy_depths)
+        return NoisyDepths(reading, self._pictures.noise, index, self._noisy_depths)
 
     def _noisy_depths(self, depths: Depths, index: int) -> Depths:
         """Noise of disparities, noise of depths, then the range's rule again, as in Gazebo."""
         if self._disparity is not None and not self._disparity.is_silent:
             depths = self._disparity.on_depths(depths, index)
-        if not self._noise.is_silent:
-            depths = self._noise.on_depths(depths, index)
+        if not self._pictures.noise.is_silent:
+            depths = self._pictures.noise.on_depths(depths, index)
         return self._range.clip(depths)
 
     # ------------------------------------------------------------------ messages

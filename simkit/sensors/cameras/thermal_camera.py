@@ -156,7 +156,7 @@ class ThermalCamera(RenderedCamera):
         """Temperatures [K], shape (height, width)."""
         film = next(films)
         assert film.ids is not None
-        ids = self._distorter.distort_ids(film.ids) if self._distorter else film.ids
+        ids = self._pictures.distorter.distort_ids(film.ids) if self._pictures.distorter else film.ids
         kelvins = notes.heat.table.take(ids, mode="wrap")
         if notes.views:
             self._apply_heat_textures(kelvins, ids, notes)
@@ -182,9 +182,9 @@ class ThermalCamera(RenderedCamera):
         return coarse
 
     def perturb(self, reading: Reading, index: int) -> object:
-        if self._noise.is_silent or self._quirks:  # Gazebo adds none
+        if self._pictures.noise.is_silent or self._quirks:  # Gazebo adds none
             return reading
-        draws = self._noise.on_depths(np.zeros_like(reading), index)
+        draws = self._pictures.noise.on_depths(np.zeros_like(reading), index)
         return reading + draws * np.float32(self._max_pixel_value() * self.options.resolution)
 
     # ------------------------------------------------------------------ messages

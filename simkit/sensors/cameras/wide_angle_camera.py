@@ -42,7 +42,7 @@ class WideAngleCamera(Camera):
 
     def develop(self, films: Iterator[Film], notes: object) -> CameraReading:
         assert self._cube is not None
-        colours = self._cube.develop(films, self._spare_colours.take())
+        colours = self._cube.develop(films, self._pictures.spares.take())
         return CameraReading(
             image_messages.grey(colours) if image_messages.is_grey(self.options.encoding) else colours, None
         )
