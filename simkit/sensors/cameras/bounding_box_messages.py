@@ -12,9 +12,7 @@ import numpy.typing as npt
 from simkit import msgs
 from simkit.msgs.message_types import Message
 from simkit.pose import rpy_from_quat
-from simkit.sensors.cameras.bounding_boxes import Box2D, Box3D, project_edges
-from simkit.sensors.cameras.camera_model import CameraModel
-from simkit.sensors.cameras.rendering.view import View
+from simkit.sensors.cameras.bounding_boxes import Box2D, Box3D, Projection
 from simkit.sensors.cameras.shape_corners import CUBE_EDGES
 
 Picture = npt.NDArray[np.uint8]
@@ -82,7 +80,7 @@ def _hypothesis(label: int) -> msgs.ObjectHypothesisWithPose:
     return message
 
 
-def draw_boxes(colours: Picture, boxes: Sequence[Box2D | Box3D], model: CameraModel, view: View) -> Picture:
+def draw_boxes(colours: Picture, boxes: Sequence[Box2D | Box3D], projection: Projection) -> Picture:
     """A copy of a picture with the boxes in green."""
     import cv2
 
@@ -90,9 +88,9 @@ def draw_boxes(colours: Picture, boxes: Sequence[Box2D | Box3D], model: CameraMo
     corners = [box.corners() for box in boxes if isinstance(box, Box3D)]
     if corners:
         edges = np.concatenate([CUBE_EDGES + 8 * i for i in range(len(corners))])
-        lines = project_edges(np.concatenate(corners), edges, model, view)
+        lines = projection.edges(np.concatenate(corners), edges)
         # beyond some pictures' widths a line's slope is worth more than its end
-        farthest = 8.0 * max(model.width, model.height)
+        farthest = 8.0 * max(projection.model.width, projection.model.height)
         cv2.polylines(out, list(np.clip(np.floor(lines), -farthest, farthest).astype(np.int32)), False, _GREEN)
     for box in boxes:
         if isinstance(box, Box2D):

@@ -60,26 +60,17 @@ class Box3D:
         return corners
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class ShapePoses:
-    """Where labelled things stand in the sensor's frame at one time, each by its number.
-
-    Attributes:
-        positions, rotations: of each geom that wears a label, shape (k, 3) and (k, 3, 3).
-        axes: of each item's model, shape (n, 3, 3).
-    """
-
-    positions: Vector
-    rotations: Vector
-    axes: Vector
-
-
 class LabelledShapes:
     """The shapes of labelled things, found out once for each set of labels and compiled model.
 
     Args:
         items: what wears which label.
         structure: what is in the world.
+
+    Attributes:
+        place: number of each geom that wears a label.
+        corners: of each of them, by number.
+        alone: of items with one visual, by position: a geom, the visual's frame in it, lowest and highest corner there.
     """
 
     def __init__(self, items: LabelledObjects, structure: WorldStructure) -> None:
@@ -87,59 +78,25 @@ class LabelledShapes:
         names, model = compiled.names, compiled.model
         self.items = items
         self._geoms = [g for item in items.items for visual in item.visuals for g in visual.geoms]
-        self._place = {geom: i for i, geom in enumerate(self._geoms)}
+        self.place = {geom: i for i, geom in enumerate(self._geoms)}
         cache: dict[int, Corners] = names.shared("corners of drawn shapes", dict)
-        self._corners: list[Corners] = [_cached(cache, model, g) for g in self._geoms]
+        self.corners: list[Corners] = [_cached(cache, model, g) for g in self._geoms]
         frames = (names.model_frame(structure.models[item.model]) for item in items.items)
         self._frames = [(body, frame.matrix) for body, frame in frames]
         scenes = {v.scoped: v for m in structure.models.values() for link in m.all_links() for v in link.visuals}
-        self._alone = {
+        self.alone = {
             position: self._own_box(item.visuals[0], model, names.link(item.visuals[0].link), scenes)
             for position, item in enumerate(items.items)
             if len(item.visuals) == 1
         }
 
-    def stand(self, data: mujoco.MjData, position: Vector, rotation: Vector) -> ShapePoses:
+    def stand(self, data: mujoco.MjData, position: Vector, rotation: Vector) -> PosedShapes:
         """Where the things are, seen from a sensor at a position (3,) with a rotation (3, 3) in the world."""
         geoms = self._geoms
         positions = (data.geom_xpos[geoms] - position) @ rotation
         rotations = rotation.T @ data.geom_xmat[geoms].reshape(-1, 3, 3)
         axes = [rotation.T @ data.xmat[body].reshape(3, 3) @ own for body, own in self._frames]
-        return ShapePoses(positions, rotations, np.array(axes).reshape(-1, 3, 3))
-
-    def points(self, visuals: Sequence[DrawnVisual], stand: ShapePoses) -> tuple[Vector, npt.NDArray[np.int32]]:
-        """Corners in the sensor's frame (n, 3) and their edges (m, 2) of some visuals of an item."""
-        places = [self._place[g] for visual in visuals for g in visual.geoms]
-        points = [self._corners[i].points @ stand.rotations[i].T + stand.positions[i] for i in places]
-        starts = np.cumsum([0, *(len(p) for p in points)])
-        edges = [self._corners[i].edges + start for i, start in zip(places, starts, strict=False)]
-        return np.concatenate(points), np.concatenate(edges)
-
-    def box_3d(self, position: int, stand: ShapePoses) -> Box3D:
-        """The box around an item: along the axes of its one visual, or of its model where there are several."""
-        item = self.items.items[position]
-        if position in self._alone:
-            return self._box_alone(item, position, stand)
-        points, _ = self.points(item.visuals, stand)
-        return _box_around(item, points, stand.axes[position])
-
-    def box_of_cloud(self, position: int, visuals: Sequence[DrawnVisual], stand: ShapePoses) -> Box3D:
-        """The box along the principal axes of the corners of some visuals, as Gazebo has it for several of them."""
-        item = self.items.items[position]
-        if len(visuals) == 1 and position in self._alone:
-            return self._box_alone(item, position, stand)
-        points, _ = self.points(visuals, stand)
-        _, axes = np.linalg.eigh(np.cov(points.T, bias=True))
-        axes = axes * np.where(axes[np.abs(axes).argmax(axis=0), range(3)] < 0, -1.0, 1.0)
-        axes[:, 2] = np.cross(axes[:, 0], axes[:, 1])
-        return _box_around(item, points, axes)
-
-    def _box_alone(self, item: LabelledObject, position: int, stand: ShapePoses) -> Box3D:
-        place, pose, low, high = self._alone[position]
-        turn = stand.rotations[place]
-        rotation = turn @ pose.matrix
-        centre = stand.positions[place] + turn @ pose.position + rotation @ ((low + high) / 2)
-        return Box3D(item, centre, rotation, high - low)
+        return PosedShapes(self, positions, rotations, np.array(axes).reshape(-1, 3, 3))
 
     def _own_box(
         self, visual: DrawnVisual, model: mujoco.MjModel, link: LinkBinding, scenes: Mapping[str, SceneVisual]
@@ -149,10 +106,99 @@ class LabelledShapes:
         low, high = np.full(3, np.inf), np.full(3, -np.inf)
         for geom in visual.geoms:
             own = in_body.inverse() @ Pose(model.geom_pos[geom], model.geom_quat[geom])
-            points = self._corners[self._place[geom]].points @ own.matrix.T + own.position
+            points = self.corners[self.place[geom]].points @ own.matrix.T + own.position
             low, high = np.minimum(low, points.min(axis=0)), np.maximum(high, points.max(axis=0))
         first = visual.geoms[0]
-        return self._place[first], Pose(model.geom_pos[first], model.geom_quat[first]).inverse() @ in_body, low, high
+        return self.place[first], Pose(model.geom_pos[first], model.geom_quat[first]).inverse() @ in_body, low, high
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PosedShapes:
+    """Labelled shapes where they stand in the sensor's frame at one time, each by its number.
+
+    Attributes:
+        shapes: what they are.
+        positions, rotations: of each geom that wears a label, shape (k, 3) and (k, 3, 3).
+        axes: of each item's model, shape (n, 3, 3).
+    """
+
+    shapes: LabelledShapes
+    positions: Vector
+    rotations: Vector
+    axes: Vector
+
+    def points(self, visuals: Sequence[DrawnVisual]) -> tuple[Vector, npt.NDArray[np.int32]]:
+        """Corners in the sensor's frame (n, 3) and their edges (m, 2) of some visuals of an item."""
+        shapes = self.shapes
+        places = [shapes.place[g] for visual in visuals for g in visual.geoms]
+        points = [shapes.corners[i].points @ self.rotations[i].T + self.positions[i] for i in places]
+        starts = np.cumsum([0, *(len(p) for p in points)])
+        edges = [shapes.corners[i].edges + start for i, start in zip(places, starts, strict=False)]
+        return np.concatenate(points), np.concatenate(edges)
+
+    def box_3d(self, position: int) -> Box3D:
+        """The box around an item: along the axes of its one visual, or of its model where there are several."""
+        item = self.shapes.items.items[position]
+        if position in self.shapes.alone:
+            return self._box_alone(item, position)
+        points, _ = self.points(item.visuals)
+        return _box_around(item, points, self.axes[position])
+
+    def box_of_cloud(self, position: int, visuals: Sequence[DrawnVisual]) -> Box3D:
+        """The box along the principal axes of the corners of some visuals, as Gazebo has it for several of them."""
+        item = self.shapes.items.items[position]
+        if len(visuals) == 1 and position in self.shapes.alone:
+            return self._box_alone(item, position)
+        points, _ = self.points(visuals)
+        _, axes = np.linalg.eigh(np.cov(points.T, bias=True))
+        axes = axes * np.where(axes[np.abs(axes).argmax(axis=0), range(3)] < 0, -1.0, 1.0)
+        axes[:, 2] = np.cross(axes[:, 0], axes[:, 1])
+        return _box_around(item, points, axes)
+
+    def _box_alone(self, item: LabelledObject, position: int) -> Box3D:
+        place, pose, low, high = self.shapes.alone[position]
+        turn = self.rotations[place]
+        rotation = turn @ pose.matrix
+        centre = self.positions[place] + turn @ pose.position + rotation @ ((low + high) / 2)
+        return Box3D(item, centre, rotation, high - low)
+
+
+@dataclass(frozen=True, slots=True)
+class Projection:
+    """Where points in the sensor's frame are seen [px]: by a camera, through the view that is drawn for it."""
+
+    model: CameraModel
+    view: View
+
+    def shape(self, points: Vector, edges: npt.NDArray[np.int32]) -> Vector | None:
+        """Project what of a shape is in front of the near plane: its corners, and points along edges that a lens bends.
+
+        The result has the shape (n, 2) [px]; it is None where nothing is in front.
+
+        Args:
+            points: corners in the sensor's frame, shape (n, 3).
+            edges: pairs of them, shape (m, 2).
+        """
+        if self.model.distortion or points[:, 0].min() < self.model.near:
+            lines = self.edges(points, edges)
+            return lines.reshape(-1, 2) if len(lines) else None
+        return self._points(points)
+
+    def edges(self, points: Vector, edges: npt.NDArray[np.int32]) -> Vector:
+        """Where the edges are seen that are not behind the near plane [px], shape (m, k, 2): as k points, two but for a
+        lens that bends."""
+        ends = _clip_to_near_plane(points[edges], self.model.near)
+        if self.model.distortion:
+            along = np.linspace(0, 1, _PARTS_OF_EDGE + 1)[:, None]
+            ends = ends[:, :1] + along * (ends[:, 1:] - ends[:, :1])
+        return self._points(ends)
+
+    def _points(self, points: Vector) -> Vector:
+        """Where points (..., 3) are seen; beside what is drawn a lens has no say, and they are taken to its edge."""
+        x, y = -points[..., 1] / points[..., 0], -points[..., 2] / points[..., 0]
+        if self.model.distortion:
+            x, y = np.clip(x, self.view.left, self.view.right), np.clip(y, -self.view.top, -self.view.bottom)
+        return np.stack(self.model.seen_at(x, y), axis=-1)
 
 
 def visible_boxes(position_of: Numbers, items: Sequence[LabelledObject]) -> list[Box2D]:
@@ -175,39 +221,6 @@ def visible_boxes(position_of: Numbers, items: Sequence[LabelledObject]) -> list
         high, wide = np.flatnonzero(rows[i]), np.flatnonzero(columns[i])
         found.append(Box2D(items[i], float(wide[0]), float(high[0]), float(wide[-1] + 1), float(high[-1] + 1)))
     return found
-
-
-def project_shape(points: Vector, edges: npt.NDArray[np.int32], model: CameraModel, view: View) -> Vector | None:
-    """Where what is in front of the near plane of a shape is seen [px]: its corners, and points along edges that a lens
-    bends, shape (n, 2). None where nothing is in front.
-
-    Args:
-        points: corners in the sensor's frame, shape (n, 3).
-        edges: pairs of them, shape (m, 2).
-        view: what is drawn.
-    """
-    if model.distortion or points[:, 0].min() < model.near:
-        lines = project_edges(points, edges, model, view)
-        return lines.reshape(-1, 2) if len(lines) else None
-    return _project_points(points, model, view)
-
-
-def project_edges(points: Vector, edges: npt.NDArray[np.int32], model: CameraModel, view: View) -> Vector:
-    """Where the edges are seen that are not behind the near plane [px], shape (m, k, 2): as k points, two but for a
-    lens that bends."""
-    ends = _clip_to_near_plane(points[edges], model.near)
-    if model.distortion:
-        along = np.linspace(0, 1, _PARTS_OF_EDGE + 1)[:, None]
-        ends = ends[:, :1] + along * (ends[:, 1:] - ends[:, :1])
-    return _project_points(ends, model, view)
-
-
-def _project_points(points: Vector, model: CameraModel, view: View) -> Vector:
-    """Where points (..., 3) are seen; beside what is drawn a lens has no say, and they are taken to its edge."""
-    x, y = -points[..., 1] / points[..., 0], -points[..., 2] / points[..., 0]
-    if model.distortion:
-        x, y = np.clip(x, view.left, view.right), np.clip(y, -view.top, -view.bottom)
-    return np.stack(model.seen_at(x, y), axis=-1)
 
 
 def _clip_to_near_plane(ends: Vector, near: float) -> Vector:
@@ -247,13 +260,7 @@ def _cached(cache: dict[int, Corners], model: mujoco.MjModel, geom: int) -> Corn
 
 
 def gazebo_boxes(
-    kind: str,
-    geoms: Ids,
-    items: LabelledObjects,
-    shapes: LabelledShapes | None,
-    stand: ShapePoses | None,
-    model: CameraModel,
-    view: View,
+    kind: str, geoms: Ids, items: LabelledObjects, shapes: PosedShapes | None, projection: Projection
 ) -> list[Box2D] | list[Box3D]:
     """Boxes as Gazebo has them: what is hidden of a model does not count, and its first seen visual says the label.
 
@@ -272,28 +279,24 @@ def gazebo_boxes(
         if visuals:
             seen[position] = visuals
     labelled = [replace(item, label=seen[i][0].label) if i in seen else item for i, item in enumerate(items.items)]
-    if shapes is None or stand is None:
+    if shapes is None:
         found = visible_boxes(items.item_of.take(geoms, mode="wrap"), labelled)
         return [replace(box, right=box.right - 1, bottom=box.bottom - 1) for box in found]
     if kind == "3d":
-        boxes = [(labelled[i], shapes.box_of_cloud(i, visuals, stand)) for i, visuals in seen.items()]
+        boxes = [(labelled[i], shapes.box_of_cloud(i, visuals)) for i, visuals in seen.items()]
         return [Box3D(item, box.centre, box.rotation, box.size) for item, box in boxes]
-    full = [_gazebo_full_box(labelled[i], visuals, shapes, stand, model, view) for i, visuals in seen.items()]
+    full = [_gazebo_full_box(labelled[i], visuals, shapes, projection) for i, visuals in seen.items()]
     return [box for box in full if box is not None]
 
 
 def _gazebo_full_box(
-    item: LabelledObject,
-    visuals: Sequence[DrawnVisual],
-    shapes: LabelledShapes,
-    stand: ShapePoses,
-    model: CameraModel,
-    view: View,
+    item: LabelledObject, visuals: Sequence[DrawnVisual], shapes: PosedShapes, projection: Projection
 ) -> Box2D | None:
+    model = projection.model
     size = np.array((model.width, model.height), dtype=np.float64)
     parts: list[tuple[Vector, Vector]] = []
     for visual in visuals:
-        pixels = project_shape(*shapes.points((visual,), stand), model, view)
+        pixels = projection.shape(*shapes.points((visual,)))
         if pixels is None:
             continue
         low, high = pixels.min(axis=0), pixels.max(axis=0)

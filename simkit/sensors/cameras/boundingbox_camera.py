@@ -20,10 +20,10 @@ from simkit.sensors.cameras.bounding_boxes import (
     Box2D,
     Box3D,
     LabelledShapes,
-    ShapePoses,
+    PosedShapes,
+    Projection,
     full_box,
     gazebo_boxes,
-    project_shape,
     visible_boxes,
 )
 from simkit.sensors.cameras.camera_options import CameraOptions, extend_options
@@ -114,44 +114,36 @@ class BoundingBoxCamera(LabelCamera):
         view = self._drawn_view()
         return Shot(view), Shot(view, ids=True)
 
-    def take_notes(
-        self, model: mujoco.MjModel, data: mujoco.MjData
-    ) -> tuple[LabelledObjects, LabelledShapes | None, ShapePoses | None]:
+    def take_notes(self, model: mujoco.MjModel, data: mujoco.MjData) -> tuple[LabelledObjects, PosedShapes | None]:
         items = self.items
         if self.options.type == _VISIBLE:
-            return items, None, None
+            return items, None
         if self._shapes is None or self._shapes.items is not items:
             self._shapes = LabelledShapes(items, self.structure)
-        return items, self._shapes, self._shapes.stand(data, *self._frame_in_world(data))
+        return items, self._shapes.stand(data, *self._frame_in_world(data))
 
-    def develop(
-        self, films: Iterator[Film], notes: tuple[LabelledObjects, LabelledShapes | None, ShapePoses | None]
-    ) -> Boxes:
+    def develop(self, films: Iterator[Film], notes: tuple[LabelledObjects, PosedShapes | None]) -> Boxes:
         colours = self._picture(next(films))
         geoms = self.seen(next(films))
-        items, shapes, stand = notes
+        items, shapes = notes
         if self._is_gazebos:
-            model = self.options.model
-            return Boxes(
-                gazebo_boxes(self.options.type, geoms, items, shapes, stand, model, self._drawn_view()), colours
-            )
-        if shapes is None or stand is None:
+            return Boxes(gazebo_boxes(self.options.type, geoms, items, shapes, self._projection()), colours)
+        if shapes is None:
             return Boxes(visible_boxes(items.item_of.take(geoms, mode="wrap"), items.items), colours)
-        return Boxes(self._projected(geoms, shapes, stand), colours)
+        return Boxes(self._projected(geoms, items, shapes), colours)
 
-    def _projected(self, geoms: Ids, shapes: LabelledShapes, stand: ShapePoses) -> list[Box2D] | list[Box3D]:
+    def _projection(self) -> Projection:
+        return Projection(self.options.model, self._drawn_view())
+
+    def _projected(self, geoms: Ids, items: LabelledObjects, shapes: PosedShapes) -> list[Box2D] | list[Box3D]:
         """Boxes around all of each item of which a pixel is seen."""
-        items, model = shapes.items, self.options.model
         positions = np.flatnonzero(np.bincount(items.item_of.take(geoms, mode="wrap").ravel() + 1)[1:])
         if self.options.type == _SPACE:
-            return [shapes.box_3d(int(position), stand) for position in positions]
-        found = []
-        for position in positions:
-            item = items.items[position]
-            box = full_box(item, project_shape(*shapes.points(item.visuals, stand), model, self._drawn_view()), model)
-            if box is not None:
-                found.append(box)
-        return found
+            return [shapes.box_3d(int(position)) for position in positions]
+        projection = self._projection()
+        seen = (items.items[position] for position in positions)
+        boxes = [full_box(i, projection.shape(*shapes.points(i.visuals)), projection.model) for i in seen]
+        return [box for box in boxes if box is not None]
 
     # ------------------------------------------------------------------ messages
 
@@ -164,5 +156,5 @@ class BoundingBoxCamera(LabelCamera):
         return bounding_box_messages.detections_2d(self._image_header(time_ns), flat)
 
     def _image_message(self, reading: Boxes, time_ns: int) -> msgs.Image:
-        drawn = bounding_box_messages.draw_boxes(reading.colours, reading.boxes, self.options.model, self._drawn_view())
+        drawn = bounding_box_messages.draw_boxes(reading.colours, reading.boxes, self._projection())
         return image_messages.image_message(self._image_header(time_ns), drawn, "rgb8")

@@ -111,18 +111,11 @@ def magnetic_model(year: float) -> MagneticModel:
 
 
 @lru_cache(maxsize=4)
-def _coefficients(file: str) -> tuple[tuple[int, int, float, float, float, float], ...]:
+def _coefficients(file: str) -> list[list[float]]:
     """Degree, order, g and h [nT], and their change per year, Schmidt's semi-normalisation."""
-    rows = []
-    text = (Path(__file__).parent / "wmm" / file).read_text(encoding="ascii")
-    for line in text.splitlines()[1:]:
-        words = line.split()
-        if len(words) != 6:
-            break
-        n, m = int(words[0]), int(words[1])
-        g, h, g_rate, h_rate = map(float, words[2:])
-        rows.append((n, m, g, h, g_rate, h_rate))
-    return tuple(rows)
+    path = Path(__file__).parent / "wmm" / file
+    rows: list[list[float]] = np.loadtxt(path, skiprows=1, max_rows=_DEGREE * (_DEGREE + 3) // 2).tolist()
+    return rows
 
 
 def _harmonic_index(n: int, m: int) -> int:
@@ -148,10 +141,11 @@ def _harmonics(x: float, y: float, z: float) -> list[complex]:
     return found
 
 
-def _field_weights(rows: tuple[tuple[int, int, float, float, float, float], ...], years: float) -> Vector:
+def _field_weights(rows: list[list[float]], years: float) -> Vector:
     """What the field [T], -∇ of the potential, takes of each harmonic's real and imaginary part; shape (3, 2·count)."""
     weights = np.zeros((3, _harmonic_index(_DEGREE + 2, 0), 2))
-    for n, m, g, h, g_rate, h_rate in rows:
+    for degree, order, g, h, g_rate, h_rate in rows:
+        n, m = int(degree), int(order)
         schmidt = math.sqrt((2 if m else 1) * math.factorial(n - m) / math.factorial(n + m)) * 1e-9
         c, s = (g + years * g_rate) * schmidt, (h + years * h_rate) * schmidt
         outer, same = _harmonic_index(n + 1, m + 1), _harmonic_index(n + 1, m)
