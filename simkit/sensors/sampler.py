@@ -11,8 +11,7 @@ import mujoco
 
 from simkit.msgs.message_types import Message
 from simkit.runtime import Publisher, Simulation
-from simkit.runtime.communication.subscription import PendingWork
-from simkit.runtime.communication.subscription import LazyMessage
+from simkit.runtime.communication.subscription import LazyMessage, PendingWork
 from simkit.runtime.engine.physics_state import HeldState
 from simkit.runtime.engine.scheduler import Timetable
 from simkit.sensors.sample import Batch, Memory, NoiseProcess, Product, Reading, ReadingFunction, Sample
