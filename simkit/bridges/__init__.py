@@ -1,6 +1,5 @@
-"""Bridges from a running simulation to the world outside its process: clients of other processes, and a window.
+"""Bridges between a running simulation and the outside of its process: clients of other processes, and a viewer window.
 
-A simulation and what its clients send enter; messages, answers and pictures leave. A bridge is polled between two steps
-and passes on what came as a caller in the process would; it never changes the physics by being there, and opens no
-network port unless it is told to.
+A bridge is polled between two steps. It passes commands on in the same way as a caller in the process would.
+A bridge never changes the physics by its presence. It opens no network port unless the user requests one.
 """

@@ -1,4 +1,4 @@
-"""Show a running simulation in a window: MuJoCo's own viewer, updated from the run loop."""
+"""Viewer window for a running simulation: MuJoCo's own viewer, updated from the run loop."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ _HELP = "run without --view, use --picture out.png, or record and open the bag i
 
 
 def check_possible() -> None:
-    """Says before a run why there can be no window.
+    """Check before a run whether a viewer window can open.
 
     Raises:
-        InputError: SK-CLI-015 no display, or no window library.
+        InputError: SK-CLI-015 there is no display, or no window library.
     """
     if sys.platform.startswith("linux") and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
         raise InputError(
@@ -36,7 +36,7 @@ def check_possible() -> None:
 
 
 class Viewer:
-    """Opens a window; a context manager."""
+    """Window that shows a simulation; a context manager."""
 
     def __init__(self, sim: Simulation) -> None:
         import mujoco.viewer
@@ -50,11 +50,11 @@ class Viewer:
         self._last = 0.0
 
     def is_open(self) -> bool:
-        """Whether the window is still open."""
+        """Check whether the window is still open."""
         return bool(self._handle.is_running())
 
     def update(self) -> None:
-        """Shows the present state when the last picture is old enough."""
+        """Show the present state, at most 60 times a second."""
         now = time.perf_counter()
         if now - self._last >= _REFRESH:
             self._last = now

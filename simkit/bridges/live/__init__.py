@@ -1,5 +1,6 @@
-"""Local sockets of running simulations: the server that `simkit run` polls, and the client that `simkit.live` offers.
+"""Local sockets of running simulations: the server that `simkit run` polls, and the client behind `simkit.live`.
 
-Requests, commands and goals of other processes of the same user enter; answers and subscribed messages leave as frames
-of `protocol.py`. Nothing runs beside the physics, so that the bits of a run depend only on what came at which step.
+Other processes of the same user send requests, commands and goals. The server sends answers and subscribed messages.
+All of them travel as frames of `protocol.py`. No thread runs beside the physics. The bits of a run therefore depend
+only on the commands and on the steps at which they arrived.
 """

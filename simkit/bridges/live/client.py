@@ -1,4 +1,4 @@
-"""A client of a simulation that runs in another process: `simkit.live.connect`."""
+"""Client of a simulation that runs in another process: `simkit.live.connect`."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ from simkit.bridges.live.server_link import CONNECT_PERIOD, ServerLink
 from simkit.msgs.message_types import Message
 
 DEFAULT_DEPTH = 1000
-"""So many messages of a subscription wait at most, here and at the simulation, where nothing is said."""
+"""Default number of messages that a subscription queues at most, in the client and in the simulation."""
 
 
 def connect(name: str | None = None, timeout: float = 10.0, node: str | None = None, wait: float = 0.0) -> Client:
-    """Connects to a simulation of the same user.
+    """Connect to a simulation of the same user.
 
     Args:
-        name: of the simulation; else the environment's `SIMKIT_SIM`, else the only one that runs.
-        timeout: how long it may take to answer anything [s], wall time.
-        node: what the simulation calls the client in its lists.
-        wait: how long to wait for one that has not started yet [s], wall time.
+        name: name of the simulation; default: the environment variable `SIMKIT_SIM`, else the only running simulation.
+        timeout: longest wait for any answer of the simulation [s], wall time.
+        node: name of the client in the simulation's node lists.
+        wait: longest wait for a simulation that has not started yet [s], wall time.
 
     Raises:
-        LiveError: SK-LIVE-001 none runs; SK-LIVE-002 several do; SK-LIVE-003 none of that name does; SK-LIVE-004 it
-            does not answer.
+        LiveError: SK-LIVE-001 no simulation runs; SK-LIVE-002 several simulations run; SK-LIVE-003 no simulation has
+            the name; SK-LIVE-004 the simulation does not answer.
     """
     end = time.monotonic() + wait
     while True:
@@ -40,61 +40,69 @@ def connect(name: str | None = None, timeout: float = 10.0, node: str | None = N
 
 
 class Client(ServerLink):
-    """A connection to a running simulation; a context manager. For one thread at a time.
+    """Connection to a running simulation; a context manager. Use each client in one thread only.
 
     Args:
-        path: of its socket.
-        timeout: how long it may take to answer [s], wall time.
-        node: what the simulation calls the client in its lists.
+        path: path of the simulation's socket.
+        timeout: longest wait for an answer [s], wall time.
+        node: name of the client in the simulation's node lists.
 
     Attributes:
-        info: `name`, `world`, `pid` and `version` of the simulation, and `node`, what it calls this client.
+        info: `name`, `world`, `pid` and `version` of the simulation, and `node`, the client's name in its lists.
     """
 
-    # ------------------------------------------------------------------ asking
+    # ------------------------------------------------------------------ requests
 
     def ask(self, question: str, **args: object) -> JsonValue:
-        """The answer to a question.
+        """Send a request and return its answer.
 
         Raises:
-            LiveError: the simulation cannot answer it; with the code and the words of its error.
-            LiveClosed: it has ended.
+            LiveError: the simulation cannot answer the request; with the code and the message of its error.
+            LiveClosed: the simulation has ended.
         """
         return self.request(question, args)[0]
 
     def flush(self) -> None:
-        """Returns once everything that was sent has been taken."""
+        """Wait until the simulation has processed everything that this client sent."""
         self.ask("ping")
 
     def state(self) -> JsonObject:
-        """`time_ns`, `tick`, `paused`, `rtf` (the highest allowed, None for none) and `measured_rtf`."""
+        """Return `time_ns`, `tick`, `paused`, `rtf` (the highest allowed, None for no limit) and `measured_rtf`."""
         found: JsonObject = self.ask("state")
         return found
 
     def control(self, action: str, value: float | None = None) -> JsonObject:
-        """Make the simulation `pause`, `resume`, `step` (`value` steps) or keep an `rtf` (`value`; None: none).
+        """Pause, resume or step the simulation, or limit its real-time factor.
+
+        Args:
+            action: `pause`, `resume`, `step` or `rtf`.
+            value: number of steps for `step`; highest real-time factor for `rtf` (None: no limit).
 
         Returns:
-            The state from then on, as `state` gives it.
+            State after the action, in the form that `state` returns.
         """
         found: JsonObject = self.ask("control", action=action, value=value)
         return found
 
     def topics(self) -> list[JsonObject]:
-        """Each topic: `name`, `types`, `publishers` (`node`, `type`, `latched`), `subscribers` (`node`, `types`)."""
+        """List the topics.
+
+        Returns:
+            Rows with `name`, `types`, `publishers` (`node`, `type`, `latched`) and `subscribers` (`node`, `types`).
+        """
         found: list[JsonObject] = self.ask("topics")
         return found
 
     def models(self) -> list[str]:
-        """The names of the models in the world."""
+        """Return the names of the models in the world."""
         found: list[str] = self.ask("models")
         return found
 
     def model(self, name: str) -> JsonObject:
-        """A model: `static`, `pose`, `links`, `joints` and `models`.
+        """Return the state of a model: `static`, `pose`, `links`, `joints` and `models`.
 
-        A pose is `{"position": [x, y, z], "quaternion": [w, x, y, z], "rpy": [roll, pitch, yaw]}` in the world
-        [m, rad]; a joint `{"type", "position", "velocity", "effort"}` [rad, rad/s, N m or m, m/s, N].
+        A pose is `{"position": [x, y, z], "quaternion": [w, x, y, z], "rpy": [roll, pitch, yaw]}` in the world frame
+        [m, rad]. A joint is `{"type", "position", "velocity", "effort"}` [rad, rad/s, N m or m, m/s, N].
         """
         found: JsonObject = self.ask("model", name=name)
         return found
@@ -102,25 +110,29 @@ class Client(ServerLink):
     # ------------------------------------------------------------------ topics
 
     def subscribe(self, topic: str, depth: int = DEFAULT_DEPTH) -> LiveSubscription:
-        """Receives a topic, whether it exists yet or not.
+        """Subscribe to a topic. The topic need not exist yet.
 
         Args:
-            topic: absolute, or taken as such.
-            depth: how many messages wait at most; of more, the oldest are dropped and counted.
+            topic: name of the topic; a leading `/` is added if it is missing.
+            depth: highest number of queued messages; if more arrive, the oldest are dropped and counted.
         """
         return self.subscribe_all([topic], depth)[0]
 
     def subscribe_all(self, topics: Iterable[str], depth: int = DEFAULT_DEPTH) -> list[LiveSubscription]:
-        """Receives topics, asked for at once: a simulation with slow steps answers once a step."""
-        opened, asked = [], []
+        """Subscribe to several topics at once.
+
+        All requests are sent before the first answer is read: a simulation with slow steps answers once per step.
+        """
+        opened, requests = [], []
         for topic in topics:
             number = self.next_number()
             subscription = LiveSubscription(self, number, topic if topic.startswith("/") else "/" + topic, depth)
             self.subscriptions[number] = subscription.take  # its first messages may come with the answer
             opened.append(subscription)
-            asked.append(self.send_request("subscribe", {"number": number, "topic": topic, "depth": depth}))
+            args = {"number": number, "topic": topic, "depth": depth}
+            requests.append(self.send_request("subscribe", args))
         failed: LiveError | None = None
-        for subscription, number in zip(opened, asked, strict=True):
+        for subscription, number in zip(opened, requests, strict=True):
             try:
                 self.answer(number)
             except LiveClosed:
@@ -133,14 +145,14 @@ class Client(ServerLink):
         return opened
 
     def advertise(self, topic: str, type_name: str | None = None) -> LivePublisher:
-        """Opens a topic for publishing.
+        """Open a topic for publishing.
 
         Args:
-            topic: absolute, or taken as such.
-            type_name: where it is left out, the topic's own.
+            topic: name of the topic; a leading `/` is added if it is missing.
+            type_name: type of the messages; default: the type that the topic already has.
 
         Raises:
-            LiveError: the topic is of another type, or there is no such type.
+            LiveError: the topic has another type, or the type is unknown.
         """
         number = self.next_number()
         found = self.ask("advertise", number=number, topic=topic, type=type_name)
@@ -149,47 +161,47 @@ class Client(ServerLink):
     # ------------------------------------------------------------------ services and actions
 
     def services(self) -> dict[str, str]:
-        """Service -> type."""
+        """Return the services: name -> type."""
         found: dict[str, str] = self.ask("services")
         return found
 
     def call(self, name: str, request: object = None) -> Message:
-        """The response of a service, which is at work when this returns.
+        """Call a service and return its response. The service has finished when this method returns.
 
         Args:
-            name: absolute, or taken as such.
-            request: a dict of fields, a message, or None for all zero.
+            name: name of the service; a leading `/` is added if it is missing.
+            request: a dict of fields, a message, or None for a request with all fields zero.
 
         Raises:
-            LiveError: there is no such service, or the request does not fit, or the service failed.
+            LiveError: the service does not exist, the request does not match its type, or the service failed.
         """
         _, data, type_name = self._request_with_message("call", name, request)
         return msgs.deserialize(data, type_name)
 
     def actions(self) -> dict[str, str]:
-        """Action -> type."""
+        """Return the actions: name -> type."""
         found: dict[str, str] = self.ask("actions")
         return found
 
     def send_goal(
         self, name: str, goal: object = None, on_feedback: Callable[[Message], None] | None = None
     ) -> LiveGoal:
-        """Sends a goal to an action.
+        """Send a goal to an action.
 
         Args:
-            name: absolute, or taken as such.
-            goal: a dict of fields, a message, or None for all zero.
-            on_feedback: called with each feedback message, while something is received.
+            name: name of the action; a leading `/` is added if it is missing.
+            goal: a dict of fields, a message, or None for a goal with all fields zero.
+            on_feedback: callback for each feedback message; called while the client receives.
         """
         number = self.next_number()
-        made = LiveGoal(self, number, on_feedback)
-        self.goals[number] = made.take
+        handle = LiveGoal(self, number, on_feedback)
+        self.goals[number] = handle.take
         try:
-            made.action, made.id = self._request_with_message("goal", name, goal, number=number)[0]
+            handle.action, handle.id = self._request_with_message("goal", name, goal, number=number)[0]
         except LiveError:
             del self.goals[number]
             raise
-        return made
+        return handle
 
     def _request_with_message(
         self, question: str, name: str, message: object, **more: object

@@ -1,4 +1,4 @@
-"""Handles of what a client has open: subscriptions, publishers and goals."""
+"""Handles of the subscriptions, publishers and goals that a client has open."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ if TYPE_CHECKING:
 
 
 def _goal_statuses() -> type[GoalStatus]:
-    # the runtime loads the engine, which a client has no other use for
+    # imported late: the runtime imports the physics engine, which a client does not need
     from simkit.runtime.communication.action_server import GoalStatus
 
     return GoalStatus
 
 
 class Received(NamedTuple):
-    """Message as it was received.
+    """Message with its time and type, as it was received.
 
     Attributes:
-        time_ns: simulated time at which it was published [ns].
-        type_name: such as `sensor_msgs/msg/Imu`.
-        data: CDR.
+        time_ns: simulated time of publication [ns].
+        type_name: full name of the type, such as `sensor_msgs/msg/Imu`.
+        data: message as CDR.
     """
 
     time_ns: int
@@ -37,17 +37,19 @@ class Received(NamedTuple):
 
     @property
     def message(self) -> Message:
-        """The message itself."""
+        """Decoded message."""
         return msgs.deserialize(self.data, self.type_name)
 
 
 class LiveSubscription:
-    """Subscription to a topic: `for time_ns, type_name, cdr in subscription` waits for each, until the simulation ends.
+    """Subscription to a topic.
+
+    `for time_ns, type_name, cdr in subscription` waits for each message until the simulation ends.
 
     Attributes:
-        topic: its absolute name.
-        waiting: what has come and nobody has looked at yet.
-        lost: how many messages were dropped, since more came than were looked at.
+        topic: absolute name of the topic.
+        waiting: messages that have arrived and were not read yet, the oldest first.
+        lost: number of messages that were dropped because more arrived than were read.
     """
 
     def __init__(self, link: ServerLink, number: int, topic: str, depth: int) -> None:
@@ -61,7 +63,7 @@ class LiveSubscription:
         return self._lost_there + self._lost_here
 
     def get(self, timeout: float | None = None) -> Received | None:
-        """The next message; None where none comes in time [s]; None waits for as long as it takes.
+        """Return the next message, or None after the timeout [s]. Without a timeout, wait for ever.
 
         Raises:
             LiveClosed: the simulation has ended.
@@ -83,7 +85,7 @@ class LiveSubscription:
         return found
 
     def close(self) -> None:
-        """Receives no more."""
+        """Stop receiving messages."""
         if not self._closed:
             self._closed = True
             self._link.subscriptions.pop(self.number, None)
@@ -91,7 +93,7 @@ class LiveSubscription:
                 self._link.request("unsubscribe", {"number": self.number})
 
     def take(self, time_ns: int, type_name: str, data: bytes, lost: int) -> None:
-        """Take a message that arrived."""
+        """Queue a message that has arrived."""
         self._lost_there = lost
         if len(self.waiting) >= self._depth:
             self.waiting.popleft()
@@ -100,21 +102,21 @@ class LiveSubscription:
 
 
 class LivePublisher:
-    """Sends messages on a topic; `client.flush()` returns once they have been taken.
+    """Publisher of a topic. `client.flush()` waits until the simulation has processed the messages.
 
     Attributes:
-        topic: its absolute name.
-        type_name: such as `geometry_msgs/msg/Twist`.
+        topic: absolute name of the topic.
+        type_name: full name of the type, such as `geometry_msgs/msg/Twist`.
     """
 
     def __init__(self, link: ServerLink, number: int, topic: str, type_name: str) -> None:
         self._link, self.number, self.topic, self.type_name = link, number, topic, type_name
 
     def publish(self, message: object) -> None:
-        """Sends a message, a dict of its fields, or its CDR.
+        """Send a message, given as a message, a dict of its fields, or CDR.
 
         Raises:
-            MessageError: it does not fit the type.
+            MessageError: the message does not match the type of the topic.
             LiveClosed: the simulation has ended.
         """
         if isinstance(message, (bytes, bytearray, memoryview)):
@@ -126,21 +128,21 @@ class LivePublisher:
         self._link.send(message_frame(self.number, data))
 
     def close(self) -> None:
-        """Publishes no more."""
+        """Stop publishing."""
         if not self._link.is_closed:
             self._link.request("unadvertise", {"number": self.number})
 
 
 class LiveGoal:
-    """A goal that was sent to an action.
+    """Goal that was sent to an action.
 
     Attributes:
-        action: the name of the action.
-        id: the number that the simulation gave it.
-        status: how far it is.
-        result: the result message, once there is one.
-        feedback: the newest feedback message.
-        reason: why it was rejected, or what else was said with its end.
+        action: name of the action.
+        id: number that the simulation gave to the goal.
+        status: newest status of the goal.
+        result: result message, once the goal has one.
+        feedback: newest feedback message.
+        reason: reason for the rejection, or the message that came with the final status.
     """
 
     def __init__(self, link: ServerLink, number: int, on_feedback: Callable[[Message], None] | None) -> None:
@@ -153,34 +155,34 @@ class LiveGoal:
 
     @property
     def is_done(self) -> bool:
-        """Whether it was rejected, succeeded, was cancelled or aborted."""
+        """True if the goal was rejected, succeeded, was cancelled or aborted."""
         return self.status.name in ("REJECTED", "SUCCEEDED", "CANCELED", "ABORTED")
 
     @property
     def is_accepted(self) -> bool:
-        """Whether the action accepted it, though it may have ended since."""
+        """True if the action accepted the goal, even if the goal has ended since."""
         return self.status.name not in ("UNKNOWN", "REJECTED")
 
     def wait(self, timeout: float | None = None) -> bool:
-        """Waits for its end; False where it does not come in time [s, wall time]."""
+        """Wait for the end of the goal; return False after the timeout [s, wall time]."""
         return self._link.wait(lambda: self.is_done, timeout)
 
     def wait_accepted(self, timeout: float | None = None) -> bool:
-        """Waits until it is accepted or rejected; False where that does not come in time [s, wall time]."""
+        """Wait until the goal is accepted or rejected; return False after the timeout [s, wall time]."""
         return self._link.wait(lambda: self.status.name != "UNKNOWN", timeout)
 
     def cancel(self) -> None:
-        """Asks for it to be called off; the action may go on."""
+        """Request the cancellation of the goal. The action may ignore the request."""
         self._link.request("cancel", {"number": self.number})
 
-    def take(self, words: JsonObject, data: bytes) -> None:
-        """Take feedback, a status or a result."""
-        message = msgs.deserialize(data, str(words["type"])) if "type" in words else None
-        if "status" not in words:
+    def take(self, update: JsonObject, data: bytes) -> None:
+        """Process feedback, a status or a result from the simulation."""
+        message = msgs.deserialize(data, str(update["type"])) if "type" in update else None
+        if "status" not in update:
             self.feedback = message
             if self._on_feedback is not None:
                 self._on_feedback(message)
             return
-        self.status, self.reason = _goal_statuses()(int(words["status"])), str(words.get("reason", ""))
+        self.status, self.reason = _goal_statuses()(int(update["status"])), str(update.get("reason", ""))
         if message is not None:
             self.result = message

@@ -1,4 +1,4 @@
-"""Connection of one client at the server: frames received from it, answers and messages queued for it."""
+"""Server side of one client's connection: received frames, and answers and messages queued for the client."""
 
 from __future__ import annotations
 
@@ -25,22 +25,22 @@ if TYPE_CHECKING:
     from simkit.runtime.communication.action_server import GoalHandle
     from simkit.runtime.communication.publisher import Publisher
 
-MOST_BYTES = 32 << 20  # of messages that wait for one client
-MOST_DEPTH = 100_000  # messages that wait for one subscription
-MOST_OPEN = 1000  # subscriptions, publishers or goals under way of one client
-_ANSWERS_FULL = 1 << 18  # [bytes] of answers that wait, beyond which no more questions are taken
-_UNREAD_TIMEOUT = 10.0  # [s] of wall time after which a client that reads none of its answers is hung up on
+MOST_BYTES = 32 << 20  # [bytes] of queued messages for one client
+MOST_DEPTH = 100_000  # queued messages for one subscription
+MOST_OPEN = 1000  # open subscriptions, publishers or goals of one client
+_ANSWERS_FULL = 1 << 18  # [bytes] of queued answers; above this limit no more requests of the client are read
+_UNREAD_TIMEOUT = 10.0  # [s] of wall time after which a client that reads no answers is disconnected
 _PIECE = 1 << 16  # [bytes] read or written at once
 
 
 class ClientSubscription:
-    """A subscription of a client.
+    """Subscription of a client.
 
     Attributes:
-        number: by which the client knows it.
-        depth: how many messages wait at most.
-        lost: how many were dropped.
-        waiting: keys of its messages in the client's queue, the oldest first.
+        number: number that the client chose for the subscription.
+        depth: highest number of queued messages.
+        lost: number of dropped messages.
+        waiting: keys of the subscription's messages in the client's queue, the oldest first.
     """
 
     __slots__ = ("depth", "lost", "number", "peer", "topic", "waiting")
@@ -56,10 +56,10 @@ class ClientConnection:
     """Connection of one client.
 
     Attributes:
-        node: what lists call it.
-        subscriptions, publishers, goals: what it has open, by the client's numbers.
-        is_held: whether nothing is taken from it for now, since more of its commands would be dropped.
-        why: for which it is to be hung up on, once that has been said to it; None for nothing.
+        node: name of the client in node lists.
+        subscriptions, publishers, goals: open handles of the client, by the client's numbers.
+        is_held: True while nothing is read from the client, because more of its commands would be dropped.
+        why: reason for disconnecting the client, once it was sent to the client; None for a connection in use.
     """
 
     def __init__(self, connection: socket.socket, number: int) -> None:
@@ -77,13 +77,13 @@ class ClientConnection:
         self._queue_bytes = 0
         self._next = 0
         self._types: dict[str, int] = {}
-        self._rest: memoryview | None = None  # of what the socket took only a part of
+        self._rest: memoryview | None = None  # unsent rest of a piece
         self._sent = time.monotonic()
 
     # ------------------------------------------------------------------ from the client
 
     def read(self) -> bool:
-        """Takes in what has arrived; False where nothing has."""
+        """Read the bytes that have arrived; return False if there are none."""
         try:
             data = self.socket.recv(_PIECE)
         except (BlockingIOError, InterruptedError):
@@ -98,13 +98,13 @@ class ClientConnection:
 
     @property
     def is_clogged(self) -> bool:
-        """Whether so many answers wait that no more questions are taken."""
+        """True while so many answers are queued that no more requests are read."""
         return self._answer_bytes > _ANSWERS_FULL
 
     # ------------------------------------------------------------------ to the client
 
     def send_json(self, kind: int, content: JsonObject, data: bytes = b"") -> None:
-        """An answer, or something that is told: nothing of it is ever dropped."""
+        """Queue an answer or a notification. Neither is ever dropped."""
         try:
             frame = json_frame(kind, content, data)
         except (TypeError, ValueError) as error:
@@ -117,7 +117,7 @@ class ClientConnection:
         self._answer_bytes += len(frame)
 
     def queue_message(self, subscribed: ClientSubscription, time_ns: int, type_name: str, data: bytes) -> None:
-        """A message; the oldest of its subscription are dropped where there are too many."""
+        """Queue a message. If the queue is full, the oldest messages are dropped."""
         size = len(data)
         if size > MOST_BYTES:
             subscribed.lost += 1
@@ -146,13 +146,13 @@ class ClientConnection:
         self._queue_bytes -= len(data)
 
     def drop_waiting(self, subscribed: ClientSubscription) -> None:
-        """Drops what waits for a subscription that is closed."""
+        """Drop the queued messages of a subscription that is closed."""
         for key in subscribed.waiting:
             self._queue_bytes -= len(self._queue.pop(key)[3])
         subscribed.waiting.clear()
 
     def clear(self) -> None:
-        """Lets go of all that it has open and that waits for it."""
+        """Release all open handles and queued data of the client."""
         for table in (self.subscriptions, self.publishers, self.goals, self._queue):
             table.clear()
         self._answers.clear()
@@ -160,11 +160,11 @@ class ClientConnection:
 
     @property
     def is_waiting(self) -> bool:
-        """Whether something is to be sent."""
+        """True while something is queued for sending."""
         return bool(self._answers or self._queue or self._rest is not None)
 
     def write(self) -> None:
-        """Sends as much as the socket takes."""
+        """Send as many bytes as the socket accepts."""
         try:
             while True:
                 if self._rest is None:
@@ -182,7 +182,7 @@ class ClientConnection:
             self.is_gone = True
 
     def _next_piece(self) -> bytes:
-        """Return the next bytes to send: answers first, then messages in the order in which they were published."""
+        """Return the next bytes to send: answers first, then messages in the order of their publication."""
         found: list[bytes] = []
         size = 0
         while self._answers and size < _PIECE:

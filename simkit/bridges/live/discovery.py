@@ -1,4 +1,4 @@
-"""List the running simulations and find the socket of the one that is meant."""
+"""List the running simulations and find the socket of the requested one."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from simkit.bridges.live.protocol import LARGEST_OUT, TELL, BadFrame, FrameReade
 from simkit.bridges.live.socket_files import file_name, is_living, is_possible, peer_credentials, sockets
 from simkit.diagnostics import did_you_mean
 
-_PATIENCE = 0.5  # [s] for which a simulation is waited for to say what it is
+_GREETING_TIMEOUT = 0.5  # [s] of wall time, longest wait for a simulation's greeting
 VARIABLE = "SIMKIT_SIM"
 
 
 @dataclass(frozen=True)
 class RunningSim:
-    """A simulation that runs.
+    """Running simulation of this user.
 
     Attributes:
-        name: by which it is connected to.
-        path: of its socket.
-        pid: of its process; 0 where the system does not tell and it does not answer.
-        world: the name of its world; empty where it does not answer at once.
+        name: name for connecting to the simulation.
+        path: path of its socket.
+        pid: number of its process; 0 if neither the system nor the simulation reports it.
+        world: name of its world; empty if the simulation does not answer at once.
     """
 
     name: str
@@ -36,20 +36,20 @@ class RunningSim:
 
 
 def simulations() -> list[RunningSim]:
-    """The running simulations of this user, by name."""
+    """Return the running simulations of this user, sorted by name."""
     callers: dict[Path, socket.socket] = {}
     for path in sockets():
         caller = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
-        caller.settimeout(_PATIENCE)
+        caller.settimeout(_GREETING_TIMEOUT)
         try:
             caller.connect(str(path))
             callers[path] = caller
-        except OSError:  # nobody is there any more, or somebody is who does not answer
+        except OSError:  # the process has ended, or it does not answer
             caller.close()
-    said = _read_greetings(callers)
+    greetings = _read_greetings(callers)
     found = []
     for path, caller in callers.items():
-        pid, world = said.get(path, (0, ""))
+        pid, world = greetings.get(path, (0, ""))
         with suppress(OSError):
             pid = peer_credentials(caller)[0] or pid
         found.append(RunningSim(path.stem, path, pid, world))
@@ -58,11 +58,11 @@ def simulations() -> list[RunningSim]:
 
 
 def _read_greetings(callers: dict[Path, socket.socket]) -> dict[Path, tuple[int, str]]:
-    """Read the process and world that each simulation sends first, as far as they come in time."""
+    """Read the process number and the world from the greeting of each simulation, as far as it arrives in time."""
     readers = {caller: FrameReader(LARGEST_OUT, (TELL,)) for caller in callers.values()}
     paths = {caller: path for path, caller in callers.items()}
     found: dict[Path, tuple[int, str]] = {}
-    waiting, end = set(readers), time.monotonic() + _PATIENCE
+    waiting, end = set(readers), time.monotonic() + _GREETING_TIMEOUT
     while waiting and (left := end - time.monotonic()) > 0:
         for caller in select.select(list(waiting), [], [], left)[0]:
             try:
@@ -80,29 +80,31 @@ def _read_greetings(callers: dict[Path, socket.socket]) -> dict[Path, tuple[int,
 
 
 def find_socket(name: str | None = None) -> Path:
-    """The socket of a simulation: by name, else by the environment's `SIMKIT_SIM`, else of the only one.
+    """Return the socket of a simulation: by name, else by the variable `SIMKIT_SIM`, else of the only one.
 
     Raises:
-        LiveError: SK-LIVE-001 none runs; SK-LIVE-002 several do; SK-LIVE-003 none of that name does.
+        LiveError: SK-LIVE-001 no simulation runs; SK-LIVE-002 several simulations run; SK-LIVE-003 no simulation has
+            the name.
     """
     if not is_possible():
-        raise LiveError("this system's Python has no local sockets, so that nobody can be talked to", "SK-LIVE-001")
-    wanted = name or os.environ.get(VARIABLE) or None
+        raise LiveError("this system's Python has no local sockets, so no simulation can be reached", "SK-LIVE-001")
+    requested_name = name or os.environ.get(VARIABLE) or None
     living = [path for path in sockets() if is_living(path)]
     names = [path.stem for path in living]
     listed = ", ".join(names)
-    if wanted is None:
+    if requested_name is None:
         if len(living) == 1:
             return living[0]
         if living:
-            raise LiveError(f"{len(living)} simulations run ({listed}); --sim NAME says which", "SK-LIVE-002")
-        raise LiveError("no simulation runs; `simkit run WORLD` in another terminal starts one", "SK-LIVE-001")
-    for said in (wanted, file_name(wanted)):  # a run of any name is called so that a file can be
+            raise LiveError(f"{len(living)} simulations run ({listed}); choose one with --sim NAME", "SK-LIVE-002")
+        raise LiveError("no simulation runs; start one with `simkit run WORLD` in another terminal", "SK-LIVE-001")
+    for stem in (requested_name, file_name(requested_name)):  # a server replaces characters that files cannot have
         for path in living:
-            if path.stem == said:
+            if path.stem == stem:
                 return path
     if not names:
-        raise LiveError(f"no simulation {wanted!r} runs, nor any other; `simkit run WORLD` starts one", "SK-LIVE-001")
+        raise LiveError(f"no simulation {requested_name!r} runs; start one with `simkit run WORLD`", "SK-LIVE-001")
     raise LiveError(
-        f"no simulation {wanted!r} runs; {did_you_mean(wanted, names) or 'there is ' + listed}", "SK-LIVE-003"
+        f"no simulation {requested_name!r} runs; {did_you_mean(requested_name, names) or 'running: ' + listed}",
+        "SK-LIVE-003",
     )

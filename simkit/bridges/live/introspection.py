@@ -17,21 +17,21 @@ if TYPE_CHECKING:
 
 
 def topic_list(sim: Simulation, clients: Collection[ClientConnection]) -> list[JsonObject]:
-    """Every topic with who publishes and who takes it, clients among them, sorted by name."""
+    """List every topic with its publishers and subscribers, including clients, sorted by name."""
     names = NodeNames(sim, clients)
     found: dict[str, JsonObject] = {
         topic: {"name": topic, "types": [], "publishers": [], "subscribers": []} for topic in sim.topics()
     }
-    for topic, end, types, what in sim.communication.bus.endpoints():
-        if topic not in found or not end.active:
+    for topic, endpoint, types, role in sim.communication.bus.endpoints():
+        if topic not in found or not endpoint.active:
             continue
-        row, who = found[topic], names.endpoint_node(end)
+        row, node = found[topic], names.endpoint_node(endpoint)
         row["types"] += [t for t in types[:1] if t not in row["types"]]
-        if what == "publishes":
-            latched = bool(getattr(end, "latched", False))
-            row["publishers"].append({"node": who, "type": types[0], "latched": latched})
+        if role == "publishes":
+            latched = bool(getattr(endpoint, "latched", False))
+            row["publishers"].append({"node": node, "type": types[0], "latched": latched})
         else:
-            row["subscribers"].append({"node": who, "types": list(types), "kind": "input"})
+            row["subscribers"].append({"node": node, "types": list(types), "kind": "input"})
     for peer in clients:
         for subscribed in peer.subscriptions.values():
             row = found.get(subscribed.topic, {})
@@ -41,7 +41,11 @@ def topic_list(sim: Simulation, clients: Collection[ClientConnection]) -> list[J
 
 
 def node_list(sim: Simulation, clients: Collection[ClientConnection]) -> dict[str, JsonObject]:
-    """Node -> its `publishers`, `subscribers`, `services`, `actions` (name -> types) and `parameters` (names)."""
+    """List the nodes with their publishers, subscribers, services, actions and parameters.
+
+    Returns:
+        Node -> `publishers`, `subscribers`, `services`, `actions` (each name -> types) and `parameters` (names).
+    """
     names = NodeNames(sim, clients)
     found: dict[str, JsonObject] = {}
 
@@ -70,7 +74,11 @@ def node_list(sim: Simulation, clients: Collection[ClientConnection]) -> dict[st
 
 
 def parameter_list(sim: Simulation) -> dict[str, JsonObject]:
-    """Node -> name -> `value`, `type`, `minimum`, `maximum`, `choices`, `allowed` and `description`."""
+    """List the parameters of all nodes.
+
+    Returns:
+        Node -> name -> `value`, `type`, `minimum`, `maximum`, `choices`, `allowed` and `description`.
+    """
     return {
         node: {
             name: {
@@ -92,7 +100,7 @@ def model_state(sim: Simulation, name: str) -> JsonObject:
     """Return pose, links and joints of a model.
 
     Raises:
-        KeyError: there is none of that name; names the closest.
+        KeyError: no model has the name; the message suggests the closest name.
     """
     model = sim.model(name)
     return {
@@ -133,11 +141,11 @@ class NodeNames:
         self._clients = {id(end): peer.node for peer in clients for end in peer.publishers.values()}
 
     def endpoint_node(self, end: Any) -> str:
-        """The node of an end of a topic."""
+        """Return the node of a publisher or subscriber."""
         return self._clients.get(id(end)) or self.owner_node(end.owner)
 
     def owner_node(self, owner: object) -> str:
-        """The node of a plugin or a sensor; that of the world where nobody owns something."""
+        """Return the node of a plugin or a sensor; the world's node if there is no owner."""
         if owner is None:
             return self._world
         known = self._nodes.get(id(owner))
@@ -152,5 +160,5 @@ class NodeNames:
 
 
 def _name_part(text: str) -> str:
-    """A text as a part of a ROS name."""
+    """Convert a text to one component of a ROS name."""
     return re.sub(r"[^A-Za-z0-9_]+", "_", text).strip("_") or "_"

@@ -18,58 +18,59 @@ Reader = Callable[[bytes, int], Message]
 
 @cache
 def message_reader(type_name: str) -> Reader:
-    """Return a function that decodes a message from CDR at a position in some bytes.
+    """Return a function that decodes a message from CDR at an offset in some bytes.
 
-    Whatever it raises means that it is none of this type, and messages are those that `simkit.msgs.deserialize` makes.
+    The messages are the same as those of `simkit.msgs.deserialize`. The function may raise any exception if the bytes
+    are not a message of the type.
 
     Args:
-        type_name: the full name of a message type.
+        type_name: full name of a message type.
     """
     store = type_store()
 
-    def usual(data: bytes, begin: int) -> Message:
+    def decode_generic(data: bytes, begin: int) -> Message:
         return store.deserialize_cdr(data[begin:], type_name)
 
     try:
         formats, classes = _layout(type_name)
     except _VariableSizeError:
-        return usual
+        return decode_generic
     little, big = (struct.Struct(end + formats) for end in "<>")
     unpack, size = little.unpack_from, little.size
     make = _message_builder(classes)
 
     def read(data: bytes, begin: int) -> Message:
         if not 4 <= len(data) - begin - size <= 7 or data[begin] or data[begin + 1] > 1:
-            return usual(data, begin)  # says what is wrong
+            return decode_generic(data, begin)  # raises an error that describes the fault
         return make((unpack if data[begin + 1] else big.unpack_from)(data, begin + 4))
 
     return read
 
 
 class _VariableSizeError(Exception):
-    """A type has messages of other sizes than one, or arrays."""
+    """Error for a type whose messages have no fixed size, or have arrays."""
 
 
-# Class of a message, and of each of its fields the same, None for a number.
+# Class of a message, and the same pair for each of its fields; None for a number.
 Classes = tuple[type[Message], tuple[Any, ...]]
 
 
 def _layout(type_name: str) -> tuple[str, Classes]:
-    """The numbers of a message one after another with the gaps between them, and the classes they are for."""
-    place = 0
+    """Return the `struct` format of a message with its alignment gaps, and the classes of its fields."""
+    position = 0
     formats: list[str] = []
     store: Any = type_store()
 
     def walk(name: str) -> Classes:
-        nonlocal place
+        nonlocal position
         parts: list[Classes | None] = []
         for _, (kind, about) in store.fielddefs[name][1]:
             code = _CODES.get(about[0]) if int(kind) == BASE else None
             if code is not None:
                 width = struct.calcsize(f"<{code}")
-                gap = -place % width
+                gap = -position % width
                 formats.append(f"{gap}x{code}" if gap else code)
-                place += gap + width
+                position += gap + width
                 parts.append(None)
             elif int(kind) == NAME:
                 parts.append(walk(about))
@@ -82,7 +83,7 @@ def _layout(type_name: str) -> tuple[str, Classes]:
 
 
 def _message_builder(classes: Classes) -> Callable[[tuple[float, ...]], Message]:
-    """Return a function that makes a message of its numbers."""
+    """Return a function that builds a message from its numbers."""
     cls, parts = classes
     if all(part is None for part in parts):
         return lambda values: cls(*values)
@@ -90,9 +91,9 @@ def _message_builder(classes: Classes) -> Callable[[tuple[float, ...]], Message]
         lengths = [len(part[1]) for part in parts]
         starts = [0, *itertools.accumulate(lengths)]
         pieces = [(part[0], slice(*ends)) for part, ends in zip(parts, itertools.pairwise(starts), strict=True)]
-        if len(pieces) == 2:  # a twist, a wrench, an acceleration: what commands mostly are
-            (first, one), (second, two) = pieces
-            return lambda values: cls(first(*values[one]), second(*values[two]))
+        if len(pieces) == 2:  # a twist, a wrench, an acceleration: the types of most commands
+            (first, first_slice), (second, second_slice) = pieces
+            return lambda values: cls(first(*values[first_slice]), second(*values[second_slice]))
         return lambda values: cls(*[inner(*values[piece]) for inner, piece in pieces])
 
     def build(each: Classes, values: Iterator[float]) -> Message:

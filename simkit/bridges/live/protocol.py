@@ -1,4 +1,4 @@
-"""Frames that go over the socket of a running simulation, and the errors of the two ends."""
+"""Frames on the socket of a running simulation, and the errors of the client and the server."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from simkit.errors import InputError
 
 
 class LiveError(InputError):
-    """No simulation answers, or it answered that it cannot do what was asked.
+    """Error for a simulation that does not answer, or that answered with an error.
 
     Attributes:
-        code: of the other side's error where it is one of theirs (`SK-SERVICE-001`), else one of `SK-LIVE-001` to 009.
+        code: code of the simulation's error (such as `SK-SERVICE-001`), else one of `SK-LIVE-001` to 009.
     """
 
     def __init__(self, message: str, code: str) -> None:
@@ -21,17 +21,17 @@ class LiveError(InputError):
 
 
 class LiveClosed(LiveError):
-    """The simulation has ended, or has closed the connection; says why where that is known."""
+    """Error for a simulation that has ended or has closed the connection; with the reason if it is known."""
 
     def __init__(self, message: str, code: str = "SK-LIVE-005") -> None:
         super().__init__(message, code)
 
 
 class BadFrame(Exception):
-    """Received bytes are not a frame of the protocol."""
+    """Error for received bytes that are not a frame of the protocol."""
 
 
-# Value of JSON, as Python has it.
+# JSON value as a Python object.
 JsonValue = Any
 JsonObject = dict[str, JsonValue]
 PROTOCOL: Final = 1
@@ -39,14 +39,14 @@ ASK, ANSWER, TELL, MESSAGE = 1, 2, 3, 4
 HEAD: Final = struct.Struct("<IB")
 MESSAGE_HEAD: Final = struct.Struct("<IIqQ")
 NUMBER: Final = struct.Struct("<I")
-LARGEST_IN: Final = 16 << 20  # [bytes] of a frame to the simulation
-_COPY_BYTES: Final = 2048  # [bytes] of which a copy is made sooner than a view
-LARGEST_OUT: Final = 256 << 20  # [bytes] of a frame from it
+LARGEST_IN: Final = 16 << 20  # [bytes] in a frame to the simulation
+_COPY_BYTES: Final = 2048  # [bytes] below which copying a frame is faster than a view
+LARGEST_OUT: Final = 256 << 20  # [bytes] in a frame from the simulation
 
 
 def json_default(value: object) -> object:
-    """Convert a value that JSON does not know: arrays, bytes, sets."""
-    if hasattr(value, "tolist"):  # of NumPy, arrays and numbers
+    """Convert a value that JSON does not support: arrays, bytes and sets."""
+    if hasattr(value, "tolist"):  # arrays and scalars of NumPy
         return value.tolist()
     if isinstance(value, (bytes, bytearray, memoryview)):
         return list(value)
@@ -56,21 +56,21 @@ def json_default(value: object) -> object:
 
 
 def json_frame(kind: int, content: JsonObject, data: bytes = b"") -> bytes:
-    """A frame of JSON, with or without CDR behind it."""
+    """Return a frame of JSON, optionally followed by CDR."""
     text = json.dumps(content, default=json_default, separators=(",", ":")).encode()
     return b"".join((HEAD.pack(4 + len(text) + len(data), kind), NUMBER.pack(len(text)), text, data))
 
 
 def message_frame(number: int, data: bytes) -> bytes:
-    """A message to the simulation."""
+    """Return a frame with a message to the simulation."""
     return b"".join((HEAD.pack(4 + len(data), MESSAGE), NUMBER.pack(number), data))
 
 
 def read_json_frame(body: bytes) -> tuple[JsonObject, bytes]:
-    """The JSON of a frame's body, and what stands behind it.
+    """Return the JSON of a frame's body, and the bytes after it.
 
     Raises:
-        BadFrame: it is none.
+        BadFrame: the body is not a JSON frame.
     """
     if len(body) < 4:
         raise BadFrame("a frame of JSON is shorter than the length of its text")
@@ -82,16 +82,16 @@ def read_json_frame(body: bytes) -> tuple[JsonObject, bytes]:
     except (ValueError, RecursionError) as error:
         raise BadFrame(f"a frame is not JSON: {error}") from None
     if not isinstance(content, dict):
-        raise BadFrame("the JSON of a frame is no object")
+        raise BadFrame("the JSON of a frame is not an object")
     return content, body[end:]
 
 
 class FrameReader:
-    """Cuts what arrives into frames.
+    """Splitter of received bytes into frames.
 
     Args:
-        largest: [bytes] of a body that is accepted.
-        kinds: of frame that are accepted.
+        largest: largest accepted body [bytes].
+        kinds: accepted kinds of frames.
     """
 
     def __init__(self, largest: int, kinds: tuple[int, ...]) -> None:
@@ -100,7 +100,7 @@ class FrameReader:
         self._begin = 0
 
     def feed(self, data: bytes | memoryview) -> None:
-        """Takes in what has arrived."""
+        """Append received bytes."""
         if self._begin:
             del self._buffer[: self._begin]
             self._begin = 0
@@ -108,26 +108,26 @@ class FrameReader:
 
     @property
     def is_in_frame(self) -> bool:
-        """Whether a frame or a part of one has been received."""
+        """True if a frame, or a part of one, is in the buffer."""
         return len(self._buffer) > self._begin
 
     def next(self) -> tuple[int, bytes] | None:
-        """The kind and the body of the next whole frame; None before it is there.
+        """Return the kind and the body of the next whole frame; None until a frame is complete.
 
         Raises:
-            BadFrame: it is of an unknown kind, or larger than allowed.
+            BadFrame: the frame has an unknown kind, or is larger than allowed.
         """
         buffer, begin = self._buffer, self._begin
-        there = len(buffer)
-        if there - begin < 5:
+        available = len(buffer)
+        if available - begin < 5:
             return None
         length, kind = HEAD.unpack_from(buffer, begin)
         if kind not in self._kinds:
-            raise BadFrame(f"a frame of kind {kind}, allowed is {' or '.join(map(str, self._kinds))}")
+            raise BadFrame(f"a frame has kind {kind}, allowed is {' or '.join(map(str, self._kinds))}")
         if length > self._largest:
-            raise BadFrame(f"a frame of {length} bytes, allowed are {self._largest}")
+            raise BadFrame(f"a frame has {length} bytes, allowed are {self._largest}")
         end = begin + 5 + length
-        if there < end:
+        if available < end:
             return None
         self._begin = end
         if length < _COPY_BYTES:

@@ -1,4 +1,4 @@
-"""Requests of clients and their answers: a value or a message. Every argument is validated before it is used."""
+"""Handlers of client requests. Each answer is a value or a message. Every argument is validated before it is used."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _NEW_TOPIC = re.compile(r"(/[A-Za-z0-9_.-]+)+")
 
 
 class RequestRefused(InputError):
-    """A request that cannot be answered; says why."""
+    """Error for a request that the server refuses; with the reason."""
 
     def __init__(self, message: str, code: str = "SK-LIVE-008") -> None:
         super().__init__(message, code)
@@ -34,8 +34,8 @@ class RequestHost(Protocol):
     """Protocol of the server that answers requests.
 
     Attributes:
-        peers: connections of clients, by file number.
-        feeds: the topics that clients subscribe to.
+        peers: connections of clients, by file descriptor.
+        feeds: topics that clients subscribe to.
         client_topics: topics that only clients had when they were opened.
     """
 
@@ -51,7 +51,7 @@ class RequestHost(Protocol):
 
 @dataclass(frozen=True)
 class Request:
-    """A request of a client: its arguments, and the CDR behind them."""
+    """Request of a client: its arguments, and the CDR after them."""
 
     server: RequestHost
     peer: ClientConnection
@@ -63,37 +63,37 @@ class Request:
         return self.server.sim
 
     def arg(self, name: str, kind: type[T]) -> T:
-        """An argument of that type.
+        """Return the argument of that name and type.
 
         Raises:
-            Refused: it is of another, or not there.
+            RequestRefused: the argument is missing or has another type.
         """
         found = self.args.get(name)
         if type(found) is not kind:
-            raise RequestRefused(f"{name!r} is to be of type {kind.__name__}, got {found!r:.80}")
+            raise RequestRefused(f"{name!r} must be of type {kind.__name__}, got {found!r:.80}")
         return found
 
     def topic(self) -> str:
-        """The absolute name of a topic."""
+        """Return the absolute name of the requested topic."""
         found = self.arg("topic", str)
         found = found if found.startswith("/") else "/" + found
         if not _TOPIC.fullmatch(found):
-            raise RequestRefused(f"{found!r:.80} is no name of a topic")
+            raise RequestRefused(f"{found!r:.80} is not a topic name")
         return found
 
     def new_number(self, table: Mapping[int, object]) -> int:
-        """A number for something that is opened."""
+        """Return the number that the client chose for a new handle."""
         number = self.arg("number", int)
         if not 0 <= number < 1 << 32:
-            raise RequestRefused(f"the number {number!r:.40} is none from 0 to {(1 << 32) - 1}")
+            raise RequestRefused(f"the number {number!r:.40} is outside 0 to {(1 << 32) - 1}")
         if number in table:
-            raise RequestRefused(f"the number {number} is taken already")
+            raise RequestRefused(f"the number {number} is in use")
         if len(table) >= MOST_OPEN:
-            raise RequestRefused(f"a client may have {MOST_OPEN} of these open, and has", "SK-LIVE-007")
+            raise RequestRefused(f"a client may open at most {MOST_OPEN} of these", "SK-LIVE-007")
         return number
 
     def message(self) -> object:
-        """A request: fields, or CDR with the name of its type."""
+        """Return the message of the request, from its fields or from CDR with the name of its type."""
         if self.args.get("type") is None:
             return self.arg("fields", dict)
         type_name = msgs.full_name(self.arg("type", str))
@@ -101,13 +101,13 @@ class Request:
             return msgs.deserialize(self.data, type_name)
         except SimkitError:
             raise
-        except Exception as error:  # noqa: BLE001 - bytes from outside may lead a reader anywhere
-            raise RequestRefused(f"what was sent is no {type_name}: {error!r}") from None
+        except Exception as error:  # noqa: BLE001 - invalid bytes may cause any exception
+            raise RequestRefused(f"the data is not a valid {type_name}: {error!r}") from None
 
 
 @dataclass(frozen=True)
 class Response:
-    """An answer that is a message."""
+    """Answer that is a message."""
 
     message: object
 
@@ -116,23 +116,25 @@ RequestHandler = Callable[[Request], object]
 
 
 def node(request: Request) -> object:
-    """Gives the client its name, or the first of `name_2`, `name_3`, … that no other one has."""
-    wanted = "/" + (re.sub(r"[^A-Za-z0-9_/]+", "_", request.arg("name", str))[:100].strip("/") or "client")
-    taken = {p.node for p in request.server.peers.values() if p is not request.peer}
-    request.peer.node, number = wanted, 1
-    while request.peer.node in taken:
+    """Set the client's node name: the requested name, or the first free of `name_2`, `name_3`, …."""
+    node_name = "/" + (re.sub(r"[^A-Za-z0-9_/]+", "_", request.arg("name", str))[:100].strip("/") or "client")
+    names_in_use = {p.node for p in request.server.peers.values() if p is not request.peer}
+    request.peer.node, number = node_name, 1
+    while request.peer.node in names_in_use:
         number += 1
-        request.peer.node = f"{wanted}_{number}"
+        request.peer.node = f"{node_name}_{number}"
     return request.peer.node
 
 
 def state(request: Request) -> object:
+    """Return the simulated time, the tick, and the current and allowed real-time factors."""
     sim = request.sim
     found = {"time_ns": sim.time_ns, "tick": sim.tick, "timestep": sim.timestep, "paused": sim.paused}
     return {**found, "rtf": sim.control.pausing.pace, "measured_rtf": request.server.measured_rtf()}
 
 
 def control(request: Request) -> object:
+    """Pause, resume or step the simulation, or set its highest real-time factor."""
     pausing, action, value = request.sim.control.pausing, request.arg("action", str), request.args.get("value")
     if action == "pause":
         if not pausing.is_paused:
@@ -148,9 +150,7 @@ def control(request: Request) -> object:
         pausing.step(count)
     elif action == "rtf":
         if value is not None and not (type(value) in (int, float) and 0 < value < float("inf")):
-            raise RequestRefused(
-                f"rtf: found {value!r:.80}, allowed is a number over 0, or nothing for as fast as it goes"
-            )
+            raise RequestRefused(f"rtf: found {value!r:.80}, allowed is a number above 0, or nothing for no limit")
         pausing.pace = None if value is None else float(value)
     else:
         raise RequestRefused(f"control: found {action!r:.80}, allowed is pause, resume, step or rtf")
@@ -161,6 +161,7 @@ def control(request: Request) -> object:
 
 
 def subscribe(request: Request) -> object:
+    """Open a subscription of the client."""
     number, topic = request.new_number(request.peer.subscriptions), request.topic()
     subscribed = request.peer.subscriptions[number] = ClientSubscription(
         request.peer, number, topic, request.arg("depth", int)
@@ -171,6 +172,7 @@ def subscribe(request: Request) -> object:
 
 
 def unsubscribe(request: Request) -> object:
+    """Close a subscription of the client and return the number of dropped messages."""
     subscribed = request.peer.subscriptions.pop(request.arg("number", int), None)
     if subscribed is None:
         raise RequestRefused("there is no such subscription")
@@ -180,32 +182,35 @@ def unsubscribe(request: Request) -> object:
 
 
 def advertise(request: Request) -> object:
+    """Open a publisher of the client."""
     number, topic, bus = request.new_number(request.peer.publishers), request.topic(), request.sim.communication.bus
-    taken = [t for _, end, types, _ in bus.endpoints(topic) if end.active for t in types]
-    if request.args.get("type") is None and not taken:
-        raise RequestRefused(f"there is no topic {topic!r} yet, so that its type has to be given")
-    type_name = msgs.full_name(taken[0] if request.args.get("type") is None else request.arg("type", str))
-    if taken and type_name not in taken:
-        raise RequestRefused(f"{topic!r} takes {' or '.join(dict.fromkeys(taken))}, got {type_name}", "SK-MSG-001")
+    types_in_use = [t for _, end, types, _ in bus.endpoints(topic) if end.active for t in types]
+    if request.args.get("type") is None and not types_in_use:
+        raise RequestRefused(f"topic {topic!r} does not exist yet, so its type is required")
+    type_name = msgs.full_name(types_in_use[0] if request.args.get("type") is None else request.arg("type", str))
+    if types_in_use and type_name not in types_in_use:
+        allowed = " or ".join(dict.fromkeys(types_in_use))
+        raise RequestRefused(f"topic {topic!r} has type {allowed}, got {type_name}", "SK-MSG-001")
     msgs.type_of(type_name)
-    if not taken:
+    if not types_in_use:
         _count_new_topic(request, topic)
     request.peer.publishers[number] = bus.advertise(topic, type_name)
     return {"topic": topic, "type": type_name}
 
 
 def _count_new_topic(request: Request, topic: str) -> None:
-    """Counts a topic that only a client has: who records or counts topics knows it for as long as the run goes on."""
+    """Count a topic that only clients have. Recordings and topic counts keep such a topic until the run ends."""
     if not _NEW_TOPIC.fullmatch(topic):
-        raise RequestRefused(f"{topic!r} is no name of a topic; allowed are letters, digits and _ between slashes")
+        raise RequestRefused(f"{topic!r} is not a topic name; allowed are letters, digits and _ between slashes")
     names = request.server.client_topics
     if topic not in names and len(names) >= MOST_OPEN:
-        message = f"clients of this run have made {MOST_OPEN} topics that nobody else has, and no more are made"
+        message = f"clients of this run have already created {MOST_OPEN} topics; no more can be created"
         raise RequestRefused(message, "SK-LIVE-007")
     names.add(topic)
 
 
 def unadvertise(request: Request) -> object:
+    """Close a publisher of the client."""
     publisher = request.peer.publishers.pop(request.arg("number", int), None)
     if publisher is None:
         raise RequestRefused("there is no such publisher")
@@ -217,6 +222,7 @@ def unadvertise(request: Request) -> object:
 
 
 def goal(request: Request) -> object:
+    """Send a goal to an action for the client, and return the action's name and the goal's number."""
     number = request.new_number(request.peer.goals)
 
     def on_feedback(feedback: object) -> None:
@@ -230,13 +236,15 @@ def goal(request: Request) -> object:
 
 
 def cancel(request: Request) -> object:
+    """Request the cancellation of a goal; return False if the goal has ended."""
     found = request.peer.goals.get(request.arg("number", int))
-    if found is not None:  # else it has ended
+    if found is not None:  # None: the goal has ended
         found[0].cancel()
     return found is not None
 
 
 def set_parameter(request: Request) -> object:
+    """Set a parameter of a node."""
     value = request.args.get("value")
     found = tuple(value) if isinstance(value, list) else value
     request.sim.set_parameter(request.arg("node", str), request.arg("name", str), found)
@@ -266,4 +274,4 @@ REQUESTS: Final[Mapping[str, RequestHandler]] = MappingProxyType(
         "model": lambda request: model_state(request.sim, request.arg("name", str)),
     }
 )
-"""What answers each request, by the word that a client sends."""
+"""Handler of each request, by the name that a client sends."""

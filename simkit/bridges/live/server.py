@@ -1,7 +1,7 @@
-"""The server that `simkit run` opens for clients of other processes; the run polls it between two slices.
+"""Server that `simkit run` opens for clients of other processes. The run polls the server between two slices.
 
-Nothing here runs beside the physics. What clients send takes the same way as what callers in the process do,
-so that the run's bits depend only on what came at which tick; what they only read changes none.
+No code here runs beside the physics. Commands of clients follow the same path as calls in the process. The run's bits
+therefore depend only on the commands and on the ticks at which they arrived. Reading changes no bits.
 """
 
 from __future__ import annotations
@@ -29,29 +29,29 @@ if TYPE_CHECKING:
     from simkit.runtime.simulation import Simulation
 
 MOST_CLIENTS: Final = 64
-BUDGET: Final = 0.005  # [s] of wall time that is spent on clients between two slices
-_SLICE, _BUSY_SLICE = 0.4, 0.08  # of the wall time that a slice would take without clients, or while they are quiet
-_REQUESTS_PER_TURN = 64  # frames that are taken of one client before it is the next one's turn
-_LONGEST_HOLD = 0.2  # [s] of wall time for which a client is held back at most, so that none of its commands is dropped
-_MOST_CALLERS = 16  # connections that are taken at one look
+BUDGET: Final = 0.005  # [s] of wall time for clients between two slices
+_SLICE, _BUSY_SLICE = 0.4, 0.08  # share of a slice's usual wall time with idle clients, and with busy clients
+_REQUESTS_PER_TURN = 64  # frames that are read from one client before the turn of the next client
+_LONGEST_HOLD = 0.2  # [s] of wall time, longest pause in reading from a client that avoids dropped commands
+_MOST_CALLERS = 16  # connections that are accepted in one poll
 
 
 class Server:
-    """Lets other processes of the same user talk to a simulation; a context manager.
+    """Server for other processes of the same user; a context manager.
 
     Args:
-        sim: the simulation.
-        name: by which it is connected to; else its world's. Where that is taken, `_2`, `_3`, … is added.
+        sim: simulation to serve.
+        name: name for clients; default: the world's name. If a simulation has the name, `_2`, `_3`, … is added.
 
     Attributes:
-        name: what it became.
-        path: of the socket.
-        feeds: the topics that clients subscribe to.
-        peers: the clients.
+        name: name of the server, after the addition of a number.
+        path: path of the socket.
+        feeds: topics that clients subscribe to.
+        peers: connections of clients, by file descriptor.
         client_topics: topics that only clients had when they were opened, over the whole run.
 
     Raises:
-        NoSocketFolder: there is no place for the socket; says why.
+        NoSocketFolder: no folder can hold the socket; with the reason.
     """
 
     def __init__(self, sim: Simulation, name: str | None = None) -> None:
@@ -67,21 +67,24 @@ class Server:
         self._numbers = 0
         self._taken: dict[str, int] = {}
         self._taken_at, self._taken_since = -1, 0.0
-        self._fewest = 1  # commands of a topic that are kept for the next step, of the topic of which fewest are
+        self._fewest = 1  # smallest queue depth for the next step, over all topics
         self._pace = [(time.monotonic(), sim.tick)]
 
     # ------------------------------------------------------------------ between two slices
 
     def poll(self, wait: float = 0.0) -> bool:
-        """Takes what clients have sent, and sends what waits for them; whether anything came.
+        """Read the frames of clients, and send the data that is queued for them.
 
-        To be called between two steps, again and again, while the simulation runs and while it stands still.
+        Call this method repeatedly between two steps, while the simulation runs and while it is paused.
 
         Args:
-            wait: how long to wait for something to come [s], wall time.
+            wait: longest wait for a frame [s], wall time.
+
+        Returns:
+            True if anything arrived.
 
         Raises:
-            PluginError, SubscriberError, SimulationDiverged: what a client sent had somebody raise.
+            PluginError, SubscriberError, SimulationDiverged: error of a plugin, callback or step that a request caused.
         """
         if self.is_closed:
             return False
@@ -109,7 +112,7 @@ class Server:
         return bool(ready)
 
     def fileno(self) -> int:
-        """Something to wait for together with others: readable once `poll` has something to do."""
+        """Return a file descriptor for `select`; it is readable when `poll` has work to do."""
         found: int = self._selector.fileno()
         return found
 
@@ -123,13 +126,13 @@ class Server:
 
     @property
     def is_closed(self) -> bool:
-        """Whether the server accepts no more connections."""
+        """True if the server accepts no more connections."""
         return self._listening.fileno() < 0
 
     def slices(self, *lengths: float) -> tuple[float, ...]:
-        """Return the lengths of the run's slices with clients, given those without [s, wall time].
+        """Return the lengths of the run's slices with clients, from their lengths without clients [s, wall time].
 
-        They are shorter with clients, and shorter still where there was no time for all that they sent.
+        Slices are shorter while clients are connected, and shorter still while their requests take all the time.
         """
         if not self.peers:
             return lengths
@@ -137,7 +140,7 @@ class Server:
         return tuple(length * factor for length in lengths)
 
     def _serve_busy_clients(self, until: float) -> None:
-        """Takes frames, a few of each client in turn, as long as there is time."""
+        """Process frames until the time is over, a few of each client in turn."""
         busy = self._busy
         try:
             while busy:
@@ -153,7 +156,7 @@ class Server:
                 self._disconnect(peer)
 
     def _serve(self, peer: ClientConnection) -> bool:
-        """Takes a few frames of one client; whether it may have more."""
+        """Process a few frames of one client; return True if the client may have more."""
         try:
             take, publish = peer.reader.next, self._publish
             for _ in range(_REQUESTS_PER_TURN):
@@ -168,25 +171,25 @@ class Server:
                 else:
                     publish(peer, body)
         except BadFrame as error:
-            self.refuse(peer, f"this is no client of simkit: {error}", "SK-LIVE-006")
+            self.refuse(peer, f"not a simkit client: {error}", "SK-LIVE-006")
             return False
         return True
 
-    # ------------------------------------------------------------------ what clients send
+    # ------------------------------------------------------------------ received frames
 
     def _publish(self, peer: ClientConnection, body: bytes) -> None:
         publisher = peer.publishers.get(NUMBER.unpack_from(body)[0] if len(body) >= 4 else -1)
         if publisher is None:
-            raise BadFrame("a message of no publisher")
+            raise BadFrame("a message without a publisher")
         try:
             message = message_reader(publisher.type_name)(body, 4)
-        except Exception as error:  # noqa: BLE001 - bytes from outside may lead a reader anywhere
-            raise BadFrame(f"what was sent on {publisher.topic!r} is no {publisher.type_name}: {error!r}") from None
+        except Exception as error:  # noqa: BLE001 - invalid bytes may cause any exception
+            raise BadFrame(f"the data on {publisher.topic!r} is not a valid {publisher.type_name}: {error!r}") from None
         publisher.publish(message)
         self._hold_back_if_full(peer, publisher.topic)
 
     def _hold_back_if_full(self, peer: ClientConnection, topic: str) -> None:
-        """Holds a client back once as many commands of a topic wait for the next step as are kept for it."""
+        """Pause reading from a client when the queue of its topic for the next step is full."""
         sim = self.sim
         if self._taken_at != sim.tick:
             self._taken, self._taken_at, self._taken_since = {}, sim.tick, time.monotonic()
@@ -199,7 +202,7 @@ class Server:
             self._update_interest(peer)
 
     def _release_held(self) -> None:
-        """Takes from those again that were held back."""
+        """Resume reading from the clients whose reading was paused."""
         sim = self.sim
         if sim.tick != self._taken_at or sim.paused or time.monotonic() - self._taken_since >= _LONGEST_HOLD:
             for peer in self.peers.values():
@@ -210,65 +213,65 @@ class Server:
                         self._busy.append(peer)
 
     def _answer(self, peer: ClientConnection, body: bytes) -> None:
-        words, data = read_json_frame(body)
-        number, question = words.pop("id", None), words.pop("ask", None)
-        if type(number) is not int or not isinstance(question, str):
-            raise BadFrame("a question has an id and a name")
+        args, data = read_json_frame(body)
+        number, request_name = args.pop("id", None), args.pop("ask", None)
+        if type(number) is not int or not isinstance(request_name, str):
+            raise BadFrame("a request needs an id and a name")
         raised: Exception | None = None
         answer: JsonObject = {"id": number}
         found = b""
         try:
-            if question not in REQUESTS:
-                raise RequestRefused(f"there is no question {question!r}")
-            given = REQUESTS[question](Request(self, peer, words, data))
-            if isinstance(given, Response):
-                answer["type"], found = msgs.type_name(given.message), msgs.serialize(given.message)
+            if request_name not in REQUESTS:
+                raise RequestRefused(f"unknown request {request_name!r}")
+            result = REQUESTS[request_name](Request(self, peer, args, data))
+            if isinstance(result, Response):
+                answer["type"], found = msgs.type_name(result.message), msgs.serialize(result.message)
             else:
-                answer["ok"] = given
+                answer["ok"] = result
         except KeyError as error:
             answer |= {"error": str(error.args[0] if error.args else error), "code": "SK-LIVE-008"}
         except SimkitError as error:
             answer |= {"error": str(error), "code": error.code}
             if isinstance(error, (PluginError, SimulationDiverged)):
-                raised = error  # it ends the run as it would if it were called from the process
+                raised = error  # the error ends the run, as it would for a caller in the process
         except Exception as error:  # noqa: BLE001 - a service that a script offers may raise anything
-            answer |= {"error": f"{question} failed: {error!r}", "code": "SK-LIVE-008"}
+            answer |= {"error": f"{request_name} failed: {error!r}", "code": "SK-LIVE-008"}
             raised = error
         peer.send_json(ANSWER, answer, found)
         if raised is not None:
             peer.write()
             raise raised
 
-    # ------------------------------------------------------------------ what is told
+    # ------------------------------------------------------------------ notifications
 
     def _send_goal_states(self) -> None:
         for peer in self.peers.values():
             if peer.goals:
-                for number, (goal, told) in list(peer.goals.items()):
-                    if goal.status != told:
+                for number, (goal, sent_status) in list(peer.goals.items()):
+                    if goal.status != sent_status:
                         self.send_goal_state(peer, number)
 
     def send_goal_state(self, peer: ClientConnection, number: int) -> None:
-        """Tells how far a goal is, and with its end what came of it."""
+        """Send the status of a goal, and its result once the goal has ended."""
         goal, _ = peer.goals[number]
-        words: JsonObject = {"tell": "goal", "number": number, "status": int(goal.status), "reason": goal.reason}
+        update: JsonObject = {"tell": "goal", "number": number, "status": int(goal.status), "reason": goal.reason}
         data = b""
         if goal.is_done:
             del peer.goals[number]
             if goal.result is not None:
-                words["type"], data = msgs.type_name(goal.result), msgs.serialize(goal.result)
+                update["type"], data = msgs.type_name(goal.result), msgs.serialize(goal.result)
         else:
             peer.goals[number] = goal, int(goal.status)
-        peer.send_json(TELL, words, data)
+        peer.send_json(TELL, update, data)
 
     # ------------------------------------------------------------------ connections
 
     def _accept_callers(self) -> bool:
-        """Takes who calls."""
+        """Accept new connections; return True if clients are connected."""
         for _ in range(_MOST_CALLERS):
             try:
                 connection, _ = self._listening.accept()
-            except OSError:  # nobody calls, or there is no room for more files
+            except OSError:  # no new connection, or no free file descriptor
                 return bool(self.peers)
             self._accept(connection)
         return True
@@ -293,7 +296,7 @@ class Server:
             self._write(peer)
 
     def refuse(self, peer: ClientConnection, why: str, code: str) -> None:
-        """Tells a client why, and hangs up on it."""
+        """Send a client the reason and disconnect it."""
         if peer.why is None:
             peer.why = why
             peer.send_json(TELL, {"tell": "bye", "why": why, "code": code})
@@ -306,11 +309,11 @@ class Server:
             self._disconnect(peer)
             return
         if not peer.is_clogged and peer.reader.is_in_frame and peer not in self._busy:
-            self._busy.append(peer)  # questions of it may have waited for its answers to leave
+            self._busy.append(peer)  # its requests may have waited until its answers were sent
         self._update_interest(peer)
 
     def _update_interest(self, peer: ClientConnection) -> None:
-        """Waits for what a client has to say, and for room to write to it, where either is of use."""
+        """Register a client for reading and for writing, as far as each is needed now."""
         handle = peer.socket.fileno()
         if handle < 0 or handle not in self._interest:
             return
@@ -347,7 +350,7 @@ class Server:
     # ------------------------------------------------------------------ the end
 
     def close(self, why: str = "") -> None:
-        """Says good-bye to everybody; does nothing the second time."""
+        """Send the end to all clients and close the socket. A second call does nothing."""
         if self.is_closed:
             return
         self.feeds.deliver_ready()
@@ -368,8 +371,8 @@ class Server:
 
 
 def serve(sim: Simulation, name: str | None = None) -> tuple[Server | None, str]:
-    """A server, or why there is none, in one line."""
+    """Return a server; or None and a one-line reason."""
     try:
         return Server(sim, name), ""
     except socket_files.NoSocketFolder as fault:
-        return None, f"note SK-LIVE-009: no other terminal can talk to this run: {fault}"
+        return None, f"note SK-LIVE-009: other terminals cannot reach this run: {fault}"

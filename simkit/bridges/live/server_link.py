@@ -1,4 +1,4 @@
-"""The client's end of the socket: sends requests to a simulation in another process and sorts what it sends back."""
+"""Client side of the socket: sends requests to a simulation in another process and dispatches its answers."""
 
 from __future__ import annotations
 
@@ -31,29 +31,29 @@ from simkit.bridges.live.protocol import (
     read_json_frame,
 )
 
-_PIECE = 1 << 18  # [bytes] taken from the socket at once
-_LONGEST_TIMEOUT = 1e6  # [s] for which a system waits at once without complaint
+_PIECE = 1 << 18  # [bytes] read from the socket at once
+_LONGEST_TIMEOUT = 1e6  # [s]; `select` rejects much longer waits on some systems
 CONNECT_PERIOD = 0.05
-"""[s] of wall time between two attempts to connect to a simulation that has not started or lets nobody in yet."""
+"""[s] of wall time between two attempts to connect to a simulation that does not accept connections yet."""
 
 
 MessageReceiver = Callable[[int, str, bytes, int], None]
-"""Takes a message: its time [ns], type and CDR, and how many were dropped so far."""
+"""Callback for a message: time [ns], type, CDR and number of messages dropped so far."""
 GoalListener = Callable[[JsonObject, bytes], None]
-"""Takes feedback, a status or a result of a goal."""
+"""Callback for feedback, a status or a result of a goal."""
 
 
 class ServerLink:
-    """A connection to the socket of a running simulation; for one thread at a time.
+    """Connection to the socket of a running simulation. Use each link in one thread only.
 
     Args:
-        path: of the socket.
-        timeout: how long an answer may take [s], wall time.
-        node: what the simulation calls the client in its lists.
+        path: path of the socket.
+        timeout: longest wait for an answer [s], wall time.
+        node: name of the client in the simulation's node lists.
 
     Attributes:
-        info: `name`, `world`, `pid` and `version` of the simulation, and `node`, what it calls this client.
-        subscriptions, goals: what messages and news of goals are handed to, by number.
+        info: `name`, `world`, `pid` and `version` of the simulation, and `node`, the client's name in its lists.
+        subscriptions, goals: callbacks for messages and for goal updates, by number.
     """
 
     def __init__(self, path: Path, timeout: float = 10.0, node: str | None = None) -> None:
@@ -78,7 +78,7 @@ class ServerLink:
         self._socket.settimeout(min(self.timeout, _LONGEST_TIMEOUT))
         end = time.monotonic() + self.timeout
         try:
-            while not self._is_connected():  # others call at the same time, and wait to be let in
+            while not self._is_connected():  # the accept queue is full while many clients connect
                 if time.monotonic() >= end:
                     raise self._no_answer()
                 time.sleep(CONNECT_PERIOD)
@@ -89,11 +89,11 @@ class ServerLink:
         self._wait_for_answer(lambda: bool(self.info))
         if self.info.pop("protocol", None) != PROTOCOL:
             found = self.info.get("version")
-            raise LiveError(f"simulation {name!r} is of simkit {found}, which speaks another protocol", "SK-LIVE-006")
+            raise LiveError(f"simulation {name!r} runs simkit {found}, with another protocol version", "SK-LIVE-006")
         self.info["node"] = self.request("node", {"name": node or f"simkit_{os.getpid()}"})[0]
 
     def _is_connected(self) -> bool:
-        """Connects; False where so many wait to be let in that nobody else can."""
+        """Connect to the socket; return False while its accept queue is full."""
         try:
             self._socket.connect(str(self.path))
         except BlockingIOError:
@@ -101,11 +101,11 @@ class ServerLink:
         return True
 
     def request(self, question: str, args: Mapping[str, object], data: bytes = b"") -> tuple[JsonValue, bytes, str]:
-        """Return the answer to a request, with the CDR behind it and its type.
+        """Return the answer to a request, with the CDR after it and the CDR's type.
 
         Raises:
-            LiveError: the simulation cannot answer it; with the code and the words of its error.
-            LiveClosed: it has ended.
+            LiveError: the simulation cannot answer the request; with the code and the message of its error.
+            LiveClosed: the simulation has ended.
         """
         return self.answer(self.send_request(question, args, data))
 
@@ -120,7 +120,7 @@ class ServerLink:
         return number
 
     def answer(self, number: int) -> tuple[JsonValue, bytes, str]:
-        """Wait for the answer of that number."""
+        """Wait for the answer with that number and return it."""
         self._wait_for_answer(lambda: number in self._answers)
         words, found = self._answers.pop(number)
         if "error" in words:
@@ -128,14 +128,17 @@ class ServerLink:
         return words.get("ok"), found, str(words.get("type", ""))
 
     def next_number(self) -> int:
-        """Return a number for something that is opened."""
+        """Return an unused number for a new handle."""
         return next(self._numbers)
 
     def receive(self, timeout: float | None = 0.0) -> bool:
-        """Takes in what has come, into subscriptions and goals; whether anything came.
+        """Receive frames and dispatch them to subscriptions and goals.
 
         Args:
-            timeout: how long to wait for something [s]; None for as long as it takes.
+            timeout: longest wait for a frame [s]; None for no limit.
+
+        Returns:
+            True if anything arrived.
 
         Raises:
             LiveClosed: the simulation has ended.
@@ -148,7 +151,7 @@ class ServerLink:
         return bool(ready)
 
     def fileno(self) -> int:
-        """Return the socket's file number, to wait for together with others."""
+        """Return the socket's file descriptor, for `select`."""
         return self._socket.fileno()
 
     def send(self, frame: bytes) -> None:
@@ -160,23 +163,23 @@ class ServerLink:
         if self._closed is not None:
             raise self._closed
         if len(frame) > LARGEST_IN:
-            text = f"a message of {len(frame)} bytes is too large to be sent; allowed are {LARGEST_IN}"
+            text = f"a message of {len(frame)} bytes is too large to send; allowed are {LARGEST_IN}"
             raise LiveError(text, "SK-LIVE-008")
         try:
             self._socket.sendall(frame)
         except TimeoutError:
-            self._fail(LiveClosed(f"simulation {self.path.stem!r} has stopped taking what is sent"))
+            self._fail(LiveClosed(f"simulation {self.path.stem!r} has stopped reading from its socket"))
         except OSError:
             with suppress(LiveClosed):
-                while True:  # it may have said why
+                while True:  # the reason for the end may still be in the socket
                     self._receive_piece()
             self._fail(self._closed or LiveClosed(self._end_message()))
         except BaseException:
-            self.close()  # half a frame may be on its way
+            self.close()  # an incomplete frame may have been sent
             raise
 
     def wait(self, condition: Callable[[], bool], timeout: float | None) -> bool:
-        """Receives until something holds; False when it does not in time [s, wall time]."""
+        """Receive until a condition holds; return False after the timeout [s, wall time]."""
         end = None if timeout is None else time.monotonic() + timeout
         while not condition():
             left = None if end is None else end - time.monotonic()
@@ -201,7 +204,7 @@ class ServerLink:
             while (frame := self._reader.next()) is not None:
                 self._dispatch(*frame)
         except (BadFrame, ValueError, KeyError, TypeError, struct.error) as error:
-            self._fail(LiveClosed(f"simulation {self.path.stem!r} sent something odd: {error}", "SK-LIVE-006"))
+            self._fail(LiveClosed(f"simulation {self.path.stem!r} sent an invalid frame: {error}", "SK-LIVE-006"))
 
     def _dispatch(self, kind: int, body: bytes) -> None:
         if kind == MESSAGE:
@@ -224,7 +227,7 @@ class ServerLink:
             self._socket.close()
 
     def _fail(self, error: LiveClosed) -> None:
-        """Close the socket for an error, and raise it."""
+        """Close the socket and raise the error."""
         self._closed = error
         self._socket.close()
         raise error
@@ -239,10 +242,10 @@ class ServerLink:
 
     @property
     def is_closed(self) -> bool:
-        """Whether the connection has ended."""
+        """True if the connection has ended."""
         return self._closed is not None
 
     def close(self) -> None:
-        """Hangs up; does nothing the second time."""
+        """Close the connection. A second call does nothing."""
         self._closed = self._closed or LiveClosed("the client is closed")
         self._socket.close()

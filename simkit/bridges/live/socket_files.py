@@ -1,6 +1,6 @@
-"""Socket files of running simulations: a folder that only their user may enter, one file for each.
+"""Socket files of running simulations, in a folder that only their user may enter.
 
-The folder is `$XDG_RUNTIME_DIR/simkit`, or `simkit-<uid>` among the temporary files where there is no such place.
+The folder is `$XDG_RUNTIME_DIR/simkit`. Without that variable it is `simkit-<uid>` in the folder of temporary files.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ from typing import Final
 
 SUFFIX: Final = ".sock"
 BACKLOG: Final = 64
-_LONGEST_NAME = 48  # a path of a socket has room for about 100 bytes
-_PATIENCE = 2.0  # [s] for which others that begin are waited for
+_LONGEST_NAME = 48  # the path of a socket may have about 100 bytes
+_LOCK_TIMEOUT = 2.0  # [s], longest wait for other simulations that start
 _LIVING = frozenset({errno.EAGAIN, errno.EINPROGRESS, errno.EACCES, errno.EPERM})
 
 
 class NoSocketFolder(Exception):
-    """There is no place for a socket; says why."""
+    """Error for a socket that has no usable folder; with the reason."""
 
 
 def is_possible() -> bool:
@@ -46,13 +46,13 @@ def socket_folders() -> list[Path]:
 
 
 def folder_fault(folder: Path) -> str:
-    """Why sockets in a folder are not to be trusted; empty where they are."""
+    """Return the reason not to trust the sockets in a folder; empty for a trusted folder."""
     try:
         found = os.lstat(folder)
     except OSError as error:
         return f"{folder}: {error.strerror}"
     if not stat.S_ISDIR(found.st_mode):
-        return f"{folder} is no folder"
+        return f"{folder} is not a folder"
     if found.st_uid != os.getuid():
         return f"{folder} belongs to another user"
     if found.st_mode & 0o077:
@@ -61,15 +61,15 @@ def folder_fault(folder: Path) -> str:
 
 
 def file_name(name: str) -> str:
-    """A name as one that every file system takes."""
+    """Convert a name to one that every file system accepts."""
     return re.sub(r"[^A-Za-z0-9_.-]+", "_", name).strip(".")[:_LONGEST_NAME] or "simulation"
 
 
 def bind(name: str) -> tuple[socket.socket, str, Path]:
-    """A socket that listens, under this name or, where a living simulation has it, the name with `_2`, `_3`, ….
+    """Open a listening socket under a name. If a living simulation has the name, `_2`, `_3`, … is added.
 
     Raises:
-        NoSocketFolder: there is no place for it.
+        NoSocketFolder: no folder can hold the socket.
     """
     if not is_possible():
         raise NoSocketFolder("this system's Python has no local sockets")
@@ -89,56 +89,56 @@ def bind(name: str) -> tuple[socket.socket, str, Path]:
     raise NoSocketFolder("; ".join((*full, *unusable)))
 
 
-def _bind_in(folder: Path, wanted: str) -> tuple[socket.socket, str, Path]:
-    """The same in one folder.
+def _bind_in(folder: Path, requested: str) -> tuple[socket.socket, str, Path]:
+    """Open a listening socket in one folder.
 
     Raises:
-        OSError: it has no place for it.
+        OSError: the folder cannot hold the socket.
     """
     with _lock_folder(folder):
         for path in folder.glob("*" + SUFFIX):
             if not is_living(path):
-                with suppress(OSError):  # what cannot be taken away keeps its name
-                    path.unlink(missing_ok=True)  # of one who died
+                with suppress(OSError):  # a file that cannot be deleted keeps its name
+                    path.unlink(missing_ok=True)  # socket of a process that has ended
         for number in range(1, 1000):
-            free = wanted if number == 1 else f"{wanted}_{number}"
+            free = requested if number == 1 else f"{requested}_{number}"
             path = folder / (free + SUFFIX)
             if not os.path.lexists(path):
                 return _listen_at(path), free, path
-    raise OSError(f"every name from {wanted} to {wanted}_999 is taken")
+    raise OSError(f"every name from {requested} to {requested}_999 is in use")
 
 
 def _listen_at(path: Path) -> socket.socket:
-    made = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+    listener = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
     try:
         before = os.umask(0o177)
         try:
-            made.bind(str(path))
+            listener.bind(str(path))
         finally:
             os.umask(before)
-        made.listen(BACKLOG)
-        made.setblocking(False)
+        listener.listen(BACKLOG)
+        listener.setblocking(False)
     except OSError:
-        made.close()
+        listener.close()
         raise
-    return made
+    return listener
 
 
 @contextmanager
 def _lock_folder(folder: Path) -> Iterator[None]:
-    """Keeps two simulations that begin at the same time from taking the same name."""
+    """Lock the folder, so that two simulations that start at the same time do not choose the same name."""
     import fcntl
 
     handle = os.open(folder / ".lock", os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
     try:
-        end = time.monotonic() + _PATIENCE
+        end = time.monotonic() + _LOCK_TIMEOUT
         while True:
             try:
                 fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
                 break
             except BlockingIOError:
                 if time.monotonic() >= end:
-                    raise OSError("another simulation that begins holds it locked, and does not go on") from None
+                    raise OSError("another simulation holds its lock and does not finish starting") from None
             time.sleep(0.01)
         yield
     finally:
@@ -157,7 +157,7 @@ def is_living(path: Path) -> bool:
 
 
 def sockets() -> list[Path]:
-    """The sockets in folders that can be trusted, of the living and of the dead."""
+    """Return the sockets in trusted folders, including those of processes that have ended."""
     found: dict[str, Path] = {}
     for folder in socket_folders():
         if not folder_fault(folder):
@@ -167,7 +167,7 @@ def sockets() -> list[Path]:
 
 
 def peer_credentials(connection: socket.socket) -> tuple[int | None, int | None]:
-    """Process and user at the other end of a connection; None for what the system does not tell."""
+    """Return process and user at the remote end of a connection; None for each that the system does not report."""
     option = getattr(socket, "SO_PEERCRED", None)
     if option is not None:
         pid, uid, _ = struct.unpack("3i", connection.getsockopt(socket.SOL_SOCKET, option, 12))

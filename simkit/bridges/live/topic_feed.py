@@ -1,4 +1,4 @@
-"""Feed topics to the clients that subscribe to them; every message is serialised once."""
+"""Feeds of topics for the clients that subscribe to them. Every message is serialised once."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ if TYPE_CHECKING:
     from simkit.runtime.communication.subscription import LazyMessage, Subscription
     from simkit.runtime.simulation import Simulation
 
-_MOST_WAITING = 100  # messages of a topic that are still being made
+_MOST_WAITING = 100  # messages of a topic that wait for a picture to be rendered
 
 
 class TopicFeed:
-    """Topic that clients subscribe to."""
+    """Feed of one topic to all clients that subscribe to the topic."""
 
     def __init__(self, sim: Simulation, topic: str) -> None:
         self._sim, self.topic = sim, topic
         self._readers: list[ClientSubscription] = []
-        # what is a message now may be written to after this: what waits behind a picture is serialised at once
+        # a finished message is serialised at once, even behind a picture: its publisher may change it later
         self._queue = MessageQueue(self._deliver, _serialise)
         self._tap: Subscription | None = None
 
     def add(self, reader: ClientSubscription) -> None:
-        """Add a subscription; the last message of a latched topic goes to it alone."""
+        """Add a subscription. Only the new subscription receives the last message of a latched topic."""
         if self._tap is None:
             self._readers.append(reader)
             self._tap = self._sim.communication.bus.tap(self.topic, self._take, takes_later=True)
@@ -57,21 +57,21 @@ class TopicFeed:
         self._queue.deliver_ready()
 
     def _take(self, message: Message | LazyMessage) -> None:
-        """A message that was published now."""
+        """Queue a message that was just published."""
         self._queue.add(self._sim.time_ns, message)
         if len(self._queue) > _MOST_WAITING:
             self._queue.drop_oldest()
             for reader in self._readers:
                 reader.lost += 1
 
-    def _deliver(self, time_ns: int, written: tuple[str, bytes] | None) -> None:
-        if written is not None:
+    def _deliver(self, time_ns: int, serialised: tuple[str, bytes] | None) -> None:
+        if serialised is not None:
             for reader in self._readers:
-                reader.peer.queue_message(reader, time_ns, *written)
+                reader.peer.queue_message(reader, time_ns, *serialised)
 
 
 def _serialise(message: object) -> tuple[str, bytes] | None:
-    """Type and CDR; None of a message that cannot be written, which concerns its publisher."""
+    """Return type and CDR; None for a message that cannot be serialised, because only its publisher can correct it."""
     try:
         return msgs.type_name(message), msgs.serialize(message)
     except MessageError:
@@ -79,7 +79,7 @@ def _serialise(message: object) -> tuple[str, bytes] | None:
 
 
 class TopicFeeds:
-    """All topics that clients subscribe to."""
+    """Feeds of all topics that clients subscribe to."""
 
     def __init__(self, sim: Simulation) -> None:
         self._sim = sim

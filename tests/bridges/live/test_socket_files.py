@@ -39,7 +39,7 @@ def test_a_folder_that_others_may_enter_is_not_used(court: simkit.Simulation, so
 
 def test_a_link_instead_of_the_folder_is_not_followed(sockets: Path, tmp_path: Path) -> None:
     sockets.symlink_to(tmp_path)
-    assert socket_files.folder_fault(sockets) == f"{sockets} is no folder"
+    assert socket_files.folder_fault(sockets) == f"{sockets} is not a folder"
     listening, _, path = socket_files.bind("court")
     listening.close()
     path.unlink()
@@ -79,7 +79,7 @@ def test_where_the_path_is_too_long_the_temporary_files_are_the_place(
         assert [found.name for found in simulations()] == ["court"]
     monkeypatch.setattr(tempfile, "tempdir", str(deep))
     none, note = serve(court)
-    assert none is None and note.startswith("note SK-LIVE-009: no other terminal can talk to this run: ")
+    assert none is None and note.startswith("note SK-LIVE-009: other terminals cannot reach this run: ")
 
 
 def test_where_there_are_no_local_sockets_the_run_goes_on_without(
@@ -106,7 +106,7 @@ def test_one_who_holds_the_lock_for_ever_keeps_no_run_from_beginning(
 ) -> None:
     import fcntl
 
-    monkeypatch.setattr(socket_files, "_PATIENCE", 0.05)
+    monkeypatch.setattr(socket_files, "_LOCK_TIMEOUT", 0.05)
     sockets.mkdir(mode=0o700)
     with (sockets / ".lock").open("w") as held:
         fcntl.flock(held, fcntl.LOCK_EX)
