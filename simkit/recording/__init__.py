@@ -1,5 +1,5 @@
-"""What a run leaves, and what plays it back: bags, charts, pictures, exported tables, scripted commands.
+"""Recording and playback of runs: bags, charts, pictures, exported tables and scripted commands.
 
-A running simulation or a bag enters; files leave, as a whole or not at all. Recording listens and never changes what
-is measured. It knows no sensor kinds, plugins or commands of the command line; its modules are imported when used.
+Files are written completely or not at all. Recording never changes the measurements. This package does not depend on
+sensor types, plugins or commands of the command line. Its modules are imported on first use.
 """

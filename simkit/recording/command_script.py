@@ -1,4 +1,4 @@
-"""Send commands while a world runs: one steady velocity, or a YAML script of messages over time.
+"""Commands during a run: one constant velocity, or a YAML script of messages over time.
 
 A script is a list; times are simulated seconds:
 
@@ -24,9 +24,9 @@ if TYPE_CHECKING:
     from simkit.runtime import Simulation
 
 _Item = TypeVar("_Item")
-_Made = TypeVar("_Made")
+_Result = TypeVar("_Result")
 _KEYS = ("at", "topic", "message", "until", "rate")
-_RATE = 10.0  # [Hz] of a command that is repeated without saying how often
+_RATE = 10.0  # [Hz] default rate of a repeated command
 _TWISTS = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
 
 
@@ -37,8 +37,8 @@ class Command:
     Attributes:
         at: first time [s].
         until: last time [s]; None for a single message.
-        rate: repetitions a second [Hz].
-        where: where it was written, for messages about it.
+        rate: repetition rate [Hz].
+        where: file and line of the command, for error messages.
     """
 
     at: float
@@ -49,7 +49,7 @@ class Command:
     where: str = ""
 
     def time(self, index: int) -> float | None:
-        """When it is sent for the `index`-th time [s]; None when not any more."""
+        """Return the time of the `index`-th sending [s]; None after the last one."""
         if index == 0:
             return self.at
         if self.until is None:
@@ -58,17 +58,17 @@ class Command:
         return time if time <= self.until else None
 
     def plain(self) -> JsonObject:
-        """Return the command as a mapping, as a scenario file holds it."""
+        """Return the command as a mapping in the format of a scenario file."""
         found = {"at": self.at, "topic": self.topic, "message": self.message, "where": self.where}
         return found if self.until is None else {**found, "until": self.until, "rate": self.rate}
 
 
 class Commands:
-    """Sends commands at the first tick at or after their time.
+    """Sender of commands at the first tick at or after their time.
 
     Args:
-        sim: the simulation.
-        commands: in any order; of two at one time the earlier in the list goes first.
+        sim: simulation that receives the commands.
+        commands: commands in any order; of two at one time, the earlier in the list is sent first.
     """
 
     def __init__(self, sim: Simulation, commands: Iterable[Command]) -> None:
@@ -80,14 +80,14 @@ class Commands:
 
     @property
     def next_tick(self) -> int | None:
-        """The tick at which something is to be sent next; None when all is sent."""
+        """Tick of the next command; None after the last one."""
         return self._queue[0][0] if self._queue else None
 
     def send_due(self) -> None:
-        """Sends what is due at the present tick.
+        """Send the commands that are due at the present tick.
 
         Raises:
-            InputError: SK-CLI-012 a message does not fit its topic, with the place it was written.
+            InputError: SK-CLI-012 a message does not match its topic; with the file and line of the command.
         """
         while self._queue and self._queue[0][0] <= self._sim.tick:
             _, number, index = heapq.heappop(self._queue)
@@ -101,20 +101,20 @@ class Commands:
     def _push(self, number: int, index: int) -> None:
         time = self._commands[number].time(index)
         if time is not None:
-            # A whole number of steps must not become one more by a rounding error.
+            # a rounding error must not add a step to a whole number of steps
             tick = math.ceil(time / self._sim.timestep - 1e-6)
             heapq.heappush(self._queue, (tick, number, index))
 
 
 def steady_velocity(text: str, topics: Mapping[str, str]) -> Command:
-    """The command of `--cmd-vel LINEAR,ANGULAR`: a Twist on `/cmd_vel`, or on the one topic that takes one.
+    """Parse `--cmd-vel LINEAR,ANGULAR`: a Twist on `/cmd_vel`, or on the world's only Twist topic.
 
     Args:
-        text: forward speed [m/s] and turning speed [rad/s], with a comma between.
-        topics: topic -> type of the world.
+        text: forward speed [m/s] and yaw rate [rad/s], separated by a comma.
+        topics: topic -> type, for all topics of the world.
 
     Raises:
-        InputError: SK-CLI-010 no such numbers, or no single topic to send them to.
+        InputError: SK-CLI-010 the numbers are invalid, or the topic is not unique.
     """
     parts = text.replace(",", " ").split()
     try:
@@ -125,30 +125,32 @@ def steady_velocity(text: str, topics: Mapping[str, str]) -> Command:
         raise InputError(
             f"SK-CLI-010 --cmd-vel: found {text!r}, allowed is LINEAR,ANGULAR such as 0.2,0.3", "SK-CLI-010"
         ) from None
-    takers = [topic for topic, type_name in topics.items() if type_name in _TWISTS]
-    topic = "/cmd_vel" if "/cmd_vel" in takers else takers[0] if len(takers) == 1 else None
+    twist_topics = [topic for topic, type_name in topics.items() if type_name in _TWISTS]
+    topic = "/cmd_vel" if "/cmd_vel" in twist_topics else twist_topics[0] if len(twist_topics) == 1 else None
     if topic is None:
-        found = "none does" if not takers else f"there are several ({', '.join(takers)}); use --script to name one"
-        raise InputError(f"SK-CLI-010 --cmd-vel needs one topic that takes a Twist; {found}", "SK-CLI-010")
+        found = f"several ({', '.join(twist_topics)}); choose one in a --script" if twist_topics else "none"
+        raise InputError(f"SK-CLI-010 --cmd-vel needs exactly one Twist topic; found {found}", "SK-CLI-010")
     twist = {"linear": {"x": linear}, "angular": {"z": angular}}
     message = twist if topics[topic] == _TWISTS[0] else {"twist": twist}
     return Command(0.0, topic, message, where="--cmd-vel")
 
 
 def read_script(path: Path, topics: Mapping[str, str]) -> list[Command]:
-    """The commands of a YAML script.
+    """Read the commands of a YAML script.
 
     Raises:
-        InputError: SK-CLI-011 with file and line.
+        InputError: SK-CLI-011 the script is invalid; with file and line.
     """
     return commands_of(script_items(path), topics)
 
 
 def script_items(path: Path) -> list[JsonObject]:
-    """Return the items of a YAML script, each with its place under "where"; `commands_of` validates them for a world.
+    """Read the items of a YAML script, each with its file and line under "where".
+
+    `commands_of` validates the items for a world.
 
     Raises:
-        InputError: SK-CLI-011 with file and line.
+        InputError: SK-CLI-011 the script is invalid; with file and line.
     """
     try:
         text = path.read_text(encoding="utf-8")
@@ -163,9 +165,7 @@ def script_items(path: Path) -> list[JsonObject]:
     if root is None:
         return []
     if root.id != "sequence":
-        raise _script_error(
-            f"{path}:{root.start_mark.line + 1}", "found something else, allowed is a list of {at, topic, message}"
-        )
+        raise _script_error(f"{path}:{root.start_mark.line + 1}", "the script is not a list of {at, topic, message}")
     found = []
     for node in root.value:
         where = f"{path}:{node.start_mark.line + 1}"
@@ -177,19 +177,22 @@ def script_items(path: Path) -> list[JsonObject]:
 
 
 def validate_items(items: Iterable[tuple[object, str]]) -> list[JsonObject]:
-    """The mappings of commands, each with its place under "where"; what is wrong in any world is told.
+    """Validate commands independently of a world.
 
     Args:
-        items: what was written, and where.
+        items: each command with its file and line.
+
+    Returns:
+        Mappings of the commands, each with its file and line under "where".
 
     Raises:
-        InputError: SK-CLI-011 with a line for every one that is no command.
+        InputError: SK-CLI-011 with one line for each invalid command.
     """
     return _collect(_validate_item, items)
 
 
-def _validate_item(written: tuple[object, str]) -> JsonObject:
-    item, where = written
+def _validate_item(item_with_location: tuple[object, str]) -> JsonObject:
+    item, where = item_with_location
     if not isinstance(item, dict):
         raise _script_error(where, f"found {item!r:.60}, allowed is {{at, topic, message}}")
     _command(item, where, None)
@@ -197,10 +200,10 @@ def _validate_item(written: tuple[object, str]) -> JsonObject:
 
 
 def commands_of(items: Iterable[JsonMapping], topics: Mapping[str, str]) -> list[Command]:
-    """The commands that mappings stand for: those of a script, each with its place under "where".
+    """Convert mappings to commands: those of a script, each with its file and line under "where".
 
     Raises:
-        InputError: SK-CLI-011 with a line for every one that does not fit.
+        InputError: SK-CLI-011 with one line for each invalid command.
     """
 
     def command(item: JsonMapping) -> Command:
@@ -210,41 +213,41 @@ def commands_of(items: Iterable[JsonMapping], topics: Mapping[str, str]) -> list
     return _collect(command, items)
 
 
-def _collect(make: Callable[[_Item], _Made], items: Iterable[_Item]) -> list[_Made]:
-    """Makes something of each item; what is wrong with any of them is told at once."""
-    found, wrong = [], []
+def _collect(make: Callable[[_Item], _Result], items: Iterable[_Item]) -> list[_Result]:
+    """Convert each item, and report the errors of all items together."""
+    found, errors = [], []
     for item in items:
         try:
             found.append(make(item))
         except InputError as error:
-            wrong.append(error)
-    if wrong:
-        raise InputError("\n".join(map(str, wrong)), wrong[0].code)
+            errors.append(error)
+    if errors:
+        raise InputError("\n".join(map(str, errors)), errors[0].code)
     return found
 
 
 def _command(item: JsonMapping, where: str, topics: Mapping[str, str] | None) -> Command:
-    """A command; whether its topic is there is seen where topics are given."""
+    """Convert a mapping to a command; with `topics`, check that its topic exists."""
     for key in item:
         if key not in _KEYS:
             raise _script_error(
-                where, f"unknown key {key!r}; {did_you_mean(str(key), _KEYS) or 'keys are ' + ', '.join(_KEYS)}"
+                where, f"unknown key {key!r}; {did_you_mean(str(key), _KEYS) or 'allowed: ' + ', '.join(_KEYS)}"
             )
     for key in ("at", "topic"):
         if key not in item:
-            raise _script_error(where, f"needs {key!r}")
+            raise _script_error(where, f"key {key!r} is missing")
     topic = item["topic"]
     if not isinstance(topic, str):
         raise _script_error(where, f"topic: found {topic!r}, allowed is a text")
     topic = topic if topic.startswith("/") else "/" + topic
     if topics is not None and topic not in topics:
         raise _script_error(
-            where, f"no topic {topic!r}; {did_you_mean(topic, topics) or 'there is ' + ', '.join(topics)}"
+            where, f"no topic {topic!r}; {did_you_mean(topic, topics) or 'known: ' + ', '.join(topics)}"
         )
     message = item.get("message") or {}
     if not isinstance(message, dict):
-        of = "its message" if topics is None else topics[topic]
-        raise _script_error(where, f"message: found {message!r:.60}, allowed is a mapping of the fields of {of}")
+        kind = "its message" if topics is None else topics[topic]
+        raise _script_error(where, f"message: found {message!r:.60}, allowed is a mapping of the fields of {kind}")
     at = _number(item["at"], "at", where, 0.0)
     until = None if item.get("until") is None else _number(item["until"], "until", where, at)
     rate = _number(item.get("rate", _RATE), "rate", where, 1e-6)

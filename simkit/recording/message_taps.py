@@ -1,4 +1,4 @@
-"""Take down the messages of a running simulation: taps on its topics, and the order of pictures that are drawn late."""
+"""Taps on the topics of a running simulation, and a queue that keeps messages in order while images are rendered."""
 
 from __future__ import annotations
 
@@ -13,19 +13,20 @@ if TYPE_CHECKING:
     from simkit.runtime import Simulation, Subscription
 
 Receiver = Callable[[Message | LazyMessage], None]
-"""Is called with each message of a topic, which may be a `LazyMessage`."""
+"""Callback for each message of a topic, which may be a `LazyMessage`."""
 _Label = TypeVar("_Label")
 
 
 class TopicTaps:
-    """Taps on the topics of a simulation, those that are advertised later included.
+    """Taps on the topics of a simulation, including topics that are advertised later.
 
-    Bags, reference runs, bundles and certificates all listen through it. A tap makes a sensor measure, and changes no
-    bit of what it measures.
+    Bags, reference runs, bundles and certificates all use these taps. A tap makes a sensor measure, but changes no bit
+    of the measurement.
 
     Args:
-        sim: the simulation.
-        receiver_of: is asked once for each topic and its type; returns what gets its messages, or None for none.
+        sim: simulation to observe.
+        receiver_of: function from topic and type to the callback for its messages, or None for no tap; called once per
+            topic.
     """
 
     def __init__(self, sim: Simulation, receiver_of: Callable[[str, str], Receiver | None]) -> None:
@@ -34,12 +35,12 @@ class TopicTaps:
         self._is_open = False
 
     def open(self) -> None:
-        """Begin to listen."""
+        """Open the taps."""
         self._is_open = True
         self._sim.communication.bus.on_topic(self._add)
 
     def close(self) -> None:
-        """Listen no more; does nothing the second time."""
+        """Close the taps. A second call does nothing."""
         self._is_open = False
         for tap in self._taps.values():
             tap.close()
@@ -57,12 +58,12 @@ class TopicTaps:
 
 
 class MessageQueue(Generic[_Label]):
-    """Delivers messages in the order in which they were published, although some pictures are still being drawn.
+    """Queue that delivers messages in the order of their publication while some images are still being rendered.
 
     Args:
-        deliver: is called with the label of a message, and the message.
-        freeze: copies a message that has to wait, for its publisher may write to it; every message is delivered as it
-            returns it. Without it nothing but pictures waits: whatever follows one has it drawn at once.
+        deliver: callback with the label of a message, and the message.
+        freeze: function that copies a queued message, because its publisher may change it; every message is delivered
+            in this form. Without it, only images are queued: any message after an image waits for its rendering.
     """
 
     def __init__(
@@ -72,7 +73,7 @@ class MessageQueue(Generic[_Label]):
         self._waiting: deque[tuple[_Label, Message | LazyMessage]] = deque()
 
     def add(self, label: _Label, message: Message | LazyMessage) -> None:
-        """Deliver a message that was published now, or have it wait behind those before it."""
+        """Deliver a message that was just published, or queue it after earlier messages."""
         is_lazy = type(message) is LazyMessage
         if self._waiting or (is_lazy and not message.is_ready):
             if is_lazy or self._freeze is not None:
@@ -83,13 +84,13 @@ class MessageQueue(Generic[_Label]):
         self._resolve(label, message)
 
     def deliver_ready(self) -> None:
-        """Deliver what is there by now, in order."""
+        """Deliver the messages that are ready, in order."""
         waiting = self._waiting
         while waiting and (type(waiting[0][1]) is not LazyMessage or waiting[0][1].is_ready):
             self._deliver_first()
 
     def deliver_all(self) -> None:
-        """Deliver everything; pictures are drawn now."""
+        """Deliver all messages; wait for the rendering of images."""
         while self._waiting:
             self._deliver_first()
 
@@ -97,21 +98,21 @@ class MessageQueue(Generic[_Label]):
         return len(self._waiting)
 
     def drop_oldest(self) -> None:
-        """Drop the message that has waited longest."""
+        """Drop the oldest message."""
         self._waiting.popleft()
 
     def clear(self) -> None:
-        """Drop what waits."""
+        """Drop all queued messages."""
         self._waiting.clear()
 
     def _deliver_first(self) -> None:
         label, message = self._waiting.popleft()
         if type(message) is LazyMessage:
             self._resolve(label, message)
-        else:  # frozen already
+        else:  # already frozen
             self._deliver(label, message)
 
     def _resolve(self, label: _Label, message: Message | LazyMessage) -> None:
-        made = message.get() if type(message) is LazyMessage else message
-        if made is not NO_MESSAGE:
-            self._deliver(label, made if self._freeze is None else self._freeze(made))
+        resolved = message.get() if type(message) is LazyMessage else message
+        if resolved is not NO_MESSAGE:
+            self._deliver(label, resolved if self._freeze is None else self._freeze(resolved))

@@ -1,4 +1,4 @@
-"""Draw a picture of a run: the scene from above, the driven path and the last scan."""
+"""Picture of a run: the scene from above, the driven path and the last scan."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _OVERSAMPLED = 2
 _PATH_COLOUR = (0.10, 0.45, 0.95, 1.0)
 _SCAN_COLOUR = (0.95, 0.20, 0.15, 1.0)
 _PATH_RADIUS, _SCAN_RADIUS = 0.012, 0.018  # [m] at a scene of 5 m
-_SHORTEST = 0.01  # [m] of travel that makes a new piece of the path
+_SHORTEST = 0.01  # [m] of travel per piece of the path
 _SCANNERS = frozenset({"ray", "gpu_ray", "lidar", "gpu_lidar"})
 
 
@@ -41,18 +41,18 @@ class DrivenPath:
         self.sample()
 
     def sample(self) -> None:
-        """Notes the present places."""
+        """Store the present positions."""
         for name, model in self._sim.models.items():
             if model.static:
                 continue
-            place = model.pose.position
-            track = self.tracks.setdefault(name, [place])
-            if float(np.linalg.norm(place - track[-1])) >= _SHORTEST:
-                track.append(place)
+            position = model.pose.position
+            track = self.tracks.setdefault(name, [position])
+            if float(np.linalg.norm(position - track[-1])) >= _SHORTEST:
+                track.append(position)
 
 
 def scan_points(message: LaserScan, pose: Pose) -> Points:
-    """The points [m] in the world that a `LaserScan` hit, shape (n, 3), for a scanner at `pose`."""
+    """Return the points of a `LaserScan` in the world frame [m], shape (n, 3), for a scanner at `pose`."""
     ranges = np.asarray(message.ranges, dtype=np.float64)
     angles = message.angle_min + np.arange(len(ranges)) * message.angle_increment
     hit = np.isfinite(ranges)
@@ -64,17 +64,17 @@ def scan_points(message: LaserScan, pose: Pose) -> Points:
 
 
 def save_picture(sim: Simulation, path: Path, render: Render, driven: DrivenPath | None = None) -> None:
-    """Draws the simulation as it is now into an image file (`.png` or `.jpg`).
+    """Draw the present state of the simulation to an image file (`.png` or `.jpg`).
 
     Args:
-        sim: the simulation.
-        path: the image file.
-        render: draws a view of a simulation; `simkit.build.render_view`.
-        driven: paths to draw in.
+        sim: simulation to draw.
+        path: image file to write.
+        render: function that draws a view of a simulation; `simkit.build.render_view`.
+        driven: paths to draw.
 
     Raises:
         RenderError: SK-RENDER-001 there is no renderer.
-        InputError: SK-CLI-013 the file cannot be written.
+        InputError: SK-CLI-013 the file is not writable.
     """
     import cv2
 
@@ -90,36 +90,36 @@ def save_picture(sim: Simulation, path: Path, render: Render, driven: DrivenPath
                 _add_sphere(scene, point, _SCAN_RADIUS * size, _SCAN_COLOUR)
 
     eye, target = _viewpoint([*points, *_moving_bodies(sim)], driven)
-    # drawn larger and shrunk: thin edges come out smooth on any renderer
+    # render with twice the resolution and shrink: smooth edges on every renderer
     width, height = _SIZE
     large = render(sim, _OVERSAMPLED * width, _OVERSAMPLED * height, eye=eye, target=target, decorate=decorate)
     colours = cv2.resize(large, _SIZE, interpolation=cv2.INTER_AREA)
     try:
-        written = cv2.imwrite(str(path), colours[:, :, ::-1])
+        is_saved = cv2.imwrite(str(path), colours[:, :, ::-1])
     except cv2.error as error:
         raise InputError(
             f"SK-CLI-013 cannot write {path}: {str(error).strip().splitlines()[-1]}", "SK-CLI-013"
         ) from None
-    if not written:
+    if not is_saved:
         raise InputError(f"SK-CLI-013 cannot write {path}", "SK-CLI-013")
 
 
 def check_target(path: Path) -> None:
-    """Says before a run that its picture cannot be written.
+    """Check before a run whether its picture can be written.
 
     Raises:
-        InputError: SK-CLI-013.
+        InputError: SK-CLI-013 the suffix is not supported, or the folder does not exist.
     """
     if path.suffix.lower() not in (".png", ".jpg", ".jpeg"):
         raise InputError(
             f"SK-CLI-013 --picture {path}: found the ending {path.suffix!r}, allowed is .png or .jpg", "SK-CLI-013"
         )
     if not path.absolute().parent.is_dir():
-        raise InputError(f"SK-CLI-013 --picture {path}: there is no folder {path.absolute().parent}", "SK-CLI-013")
+        raise InputError(f"SK-CLI-013 --picture {path}: folder {path.absolute().parent} does not exist", "SK-CLI-013")
 
 
 def _last_scans(sim: Simulation) -> list[tuple[LaserScan, Pose]]:
-    """The newest planar scan of each scanner, with the scanner's pose."""
+    """Return the newest planar scan of each scanner, with the scanner's pose."""
     found = []
     for sensor in sim.contents.sensors.values():
         if sensor.kind in _SCANNERS:
@@ -130,17 +130,17 @@ def _last_scans(sim: Simulation) -> list[tuple[LaserScan, Pose]]:
 
 
 def _moving_bodies(sim: Simulation) -> list[Points]:
-    """Corners [m] in the world of the boxes around what can move, shape (2 n, 3), so that none is cut off."""
+    """Return the corners of boxes around the moving geoms in the world frame [m], shape (2 n, 3)."""
     model, data = sim.mj_model, sim.mj_data
-    moves = (np.asarray(model.geom_bodyid) > 0) & (np.asarray(model.geom_rbound) > 0.0)
-    if not moves.any():
+    is_moving = (np.asarray(model.geom_bodyid) > 0) & (np.asarray(model.geom_rbound) > 0.0)
+    if not is_moving.any():
         return []
-    places, reach = np.asarray(data.geom_xpos)[moves], np.asarray(model.geom_rbound)[moves][:, None]
-    return [np.concatenate((places - reach, places + reach))]
+    centres, reach = np.asarray(data.geom_xpos)[is_moving], np.asarray(model.geom_rbound)[is_moving][:, None]
+    return [np.concatenate((centres - reach, centres + reach))]
 
 
 def _viewpoint(points: list[Points], driven: DrivenPath | None) -> tuple[Points, Points] | tuple[None, None]:
-    """Eye and target [m]: obliquely from above, so that what moved and what was seen fills the picture."""
+    """Return eye and target [m] of a view from obliquely above that shows all moving models and scan points."""
     seen = [cloud for cloud in points if len(cloud)]
     if driven is not None:
         seen += [np.array(track) for track in driven.tracks.values()]
@@ -163,17 +163,17 @@ def _add_capsule(scene: mujoco.MjvScene, start: Points, end: Points, radius: flo
         mujoco.mjv_connector(geom, mujoco.mjtGeom.mjGEOM_CAPSULE, radius, np.asarray(start), np.asarray(end))
 
 
-def _add_sphere(scene: mujoco.MjvScene, place: Points, radius: float, colour: tuple[float, ...]) -> None:
+def _add_sphere(scene: mujoco.MjvScene, position: Points, radius: float, colour: tuple[float, ...]) -> None:
     import mujoco
 
     geom = _next_geom(scene, mujoco.mjtGeom.mjGEOM_SPHERE, colour)
     if geom is not None:
         geom.size[:] = radius
-        geom.pos[:] = place
+        geom.pos[:] = position
 
 
 def _next_geom(scene: mujoco.MjvScene, kind: mujoco.mjtGeom, colour: tuple[float, ...]) -> mujoco.MjvGeom | None:
-    """A fresh drawn geom, or None when the scene is full (the picture then lacks its last decorations)."""
+    """Return an unused geom of the drawn scene; None if the scene is full (the last decorations are then missing)."""
     import mujoco
 
     if scene.ngeom >= scene.maxgeom:

@@ -1,4 +1,4 @@
-"""Count the messages of each topic and their true rate in simulated time."""
+"""Message counts and rates of topics in simulated time."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
     from simkit.runtime import Simulation
 
-# What has to be rendered for; counting it would make every frame be drawn only to be thrown away.
+# Types that need rendering; counting them would render every frame only to discard it.
 RENDERED = frozenset({"sensor_msgs/msg/Image", "sensor_msgs/msg/CameraInfo", "sensor_msgs/msg/PointCloud2"})
 
 
@@ -21,9 +21,9 @@ class TopicCount:
     """Count of the messages of one topic.
 
     Attributes:
-        counted: False where nobody reads the topic, so that nothing is known.
-        count: messages since `since`.
-        since, second, last: simulated times [ns] from which they are counted, of the second message and of the newest.
+        counted: False for a topic that is not read; its numbers are unknown.
+        count: number of messages after `since`.
+        since, second, last: simulated times [ns] of the start of counting, of the second message and of the newest.
     """
 
     topic: str
@@ -35,19 +35,22 @@ class TopicCount:
     last: int = 0
 
     def rate(self) -> float | None:
-        """Messages per simulated second [Hz] since the second (the first may lie off the grid); None before three."""
+        """Return the messages per simulated second [Hz] after the second message; None before the third.
+
+        The first message is left out, because it may lie off the sensor's time grid.
+        """
         if self.count < 3 or self.last <= self.second:
             return None
         return (self.count - 2) * 1e9 / (self.last - self.second)
 
 
 class TopicCounter:
-    """Counts the messages of every topic but those that the bus has aside and nobody else reads.
+    """Counter of the messages of all topics, except topics in the bus's `aside` that nothing else reads.
 
     Args:
-        sim: the simulation.
-        skip: types that are listed but not read.
-        is_read: whether somebody else reads a topic, which is then counted whatever its type.
+        sim: simulation to observe.
+        skip: types to list without reading them.
+        is_read: function that returns True for a topic that something else reads; it is counted regardless of its type.
     """
 
     def __init__(
@@ -60,16 +63,16 @@ class TopicCounter:
 
     @property
     def rows(self) -> list[TopicCount]:
-        """Return one row for each topic, sorted by name."""
+        """One row for each topic, sorted by name."""
         return [self._rows[topic] for topic in sorted(self._rows)]
 
     @property
     def total(self) -> int:
-        """Messages counted on all topics."""
+        """Number of messages counted on all topics."""
         return sum(row.count for row in self._rows.values())
 
     def close(self) -> None:
-        """Stops counting."""
+        """Stop counting."""
         self._taps.close()
 
     def _receiver_of(self, topic: str, type_name: str) -> Receiver | None:
@@ -82,7 +85,7 @@ class TopicCounter:
         def count(_: object) -> None:
             now = self._sim.time_ns
             if now < row.last:
-                # The simulation was reset.
+                # the simulation was reset
                 row.since, row.count = 0, 0
             row.last = now
             row.count += 1

@@ -64,7 +64,7 @@ def test_a_steady_velocity_goes_to_the_only_topic_that_takes_one() -> None:
         ("fast", TOPICS, "allowed is LINEAR,ANGULAR"),
         ("0.2", TOPICS, "allowed is LINEAR,ANGULAR"),
         ("0.2,nan", TOPICS, "allowed is LINEAR,ANGULAR"),
-        ("0.2,0", {"/imu": "sensor_msgs/msg/Imu"}, "none does"),
+        ("0.2,0", {"/imu": "sensor_msgs/msg/Imu"}, "found none"),
         ("0.2,0", {"/a": "geometry_msgs/msg/Twist", "/b": "geometry_msgs/msg/Twist"}, "several (/a, /b)"),
     ],
 )
@@ -88,12 +88,12 @@ def test_a_script_is_read(tmp_path: Path) -> None:
         ("- {at: 0, topic: /cmd_vel}\n- {at: x, topic: /cmd_vel}\n", 2, "at: found 'x'"),
         ("- {at: 0, topic: /cmd_vle}\n", 1, "did you mean '/cmd_vel'?"),
         ("\n\n- {at: 0, topik: /cmd_vel}\n", 3, "did you mean 'topic'?"),
-        ("- {topic: /cmd_vel}\n", 1, "needs 'at'"),
+        ("- {topic: /cmd_vel}\n", 1, "key 'at' is missing"),
         ("- {at: -1, topic: /cmd_vel}\n", 1, "at least 0"),
         ("- {at: 2, until: 1, topic: /cmd_vel}\n", 1, "until"),
         ("- {at: 1, topic: /cmd_vel, message: 3}\n", 1, "message: found 3"),
         ("- just a text\n", 1, "allowed is {at, topic, message}"),
-        ("at: 0\n", 1, "allowed is a list"),
+        ("at: 0\n", 1, "is not a list of {at, topic, message}"),
         ("- {at: 0, topic: [\n", 2, "is not YAML"),
     ],
 )

@@ -86,7 +86,7 @@ def test_a_picture_shows_path_and_scan(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "reason"), [("out.gif", "allowed is .png or .jpg"), ("no/out.png", "there is no folder")]
+    ("name", "reason"), [("out.gif", "allowed is .png or .jpg"), ("no/out.png", "no does not exist")]
 )
 def test_a_picture_that_cannot_be_written_is_said_before_the_run(tmp_path: Path, name: str, reason: str) -> None:
     with pytest.raises(InputError, match=reason):

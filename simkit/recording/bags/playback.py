@@ -1,4 +1,4 @@
-"""Play the commands of a bag back at their ticks, into the recorded world or another one."""
+"""Playback of the commands of a bag at their ticks, in the recorded world or in another one."""
 
 from __future__ import annotations
 
@@ -20,29 +20,29 @@ if TYPE_CHECKING:
 
 _TWIST, _STAMPED = "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"
 _NS: Final = 1e-9
-_ROUNDING: Final = 1e-6  # steps by which a time may miss its tick
+_ROUNDING: Final = 1e-6  # [steps] tolerance between a time and its tick
 
 
 class Playback:
-    """Sends messages of a bag at the first tick at or after their time; a context manager.
+    """Sender of a bag's messages, at the first tick at or after their time; a context manager.
 
-    A message that simkit recorded is sent at the tick at which it was: the run repeats bit for bit, where nothing else
-    is other. Times that ROS recorded by the calendar are counted from the bag's beginning.
+    A message that simkit recorded is sent at its original tick. The run then repeats bit for bit if nothing else
+    differs. Calendar times of a ROS recording are counted from the start of the bag.
 
     Args:
-        sim: the simulation.
-        path: the bag.
-        topics: `TOPIC`, or `OLD:=NEW` for what is to come on another one; when empty, every topic that the world takes
-            and does not publish itself.
+        sim: simulation that receives the messages.
+        path: bag to play.
+        topics: `TOPIC`, or `OLD:=NEW` to rename a topic; empty for every topic that the world subscribes to and does
+            not publish itself.
 
     Attributes:
-        names: topics of the bag that are played -> where they go.
-        notes: what is done otherwise than recorded, in words.
-        sent: how many messages were sent.
+        names: played topics of the bag -> topics in the world.
+        notes: differences from the recording, as text.
+        sent: number of sent messages.
 
     Raises:
-        InputError: SK-CLI-030 the bag or the world has no such topic; SK-CLI-035 the bag cannot be read; SK-BAG-015 a
-            topic takes no such messages; SK-BAG-016 the world takes nothing of the bag.
+        InputError: SK-CLI-030 the bag or the world has no such topic; SK-CLI-035 the bag is unreadable; SK-BAG-015 the
+            type of a topic does not match; SK-BAG-016 the world subscribes to no topic of the bag.
     """
 
     def __init__(self, sim: Simulation, path: Path, topics: Sequence[str] = ()) -> None:
@@ -74,7 +74,7 @@ class Playback:
         self.close()
 
     def close(self) -> None:
-        """Sends no more, and closes the bag."""
+        """Stop sending and close the bag."""
         self._next = None
         self._bag.close()
 
@@ -85,18 +85,18 @@ class Playback:
 
     @property
     def next_tick(self) -> int | None:
-        """The tick at which something is to be sent next; None when all is sent."""
+        """Tick of the next message; None after the last message."""
         if self._next is None:
             return None
         steps = (self._next.time_ns - self._origin) * _NS / self._sim.timestep
         return self._first_tick + max(0, math.ceil(steps - _ROUNDING))
 
     def send_due(self) -> None:
-        """Sends what is due at the present tick.
+        """Send the messages that are due at the present tick.
 
         Raises:
-            InputError: SK-BAG-015 a message does not fit its topic; SK-CLI-035 the bag breaks off; SK-CLI-036 a message
-                is not of its type.
+            InputError: SK-BAG-015 a message does not match its topic; SK-CLI-035 the bag is truncated; SK-CLI-036 a
+                message does not match its type.
         """
         while self._next is not None and (tick := self.next_tick) is not None and tick <= self._sim.tick:
             message = self._next
@@ -109,84 +109,85 @@ class Playback:
                 raise InputError(text, "SK-BAG-015") from None
             self.sent += 1
 
-    # ------------------------------------------------------------------ which topics
+    # ------------------------------------------------------------------ topics
 
     def _world_inputs(self) -> dict[str, tuple[str, ...]]:
-        """Topics that something in the world takes -> the types."""
+        """Return the topics that the world subscribes to, with their types."""
         found: dict[str, tuple[str, ...]] = {}
-        for topic, end, types, what in self._sim.communication.bus.endpoints():
-            if what == "takes" and end.active:
+        for topic, endpoint, types, role in self._sim.communication.bus.endpoints():
+            if role == "takes" and endpoint.active:
                 found[topic] = (*found.get(topic, ()), *types)
         return found
 
     def _playable_topics(self) -> dict[str, str]:
         own = {
             topic
-            for topic, end, _, what in self._sim.communication.bus.endpoints()
-            if what == "publishes" and end.active
+            for topic, endpoint, _, role in self._sim.communication.bus.endpoints()
+            if role == "publishes" and endpoint.active
         }
-        there = dict.fromkeys(topic.name for topic in self._bag.topics)
-        found = {topic: topic for topic in there if topic in self._input_types and topic not in own}
+        bag_topics = dict.fromkeys(topic.name for topic in self._bag.topics)
+        found = {topic: topic for topic in bag_topics if topic in self._input_types and topic not in own}
         if not found:
-            takes = ", ".join(sorted(self._input_types.keys() - own)) or "nothing"
-            text = f"the world takes nothing of {self._bag.path}: it takes {takes}"
-            hint = "--play-topic OLD:=NEW (play_topics of a scenario) says what goes where"
+            inputs = ", ".join(sorted(self._input_types.keys() - own)) or "none"
+            text = f"the world subscribes to no topic of {self._bag.path}; its inputs: {inputs}"
+            hint = "map topics with --play-topic OLD:=NEW (play_topics in a scenario)"
             raise InputError(f"SK-BAG-016 {text}\n    help: {hint}", "SK-BAG-016")
         return found
 
     def _requested_topics(self, topics: Sequence[str]) -> dict[str, str]:
-        there = {topic.name for topic in self._bag.topics}
+        bag_topics = {topic.name for topic in self._bag.topics}
         found = {}
         for text in topics:
             old, sign, new = text.partition(":=")
             if not old or (sign and not new):
-                raise InputError(
-                    f"SK-CLI-018 a topic to play: found {text!r}, allowed is TOPIC or OLD:=NEW", "SK-CLI-018"
-                )
+                raise InputError(f"SK-CLI-018 --play-topic: found {text!r}, allowed is TOPIC or OLD:=NEW", "SK-CLI-018")
             old = absolute_name(old)
             new = absolute_name(new) if sign else old
             for name, names, where in (
-                (old, there, str(self._bag.path)),
+                (old, bag_topics, str(self._bag.path)),
                 (new, set(self._input_types), "the world's inputs"),
             ):
                 if name not in names:
-                    hint = did_you_mean(name, names) or "there is " + (", ".join(sorted(names)) or "none")
+                    hint = did_you_mean(name, names) or "known: " + (", ".join(sorted(names)) or "none")
                     raise InputError(f"SK-CLI-030 no topic {name!r} in {where}; {hint}", "SK-CLI-030")
             found[old] = new
         return found
 
-    # ------------------------------------------------------------------ as what
+    # ------------------------------------------------------------------ types
 
     def _matching_input_type(self, topic: str, type_name: str) -> str:
-        """The type as which messages are sent: their own; a velocity is given or loses its header where it has to."""
+        """Return the type for sending messages of a topic.
+
+        This is their own type if the world accepts it. Velocities gain or lose a header if the world needs that.
+        """
         new = self.names[topic]
         types = self._input_types[new]
-        name = _has_all_fields(type_name)
+        name = _known_full_name(type_name)
         if name in types:
             return name
-        other = {_TWIST: _STAMPED, _STAMPED: _TWIST}.get(name)
-        if other in types and other is not None:
-            self.notes.append(f"{topic}: {new} takes {other}, so the velocities of the {name} are sent as that")
-            return other
+        counterpart = {_TWIST: _STAMPED, _STAMPED: _TWIST}.get(name)
+        if counterpart in types and counterpart is not None:
+            self.notes.append(f"{topic}: the {name} messages are converted to {counterpart}, the type of {new}")
+            return counterpart
         allowed = " or ".join(dict.fromkeys(types))
-        text = f"{self._bag.path}: {topic} is {type_name}, but {new} takes {allowed}"
+        text = f"{self._bag.path}: {topic} has type {type_name}, but {new} needs {allowed}"
         raise InputError(f"SK-BAG-015 {text}", "SK-BAG-015")
 
     def _message_to_send(self, message: BagMessage) -> Message:
-        """The message as one of simkit's own types."""
-        wanted = self._sent_types[message.topic, message.type_name]
+        """Convert a message to the type in which it is sent."""
+        target_type = self._sent_types[message.topic, message.type_name]
         found = self._bag.decode(message)
-        own = _has_all_fields(message.type_name)
-        if type(found) is not msgs.type_of(own):  # of the bag's own definition
+        own = _known_full_name(message.type_name)
+        if type(found) is not msgs.type_of(own):  # decoded with the bag's own definition
             found = msgs.make(own, **message_to_dict(found, store=self._bag.store_of(message.type_name)))
-        if own == wanted:
+        if own == target_type:
             return found
-        if wanted == _TWIST:
+        if target_type == _TWIST:
             return found.twist
         return msgs.type_of(_STAMPED)(msgs.header(self._sim.time_ns, ""), found)
 
 
-def _has_all_fields(type_name: str) -> str:
+def _known_full_name(type_name: str) -> str:
     try:
         return msgs.full_name(type_name)
     except MessageError:

@@ -1,4 +1,4 @@
-"""Read bags: MCAP files, and rosbag2 folders with MCAP or SQLite in them, recorded by simkit or by ROS 2.
+"""Reader of bags: MCAP files, and rosbag2 folders with MCAP or SQLite, recorded by simkit or by ROS 2.
 
 with open_bag_to_read("run.mcap") as bag:
     for message in bag.messages(["/odom"]):
@@ -26,13 +26,13 @@ if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
 
 LATEST_SIMULATED_TIME: Final = 100_000_000 * 1_000_000_000
-"""Times [ns] before this one, in March 1973, are counted from a simulation's start; later ones by a calendar."""
+"""Highest time [ns] that counts as simulated time (March 1973 as a calendar time); later times are calendar times."""
 _UNREADABLE = "SK-CLI-035"
 _UNKNOWN_TYPE = "SK-CLI-036"
 
 
 class BagMessage(NamedTuple):
-    """Serialised message of a bag; the time is that of recording [ns]."""
+    """Serialised message of a bag, with its recording time [ns]."""
 
     time_ns: int
     topic: str
@@ -45,8 +45,8 @@ class BagTopic:
     """Topic of a bag with one type.
 
     Attributes:
-        definition: the type's definition as the bag has it; empty where it has none.
-        latched: whether its publisher kept the last message for those who come later.
+        definition: definition of the type in the bag; empty if the bag has none.
+        latched: True if the publisher kept the last message for late subscribers.
     """
 
     name: str
@@ -58,16 +58,16 @@ class BagTopic:
 
 
 class BagReader:
-    """An open bag; a context manager.
+    """Open bag; a context manager.
 
     Attributes:
-        path: what was opened.
-        files: the files that hold the messages, relative to it.
+        path: path of the bag.
+        files: files with the messages, relative to the bag's folder.
         storage: `mcap` or `sqlite3`.
-        distro: of the ROS that recorded it, or `unknown`.
-        start, end: recording time of the first and the last message [ns]; 0 of an empty bag.
-        topics: sorted by name.
-        broken: why it cannot be read to its end; empty of a whole one.
+        distro: ROS distribution of the recorder, or `unknown`.
+        start, end: recording time of the first and the last message [ns]; 0 for an empty bag.
+        topics: topics, sorted by name.
+        broken: reason why the bag is truncated; empty for a complete bag.
     """
 
     def __init__(self, path: Path) -> None:
@@ -88,7 +88,7 @@ class BagReader:
         self.close()
 
     def close(self) -> None:
-        """Closes its files."""
+        """Close the files of the bag."""
         self._source.close()
 
     @property
@@ -98,7 +98,7 @@ class BagReader:
 
     @property
     def time_origin(self) -> int:
-        """Time that counts as zero [ns]: a simulation's start, else the bag's."""
+        """Time that counts as zero [ns]: the start of the simulation, else the start of the bag."""
         return 0 if self.start < LATEST_SIMULATED_TIME else self.start
 
     @property
@@ -108,41 +108,45 @@ class BagReader:
 
     @property
     def size(self) -> int:
-        """Bytes of its files."""
+        """Size of the bag's files [bytes]."""
         folder = self.path if self.path.is_dir() else self.path.parent
         return sum((folder / name).stat().st_size for name in self.files if (folder / name).is_file())
 
     def messages(self, topics: Sequence[str] = (), start: int | None = None) -> Iterator[BagMessage]:
-        """Its messages in the order of their times; those of some topics, from a time on [ns], where asked for.
+        """Yield messages in the order of their times.
+
+        Args:
+            topics: topics to read; empty for all.
+            start: recording time of the first message to read [ns].
 
         Raises:
-            InputError: SK-CLI-030 there is no such topic; SK-CLI-035 the bag breaks off.
+            InputError: SK-CLI-030 the topic is not in the bag; SK-CLI-035 the bag is truncated.
         """
         known = {topic.name for topic in self.topics}
         for name in topics:
             if name not in known:
-                hint = did_you_mean(name, known) or "there is " + (", ".join(sorted(known)) or "none")
+                hint = did_you_mean(name, known) or "known: " + (", ".join(sorted(known)) or "none")
                 raise InputError(f"SK-CLI-030 no topic {name!r} in {self.path}; {hint}", "SK-CLI-030")
         yield from self._source.messages(frozenset(topics), start)
 
     def decode(self, message: BagMessage) -> message_types.Message:
-        """The message itself.
+        """Decode a message.
 
         Raises:
-            InputError: SK-CLI-036 its type is known neither to the bag nor to simkit, or the bytes are not of it.
+            InputError: SK-CLI-036 the type is unknown to the bag and to simkit, or the bytes do not match it.
         """
         store = self.store_of(message.type_name)
         try:
             return store.deserialize_cdr(message.data, message.type_name)
         except (struct.error, ValueError, AssertionError, IndexError, KeyError, UnicodeDecodeError) as error:
-            text = f"SK-CLI-036 {self.path}: a message on {message.topic} is no {message.type_name}: {error}"
+            text = f"SK-CLI-036 {self.path}: a message on {message.topic} is not a valid {message.type_name}: {error}"
             raise InputError(text, _UNKNOWN_TYPE) from None
 
     def store_of(self, type_name: str) -> Typestore:
-        """The types by which a message is read: simkit's where the bag has the same definition or none, else its own.
+        """Return the type store for a type: simkit's if the bag has the same definition or none, else the bag's.
 
         Raises:
-            InputError: SK-CLI-036 nobody knows the type.
+            InputError: SK-CLI-036 the type is unknown to the bag and to simkit.
         """
         own = self._uses_bag_store.get(type_name)
         if own is None:
@@ -156,7 +160,7 @@ class BagReader:
         except MessageError:
             if type_name in bags:
                 return False
-            text = f"SK-CLI-036 {self.path}: {type_name} is not known here, and the bag holds no definition of it"
+            text = f"SK-CLI-036 {self.path}: {type_name} is unknown, and the bag has no definition of it"
             raise InputError(text, _UNKNOWN_TYPE) from None
         ours, seen, left = msgs.type_store().fielddefs, {type_name}, [type_name]
         while left:
@@ -181,31 +185,31 @@ class BagReader:
                 if topic.definition:
                     try:
                         found.update(get_types_from_msg(topic.definition, topic.type_name))
-                    except Exception as error:  # noqa: BLE001 (a parser of somebody else's, fed with anything)
-                        text = f"{self.path}: the definition of {topic.type_name} cannot be read: {error}"
+                    except Exception as error:  # noqa: BLE001 - the parser may raise anything on invalid text
+                        text = f"{self.path}: the definition of {topic.type_name} is invalid: {error}"
                         raise InputError(f"SK-CLI-036 {text}", _UNKNOWN_TYPE) from None
             self._store.register(found)
         return self._store
 
 
 def open_bag_to_read(path: str | Path) -> BagReader:
-    """Opens a bag: an `.mcap` or `.db3` file, or a folder that rosbag2 wrote.
+    """Open a bag: an `.mcap` or `.db3` file, or a rosbag2 folder.
 
     Raises:
-        InputError: SK-CLI-035 there is none, or it cannot be read.
+        InputError: SK-CLI-035 the bag does not exist or is unreadable.
     """
     return BagReader(Path(path))
 
 
 def _used_types(fields: Sequence[tuple[str, message_types.FieldNode]]) -> Iterator[str]:
-    for _, (kind, what) in fields:
-        inner = what[0] if int(kind) in (3, 4) else (kind, what)
+    for _, (kind, content) in fields:
+        inner = content[0] if int(kind) in (3, 4) else (kind, content)
         if int(inner[0]) == 2:
             yield inner[1]
 
 
 def _bag_files(path: Path) -> tuple[list[str], str, str]:
-    """Files, storage and distribution, as far as they are written down."""
+    """Return files, storage and ROS distribution of a bag, from its metadata if there is one."""
     if not path.is_dir():
         return [path.name], "sqlite3" if path.suffix == ".db3" else "mcap", "unknown"
     found = sorted([*path.glob("*.mcap"), *path.glob("*.db3"), *path.glob("*.zstd")])
@@ -214,29 +218,29 @@ def _bag_files(path: Path) -> tuple[list[str], str, str]:
     if (path / "metadata.yaml").is_file():
         try:
             text = (path / "metadata.yaml").read_text(encoding="utf-8")
-            written = read_yaml(text)["rosbag2_bagfile_information"]
-            names = [Path(name).name for name in written["relative_file_paths"]]
-            return names, str(written["storage_identifier"]), str(written.get("ros_distro") or distro)
+            info = read_yaml(text)["rosbag2_bagfile_information"]
+            names = [Path(name).name for name in info["relative_file_paths"]]
+            return names, str(info["storage_identifier"]), str(info.get("ros_distro") or distro)
         except (OSError, NotYaml, KeyError, TypeError, AttributeError, UnicodeDecodeError):
-            pass  # what is there is told by the files themselves
+            pass  # fall back to the files of the folder
     return [f.name for f in found], storage, distro
 
 
 def _open_storage(path: Path) -> _CompleteBag | _TruncatedBag:
-    """Open the bag with rosbags, or record by record where its end is missing."""
+    """Open the bag with rosbags; if it is truncated, read it record by record."""
     from rosbags.rosbag2 import Reader, ReaderError
 
     try:
-        is_there = path.exists()
-    except (OSError, ValueError) as error:  # no name of a file, such as one that is too long
+        exists = path.exists()
+    except (OSError, ValueError) as error:  # an invalid file name, such as one that is too long
         why = getattr(error, "strerror", None) or error
         raise InputError(f"SK-CLI-035 {path} cannot be read: {why}", _UNREADABLE) from None
-    if not is_there:
-        raise InputError(f"SK-CLI-035 there is no bag {path}", _UNREADABLE)
+    if not exists:
+        raise InputError(f"SK-CLI-035 bag {path} does not exist", _UNREADABLE)
     if path.is_dir() and not (path / "metadata.yaml").exists() and not list(path.glob("*.mcap")):
-        raise InputError(f"SK-CLI-035 {path} is no bag: it holds neither metadata.yaml nor an MCAP file", _UNREADABLE)
+        raise InputError(f"SK-CLI-035 {path} is not a bag: it has neither metadata.yaml nor an MCAP file", _UNREADABLE)
     if not path.is_dir() and path.suffix not in (".mcap", ".db3"):
-        text = f"SK-CLI-035 {path}: found the ending {path.suffix!r}, allowed is .mcap, .db3 or a folder of rosbag2"
+        text = f"SK-CLI-035 {path}: found the ending {path.suffix!r}, allowed is .mcap, .db3 or a rosbag2 folder"
         raise InputError(text, _UNREADABLE)
     if not path.is_dir() and not path.is_file():
         raise InputError(f"SK-CLI-035 {path} is neither a file nor a folder", _UNREADABLE)
@@ -244,17 +248,17 @@ def _open_storage(path: Path) -> _CompleteBag | _TruncatedBag:
         reader = Reader(path)
         reader.open()
         return _CompleteBag(path, reader)
-    except Exception as error:  # noqa: BLE001 (a reader of somebody else's, fed with anything)
+    except Exception as error:  # noqa: BLE001 - rosbags may raise anything on a damaged file
         files = [path] if path.suffix == ".mcap" else sorted(path.glob("*.mcap")) if path.is_dir() else []
-        cut = _TruncatedBag(path, files)
-        if files and cut.has_begun:
-            return cut
-        reason = cut.broken if files else error if isinstance(error, ReaderError) else f"it is damaged ({error})"
+        truncated = _TruncatedBag(path, files)
+        if files and truncated.has_begun:
+            return truncated
+        reason = truncated.broken if files else error if isinstance(error, ReaderError) else f"it is damaged ({error})"
         raise InputError(f"SK-CLI-035 {path} cannot be read: {reason}", _UNREADABLE) from None
 
 
 class _CompleteBag:
-    """A bag that is complete."""
+    """Complete bag, read with rosbags."""
 
     broken = ""
 
@@ -273,17 +277,17 @@ class _CompleteBag:
         return self._reader.start_time, self._reader.end_time - 1
 
     def messages(self, topics: frozenset[str], start: int | None) -> Iterator[BagMessage]:
-        wanted = [c for c in self._reader.connections if not topics or c.topic in topics]
-        if not wanted:
+        selected = [c for c in self._reader.connections if not topics or c.topic in topics]
+        if not selected:
             return
-        messages = self._reader.messages(wanted, start)
+        messages = self._reader.messages(selected, start)
         while True:
             try:
                 connection, time_ns, data = next(messages)
             except StopIteration:
                 return
-            except Exception as error:  # noqa: BLE001 (damaged in the middle)
-                raise InputError(f"SK-CLI-035 {self._path} breaks off: {error}", _UNREADABLE) from None
+            except Exception as error:  # noqa: BLE001 - the file is damaged in the middle
+                raise InputError(f"SK-CLI-035 {self._path} is damaged: {error}", _UNREADABLE) from None
             yield BagMessage(time_ns, connection.topic, connection.msgtype, bytes(data))
 
     def close(self) -> None:
@@ -301,7 +305,7 @@ def _is_latched(connection: Any) -> bool:
 
 
 class _TruncatedBag:
-    """A recording whose end is missing; it is read record by record, once for what it holds and once for each use."""
+    """Bag whose end is missing. It is read record by record: once for its topics, and once for each use."""
 
     def __init__(self, path: Path, files: list[Path]) -> None:
         self._records = McapRecords(files)
@@ -313,12 +317,12 @@ class _TruncatedBag:
             self._span = (min(first, record.time_ns), max(last, record.time_ns))
             counts[record.topic, record.type_name, record.latched] += 1
         definitions, reason = self._records.definitions, self._records.reason
-        self._topics = [BagTopic(t, k, n, definitions[k], kept) for (t, k, kept), n in counts.items()]
+        self._topics = [BagTopic(t, k, n, definitions[k], latched) for (t, k, latched), n in counts.items()]
         if self._topics:
-            hint = f"simkit bag recover {path} mends it"
+            hint = f"recover it with `simkit bag recover {path}`"
             self.broken = f"the recording was cut off ({reason or 'its end is missing'}); {hint}"
         elif self.has_begun:
-            self.broken = "the recording was cut off before anything was written"
+            self.broken = "the recording was cut off before the first message"
         else:
             self.broken = reason
 
@@ -338,11 +342,11 @@ class _TruncatedBag:
                 yield BagMessage(record.time_ns, record.topic, record.type_name, record.data)
 
     def close(self) -> None:
-        """Nothing is open between two uses."""
+        """Do nothing: no file is open between two uses."""
 
 
 class RecordedMessage(NamedTuple):
-    """Message of an MCAP file, with whether its publisher kept the last one for those who come later."""
+    """Message of an MCAP file. `latched` is True if its publisher kept the last message for late subscribers."""
 
     time_ns: int
     topic: str
@@ -352,12 +356,12 @@ class RecordedMessage(NamedTuple):
 
 
 class McapRecords:
-    """Reads MCAP files record by record, each up to where it breaks off.
+    """Reader of MCAP files record by record, each up to its end or its damage.
 
     Attributes:
-        definitions: of the types that were met so far.
-        has_begun: whether any record was met.
-        reason: why a file breaks off; empty where none does.
+        definitions: definitions of the types that were read so far.
+        has_begun: True after the first record.
+        reason: error at the end of a truncated file; empty for complete files.
     """
 
     def __init__(self, files: list[Path]) -> None:

@@ -1,4 +1,4 @@
-"""Record the topics of a simulation to a bag as the run goes."""
+"""Recorder of a simulation's topics to a bag during the run."""
 
 from __future__ import annotations
 
@@ -28,30 +28,30 @@ def _serialise(message: object) -> tuple[str, bytes]:
 
 
 class RecordError(SimkitError):
-    """Recording stopped in the middle of a run; what was flushed before is readable."""
+    """Error that stopped a recording during a run. The flushed part of the bag is readable."""
 
     code = "SK-BAG-003"
 
 
 def is_single_file(path: Path) -> bool:
-    """`x.mcap` is one file, anything else a rosbag2 folder."""
+    """Check whether a path means one MCAP file (`x.mcap`) instead of a rosbag2 folder."""
     return path.suffix.lower() == ".mcap"
 
 
 def check_target(path: Path, *, overwrite: bool = False) -> None:
-    """Says before anything is computed that a bag cannot be written there.
+    """Check before a run whether a bag can be written.
 
     Raises:
-        InputError: SK-BAG-001 something is there already; SK-BAG-002 the place cannot be written.
+        InputError: SK-BAG-001 the path exists; SK-BAG-002 the path is not writable.
     """
     if _path_exists(path) and not overwrite:
-        raise InputError(
-            f"SK-BAG-001 {path} exists already and is not overwritten\n    help: --force replaces it", "SK-BAG-001"
-        )
+        raise InputError(f"SK-BAG-001 {path} already exists\n    help: replace it with --force", "SK-BAG-001")
     if path.is_dir() and is_single_file(path):
         raise InputError(f"SK-BAG-002 cannot write {path}: it is a folder", "SK-BAG-002")
     if is_single_file(path) and not path.absolute().parent.is_dir():
-        raise InputError(f"SK-BAG-002 cannot write {path}: there is no folder {path.absolute().parent}", "SK-BAG-002")
+        raise InputError(
+            f"SK-BAG-002 cannot write {path}: folder {path.absolute().parent} does not exist", "SK-BAG-002"
+        )
     why = write_obstacle(path)
     if why:
         raise InputError(f"SK-BAG-002 cannot write {path}: {why}", "SK-BAG-002")
@@ -61,7 +61,7 @@ def _path_exists(path: Path) -> bool:
     """Check whether a path exists.
 
     Raises:
-        InputError: SK-BAG-002 nothing can be, such as under a name that is too long.
+        InputError: SK-BAG-002 the path is invalid, for example too long.
     """
     try:
         return path.exists()
@@ -71,10 +71,10 @@ def _path_exists(path: Path) -> bool:
 
 
 def open_bag(path: Path, *, overwrite: bool = False) -> McapBag:
-    """A new bag: one MCAP file or a rosbag2 folder, by the suffix of `path`.
+    """Create a bag: one MCAP file or a rosbag2 folder, by the suffix of `path`.
 
     Raises:
-        InputError: SK-BAG-001 or SK-BAG-002.
+        InputError: SK-BAG-001 the path exists; SK-BAG-002 the path is not writable.
     """
     check_target(path, overwrite=overwrite)
     try:
@@ -88,19 +88,19 @@ def open_bag(path: Path, *, overwrite: bool = False) -> McapBag:
 
 
 class Recorder:
-    """Writes what is published to a bag; use it as a context manager around the run.
+    """Recorder of published messages to a bag; a context manager around the run.
 
     Args:
-        sim: the simulation; recording it makes every recorded sensor measure.
+        sim: simulation to record; every recorded sensor measures because of the recording.
         path: `x.mcap` for one file, else a rosbag2 folder.
-        overwrite: whether an existing bag may be replaced.
-        topics: shell patterns of the topics to record; when empty, all but those that the bus has aside (`/stats` and
-            what else tells of the whole world).
+        overwrite: True to replace an existing bag.
+        topics: shell patterns of the topics to record; empty for all except those in the bus's `aside` (`/stats` and
+            other topics about the whole world).
         skip: shell patterns of topics to leave out.
-        choose: says of a topic whether it is recorded, instead of `topics`.
+        choose: function that returns True for a topic to record; replaces `topics`.
 
     Raises:
-        InputError: SK-BAG-001 the bag exists; SK-BAG-002 it cannot be written.
+        InputError: SK-BAG-001 the bag exists; SK-BAG-002 the path is not writable.
     """
 
     def __init__(
@@ -119,14 +119,14 @@ class Recorder:
         self._choose = choose
         self._count = 0
         self._bag: McapBag | None = open_bag(self.path, overwrite=overwrite)
-        # behind a picture that is still being drawn, other messages wait as bytes, so that all stay in order
+        # while an image is rendered, later messages wait as bytes, so that all messages stay in order
         self._queue = MessageQueue(self._write, _serialise)
         self._taps = TopicTaps(sim, self._receiver_of)
         self._taps.open()
 
     @property
     def message_count(self) -> int:
-        """Messages written so far."""
+        """Number of messages written so far."""
         return self._count if self._bag is None else self._bag.span.count
 
     def __enter__(self) -> Recorder:
@@ -138,7 +138,7 @@ class Recorder:
             self.check()
 
     def check(self) -> None:
-        """Raises what went wrong while writing, if anything did.
+        """Raise the error of the recording, if there is one.
 
         Raises:
             RecordError: the disk is full or gone.
@@ -147,7 +147,7 @@ class Recorder:
             raise self.failure
 
     def close(self) -> None:
-        """Ends the recording and completes the bag; does nothing the second time."""
+        """End the recording and complete the bag. A second call does nothing."""
         self._taps.close()
         self._queue.deliver_all()
         bag, self._bag = self._bag, None
@@ -184,7 +184,7 @@ class Recorder:
                 channel = bag.channel(topic, type_name, topic in self._sim.communication.bus.latched())
             bag.write_raw(channel, data, time_ns)
         except OSError as error:
-            # Not raised here: this runs inside whoever publishes, and it is not the publisher's fault.
+            # Not raised here, because the publisher that calls this function did not cause the error.
             self._fail(error)
             self._queue.clear()
             self.close()
@@ -192,5 +192,5 @@ class Recorder:
     def _fail(self, error: OSError) -> None:
         self.failure = self.failure or RecordError(
             f"SK-BAG-003 recording to {self.path} stopped at t={self._sim.time:.3f} s: {error.strerror or error}; "
-            "what was written before stays readable (simkit bag recover mends it)"
+            "recover the earlier messages with `simkit bag recover`"
         )

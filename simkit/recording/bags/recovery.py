@@ -1,4 +1,4 @@
-"""Recover a bag whose writer was killed: copy every complete message into a new bag."""
+"""Recovery of a bag whose writer was killed: every complete message is copied into a new bag."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from simkit.recording.bags.recorder import open_bag
 
 @dataclass(frozen=True)
 class RecoveredBag:
-    """Contents of a recovered bag; times in nanoseconds of simulated time."""
+    """Contents of a recovered bag; times are simulated times [ns]."""
 
     messages: int
     topics: int
@@ -23,22 +23,22 @@ class RecoveredBag:
 
 
 def recover_bag(source: Path, target: Path, *, overwrite: bool = False) -> RecoveredBag:
-    """Copies what is readable of `source` (a file or a rosbag2 folder) to `target`.
+    """Copy the readable part of `source` (a file or a rosbag2 folder) to `target`.
 
     Raises:
-        InputError: SK-BAG-004 nothing readable is there; SK-BAG-001/002 the target cannot be written.
+        InputError: SK-BAG-004 the source has no readable message; SK-BAG-001/002 the target is not writable.
     """
     files = sorted(source.glob("*.mcap")) if source.is_dir() else [source]
     if not files or not files[0].is_file():
         raise InputError(f"SK-BAG-004 no MCAP file at {source}", "SK-BAG-004")
     if any(f.absolute() == target.absolute() for f in files) or source.absolute() == target.absolute():
-        raise InputError(f"SK-BAG-001 {target} is the bag to mend; give another name", "SK-BAG-001")
+        raise InputError(f"SK-BAG-001 {target} is the bag to recover; give another name for the new bag", "SK-BAG-001")
     records = McapRecords(files)
     messages = records.messages()
     first = next(messages, None)
     if first is None:
         reason = records.reason or "it is empty"
-        raise InputError(f"SK-BAG-004 {source} holds no readable message: {reason}", "SK-BAG-004")
+        raise InputError(f"SK-BAG-004 {source} has no readable message: {reason}", "SK-BAG-004")
     bag = open_bag(target, overwrite=overwrite)
     try:
         for message in chain((first,), messages):

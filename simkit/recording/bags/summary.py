@@ -1,4 +1,4 @@
-"""Describe what is in a bag, as `ros2 bag info` does."""
+"""Summary of a bag, as `ros2 bag info` prints it."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _SERVICE_EVENTS = "/_service_event"
 
 
 def bag_text(bag: BagReader) -> str:
-    """The lines that `ros2 bag info` prints; times are in UTC, simulated ones count from 1970."""
+    """Return the lines of `ros2 bag info`. Times are in UTC; simulated times count from 1970."""
     files = f"\n{_INDENT}".join(bag.files)
     topics = [t for t in bag.topics if not t.name.endswith(_SERVICE_EVENTS)]
     rows = f"\n{_INDENT}".join(
@@ -46,7 +46,7 @@ def bag_text(bag: BagReader) -> str:
 
 
 def bag_summary(bag: BagReader) -> dict[str, object]:
-    """The same as plain values; times in seconds."""
+    """Return the summary as plain values; times in seconds."""
     return {
         "path": str(bag.path),
         "files": bag.files,
@@ -66,7 +66,7 @@ def bag_summary(bag: BagReader) -> dict[str, object]:
 
 
 def _size(count: int) -> str:
-    """Bytes in the unit of 1024 that fits."""
+    """Format a number of bytes in the binary unit that fits."""
     if count < 1024:
         return f"{count} B"
     size, units = count / 1024, ["KiB", "MiB", "GiB", "TiB"]
@@ -81,7 +81,7 @@ def _seconds(ns: int) -> str:
 
 
 def _moment(ns: int) -> str:
-    """Day and time, then the seconds since 1970."""
+    """Format a time as date and time, then as seconds since 1970."""
     try:
         at = time.gmtime(ns // _NS)
     except (OverflowError, OSError, ValueError):

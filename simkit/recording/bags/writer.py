@@ -1,4 +1,4 @@
-"""Write bags: one MCAP file, or a rosbag2 folder with its metadata."""
+"""Writer of bags: one MCAP file, or a rosbag2 folder with its metadata."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _FOREVER = {"sec": 9223372036, "nsec": 854775807}
 
 
 def qos_profile(latched: bool) -> dict[str, object]:
-    """Return the profile of a publisher: reliable; transient local where the last message is kept (`/tf_static`)."""
+    """Return the QoS profile of a publisher: reliable; transient local for latched topics (`/tf_static`)."""
     return {
         "history": "keep_last",
         "depth": 1 if latched else 10,
@@ -31,10 +31,10 @@ def qos_profile(latched: bool) -> dict[str, object]:
 
 
 def qos_profiles_yaml(profiles: list[dict[str, object]]) -> str:
-    """The text that belongs into a channel's metadata."""
+    """Return QoS profiles as the YAML text for a channel's metadata."""
     import yaml
 
-    # Anchors would be valid YAML, but some readers of bags do not know them.
+    # YAML anchors would be valid, but some bag readers do not support them.
     plain = [{k: dict(v) if isinstance(v, dict) else v for k, v in p.items()} for p in profiles]
     return str(yaml.safe_dump(plain, sort_keys=False)).strip()
 
@@ -56,7 +56,7 @@ class Channel:
 
 @dataclass
 class Span:
-    """First and last log time [ns] of what was written."""
+    """First and last log time [ns] and number of the written messages."""
 
     start: int = 0
     end: int = 0
@@ -69,15 +69,15 @@ class Span:
 
 
 class McapBag:
-    """Writes messages to one MCAP file with the ROS 2 profile.
+    """Writer of messages to one MCAP file with the ROS 2 profile.
 
     Args:
-        path: the file; made anew.
-        overwrite: whether an existing file may be replaced.
+        path: file to create.
+        overwrite: True to replace an existing file.
 
     Raises:
-        FileExistsError: the file exists and may not be replaced.
-        OSError: it cannot be written.
+        FileExistsError: the file exists, and `overwrite` is not set.
+        OSError: the file is not writable.
     """
 
     def __init__(self, path: Path, *, overwrite: bool = False) -> None:
@@ -89,13 +89,13 @@ class McapBag:
         self._schemas: dict[str, int] = {}
         self._second = -1
         self._file: IO[bytes] = path.open("wb" if overwrite else "xb")
-        # Half a minute of an RGB-D camera is two gigabytes; what is drawn without noise shrinks to a tenth.
+        # Half a minute of an RGB-D camera is 2 GB; compression reduces images without noise to a tenth.
         self._writer = Writer(self._file, chunk_size=_CHUNK_BYTES, compression=CompressionType.ZSTD)
         self._writer.start(profile="ros2", library="simkit")
         self._file.flush()
 
     def channel(self, topic: str, type_name: str, latched: bool) -> Channel:
-        """The channel of a topic and a type, registered when first asked for."""
+        """Return the channel of a topic and a type; register it on first use."""
         found = self.channels.get((topic, type_name))
         if found is None:
             schema = self._schemas.get(type_name)
@@ -111,7 +111,7 @@ class McapBag:
         return found
 
     def write_raw(self, channel: Channel, data: bytes, time_ns: int) -> None:
-        """Appends one serialised message."""
+        """Append one serialised message."""
         second = time_ns // _SECOND
         if second != self._second:
             if self._second >= 0:
@@ -122,11 +122,11 @@ class McapBag:
         self.span.add(time_ns)
 
     def flush(self) -> None:
-        """Completes the chunk and hands everything to the operating system."""
+        """Complete the chunk and pass all data to the operating system."""
         self._writer.flush()
 
     def close(self) -> None:
-        """Writes the summary; the file is complete afterwards."""
+        """Write the summary; the file is complete afterwards."""
         if self._file.closed:
             return
         try:
@@ -135,15 +135,15 @@ class McapBag:
             self._file.close()
 
 
-_VERSION = 9  # of the rosbag2 metadata format; the one of ROS 2 Jazzy
+_VERSION = 9  # rosbag2 metadata format of ROS 2 Jazzy
 
 
 class Rosbag2Folder(McapBag):
-    """Writes messages to `folder/<name>_0.mcap`; `metadata.yaml` comes with `close()`.
+    """Writer of messages to `folder/<name>_0.mcap`; `close()` writes `metadata.yaml`.
 
     Raises:
-        FileExistsError: the folder exists and may not be replaced, or is no bag.
-        OSError: it cannot be written.
+        FileExistsError: the folder exists and `overwrite` is not set, or it is not a bag.
+        OSError: the folder is not writable.
     """
 
     def __init__(self, folder: Path, *, overwrite: bool = False) -> None:
@@ -151,14 +151,14 @@ class Rosbag2Folder(McapBag):
             if not overwrite:
                 raise FileExistsError(folder)
             if any(folder.iterdir()) and not (folder / "metadata.yaml").exists() and not list(folder.glob("*.mcap")):
-                raise FileExistsError(f"{folder} is not a bag and is left alone")
+                raise FileExistsError(f"{folder} is not a bag")
             shutil.rmtree(folder)
         folder.mkdir(parents=True)
         self.folder = folder
         super().__init__(folder / f"{folder.name}_0.mcap")
 
     def close(self) -> None:
-        """Completes the file and writes the metadata."""
+        """Complete the file and write the metadata."""
         super().close()
         import yaml
 
@@ -203,7 +203,7 @@ class Rosbag2Folder(McapBag):
 
 
 def _plain_dumper() -> type[SafeDumper]:
-    """A dumper that repeats equal values instead of using anchors."""
+    """Return a YAML dumper that repeats equal values instead of using anchors."""
     import yaml
 
     class Plain(yaml.SafeDumper):

@@ -1,5 +1,5 @@
 """Charts of numbers in messages over time.
 
-Names of fields and a bag or a running simulation enter (`fields`, `series`); SVG or PNG leaves, as a file (`chart`) or
-for a page (`page_chart`). Equal numbers give equal bytes.
+`fields` resolves names of message fields, and `series` reads their numbers from a bag or a simulation. `chart` draws
+SVG or PNG files, and `page_chart` draws SVG for an HTML page. Equal numbers give equal bytes.
 """

@@ -1,4 +1,4 @@
-"""Axes and lines of charts: numbers to pixels, round ticks with labels, lines thinned to what pixels can show."""
+"""Axes and lines of charts: numbers to pixels, round ticks with labels, and lines thinned to the resolution."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from simkit.recording.charts.series import Series
 Numbers = NDArray[np.float64]
 Points = NDArray[np.float64]
 
-_LEAST = 1e-200  # below that, numbers are one
+_LEAST = 1e-200  # smaller differences count as zero
 
 
 @dataclass(frozen=True)
 class Axis:
-    """Converts numbers to pixels.
+    """Axis that converts numbers to pixels.
 
     Attributes:
-        low, high: numbers at the two ends.
-        start, end: their pixels.
-        base: number that the labels leave out.
-        is_log: whether the numbers are decimal logarithms.
+        low, high: numbers at both ends.
+        start, end: pixels of both ends.
+        base: number that is subtracted from the labels.
+        is_log: True if the numbers are decimal logarithms.
     """
 
     low: float
@@ -37,7 +37,7 @@ class Axis:
 
     @property
     def base_text(self) -> str:
-        """Words for the base that labels leave out; empty where there is none."""
+        """Description of the base that is subtracted from the labels; empty without a base."""
         return f", less {self.base:.12g}" if self.base else ""
 
     def at(self, values: Numbers) -> Numbers:
@@ -52,18 +52,19 @@ class Axis:
             step = max(1.0, round(step))
         values = [k * step for k in range(math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9) + 1)]
         labels = [f"1e{value:.0f}" if self.is_log else _label(value, step) for value in values]
-        places = self.at(np.array(values, dtype=np.float64) + self.base)
-        return [(float(place), label) for place, label in zip(places, labels, strict=True)]
+        positions = self.at(np.array(values, dtype=np.float64) + self.base)
+        return [(float(position), label) for position, label in zip(positions, labels, strict=True)]
 
 
 def axis_over(values: Sequence[Numbers], start: float, end: float, *, margin: float, is_log: bool = False) -> Axis:
     """Return an axis that shows all finite numbers.
 
     Args:
-        values: of all lines.
-        start, end: pixels of its ends.
-        margin: room at both ends, as a part of the span of the numbers.
-        is_log: whether the numbers are decimal logarithms.
+        values: numbers of all lines.
+        start: pixel of the low end.
+        end: pixel of the high end.
+        margin: margin at both ends, as a fraction of the span of the numbers.
+        is_log: True if the numbers are decimal logarithms.
     """
     finite = [v[np.isfinite(v)] for v in values]
     finite = [v for v in finite if v.size]
@@ -76,17 +77,17 @@ def axis_over(values: Sequence[Numbers], start: float, end: float, *, margin: fl
     room = margin * (high - low)
     low, high = low - room, high + room
     base = 0.0
-    if not is_log and high - low < 1e-4 * size:  # all labels would look the same
+    if not is_log and high - low < 1e-4 * size:  # else all labels would look equal
         base = round((low + high) / 2, max(0, -math.floor(math.log10(high - low))))
     return Axis(low, high, start, end, base, is_log)
 
 
-def split_line(one: Series) -> list[tuple[Numbers, Numbers]]:
-    """Split a line where a number is missing, and where an angle comes back from a full turn."""
-    times, values = one.times, one.values
+def split_line(series: Series) -> list[tuple[Numbers, Numbers]]:
+    """Split a line at missing numbers, and where an angle wraps around after a full turn."""
+    times, values = series.times, series.values
     finite = np.isfinite(values) & np.isfinite(times)
     breaks = np.flatnonzero(np.diff(finite.astype(np.int8))) + 1
-    if one.is_angle:
+    if series.is_angle:
         jumps = np.zeros(max(len(values) - 1, 0), dtype=bool)
         with np.errstate(invalid="ignore"):
             jumps[:] = np.abs(np.diff(values)) > math.pi
@@ -100,11 +101,11 @@ def split_line(one: Series) -> list[tuple[Numbers, Numbers]]:
 
 
 def thin_line(points: Points, columns_per_pixel: float) -> Points:
-    """Keep four points of a column of pixels at most: the first, the lowest, the highest and the last.
+    """Keep at most four points per column of pixels: the first, the lowest, the highest and the last.
 
     Args:
-        points: pixels, shape (n, 2), ascending to the right.
-        columns_per_pixel: how many columns a pixel has.
+        points: points [px], shape (n, 2), sorted by the first coordinate.
+        columns_per_pixel: number of columns per pixel.
     """
     columns = np.floor(points[:, 0] * columns_per_pixel).astype(np.int64)
     starts = np.flatnonzero(np.diff(columns, prepend=columns[:1] - 1))
@@ -118,7 +119,7 @@ def thin_line(points: Points, columns_per_pixel: float) -> Points:
 
 
 def _round_step(step: float) -> float:
-    """Return the next of 1, 2, 5, 10, … ."""
+    """Return the next number of the sequence 1, 2, 5, 10, …."""
     power = 10.0 ** math.floor(math.log10(step))
     return next(factor * power for factor in (1.0, 2.0, 5.0, 10.0) if factor * power >= step * (1 - 1e-9))
 

@@ -1,4 +1,4 @@
-"""Draw lines and texts on a white sheet, as SVG or PNG; equal calls give equal bytes."""
+"""Canvases for lines and text on a white background, as SVG or PNG. Equal calls give equal bytes."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ Anchor = Literal["start", "middle", "end"]
 Points = NDArray[np.float64]
 
 _FONT: Final = "Helvetica,Arial,'DejaVu Sans',sans-serif"
-_LETTER: Final = 0.56  # mean width of a letter, in parts of the size
-_NO_LETTER = {"²": "^2", "³": "^3", "µ": "u"}  # that the font of pictures lacks
-_PNG_SCALE = 2  # [px] of a picture for one of the sheet
-_SUBPIXEL_BITS = 2  # times larger is it drawn, so that thin lines come out smooth
+_LETTER: Final = 0.56  # mean width of a letter, as a fraction of the font size
+_REPLACEMENTS = {"²": "^2", "³": "^3", "µ": "u"}  # characters that the font of PNG files lacks
+_PNG_SCALE = 2  # pixels of a PNG file per pixel of the canvas
+_OVERSAMPLING = 2  # factor of the drawing resolution, for smooth thin lines
 _INK: Final = "#222222"
-_UNPRINTABLE = dict.fromkeys((*range(32), 0xFFFE, 0xFFFF), " ")  # what XML has no word for
+_UNPRINTABLE = dict.fromkeys((*range(32), 0xFFFE, 0xFFFF), " ")  # characters that XML does not allow
 
 
 def printable(text: str) -> str:
-    """Replace what XML cannot hold by spaces."""
+    """Replace characters that XML does not allow by spaces."""
     return text.translate(_UNPRINTABLE)
 
 
@@ -32,12 +32,12 @@ def path_data(points: Points) -> str:
 
 
 def text_width(text: str, size: float) -> float:
-    """About how wide a text is [px]."""
+    """Estimate the width of a text [px]."""
     return len(text) * _LETTER * size
 
 
 class SvgCanvas:
-    """A sheet that becomes an SVG file."""
+    """Canvas that becomes an SVG file."""
 
     def __init__(self, width: int, height: int) -> None:
         self._parts = [
@@ -47,7 +47,7 @@ class SvgCanvas:
         ]
 
     def line(self, points: Points, colour: str, width: float = 1.0, dash: tuple[float, ...] = ()) -> None:
-        """A line through points, shape (n, 2)."""
+        """Draw a line through points, shape (n, 2)."""
         dashes = f' stroke-dasharray="{" ".join(f"{d:g}" for d in dash)}"' if dash else ""
         self._parts.append(
             f'<path d="{path_data(points)}" fill="none" stroke="{colour}" stroke-width="{width:g}" '
@@ -55,14 +55,14 @@ class SvgCanvas:
         )
 
     def dots(self, points: Points, colour: str, radius: float) -> None:
-        """A disc at each of some points, shape (n, 2)."""
+        """Draw a disc at each point, shape (n, 2)."""
         for x, y in points.tolist():
             self._parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{radius:g}" fill="{colour}"/>')
 
     def text(
         self, x: float, y: float, text: str, size: float, anchor: Anchor = "start", *, upright: bool = False
     ) -> None:
-        """A text whose letters stand on (x, y); `upright` reads from below to above."""
+        """Draw a text with its baseline at (x, y); `upright` rotates it to read upwards."""
         turned = f' transform="rotate(-90 {x:.1f} {y:.1f})"' if upright else ""
         shown = escape(printable(text), quote=False)
         self._parts.append(
@@ -71,29 +71,29 @@ class SvgCanvas:
         )
 
     def result(self) -> bytes:
-        """The file."""
+        """Return the content of the file."""
         return ("\n".join([*self._parts, "</svg>"]) + "\n").encode("utf-8", "replace")
 
 
 class PngCanvas:
-    """A sheet that becomes a PNG file of twice as many pixels."""
+    """Canvas that becomes a PNG file with twice as many pixels."""
 
     def __init__(self, width: int, height: int) -> None:
         from PIL import Image, ImageDraw
 
-        self._scale = _PNG_SCALE * _SUBPIXEL_BITS
+        self._scale = _PNG_SCALE * _OVERSAMPLING
         self._image = Image.new("RGB", (width * self._scale, height * self._scale), "#ffffff")
         self._draw = ImageDraw.Draw(self._image)
 
     def line(self, points: Points, colour: str, width: float = 1.0, dash: tuple[float, ...] = ()) -> None:
-        """A line through points, shape (n, 2)."""
+        """Draw a line through points, shape (n, 2)."""
         thick = max(1, round(width * self._scale))
         for piece in _dash(points, dash) if dash else [points]:
             flat = [(x * self._scale, y * self._scale) for x, y in piece.tolist()]
             self._draw.line(flat, fill=colour, width=thick, joint="curve")
 
     def dots(self, points: Points, colour: str, radius: float) -> None:
-        """A disc at each of some points, shape (n, 2)."""
+        """Draw a disc at each point, shape (n, 2)."""
         for x, y in points.tolist():
             box = [(c + r) * self._scale for r in (-radius, radius) for c in (x, y)]
             self._draw.ellipse(box, fill=colour)
@@ -101,14 +101,14 @@ class PngCanvas:
     def text(
         self, x: float, y: float, text: str, size: float, anchor: Anchor = "start", *, upright: bool = False
     ) -> None:
-        """A text whose letters stand on (x, y); `upright` reads from below to above."""
+        """Draw a text with its baseline at (x, y); `upright` rotates it to read upwards."""
         from PIL import Image, ImageDraw, ImageFont
 
         font = ImageFont.load_default(size * self._scale)
-        where = {"start": "ls", "middle": "ms", "end": "rs"}[anchor]
-        text = text.translate(_UNPRINTABLE | str.maketrans(_NO_LETTER))
+        font_anchor = {"start": "ls", "middle": "ms", "end": "rs"}[anchor]
+        text = text.translate(_UNPRINTABLE | str.maketrans(_REPLACEMENTS))
         if not upright:
-            self._draw.text((x * self._scale, y * self._scale), text, fill=_INK, font=font, anchor=where)
+            self._draw.text((x * self._scale, y * self._scale), text, fill=_INK, font=font, anchor=font_anchor)
             return
         left, top, right, bottom = font.getbbox(text, anchor="ls")
         strip = Image.new("L", (max(1, round(right - left)), max(1, round(bottom - top))), 0)
@@ -118,21 +118,21 @@ class PngCanvas:
         self._image.paste(_INK, (round(x * self._scale + top), round(y * self._scale - up)), turned)
 
     def result(self) -> bytes:
-        """The file."""
+        """Return the content of the file."""
         from PIL import Image
 
-        size = (self._image.width // _SUBPIXEL_BITS, self._image.height // _SUBPIXEL_BITS)
+        size = (self._image.width // _OVERSAMPLING, self._image.height // _OVERSAMPLING)
         file = io.BytesIO()
         self._image.resize(size, Image.Resampling.BOX).save(file, "PNG")
         return file.getvalue()
 
 
 Canvas = SvgCanvas | PngCanvas
-"""A sheet; places and sizes in pixels from its upper left corner."""
+"""Canvas for a chart. Positions and sizes are in pixels from the upper left corner."""
 
 
 def _dash(points: Points, dash: tuple[float, ...]) -> list[Points]:
-    """The pieces of a line that are drawn."""
+    """Return the drawn pieces of a dashed line."""
     steps = np.hypot(*np.diff(points, axis=0).T)
     along = np.concatenate(([0.0], np.cumsum(steps)))
     edges = np.cumsum(np.tile(dash, int(along[-1] / sum(dash)) + 1))

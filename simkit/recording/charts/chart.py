@@ -1,4 +1,4 @@
-"""Draw numbers over time as a chart file: one panel for each unit, one above the other."""
+"""Chart files of numbers over time, with one panel for each unit, one above the other."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from simkit.recording.charts.canvas import Canvas, PngCanvas, SvgCanvas, text_wi
 from simkit.recording.charts.series import Series
 
 SUFFIXES: Final = (".svg", ".png")
-_WIDTH, _SINGLE_PANEL, _PANEL = 960, 420, 210  # [px] of the sheet, and the height of a panel
+_WIDTH, _SINGLE_PANEL, _PANEL = 960, 420, 210  # [px] width, and height of a single panel or of one of several
 _LEFT, _RIGHT, _TOP, _BOTTOM = 78, 24, 10, 46
 _LEGEND, _SIZE, _GAP = 19, 12.0, 12  # [px]
 _COLOURS = ("#1f77b4", "#d62728", "#2ca02c", "#ff7f0e", "#9467bd", "#17becf", "#8c564b", "#e377c2", "#7f7f7f")
 _DASHES: tuple[tuple[float, ...], ...] = ((), (7, 4), (2, 3), (9, 3, 2, 3))
-_DOTTED = 40  # numbers up to which each is a dot as well
+_DOTTED = 40  # up to this number of values, each value is also a dot
 _MOST_PANELS = 12
 
 
@@ -42,11 +42,11 @@ class Chart:
     """Contents of a chart.
 
     Attributes:
-        series: the lines.
-        styles: as many; each line has the next colour where there are none.
-        title: above all.
-        x_label: below all.
-        is_plane: whether a metre to the right is to be as long as one upwards.
+        series: lines of the chart.
+        styles: style of each line; empty for one colour per line.
+        title: title of the chart.
+        x_label: label of the x axis.
+        is_plane: True for equal scales on both axes.
     """
 
     series: Sequence[Series]
@@ -57,10 +57,10 @@ class Chart:
 
 
 def check_suffix(name: str) -> None:
-    """Sees to it that a chart can be written under a name.
+    """Check whether a file name has the suffix of a chart.
 
     Raises:
-        InputError: SK-BAG-012 its ending is none of those that there are.
+        InputError: SK-BAG-012 the suffix is not supported.
     """
     ending = name[name.rfind(".") :].lower() if "." in name else ""
     if ending not in SUFFIXES:
@@ -69,28 +69,27 @@ def check_suffix(name: str) -> None:
 
 
 def render_chart(chart: Chart, ending: str) -> bytes:
-    """The file with a chart.
+    """Return the file content of a chart.
 
     Args:
-        chart: what is drawn.
+        chart: chart to draw.
         ending: `.svg` or `.png`.
     """
     styles = chart.styles or [Style(number) for number in range(len(chart.series))]
     panels: dict[str, list[tuple[Series, Style]]] = {}
-    for number, (one, style) in enumerate(zip(chart.series, styles, strict=True)):
-        key = one.unit or f"{number if len(chart.series) <= _MOST_PANELS and not chart.styles else ''}"
-        panels.setdefault(key, []).append((one, style))
-    sheet = _Layout(chart, list(panels.values()))
-    return sheet.draw(SvgCanvas if ending.lower() == ".svg" else PngCanvas)
+    for number, (series, style) in enumerate(zip(chart.series, styles, strict=True)):
+        key = series.unit or f"{number if len(chart.series) <= _MOST_PANELS and not chart.styles else ''}"
+        panels.setdefault(key, []).append((series, style))
+    return _Layout(chart, list(panels.values())).draw(SvgCanvas if ending.lower() == ".svg" else PngCanvas)
 
 
 class _Layout:
-    """Places of panels, legends and labels on the sheet."""
+    """Positions of panels, legends and labels in a chart."""
 
     def __init__(self, chart: Chart, panels: list[list[tuple[Series, Style]]]) -> None:
         self._chart, self._panels = chart, panels
-        self._x = axis_over([one.times for one in chart.series], _LEFT, _WIDTH - _RIGHT, margin=0.0)
-        self._legends = [_legend([one.label for one, _ in panel]) for panel in panels]
+        self._x = axis_over([series.times for series in chart.series], _LEFT, _WIDTH - _RIGHT, margin=0.0)
+        self._legends = [_legend([series.label for series, _ in panel]) for panel in panels]
         self._inner = _SINGLE_PANEL if len(panels) == 1 else _PANEL
         heading = 26 if chart.title else 0
         self._tops, y = [], float(_TOP + heading)
@@ -106,45 +105,45 @@ class _Layout:
         for number, panel in enumerate(self._panels):
             self._panel(canvas, number, panel)
         bottom = self._tops[-1] + self._inner
-        for place, label in self._x.ticks(_tick_count(self._x)):
-            canvas.text(place, bottom + 16, label, _SIZE, "middle")
+        for position, label in self._x.ticks(_tick_count(self._x)):
+            canvas.text(position, bottom + 16, label, _SIZE, "middle")
         label = self._chart.x_label + self._x.base_text
         canvas.text((_LEFT + _WIDTH - _RIGHT) / 2, bottom + 36, label, _SIZE + 1, "middle")
         return canvas.result()
 
     def _panel(self, canvas: Canvas, number: int, panel: list[tuple[Series, Style]]) -> None:
         top, bottom = self._tops[number], self._tops[number] + self._inner
-        y = axis_over([one.values for one, _ in panel], bottom, top, margin=0.06)
+        y = axis_over([series.values for series, _ in panel], bottom, top, margin=0.06)
         if self._chart.is_plane:
             self._x, y = _equal_scale(self._x, y)
         x = self._x
-        for place, label in y.ticks(_tick_count(y)):
-            canvas.line(np.array([[_LEFT, place], [_WIDTH - _RIGHT, place]]), "#e4e4e4")
-            canvas.text(_LEFT - 6, place + 4, label, _SIZE, "end")
-        for place, _ in x.ticks(_tick_count(x)):
-            canvas.line(np.array([[place, top], [place, bottom]]), "#e4e4e4")
+        for position, label in y.ticks(_tick_count(y)):
+            canvas.line(np.array([[_LEFT, position], [_WIDTH - _RIGHT, position]]), "#e4e4e4")
+            canvas.text(_LEFT - 6, position + 4, label, _SIZE, "end")
+        for position, _ in x.ticks(_tick_count(x)):
+            canvas.line(np.array([[position, top], [position, bottom]]), "#e4e4e4")
         frame = [[_LEFT, top], [_LEFT, bottom], [_WIDTH - _RIGHT, bottom]]
         canvas.line(np.array(frame, dtype=np.float64), "#888888")
         unit = panel[0][0].unit
-        told = (f"[{unit}]" if unit else "") + y.base_text
-        canvas.text(16, (top + bottom) / 2, told.strip(", "), _SIZE, "middle", upright=True)
-        for one, style in panel:
-            self._line(canvas, one, x, y, *style.pen)
-        for (one, style), (left, row) in zip(panel, self._legends[number], strict=True):
+        y_label = (f"[{unit}]" if unit else "") + y.base_text
+        canvas.text(16, (top + bottom) / 2, y_label.strip(", "), _SIZE, "middle", upright=True)
+        for series, style in panel:
+            self._line(canvas, series, x, y, *style.pen)
+        for (series, style), (left, row) in zip(panel, self._legends[number], strict=True):
             colour, dash = style.pen
             at = top - (self._legends[number][-1][1] - row) * _LEGEND - 7
             canvas.line(np.array([[left, at - 4], [left + 24, at - 4]]), colour, 2.0, dash)
-            canvas.text(left + 30, at, _shorten(one.label, _WIDTH - _LEFT - 80, _SIZE), _SIZE)
+            canvas.text(left + 30, at, _shorten(series.label, _WIDTH - _LEFT - 80, _SIZE), _SIZE)
 
-    def _line(self, canvas: Canvas, one: Series, x: Axis, y: Axis, colour: str, dash: tuple[float, ...]) -> None:
-        is_over_time = bool(np.all(np.diff(one.times) >= 0))
-        for times, values in split_line(one):
+    def _line(self, canvas: Canvas, series: Series, x: Axis, y: Axis, colour: str, dash: tuple[float, ...]) -> None:
+        is_over_time = bool(np.all(np.diff(series.times) >= 0))
+        for times, values in split_line(series):
             points = np.column_stack((x.at(times), y.at(values)))
             if is_over_time:
                 points = thin_line(points, 2.0)
             if len(points) > 1:
                 canvas.line(points, colour, 1.4, dash)
-            if len(points) == 1 or one.count <= _DOTTED:
+            if len(points) == 1 or series.count <= _DOTTED:
                 canvas.dots(points, colour, 2.2)
 
 
@@ -163,7 +162,7 @@ def _equal_scale(x: Axis, y: Axis) -> tuple[Axis, Axis]:
 
 
 def _legend(labels: list[str]) -> list[tuple[float, int]]:
-    """Left end and row of each entry."""
+    """Return the left end [px] and the row of each legend entry."""
     found, left, row = [], float(_LEFT), 0
     for label in labels:
         wide = 30 + text_width(label, _SIZE) + 22
@@ -175,5 +174,5 @@ def _legend(labels: list[str]) -> list[tuple[float, int]]:
 
 
 def _shorten(text: str, width: float, size: float) -> str:
-    """Cut a text to the room that it has."""
+    """Shorten a text to a width [px]."""
     return shorten(text, int(width / text_width("x", size)))

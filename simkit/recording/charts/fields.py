@@ -1,8 +1,8 @@
-"""Resolve names of message fields, as on a command line, to functions that read their numbers.
+"""Names of message fields, as on a command line, resolved to functions that read their numbers.
 
-`/odom.pose.pose.position.x`, `/scan.ranges[0]`, `/joint_states.position[left_wheel]`,
-`/odom.pose.pose.orientation.yaw`. What a path names is looked up in the definitions of the
-types, so that a wrong one is told before anything runs.
+Examples: `/odom.pose.pose.position.x`, `/scan.ranges[0]`, `/joint_states.position[left_wheel]`,
+`/odom.pose.pose.orientation.yaw`. Names are checked against the definitions of the types, so that a wrong name is
+reported before anything runs.
 """
 
 from __future__ import annotations
@@ -28,30 +28,30 @@ if TYPE_CHECKING:
 
 Number = Callable[[FieldValue], float]
 Reader = Callable[[FieldValue], FieldValue]
-"""Reads a value of a message."""
+"""Function that reads a value of a message."""
 Unit = Callable[[str, str], str]
 
 MOST_CURVES: Final = 64
 _STEP = re.compile(r"[./]?(?:(\w+)|\[([^\[\]]*)\])")
 _COMPUTED = re.compile(r"\[[^\]]*\]|\.(norm|min|max|mean)$")
-_SPREAD: Final = 12  # items of an array of fixed length that are all meant where none is named
+_SPREAD: Final = 12  # largest fixed-length array that a path without an index expands to all items
 _ANGLES: Final = ("roll", "pitch", "yaw")
 _OF_ARRAYS: Final = ("min", "max", "mean", "length")
-_NAMES: Final = ("name", "names", "joint_names")  # of arrays that name the items of those beside them
-_NAMED: Final = ("child_frame_id", "name", "id")  # of messages in an array
+_NAMES: Final = ("name", "names", "joint_names")  # arrays with the names of the items of sibling arrays
+_NAMED: Final = ("child_frame_id", "name", "id")  # fields with the name of a message in an array
 
 
 @dataclass(frozen=True)
 class Curve:
-    """A number of every message of a topic.
+    """Number in every message of a topic.
 
     Attributes:
-        topic: the topic.
-        path: of the field, each item by itself.
-        read: takes the number out of a message; NaN where a message has none.
-        unit: SI; empty where none is known.
-        is_angle: whether it comes back to where it began after a turn.
-        type_name: of the messages; those of another type on the same topic have none.
+        topic: name of the topic.
+        path: path of the field, with the index of each item.
+        read: function that reads the number from a message; NaN if the message has none.
+        unit: SI unit; empty if unknown.
+        is_angle: True for an angle that wraps around after a full turn.
+        type_name: type of the messages; other types on the same topic are ignored.
     """
 
     topic: str
@@ -69,7 +69,7 @@ class Curve:
 
 @dataclass(frozen=True)
 class _PathStep:
-    """One step of a path: the type at its end and a function that reads it; `before` reads the message around it."""
+    """Step of a path: the type at its end and a function that reads it. `before` reads the message around it."""
 
     node: FieldNode
     read: Reader
@@ -85,18 +85,18 @@ def _no_unit(_type_name: str, _path: str) -> str:
 def curves_of(
     text: str, topics: Mapping[str, str], store_of: Callable[[str], Typestore], where: str, unit_of: Unit = _no_unit
 ) -> list[Curve]:
-    """The curves that a field stands for: several, where it is a vector or a part of an array.
+    """Return the curves of a field: several for a vector or a part of an array.
 
     Args:
         text: topic and field.
-        topics: topic -> type of all there are.
-        store_of: the definitions that a type is read by.
-        where: what has these topics, for messages.
-        unit_of: the unit of a field of a type.
+        topics: topic -> type, for all topics.
+        store_of: function that returns the type store of a type.
+        where: description of the source of the topics, for error messages.
+        unit_of: function that returns the unit of a field of a type.
 
     Raises:
-        InputError: SK-CLI-030 there is no such topic; SK-CLI-033 its messages have no such field; SK-BAG-010 the field
-            is no number.
+        InputError: SK-CLI-030 the topic does not exist; SK-CLI-033 its messages have no such field; SK-BAG-010 the
+            field is not a number.
     """
     topic, rest = _split_topic(text, topics, where)
     type_name = topics[topic]
@@ -113,159 +113,157 @@ def curves_of(
 
 
 def _split_topic(text: str, topics: Mapping[str, str], where: str) -> tuple[str, str]:
-    """The topic, and what is behind it: the longest topic counts."""
+    """Split a text into topic and field path; the longest matching topic counts."""
     name = text if text.startswith("/") else f"/{text}"
     fits = [t for t in topics if name == t or (name.startswith(t) and name[len(t)] in "./[")]
     if fits:
         topic = max(fits, key=len)
         return topic, name[len(topic) :]
-    wanted = name.partition(".")[0]
+    requested = name.partition(".")[0]
     listed = ", ".join(list(topics)[:20]) + (" …" if len(topics) > 20 else "")
-    hint = did_you_mean(wanted, topics) or (f"there is {listed}" if topics else "there is none")
-    raise InputError(f"SK-CLI-030 no topic {wanted!r} in {where}; {hint}", "SK-CLI-030")
+    hint = did_you_mean(requested, topics) or (f"known: {listed}" if topics else "there are no topics")
+    raise InputError(f"SK-CLI-030 no topic {requested!r} in {where}; {hint}", "SK-CLI-030")
 
 
 class _FieldPath:
-    """Goes along one path through the definitions of types."""
+    """Resolver of one path through the definitions of types."""
 
     def __init__(self, store: Typestore, type_name: str, text: str) -> None:
         self._store, self._text = store, text
         self._root = _PathStep((NAME, type_name), _identity, "", type_name, _identity)
 
     def curves(self, rest: str) -> list[Curve]:
-        """The curves behind a path."""
-        places, at = [self._root], 0
+        """Return the curves of a path."""
+        steps, at = [self._root], 0
         rest = rest.rstrip("./")
         while at < len(rest):
             found = _STEP.match(rest, at)
             if found is None:
-                raise self._field_error(f"{rest!r} is no path of fields, such as .pose.position.x or .ranges[0]")
+                raise self._field_error(f"{rest!r} is not a field path such as .pose.position.x or .ranges[0]")
             at = found.end()
             if found[1] is not None:
-                ends = [self._derived(place, found[1]) for place in places]
+                ends = [self._derived(step, found[1]) for step in steps]
                 if all(end is not None for end in ends):
                     if at < len(rest):
                         raise self._field_error(f"{found[1]!r} is a number and has no {rest[at:]!r}")
                     return [end for end in ends if end is not None]
-                places = [self._field(place, found[1]) for place in places]
+                steps = [self._field(step, found[1]) for step in steps]
             else:
-                places = [inner for place in places for inner in self._items(place, found[2])]
-            self._count(places)
-        curves = [curve for place in places for curve in self._numbers(place)]
+                steps = [inner for step in steps for inner in self._items(step, found[2])]
+            self._count(steps)
+        curves = [curve for step in steps for curve in self._numbers(step)]
         self._count(curves)
         return curves
 
     def _count(self, found: Sequence[object]) -> None:
         if len(found) > MOST_CURVES:
-            raise self._path_error(f"stands for {len(found)} numbers, allowed are {MOST_CURVES}")
+            raise self._path_error(f"means {len(found)} numbers, allowed are {MOST_CURVES}")
 
     # ------------------------------------------------------------------ one step
 
-    def _field(self, place: _PathStep, name: str) -> _PathStep:
-        if int(place.node[0]) != NAME:
-            hint = self._hint(place)
-            raise self._field_error(f"{place.path or 'it'} is {_kind_in_words(place.node)} and has no {name!r}; {hint}")
-        fields = dict(field_nodes(place.node[1], self._store))
+    def _field(self, step: _PathStep, name: str) -> _PathStep:
+        if int(step.node[0]) != NAME:
+            hint = self._hint(step)
+            raise self._field_error(f"{step.path or 'it'} is {_kind_in_words(step.node)} and has no {name!r}; {hint}")
+        fields = dict(field_nodes(step.node[1], self._store))
         if name not in fields:
-            told = did_you_mean(name, [*fields, *self._computed_names(place)])
-            hint = told or "its fields are " + (", ".join(fields) or "none")
-            raise self._field_error(f"{place.node[1]} has no field {name!r}; {hint}")
-        path = f"{place.path}.{name}" if place.path else name
-        return _PathStep(
-            fields[name], _compose(place.read, partial(_field_value, name)), path, place.node[1], place.read
-        )
+            suggestion = did_you_mean(name, [*fields, *self._computed_names(step)])
+            hint = suggestion or "its fields: " + (", ".join(fields) or "none")
+            raise self._field_error(f"{step.node[1]} has no field {name!r}; {hint}")
+        path = f"{step.path}.{name}" if step.path else name
+        return _PathStep(fields[name], _compose(step.read, partial(_field_value, name)), path, step.node[1], step.read)
 
-    def _items(self, place: _PathStep, text: str) -> list[_PathStep]:
-        if int(place.node[0]) not in (ARRAY, SEQUENCE):
+    def _items(self, step: _PathStep, text: str) -> list[_PathStep]:
+        if int(step.node[0]) not in (ARRAY, SEQUENCE):
             raise self._field_error(
-                f"{place.path or 'it'} is {_kind_in_words(place.node)}, no array: it has no item [{text}]"
+                f"{step.path or 'it'} is {_kind_in_words(step.node)}, not an array: it has no item [{text}]"
             )
-        inner, size = place.node[1]
+        inner, size = step.node[1]
         found = re.fullmatch(r"\s*(-?\d*)\s*(?:(:)\s*(-?\d*))?\s*", text)
         if found is None or (not found[2] and not found[1]):
-            return [self._named(place, text.strip().strip("'\""))]
+            return [self._named(step, text.strip().strip("'\""))]
         if found[2] is None:
             numbers = [int(found[1])]
         else:
-            start, stop = int(found[1] or 0), int(found[3]) if found[3] else size if int(place.node[0]) == 3 else None
+            start, stop = int(found[1] or 0), int(found[3]) if found[3] else size if int(step.node[0]) == 3 else None
             if stop is None or (start < 0) != (stop < 0):
-                raise self._path_error(f"[{text}] does not say how many items are meant, as [{max(start, 0)}:10] does")
+                raise self._path_error(f"[{text}] has no end; give one, such as [{max(start, 0)}:10]")
             numbers = list(range(start, min(stop, start + MOST_CURVES + 1)))
-        if int(place.node[0]) == ARRAY:
+        if int(step.node[0]) == ARRAY:
             for number in numbers:
                 if not -size <= number < size:
-                    raise self._field_error(f"{place.path} has {size} items, found [{number}]")
-        return [self._item(place, inner, partial(_item, number), str(number)) for number in numbers]
+                    raise self._field_error(f"{step.path} has {size} items, found [{number}]")
+        return [self._item(step, inner, partial(_item, number), str(number)) for number in numbers]
 
-    def _item(self, place: _PathStep, inner: FieldNode, take: Reader, said: str) -> _PathStep:
-        path = f"{place.path}[{said}]"
-        return _PathStep(inner, _compose(place.read, take), path, place.owner, place.read)
+    def _item(self, step: _PathStep, inner: FieldNode, read_item: Reader, index: str) -> _PathStep:
+        path = f"{step.path}[{index}]"
+        return _PathStep(inner, _compose(step.read, read_item), path, step.owner, step.read)
 
-    def _named(self, place: _PathStep, name: str) -> _PathStep:
-        """The item of that name: of messages by what they are called, of numbers by the names beside them."""
-        inner = place.node[1][0]
+    def _named(self, step: _PathStep, name: str) -> _PathStep:
+        """Return the item with that name: messages by a name field, numbers by a sibling array of names."""
+        inner = step.node[1][0]
         if int(inner[0]) == NAME:
             fields = dict(field_nodes(inner[1], self._store))
             key = next((n for n in _NAMED if n in fields and _is_text(fields[n])), None)
             if key is not None:
-                return self._item(place, inner, partial(_item_with_name, key, name), name)
-        beside = dict(field_nodes(place.owner, self._store)) if place.path else {}
-        names = next((n for n in _NAMES if n in beside and int(beside[n][0]) == SEQUENCE), None)
+                return self._item(step, inner, partial(_item_with_name, key, name), name)
+        siblings = dict(field_nodes(step.owner, self._store)) if step.path else {}
+        names = next((n for n in _NAMES if n in siblings and int(siblings[n][0]) == SEQUENCE), None)
         if names is None or not name:
-            raise self._field_error(f"[{name}] is no number, and nothing names the items of {place.path}")
-        read = partial(_item_at_name, place.before, names, name, place.read)
-        return _PathStep(inner, read, f"{place.path}[{name}]", place.owner, place.before)
+            raise self._field_error(f"[{name}] is not a number, and the items of {step.path} have no names")
+        read = partial(_item_at_name, step.before, names, name, step.read)
+        return _PathStep(inner, read, f"{step.path}[{name}]", step.owner, step.before)
 
     # ------------------------------------------------------------------ numbers
 
-    def _numbers(self, place: _PathStep) -> list[Curve]:
-        """The numbers at the end of a path: one, or those of a small vector."""
-        kind = int(place.node[0])
+    def _numbers(self, step: _PathStep) -> list[Curve]:
+        """Return the curves at the end of a path: one, or those of a small vector."""
+        kind = int(step.node[0])
         if kind == BASE:
-            if _is_text(place.node):
-                raise self._path_error(f"{place.path} is a text, no number")
-            return [self._curve(place, place.read, place.path)]
+            if _is_text(step.node):
+                raise self._path_error(f"{step.path} is a text, not a number")
+            return [self._curve(step, step.read, step.path)]
         if kind == NAME:
-            fields = field_nodes(place.node[1], self._store)
+            fields = field_nodes(step.node[1], self._store)
             names = [name for name, _ in fields]
             if names == ["sec", "nanosec"]:
-                return [self._curve(place, _compose(place.read, _seconds), place.path or "time", "s")]
+                return [self._curve(step, _compose(step.read, _seconds), step.path or "time", "s")]
             if fields and all(int(node[0]) == BASE and not _is_text(node) for _, node in fields):
-                return [c for name in names for c in self._numbers(self._field(place, name))]
-            raise self._path_error(f"{place.path or 'a whole message'} is no number; {self._hint(place)}")
-        if kind == ARRAY and place.node[1][1] <= _SPREAD:
-            return [c for i in self._items(place, f"0:{place.node[1][1]}") for c in self._numbers(i)]
-        raise self._path_error(f"{place.path} is {_kind_in_words(place.node)}; {self._hint(place)}")
+                return [c for name in names for c in self._numbers(self._field(step, name))]
+            raise self._path_error(f"{step.path or 'a whole message'} is not a number; {self._hint(step)}")
+        if kind == ARRAY and step.node[1][1] <= _SPREAD:
+            return [c for i in self._items(step, f"0:{step.node[1][1]}") for c in self._numbers(i)]
+        raise self._path_error(f"{step.path} is {_kind_in_words(step.node)}; {self._hint(step)}")
 
-    def _derived(self, place: _PathStep, name: str) -> Curve | None:
-        """A number that is made of what lies there; None where the type has a field of that name, or it cannot be."""
-        if name not in self._computed_names(place):
+    def _derived(self, step: _PathStep, name: str) -> Curve | None:
+        """Return the curve of a computed number; None if the type has no such number, or has a field of that name."""
+        if name not in self._computed_names(step):
             return None
-        path = f"{place.path}.{name}" if place.path else name
-        read = place.read
+        path = f"{step.path}.{name}" if step.path else name
+        read = step.read
         if name in _ANGLES:
-            inner = self._orientation_field(place)
+            inner = self._orientation_field(step)
             if inner is not None:
                 read = _compose(read, partial(_field_value, inner))
-            return self._curve(place, _compose(read, partial(_angle, name)), path, "rad", is_angle=name != "pitch")
+            return self._curve(step, _compose(read, partial(_angle, name)), path, "rad", is_angle=name != "pitch")
         if name == "norm":
-            names = [n for n, _ in field_nodes(place.node[1], self._store)]
-            return self._curve(place, _compose(read, partial(_norm, names)), path)
+            names = [n for n, _ in field_nodes(step.node[1], self._store)]
+            return self._curve(step, _compose(read, partial(_norm, names)), path)
         return self._curve(
-            place, _compose(read, partial(_array_statistic, name)), path, "" if name != "length" else "items"
+            step, _compose(read, partial(_array_statistic, name)), path, "" if name != "length" else "items"
         )
 
-    def _computed_names(self, place: _PathStep) -> tuple[str, ...]:
-        """Return the names that can be computed of a type, beside its fields."""
-        kind = int(place.node[0])
+    def _computed_names(self, step: _PathStep) -> tuple[str, ...]:
+        """Return the names of numbers that can be computed from a type, in addition to its fields."""
+        kind = int(step.node[0])
         if kind in (ARRAY, SEQUENCE):
-            is_number = int(place.node[1][0][0]) == BASE and not _is_text(place.node[1][0])
+            is_number = int(step.node[1][0][0]) == BASE and not _is_text(step.node[1][0])
             return _OF_ARRAYS if is_number else ("length",)
         if kind != NAME:
             return ()
-        fields = dict(field_nodes(place.node[1], self._store))
+        fields = dict(field_nodes(step.node[1], self._store))
         found: tuple[str, ...] = ()
-        if self._is_quaternion(place.node) or self._orientation_field(place) is not None:
+        if self._is_quaternion(step.node) or self._orientation_field(step) is not None:
             found = _ANGLES
         elif fields and set(fields) <= {"x", "y", "z"} and len(fields) > 1:
             found = ("norm",)
@@ -274,26 +272,26 @@ class _FieldPath:
     def _is_quaternion(self, node: FieldNode) -> bool:
         return int(node[0]) == NAME and [n for n, _ in field_nodes(node[1], self._store)] == ["x", "y", "z", "w"]
 
-    def _orientation_field(self, place: _PathStep) -> str | None:
-        """The field that says how something is turned."""
-        for name, node in field_nodes(place.node[1], self._store):
+    def _orientation_field(self, step: _PathStep) -> str | None:
+        """Return the name of the quaternion field with the orientation."""
+        for name, node in field_nodes(step.node[1], self._store):
             if name in ("orientation", "rotation") and self._is_quaternion(node):
                 return name
         return None
 
-    def _curve(self, place: _PathStep, read: Reader, path: str, unit: str = "", *, is_angle: bool = False) -> Curve:
+    def _curve(self, step: _PathStep, read: Reader, path: str, unit: str = "", *, is_angle: bool = False) -> Curve:
         return Curve("", path, partial(_number, read), unit, is_angle)
 
-    def _hint(self, place: _PathStep) -> str:
-        kind = int(place.node[0])
+    def _hint(self, step: _PathStep) -> str:
+        kind = int(step.node[0])
         if kind == NAME:
-            fields = [n for n, _ in field_nodes(place.node[1], self._store)]
-            return "its fields are " + (", ".join((*fields, *self._computed_names(place))) or "none")
+            fields = [n for n, _ in field_nodes(step.node[1], self._store)]
+            return "its fields: " + (", ".join((*fields, *self._computed_names(step))) or "none")
         if kind in (ARRAY, SEQUENCE):
-            name = place.path.rpartition(".")[2]
-            extra = "".join(f", .{n}" for n in self._computed_names(place))
-            return f"allowed is an item or some of them, as {name}[0] or {name}[0:10]{extra}"
-        return "nothing lies below it"
+            name = step.path.rpartition(".")[2]
+            extra = "".join(f", .{n}" for n in self._computed_names(step))
+            return f"give an item or a range, such as {name}[0] or {name}[0:10]{extra}"
+        return "it has no fields"
 
     def _field_error(self, text: str) -> InputError:
         return InputError(f"SK-CLI-033 {self._text}: {text}", "SK-CLI-033")
@@ -302,7 +300,7 @@ class _FieldPath:
         return InputError(f"SK-BAG-010 {self._text}: {text}", "SK-BAG-010")
 
 
-# ---------------------------------------------------------------------- out of messages
+# ---------------------------------------------------------------------- readers
 
 
 def _identity(value: object) -> object:
@@ -322,7 +320,7 @@ def _item(number: int, value: FieldValue) -> FieldValue:
 
 
 def _item_with_name(key: str, name: str, items: Iterable[Message]) -> Message:
-    """The message of a name; names of frames may be written without what stands before their last part."""
+    """Return the first message with that name."""
     for item in items:
         if field_value(item, key) == name:
             return item
@@ -349,17 +347,17 @@ def _norm(names: list[str], value: FieldValue) -> float:
     return math.hypot(*(float(getattr(value, name)) for name in names))
 
 
-def _array_statistic(what: str, value: FieldValue) -> float:
-    """Compute a statistic of the finite items; NaN where there are none."""
-    if what == "length":
+def _array_statistic(name: str, value: FieldValue) -> float:
+    """Compute a statistic of the finite items; NaN without finite items."""
+    if name == "length":
         return float(len(value))
     numbers = np.asarray(value, dtype=np.float64)
     numbers = numbers[np.isfinite(numbers)]
-    return float(getattr(numbers, what)()) if numbers.size else math.nan
+    return float(getattr(numbers, name)()) if numbers.size else math.nan
 
 
 def _angle(name: str, q: Quaternion) -> float:
-    """Roll, pitch or yaw [rad] about fixed axes x, y, z (REP 103) of a quaternion that need not be of unit length."""
+    """Return roll, pitch or yaw [rad] about the fixed axes x, y, z (REP 103) of a quaternion of any length."""
     x, y, z, w = float(q.x), float(q.y), float(q.z), float(q.w)
     size = x * x + y * y + z * z + w * w
     if not size > 0:
@@ -382,5 +380,5 @@ def _kind_in_words(node: FieldNode) -> str:
     if kind == NAME:
         return str(node[1])
     inner, size = node[1]
-    of = inner[1] if int(inner[0]) == NAME else inner[1][0]
-    return f"an array of {size} {of}" if kind == ARRAY else f"an array of {of}"
+    item = inner[1] if int(inner[0]) == NAME else inner[1][0]
+    return f"an array of {size} {item}" if kind == ARRAY else f"an array of {item}"

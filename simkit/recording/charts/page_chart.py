@@ -1,4 +1,4 @@
-"""Small charts inside an HTML page, as SVG whose colours come from the page's style sheet."""
+"""Small charts for an HTML page, as SVG with colours from the page's style sheet."""
 
 from __future__ import annotations
 
@@ -14,22 +14,22 @@ from simkit.recording.charts.canvas import path_data, printable
 from simkit.recording.charts.series import Series
 
 WIDTH: Final = 480
-"""Width of a chart [px]; a page may show it smaller or larger."""
+"""Width of a chart [px]; a page may scale it."""
 _LEFT, _RIGHT, _TOP, _BOTTOM = 58, 8, 8, 34
-_TICKS = 5  # about that many on an axis
+_TICKS = 5  # approximate number per axis
 
 
 @dataclass(frozen=True)
 class PageChart:
-    """A chart for a page.
+    """Chart for a page.
 
     Attributes:
         lines: series and the style class of each, the first at the bottom.
-        title: for who cannot see it.
-        x_label, y_label: quantity and unit.
-        height: [px].
-        mark: where an upright line is drawn [in x].
-        is_log: whether both axes are logarithmic; a value that is not above zero is a gap.
+        title: title for screen readers.
+        x_label, y_label: quantity and unit of each axis.
+        height: height of the chart [px].
+        mark: x value of a vertical line.
+        is_log: True for two logarithmic axes; values of zero or less are gaps.
         caption: text below the chart.
     """
 
@@ -45,10 +45,10 @@ class PageChart:
 
 def page_chart_svg(chart: PageChart) -> str:
     """Return a chart as an SVG element."""
-    lines = [(_logarithm(one) if chart.is_log else one, role) for one, role in chart.lines]
+    lines = [(_logarithm(series) if chart.is_log else series, role) for series, role in chart.lines]
     bottom, right = chart.height - _BOTTOM, WIDTH - _RIGHT
-    x = axis_over([one.times for one, _ in lines], _LEFT, right, margin=0.0, is_log=chart.is_log)
-    y = axis_over([one.values for one, _ in lines], bottom, _TOP, margin=0.06, is_log=chart.is_log)
+    x = axis_over([series.times for series, _ in lines], _LEFT, right, margin=0.0, is_log=chart.is_log)
+    y = axis_over([series.values for series, _ in lines], bottom, _TOP, margin=0.06, is_log=chart.is_log)
     parts = [
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {chart.height}" role="img" class="chart">',
         f"<title>{_text(chart.title)}</title>",
@@ -56,7 +56,7 @@ def page_chart_svg(chart: PageChart) -> str:
     ]
     if chart.mark is not None and x.low <= chart.mark <= x.high:
         parts.append(f'<path class="mark" d="M{float(x.at(np.array(chart.mark))):.1f} {_TOP}V{bottom}"/>')
-    parts += [f'<path class="line {role}" d="{path}"/>' for one, role in lines if (path := _path(one, x, y))]
+    parts += [f'<path class="line {role}" d="{path}"/>' for series, role in lines if (path := _path(series, x, y))]
     middle, upright = (_LEFT + right) / 2, (bottom + _TOP) / 2
     parts.append(f'<text x="{middle:.0f}" y="{chart.height - 4}" class="middle">{_text(chart.x_label)}</text>')
     turned = f'transform="translate(11 {upright:.0f}) rotate(-90)"'
@@ -66,23 +66,23 @@ def page_chart_svg(chart: PageChart) -> str:
 
 def _grid(x: Axis, y: Axis, bottom: float, right: float) -> list[str]:
     across, up = x.ticks(_TICKS), y.ticks(_TICKS)
-    lines = "".join(f"M{_LEFT} {place:.1f}H{right}" for place, _ in up)
-    lines += "".join(f"M{place:.1f} {_TOP}V{bottom}" for place, _ in across)
+    lines = "".join(f"M{_LEFT} {position:.1f}H{right}" for position, _ in up)
+    lines += "".join(f"M{position:.1f} {_TOP}V{bottom}" for position, _ in across)
     parts = [f'<path class="grid" d="{lines}"/>'] if lines else []
-    parts += [f'<text x="{_LEFT - 4}" y="{place + 3.5:.1f}" class="end">{label}</text>' for place, label in up]
+    parts += [f'<text x="{_LEFT - 4}" y="{position + 3.5:.1f}" class="end">{label}</text>' for position, label in up]
     return parts + [
-        f'<text x="{min(place, right - 10):.1f}" y="{bottom + 13}" class="middle">{label}</text>'
-        for place, label in across
+        f'<text x="{min(position, right - 10):.1f}" y="{bottom + 13}" class="middle">{label}</text>'
+        for position, label in across
     ]
 
 
-def _path(one: Series, x: Axis, y: Axis) -> str:
-    """Return the commands of a path; each stretch of finite values is one."""
+def _path(series: Series, x: Axis, y: Axis) -> str:
+    """Return the commands of an SVG path, with one part for each stretch of finite values."""
     found: list[str] = []
     last_column = -1.0
-    for times, values in split_line(one):
+    for times, values in split_line(series):
         px = x.at(times)
-        if px[-1] < last_column + 1.0:  # gaps narrower than a pixel: one dot stands for all in the column
+        if px[-1] < last_column + 1.0:  # several gaps within one pixel: one dot is enough for the column
             continue
         last_column = float(np.floor(px[-1]))
         with np.errstate(over="ignore"):
@@ -92,9 +92,9 @@ def _path(one: Series, x: Axis, y: Axis) -> str:
     return "".join(found)
 
 
-def _logarithm(one: Series) -> Series:
+def _logarithm(series: Series) -> Series:
     with np.errstate(divide="ignore", invalid="ignore"):
-        return replace(one, times=np.log10(one.times), values=np.log10(one.values))
+        return replace(series, times=np.log10(series.times), values=np.log10(series.values))
 
 
 def _text(text: str) -> str:

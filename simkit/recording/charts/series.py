@@ -1,4 +1,4 @@
-"""Collect numbers over time from a bag, or from a simulation while it runs."""
+"""Series of numbers over time, from a bag or from a running simulation."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ if TYPE_CHECKING:
 
 @dataclass
 class Series:
-    """A curve's numbers.
+    """Numbers of a curve.
 
     Attributes:
-        label: what a legend calls it.
-        unit: SI; empty where none is known.
-        is_angle: whether it comes back to where it began after a turn.
-        times: [s].
-        values: as many; NaN where a message had none.
-        base_unit: SI unit of what is in the place of time.
+        label: name in the legend.
+        unit: SI unit; empty if unknown.
+        is_angle: True for an angle that wraps around after a full turn.
+        times: times [s], shape (n,).
+        values: numbers, shape (n,); NaN for messages without the number.
+        base_unit: SI unit of the quantity that replaces time.
     """
 
     label: str
@@ -47,24 +47,24 @@ class Series:
     def between(self, start: float | None, end: float | None) -> Series:
         """Return the part between two times [s]."""
         low, high = -math.inf if start is None else start, math.inf if end is None else end
-        kept = (self.times >= low - 1e-9) & (self.times <= high + 1e-9)
-        return replace(self, times=self.times[kept], values=self.values[kept])
+        inside = (self.times >= low - 1e-9) & (self.times <= high + 1e-9)
+        return replace(self, times=self.times[inside], values=self.values[inside])
 
     def summary(self) -> dict[str, object]:
-        """Name, unit, number of finite values, and the least, the greatest, the mean and the last of them."""
+        """Return name, unit, number of finite values, and their minimum, maximum, mean and last value."""
         finite = self.values[np.isfinite(self.values)]
         if not finite.size:
             return {"label": self.label, "unit": self.unit, "count": 0}
         numbers = {"min": finite.min(), "max": finite.max(), "mean": finite.mean(), "last": finite[-1]}
-        told = {name: float(number) for name, number in numbers.items()}
-        return {"label": self.label, "unit": self.unit, "count": int(finite.size), **told}
+        statistics = {name: float(number) for name, number in numbers.items()}
+        return {"label": self.label, "unit": self.unit, "count": int(finite.size), **statistics}
 
 
 def bag_series(bag: BagReader, curves: Sequence[Curve]) -> list[Series]:
-    """The numbers of a bag.
+    """Return the numbers of a bag.
 
     Raises:
-        InputError: SK-CLI-035 the bag breaks off; SK-CLI-036 a message is not of its type.
+        InputError: SK-CLI-035 the bag is truncated; SK-CLI-036 a message does not match its type.
     """
     found = _SeriesCollector(curves)
     topics = list(dict.fromkeys(curve.topic for curve in curves))
@@ -75,11 +75,11 @@ def bag_series(bag: BagReader, curves: Sequence[Curve]) -> list[Series]:
 
 
 class SeriesTap:
-    """Takes the numbers of a simulation while it runs; a context manager.
+    """Collector of numbers from a running simulation; a context manager.
 
     Args:
-        sim: the simulation; listening to a sensor makes it measure.
-        curves: which numbers.
+        sim: simulation to read; a sensor with a collected topic measures.
+        curves: curves to collect.
     """
 
     def __init__(self, sim: Simulation, curves: Sequence[Curve]) -> None:
@@ -97,17 +97,19 @@ class SeriesTap:
         self._collector.take(topic, self._sim.time, message)
 
     def close(self) -> None:
-        """Listens no more."""
+        """Stop collecting."""
         for tap in self._taps:
             tap.close()
         self._taps.clear()
 
     def series(self) -> list[Series]:
-        """Return what came until now."""
+        """Return the numbers collected so far."""
         return self._collector.series()
 
 
 class _SeriesCollector:
+    """Collector of the numbers of several curves."""
+
     def __init__(self, curves: Sequence[Curve]) -> None:
         self._curves = list(curves)
         self._rows: list[tuple[list[float], list[float]]] = [([], []) for _ in self._curves]
@@ -121,7 +123,7 @@ class _SeriesCollector:
                 continue
             value = curve.read(message)
             if "[" in curve.path and math.isnan(value):
-                continue  # a message without that item, as of another publisher of /tf, is no gap
+                continue  # a message without that item, such as one of another /tf publisher, is not a gap
             times.append(time)
             values.append(value)
 
@@ -133,16 +135,16 @@ class _SeriesCollector:
 
 
 def series_over(series: Sequence[Series], base: Series) -> list[Series]:
-    """The same numbers over another one in place of time: its newest at or before each of theirs.
+    """Return series over another series instead of time, with its newest value at or before each of their times.
 
     Args:
-        series: what is drawn upwards.
-        base: what is drawn to the right.
+        series: series for the vertical axis.
+        base: series for the horizontal axis.
     """
     found = []
-    for one in series:
-        at = np.searchsorted(base.times, one.times + 1e-9, side="right") - 1
-        known = at >= 0
-        beside, values = base.values[at[known]], one.values[known]
-        found.append(replace(one, times=beside, values=values, base_unit=base.unit))
+    for curve in series:
+        index = np.searchsorted(base.times, curve.times + 1e-9, side="right") - 1
+        known = index >= 0
+        x_values, values = base.values[index[known]], curve.values[known]
+        found.append(replace(curve, times=x_values, values=values, base_unit=base.unit))
     return found

@@ -1,4 +1,4 @@
-"""Export a bag to a folder: a table for each topic, with its images and point clouds."""
+"""Export of a bag to a folder: a table for each topic, with its images and point clouds."""
 
 from __future__ import annotations
 
@@ -31,19 +31,19 @@ _OLD: Final = "old"
 
 
 def check_folder(path: Path, *, overwrite: bool) -> None:
-    """Says before anything is read that an export cannot go there.
+    """Check before reading whether an export can be written to a folder.
 
     Raises:
-        InputError: SK-BAG-013 something is there that may not be replaced, or nothing can be written there.
+        InputError: SK-BAG-013 the folder may not be replaced, or is not writable.
     """
     try:
         if path.is_symlink() or (path.exists() and not path.is_dir()):
-            raise _folder_error(f"{path} is there and is no folder")
+            raise _folder_error(f"{path} exists and is not a folder")
         if path.is_dir() and any(path.iterdir()):
             if not _is_export(path):
-                raise _folder_error(f"{path} is no export of simkit and is left alone")
+                raise _folder_error(f"{path} is not an export of simkit and is not overwritten")
             if not overwrite:
-                raise _folder_error(f"{path} exists already and is not overwritten\n    help: --force replaces it")
+                raise _folder_error(f"{path} already exists\n    help: replace it with --force")
         why = write_obstacle(path)
         if why:
             raise _folder_error(f"cannot write {path}: {why}")
@@ -60,10 +60,12 @@ def _is_export(path: Path) -> bool:
 
 @contextmanager
 def export_folder(path: Path, *, overwrite: bool) -> Iterator[Path]:
-    """A folder beside `path` to write to, which takes its place at the end; what a killed one left is tidied away.
+    """Yield a temporary folder next to `path` that replaces `path` at the end.
+
+    Folders that killed exports left are removed first.
 
     Raises:
-        InputError: SK-BAG-013.
+        InputError: SK-BAG-013 the folder may not be replaced, or is not writable.
     """
     path = path.absolute()
     _remove_abandoned(path)
@@ -87,7 +89,7 @@ def export_folder(path: Path, *, overwrite: bool) -> Iterator[Path]:
 
 
 def _remove_abandoned(path: Path) -> None:
-    """Takes away what killed exports left; one that was moved aside and never replaced goes back."""
+    """Remove folders that killed exports left. An older export that was moved and not replaced is moved back."""
     try:
         for left in abandoned_folders(path.parent, path.name):
             if not path.exists() and _is_export(left / _OLD):
@@ -98,7 +100,7 @@ def _remove_abandoned(path: Path) -> None:
 
 
 def write_index(folder: Path, rows: dict[str, object]) -> None:
-    """The page that says what is where."""
+    """Write the index file of an export."""
     text = json.dumps({"made_by": _MARK, **rows}, indent=1, ensure_ascii=False)
     (folder / INDEX).write_text(text + "\n", encoding="utf-8", errors="replace")
 
@@ -119,16 +121,16 @@ _NOT_IN_FILE_NAMES = re.compile(r"[^\w.-]+")
 
 @dataclass(frozen=True)
 class ExportOptions:
-    """Options of an export: which topics, and in which formats.
+    """Options of an export: topics, formats and times.
 
     Attributes:
-        topics: shell patterns of topics; empty for all.
-        skip: shell patterns of topics that are left out.
-        format: of tables: csv, npz or parquet.
-        images: what becomes of pictures: png, mp4, npz or none.
-        clouds: what becomes of point clouds: npz, ply or none.
-        start, end: times between which messages are taken [s]: simulated ones, else from the bag's beginning.
-        overwrite: whether an older export may be replaced.
+        topics: shell patterns of the topics to export; empty for all.
+        skip: shell patterns of topics to leave out.
+        format: format of the tables: csv, npz or parquet.
+        images: format of the images: png, mp4, npz or none.
+        clouds: format of the point clouds: npz, ply or none.
+        start, end: limits of the exported times [s]: simulated times, else from the start of the bag.
+        overwrite: True to replace an older export.
     """
 
     topics: tuple[str, ...] = ()
@@ -146,9 +148,9 @@ class ExportedTopic:
     """Result of exporting one topic.
 
     Attributes:
-        file: its table, relative to the folder.
-        beside: its film, or the folder of its pictures or clouds; empty where it has none.
-        notes: what is left out or other than one would think.
+        file: table of the topic, relative to the folder.
+        beside: video of the topic, or the folder of its images or point clouds; empty without these.
+        notes: missing or converted content.
     """
 
     topic: str
@@ -160,12 +162,12 @@ class ExportedTopic:
 
 
 def export_bag(path: Path, target: Path, options: ExportOptions) -> list[ExportedTopic]:
-    """Writes a bag to a folder, which is there as a whole at the end or not at all.
+    """Export a bag to a folder. The folder is written completely or not at all.
 
     Raises:
-        InputError: SK-BAG-011 nothing in the bag is wanted; SK-BAG-013 the folder cannot be written; SK-BAG-014 a
-            format needs what is not installed; SK-CLI-030 there is no such topic; SK-CLI-035 the bag cannot be read;
-            SK-CLI-036 a message is not of its type.
+        InputError: SK-BAG-011 no topic is selected; SK-BAG-013 the folder is not writable; SK-BAG-014 a format needs a
+            missing package; SK-CLI-030 a topic does not exist; SK-CLI-035 the bag is unreadable; SK-CLI-036 a message
+            does not match its type.
     """
     check_folder(target, overwrite=options.overwrite)
     if options.format == "parquet":
@@ -183,14 +185,14 @@ def export_bag(path: Path, target: Path, options: ExportOptions) -> list[Exporte
                     "complete": not bag.broken,
                     "topics": [
                         {
-                            "topic": one.topic,
-                            "type": one.type_name,
-                            "messages": one.count,
-                            "file": one.file,
-                            **({"beside": one.beside} if one.beside else {}),
-                            **({"notes": one.notes} if one.notes else {}),
+                            "topic": exported.topic,
+                            "type": exported.type_name,
+                            "messages": exported.count,
+                            "file": exported.file,
+                            **({"beside": exported.beside} if exported.beside else {}),
+                            **({"notes": exported.notes} if exported.notes else {}),
                         }
-                        for one in found
+                        for exported in found
                     ],
                 },
             )
@@ -201,18 +203,18 @@ def _selected_topics(bag: BagReader, options: ExportOptions) -> list[BagTopic]:
     names = [topic.name for topic in bag.topics]
     for pattern in options.topics:
         if not any(matches_topic(name, [pattern]) for name in names):
-            hint = did_you_mean(pattern, names) or "there is " + (", ".join(sorted(set(names))) or "none")
+            hint = did_you_mean(pattern, names) or "known: " + (", ".join(sorted(set(names))) or "none")
             raise InputError(f"SK-CLI-030 no topic {pattern!r} in {bag.path}; {hint}", "SK-CLI-030")
     chosen = [topic for topic in bag.topics if not options.topics or matches_topic(topic.name, options.topics)]
     found = [topic for topic in chosen if not matches_topic(topic.name, options.skip)]
     if not found:
-        raise InputError(f"SK-BAG-011 nothing is wanted of {bag.path}, which has {len(names)} topics", "SK-BAG-011")
+        raise InputError(f"SK-BAG-011 the options select none of the {len(names)} topics of {bag.path}", "SK-BAG-011")
     return found
 
 
 def _write_topics(bag: BagReader, topics: list[BagTopic], folder: Path, options: ExportOptions) -> list[ExportedTopic]:
     names = _file_names(topics)
-    takers = {(t.name, t.type_name): _TopicExport(bag, t, names[t.name, t.type_name], folder, options) for t in topics}
+    exports = {(t.name, t.type_name): _TopicExport(bag, t, names[t.name, t.type_name], folder, options) for t in topics}
     origin = bag.time_origin
     start = None if options.start is None else origin + round(options.start * _NS)
     end = None if options.end is None else origin + round(options.end * _NS)
@@ -220,32 +222,32 @@ def _write_topics(bag: BagReader, topics: list[BagTopic], folder: Path, options:
         for message in bag.messages(list(dict.fromkeys(t.name for t in topics)), start):
             if end is not None and message.time_ns > end:
                 break
-            taker = takers.get((message.topic, message.type_name))
-            if taker is not None:
-                taker.take(message.time_ns, bag.decode(message))
+            export = exports.get((message.topic, message.type_name))
+            if export is not None:
+                export.take(message.time_ns, bag.decode(message))
     finally:
-        for taker in takers.values():
-            taker.close()
-    return [taker.write() for taker in takers.values()]
+        for export in exports.values():
+            export.close()
+    return [export.write() for export in exports.values()]
 
 
 def _file_names(topics: list[BagTopic]) -> dict[tuple[str, str], str]:
-    """A name for each topic: its own with `_` for slashes."""
-    taken = {INDEX.removesuffix(".json")}
+    """Return a unique file name for each topic: the topic's name with `_` for slashes."""
+    used_names = {INDEX.removesuffix(".json")}
     found = {}
     for topic in topics:
         base = _NOT_IN_FILE_NAMES.sub("_", topic.name.strip("/").replace("/", "_")).strip(".")[:120] or "topic"
         name, number = base, 1
-        while name.lower() in taken:
+        while name.lower() in used_names:
             number += 1
             name = f"{base}_{number}"
-        taken.add(name.lower())
+        used_names.add(name.lower())
         found[topic.name, topic.type_name] = name
     return found
 
 
 class _TopicExport:
-    """Gathers one topic."""
+    """Export of one topic."""
 
     def __init__(self, bag: BagReader, topic: BagTopic, name: str, folder: Path, options: ExportOptions) -> None:
         self._name, self._folder, self._format = name, folder, options.format
@@ -259,7 +261,7 @@ class _TopicExport:
         self._is_bad = False
 
     def _writer_factory(self, type_name: str, options: ExportOptions) -> WriterFactory | None:
-        """Return what makes the writer of images or clouds when the first one comes; None for other types."""
+        """Return the factory of the writer of images or point clouds; None for other types."""
         target = self._folder / self._name
         makers: dict[str, WriterFactory] = {}
         if type_name in _IMAGE_TYPES:
@@ -271,7 +273,7 @@ class _TopicExport:
         return None
 
     def take(self, time_ns: int, message: object) -> None:
-        """Adds a message."""
+        """Add a message."""
         self._times.append(time_ns)
         for column in self._columns:
             column.take(message)
@@ -284,24 +286,24 @@ class _TopicExport:
         except ValueError as error:
             self._files.append("")
             if not self._is_bad:
-                self._result.notes.append(f"not all could be written: {error}")
+                self._result.notes.append(f"some messages could not be written: {error}")
             self._is_bad = True
 
     def close(self) -> None:
-        """No more comes."""
+        """Close the writer after the last message."""
         if self._writer is not None:
             self._writer.close()
 
     def write(self) -> ExportedTopic:
-        """Writes the table."""
-        told, columns = self._result, self._columns
-        told.count = len(self._times)
+        """Write the table."""
+        result, columns = self._result, self._columns
+        result.count = len(self._times)
         if self._writer is not None:
-            told.notes += self._writer.notes
-            told.beside = next((f.partition("/")[0] for f in self._files if f), "")
+            result.notes += self._writer.notes
+            result.beside = next((f.partition("/")[0] for f in self._files if f), "")
             files = Column("file", TEXT, False, lambda message: message)
             files.values = self._files
             columns = [files, *columns]
-        told.file = f"{self._name}.{self._format}"
-        told.notes += WRITERS[self._format](self._folder / told.file, self._times, columns)
-        return told
+        result.file = f"{self._name}.{self._format}"
+        result.notes += WRITERS[self._format](self._folder / result.file, self._times, columns)
+        return result

@@ -1,4 +1,4 @@
-"""Export images of a topic: a PNG each, one NumPy file, or a video."""
+"""Export of the images of a topic: PNG files, NumPy files, or a video."""
 
 from __future__ import annotations
 
@@ -23,32 +23,32 @@ _ENCODINGS: Final = {
 }
 _SIZES: Final = {"8U": "u1", "8S": "i1", "16U": "u2", "16S": "i2", "32S": "i4", "32F": "f4", "64F": "f8"}
 _MM: Final = 1000.0
-_SAMPLE = 8  # pictures that a film's rate is taken from
-_RATE: Final = 30.0  # [Hz] of a film of one picture
-_LONGEST_STILL: Final = 600  # times that a picture is repeated at most where none comes
-_CODECS: Final = ("vp09", "mp4v")  # the first plays in browsers, the second is built in nearly everywhere
+_SAMPLE = 8  # number of images that determine the frame rate of a video
+_RATE: Final = 30.0  # [Hz] frame rate of a video with one image
+_LONGEST_STILL: Final = 600  # [frames] longest repetition of an image in a gap
+_CODECS: Final = ("vp09", "mp4v")  # vp09 plays in browsers; mp4v is available in almost every OpenCV
 
 
 class MessageWriter:
-    """Writes the images or point clouds of one topic.
+    """Writer of the images or point clouds of one topic.
 
     Attributes:
-        notes: what is other than one would think, in words.
+        notes: differences from the messages, as text.
     """
 
     def __init__(self) -> None:
         self.notes: list[str] = []
 
     def take(self, time_ns: int, message: Message) -> str:
-        """Writes one; the name of its file, relative to the export."""
+        """Write a message; return the name of its file, relative to the export."""
         raise NotImplementedError
 
     def close(self) -> None:
-        """Behind the last."""
+        """Complete the output after the last message."""
 
 
 class NumberedFiles(MessageWriter):
-    """A file for each message, in a folder that is made for them."""
+    """Writer of one file per message, in a new folder."""
 
     def __init__(self, folder: Path) -> None:
         super().__init__()
@@ -61,15 +61,18 @@ class NumberedFiles(MessageWriter):
         return f"{self._folder.name}/{target.name}"
 
     def _write(self, target: Path, message: Message) -> Path:
-        """Write a message to a file of that name with an ending of its own; return which."""
+        """Write a message to a file with that stem and the suffix of its format; return the file's path."""
         raise NotImplementedError
 
 
 def read_pixels(message: ImageMessage) -> tuple[Pixels, str]:
-    """The values of an image, shape (height, width) or (height, width, channels), and their order: gray, rgb or bgr.
+    """Return the values of an image and the order of its channels.
+
+    Returns:
+        Values, shape (height, width) or (height, width, channels), and the order: gray, rgb or bgr.
 
     Raises:
-        ValueError: its encoding is not known, or it has too few bytes.
+        ValueError: the encoding is unknown, or the image has too few bytes.
     """
     encoding = str(message.encoding)
     kind, channels = _layout(encoding)
@@ -78,7 +81,7 @@ def read_pixels(message: ImageMessage) -> tuple[Pixels, str]:
     row, step = width * channels * dtype.itemsize, int(message.step) or width * channels * dtype.itemsize
     data = np.asarray(message.data).view(np.uint8).ravel()
     if step < row or data.size < step * (height - 1) + row or not height or not width:
-        raise ValueError(f"a picture of {width} × {height} {encoding} has {data.size} bytes")
+        raise ValueError(f"an image of {width} × {height} {encoding} has {data.size} bytes")
     rows = np.lib.stride_tricks.as_strided(data, (height, row), (step, 1))
     found = np.ascontiguousarray(rows).view(dtype).astype(dtype.newbyteorder("="), copy=False)
     order = "rgb" if encoding.startswith("rgb") else "gray" if channels == 1 else "bgr"
@@ -94,37 +97,39 @@ def _layout(encoding: str) -> tuple[str, int]:
     size, _, channels = encoding.partition("C")
     if size in _SIZES and (channels in ("", "1", "2", "3", "4")):
         return _SIZES[size], int(channels or 1)
-    raise ValueError(f"the encoding {encoding!r} is not known")
+    raise ValueError(f"unknown encoding {encoding!r}")
 
 
 def png_pixels(message: ImageMessage) -> Pixels:
-    """The picture as PNG holds it, blue first: numbers of 8 or 16 bits; a depth [m] becomes millimetres (REP 118).
+    """Convert an image to the values of a PNG file, with 8 or 16 bits and the blue channel first.
+
+    Depth [m] becomes millimetres (REP 118).
 
     Raises:
-        ValueError: PNG has no place for its numbers.
+        ValueError: PNG cannot represent the values.
     """
     values, order = read_pixels(message)
     if values.ndim == 3 and values.shape[2] == 2:
-        raise ValueError(f"PNG has no pictures of two channels ({message.encoding})")
+        raise ValueError(f"PNG has no images with two channels ({message.encoding})")
     if values.dtype.kind == "f":
         if values.ndim == 3:
-            raise ValueError(f"PNG has no place for the numbers of {message.encoding}")
+            raise ValueError(f"PNG cannot hold the numbers of {message.encoding}")
         values = np.where(np.isfinite(values), values * _MM, 0.0)
         return np.clip(np.rint(values), 0, 65535).astype(np.uint16)
     if values.dtype.kind == "i":
-        raise ValueError(f"PNG has no place for the numbers of {message.encoding}")
+        raise ValueError(f"PNG cannot hold the numbers of {message.encoding}")
     if order == "rgb":
         values = values[:, :, [2, 1, 0, 3][: values.shape[2]]]
     return np.ascontiguousarray(values)
 
 
 def is_depth(message: ImageMessage) -> bool:
-    """Check whether the values of an image are lengths."""
+    """Check whether the values of an image are distances [m]."""
     return str(getattr(message, "encoding", "")) in ("32FC1", "64FC1")
 
 
 class PngFiles(NumberedFiles):
-    """A file for each picture; compressed ones as they are."""
+    """Writer of one PNG file per image. Compressed images are copied unchanged."""
 
     def _write(self, target: Path, message: Message) -> Path:
         import cv2
@@ -135,19 +140,19 @@ class PngFiles(NumberedFiles):
         else:
             if not self._count and is_depth(message):
                 self.notes.append(
-                    "depths are in mm, 0 where there is none (REP 118); --images npz has them as they are"
+                    "depths are in mm, 0 for no depth (REP 118); export the original values with --images npz"
                 )
-            written, coded = cv2.imencode(".png", png_pixels(message))
-            if not written:
-                raise ValueError(f"PNG cannot hold a picture of {message.encoding}")
-            data, ending = coded.tobytes(), ".png"
+            is_encoded, encoded = cv2.imencode(".png", png_pixels(message))
+            if not is_encoded:
+                raise ValueError(f"PNG cannot hold an image of {message.encoding}")
+            data, ending = encoded.tobytes(), ".png"
         target = target.with_suffix(ending)
         target.write_bytes(data)
         return target
 
 
 class NpzFile(NumberedFiles):
-    """An array for each picture."""
+    """Writer of one NumPy file per image."""
 
     def _write(self, target: Path, message: Message) -> Path:
         target = target.with_suffix(".npz")
@@ -159,7 +164,10 @@ class NpzFile(NumberedFiles):
 
 
 class VideoFile(MessageWriter):
-    """One MP4 video; an image stays until the next one, so that the video keeps the bag's times."""
+    """Writer of one MP4 video.
+
+    Each image is repeated until the time of the next one, so that the video keeps the bag's times.
+    """
 
     def __init__(self, path: Path) -> None:
         super().__init__()
@@ -171,12 +179,12 @@ class VideoFile(MessageWriter):
         self._size = (0, 0)
 
     def take(self, time_ns: int, message: Message) -> str:
-        """Writes one; the name of the film."""
+        """Add an image; return the name of the video."""
         frame = _video_pixels(message)
         if not self._early and self._writer is None:
             self._size, self._start = (frame.shape[1], frame.shape[0]), time_ns
         if (frame.shape[1], frame.shape[0]) != self._size:
-            raise ValueError("a film has pictures of one size")
+            raise ValueError("all images of a video must have the same size")
         if self._writer is None:
             self._early.append((time_ns, frame))
             if len(self._early) == _SAMPLE:
@@ -186,7 +194,7 @@ class VideoFile(MessageWriter):
         return self._path.name
 
     def close(self) -> None:
-        """Completes the film."""
+        """Complete the video."""
         if self._writer is None and self._early:
             self._open()
         if self._writer is not None:
@@ -209,45 +217,48 @@ class VideoFile(MessageWriter):
             self._writer = None
             self._early = []
             raise InputError(
-                "SK-BAG-014 --images mp4: OpenCV has no encoder for films here\n    help: --images png", "SK-BAG-014"
+                "SK-BAG-014 --images mp4: OpenCV has no video encoder\n    help: use --images png", "SK-BAG-014"
             )
         early, self._early = self._early, []
         for time_ns, frame in early:
             self._add(time_ns, frame)
 
     def _add(self, time_ns: int, frame: Pixels) -> None:
-        """Shows the last picture until this one's time."""
-        at = math.floor((time_ns - self._start) * 1e-9 * self._rate + 0.5)
+        """Repeat the last image until the time of this image."""
+        frame_number = math.floor((time_ns - self._start) * 1e-9 * self._rate + 0.5)
         if self._last is not None:
-            wait = at - self._frames
-            if wait > _LONGEST_STILL:
+            repeats = frame_number - self._frames
+            if repeats > _LONGEST_STILL:
                 self.notes.append(
-                    f"a gap of {wait / self._rate:.0f} s is {_LONGEST_STILL / self._rate:.0f} s in the film"
+                    f"a gap of {repeats / self._rate:.0f} s is {_LONGEST_STILL / self._rate:.0f} s in the video"
                 )
-                self._start += round((wait - _LONGEST_STILL) * 1e9 / self._rate)
-                wait = _LONGEST_STILL
-            for _ in range(max(0, wait)):
+                self._start += round((repeats - _LONGEST_STILL) * 1e9 / self._rate)
+                repeats = _LONGEST_STILL
+            for _ in range(max(0, repeats)):
                 self._writer.write(self._last)
                 self._frames += 1
         self._last = frame
 
 
 def _decode_compressed(message: CompressedImage) -> Pixels:
-    """The pixels of a compressed picture, blue first.
+    """Decode a compressed image, with the blue channel first.
 
     Raises:
-        ValueError: nothing that is known.
+        ValueError: the format is unknown.
     """
     import cv2
 
     found = cv2.imdecode(np.frombuffer(bytes(message.data), np.uint8), cv2.IMREAD_UNCHANGED)
     if found is None:
-        raise ValueError(f"a compressed picture of the format {str(message.format)!r} cannot be read")
+        raise ValueError(f"a compressed image of the format {str(message.format)!r} cannot be decoded")
     return np.asarray(found)
 
 
 def _video_pixels(message: Message) -> Pixels:
-    """Three channels of 8 bits, blue first; numbers of more bits and depths from black for 0 to white for the most."""
+    """Convert an image to three channels of 8 bits, with the blue channel first.
+
+    Depths and 16-bit values are scaled from black (0) to white (the largest value).
+    """
     if not hasattr(message, "encoding"):
         values = _decode_compressed(message)
     elif is_depth(message) or str(message.encoding) in ("16UC1", "mono16"):

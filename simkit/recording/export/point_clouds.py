@@ -1,4 +1,4 @@
-"""Export point clouds of a topic as NumPy or PLY files."""
+"""Export of the point clouds of a topic, as NumPy or PLY files."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from simkit.msgs import PointCloud2
 
 PointArray = npt.NDArray[np.void]
-"""Structured array with the fields of a cloud."""
+"""Structured array with the fields of a point cloud."""
 _KINDS: Final = ("", "i1", "u1", "i2", "u2", "i4", "u4", "f4", "f8")  # sensor_msgs/msg/PointField
 _PLY: Final = {
     "i1": "char",
@@ -29,21 +29,21 @@ _PLY: Final = {
 
 
 def read_points(message: PointCloud2) -> PointArray:
-    """The points of a cloud, those that are nowhere too, as a structured array with the cloud's fields.
+    """Return the points of a point cloud as a structured array with its fields, including NaN and infinite points.
 
     Raises:
-        ValueError: its fields and its bytes do not belong together.
+        ValueError: the fields and the size of the data do not match.
     """
     order = ">" if message.is_bigendian else "<"
     names, formats, offsets = [], [], []
-    for one in message.fields:
-        if not 1 <= int(one.datatype) < len(_KINDS):
-            raise ValueError(f"a field {one.name!r} of a cloud is of the unknown kind {one.datatype}")
-        for number in range(max(1, int(one.count))):
-            kind = np.dtype(order + _KINDS[int(one.datatype)])
-            names.append(str(one.name) if int(one.count) <= 1 else f"{one.name}_{number}")
+    for field in message.fields:
+        if not 1 <= int(field.datatype) < len(_KINDS):
+            raise ValueError(f"a field {field.name!r} of a point cloud has the unknown type {field.datatype}")
+        for number in range(max(1, int(field.count))):
+            kind = np.dtype(order + _KINDS[int(field.datatype)])
+            names.append(str(field.name) if int(field.count) <= 1 else f"{field.name}_{number}")
             formats.append(kind)
-            offsets.append(int(one.offset) + number * kind.itemsize)
+            offsets.append(int(field.offset) + number * kind.itemsize)
     height, width, step = int(message.height), int(message.width), int(message.point_step)
     row = int(message.row_step) or width * step
     data = np.asarray(message.data).view(np.uint8).ravel()
@@ -53,7 +53,7 @@ def read_points(message: PointCloud2) -> PointArray:
         or (ends and max(ends) > step)
         or (height and data.size < row * (height - 1) + width * step)
     ):
-        raise ValueError(f"a cloud of {width} × {height} points of {step} bytes has {data.size} bytes")
+        raise ValueError(f"a point cloud of {width} × {height} points of {step} bytes has {data.size} bytes")
     layout = np.dtype({"names": names, "formats": formats, "offsets": offsets, "itemsize": max(step, 1)})
     if not height or not width or not names:
         return np.empty(0, dtype=layout)
@@ -62,11 +62,11 @@ def read_points(message: PointCloud2) -> PointArray:
 
 
 class CloudFiles(NumberedFiles):
-    """A file for each cloud.
+    """Writer of one file per point cloud.
 
     Args:
-        folder: made for them.
-        ending: `npz`, an array a field; or `ply`, binary, with colours where there is a field `rgb`.
+        folder: folder to create for the files.
+        ending: `npz`, with one array per field; or `ply`, binary, with colours from a field `rgb`.
     """
 
     def __init__(self, folder: Path, ending: str) -> None:
@@ -86,7 +86,7 @@ class CloudFiles(NumberedFiles):
 
 
 def _ply_bytes(found: PointArray) -> bytes:
-    """The points that are somewhere, as binary PLY."""
+    """Return the finite points as binary PLY."""
     names = found.dtype.names or ()
     if {"x", "y", "z"} <= set(names):
         found = found[np.isfinite(found["x"]) & np.isfinite(found["y"]) & np.isfinite(found["z"])]

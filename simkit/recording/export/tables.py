@@ -1,4 +1,4 @@
-"""Turn messages of one type into columns, and write them as CSV, NumPy or Parquet."""
+"""Tables of messages of one type: columns of values, written as CSV, NumPy or Parquet."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _DTYPES: Final = {
 _CODES: Final = {"?": "b", "f4": "f", "f8": "d", "i1": "b", "u1": "B", "i2": "h", "u2": "H", "i4": "i", "u4": "I"}
 TEXT: Final = "text"
 Reader = Callable[[FieldValue], FieldValue]
-"""Reads a value of a message."""
+"""Function that reads a value of a message."""
 
 
 @dataclass
@@ -42,11 +42,11 @@ class Column:
     """Values of one field of all messages of a topic.
 
     Attributes:
-        path: of the field; a list of messages has `[]` behind its name.
-        kind: NumPy's name of its numbers, or TEXT.
-        is_list: whether a message has several.
-        values: all of them, one behind the other.
-        counts: of a list, how many each message has.
+        path: path of the field; a list of messages has `[]` after its name.
+        kind: NumPy type of the numbers, or TEXT.
+        is_list: True if a message has several values.
+        values: values of all messages, concatenated.
+        counts: number of values in each message, for a list.
     """
 
     path: str
@@ -61,7 +61,7 @@ class Column:
             self.values = array(_CODES.get(self.kind) or {"i8": "q", "u8": "Q"}[self.kind])
 
     def take(self, message: object) -> None:
-        """Adds what a message has."""
+        """Append the values of a message."""
         found = self.read(message)
         if not self.is_list:
             self.values.append(found)
@@ -74,7 +74,7 @@ class Column:
 
     @property
     def width(self) -> int | None:
-        """Number of values in every message; None where messages differ in it."""
+        """Number of values in every message; None if the messages differ."""
         if not self.is_list:
             return 1
         return self.counts[0] if len(set(self.counts)) == 1 else None
@@ -85,13 +85,13 @@ class Column:
         return max(self.counts, default=0) if self.is_list else 1
 
     def numbers(self) -> npt.NDArray[np.generic]:
-        """Return all values in one array; texts as NumPy's."""
+        """Return all values in one array; texts as NumPy strings."""
         if self.kind == TEXT:
             return np.array(self.values, dtype=np.str_) if self.values else np.empty(0, dtype="U1")
         return np.frombuffer(self.values, dtype=self.kind) if len(self.values) else np.empty(0, dtype=self.kind)
 
     def rows(self) -> Iterator[FieldValue]:
-        """Yield what each message has: a value, or a list of values."""
+        """Yield the value of each message, or its list of values."""
         values: Sequence[object] = self.values
         if self.kind == "?":
             values = [bool(v) for v in values]
@@ -105,12 +105,12 @@ class Column:
 
 
 def columns_of(type_name: str, store: Typestore, without: frozenset[str] = frozenset()) -> list[Column]:
-    """The columns of a type.
+    """Return the columns of a type.
 
     Args:
-        type_name: the messages' type.
-        store: the definitions that it is read by.
-        without: paths of fields that are left out.
+        type_name: type of the messages.
+        store: type store with the type's definition.
+        without: paths of fields to leave out.
     """
     return list(_message_columns(type_name, store, "", _identity, without))
 
@@ -139,7 +139,7 @@ def _field_columns(
         yield Column(path, _DTYPES.get(inner[1][0], TEXT), True, read)
         return
     for column in _field_columns(inner, store, f"{path}[]", _identity, without):
-        if column.is_list:  # a list in a list: how many each has, and all of them
+        if column.is_list:  # a list of lists: the length of each list, and the values of all
             yield Column(f"{column.path}.count", "i8", True, _lengths(read, column.read))
         yield Column(column.path, column.kind, True, _each_item(read, column))
 
@@ -163,40 +163,40 @@ def _lengths(read: Reader, inner: Reader) -> Reader:
     return lambda message: [len(inner(item)) for item in read(message)]
 
 
-_WIDEST: Final = 16384  # columns of a CSV file: what spreadsheets open
+_WIDEST: Final = 16384  # columns of a CSV file that spreadsheets can open
 _NS: Final = 1_000_000_000
 
 
 def write_csv(path: Path, times: Sequence[int], columns: Sequence[Column]) -> list[str]:
-    """A line for each message; lists have a column for each item, and empty cells where a message has fewer.
+    """Write one line per message. A list has a column for each item, with empty cells in messages with fewer items.
 
     Args:
-        path: the file.
-        times: of the messages [ns].
-        columns: what they hold.
+        path: file to write.
+        times: times of the messages [ns].
+        columns: values of the messages.
 
     Returns:
-        What is left out, in words.
+        Notes about columns that were left out.
     """
-    kept: list[Column] = []
+    included: list[Column] = []
     notes, room = [], _WIDEST - 1
     for column in columns:
         if column.most > room or column.most > _WIDEST // 2:
-            notes.append(f"{column.path} has up to {column.most} items and is left out: --format npz has it")
+            notes.append(f"{column.path} has up to {column.most} items and is left out; export it with --format npz")
             continue
         room -= column.most
-        kept.append(column)
-    names = [_column_name(c, i) for c in kept for i in range(c.most)]
+        included.append(column)
+    names = [_column_name(c, i) for c in included for i in range(c.most)]
     with path.open("w", encoding="utf-8", errors="replace", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(["time", *names])
-        for time_ns, *cells in zip(times, *(_cells(c) for c in kept), strict=True):
+        for time_ns, *cells in zip(times, *(_cells(c) for c in included), strict=True):
             writer.writerow([f"{time_ns // _NS}.{time_ns % _NS:09d}", *chain.from_iterable(cells)])
     return notes
 
 
 def _column_name(column: Column, number: int) -> str:
-    """`ranges[0]` of a list of numbers, `transforms[0].child_frame_id` of a list of messages."""
+    """Return `ranges[0]` for a list of numbers, `transforms[0].child_frame_id` for a list of messages."""
     if not column.is_list:
         return column.path
     path = column.path.removesuffix(".count")
@@ -206,7 +206,7 @@ def _column_name(column: Column, number: int) -> str:
 
 
 def _cells(column: Column) -> Iterator[list[object]]:
-    """The cells of each message."""
+    """Yield the cells of each message."""
     most, as_text = column.most, _text_writer(column.kind)
     for row in column.rows():
         cells = [as_text(v) for v in row] if column.is_list else [as_text(row)]
@@ -214,7 +214,7 @@ def _cells(column: Column) -> Iterator[list[object]]:
 
 
 def _text_writer(kind: str) -> Callable[[FieldValue], object]:
-    """Return a function that writes a value so that reading it gives the same bits."""
+    """Return a function that formats a value without loss of bits."""
     if kind == "f4":
         return lambda value: str(np.float32(value))
     if kind == "?":
@@ -223,9 +223,9 @@ def _text_writer(kind: str) -> Callable[[FieldValue], object]:
 
 
 def write_npz(path: Path, times: Sequence[int], columns: Sequence[Column]) -> list[str]:
-    """An array for each column, and `time_ns`.
+    """Write one array per column, and `time_ns`.
 
-    Lists of one length are a matrix; others lie one behind the other, and message i has those from
+    Lists of equal length become a matrix. Other lists are concatenated, and message i has the values from
     `PATH.offsets[i]` to `PATH.offsets[i + 1]`.
     """
     arrays: dict[str, npt.NDArray[np.generic]] = {"time_ns": np.array(times, dtype=np.int64)}
@@ -244,28 +244,28 @@ def write_npz(path: Path, times: Sequence[int], columns: Sequence[Column]) -> li
 
 
 def _npz_key(name: str) -> str:
-    """A name that `savez` has no use for itself."""
+    """Rename an array whose name is a parameter of `savez`."""
     return f"{name}_" if name in ("file", "allow_pickle") else name
 
 
 def check_parquet() -> None:
-    """Sees to it that Parquet can be written.
+    """Check whether Parquet files can be written.
 
     Raises:
-        InputError: SK-BAG-014 its package is not installed.
+        InputError: SK-BAG-014 the package is not installed.
     """
     try:
         import_module("pyarrow.parquet")
     except ImportError:
         text = (
             "SK-BAG-014 --format parquet needs the package pyarrow, which is not installed\n"
-            "    help: pip install 'simkit-robotics[parquet]', or --format npz"
+            "    help: pip install 'simkit-robotics[parquet]', or use --format npz"
         )
         raise InputError(text, "SK-BAG-014") from None
 
 
 def write_parquet(path: Path, times: Sequence[int], columns: Sequence[Column]) -> list[str]:
-    """A row for each message; lists stay lists; `time` is a time stamp in nanoseconds."""
+    """Write one row per message. Lists stay lists; `time` is a time stamp in nanoseconds."""
     pa, pq = import_module("pyarrow"), import_module("pyarrow.parquet")
     arrays: dict[str, object] = {"time": pa.array(times, pa.timestamp("ns"))}
     for column in columns:
@@ -280,4 +280,4 @@ def write_parquet(path: Path, times: Sequence[int], columns: Sequence[Column]) -
 
 
 WRITERS: Final = {"csv": write_csv, "npz": write_npz, "parquet": write_parquet}
-"""What writes a table, by the ending of its file."""
+"""Functions that write a table, by the suffix of its file."""

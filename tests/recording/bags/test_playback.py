@@ -112,7 +112,7 @@ def test_topics_are_played_on_others_where_asked(tmp_path: Path) -> None:
         driven(sim, Commands(sim, DRIVE), 50)
     other = CART.replace("/cmd_vel", "/robot/go")
     with simkit.load(other) as sim:
-        with pytest.raises(InputError, match=r"SK-BAG-016 .*takes /robot/go"):
+        with pytest.raises(InputError, match=r"SK-BAG-016 .*inputs: /robot/go"):
             Playback(sim, tmp_path / "a.mcap")
         with Playback(sim, tmp_path / "a.mcap", ["cmd_vel:=/robot/go"]) as played:
             driven(sim, played, 50)

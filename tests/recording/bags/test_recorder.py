@@ -152,7 +152,7 @@ def test_a_folder_that_is_no_bag_is_not_replaced_even_by_force(tmp_path: Path) -
 
 
 def test_a_place_that_cannot_be_written_is_said_before_the_run(tmp_path: Path) -> None:
-    with simkit.load(WORLD) as sim, pytest.raises(InputError, match="there is no folder") as error:
+    with simkit.load(WORLD) as sim, pytest.raises(InputError, match="missing does not exist") as error:
         Recorder(sim, tmp_path / "missing" / "run.mcap")
     assert error.value.code == "SK-BAG-002"
 

@@ -188,7 +188,7 @@ def test_pictures_that_cannot_be_read_are_told_and_the_rest_is_there(tmp_path: P
     bag = written(tmp_path / "a.mcap", (0.0, "/a", odd), (0.0, "/b", strange), (1.0, "/a", image(COLOURS, "rgb8")))
     for images in ("png", "mp4", "npz"):
         a, b = export_bag(bag, tmp_path / images, ExportOptions(images=images))
-        assert "has 5 bytes" in a.notes[0] and "'yuv9' is not known" in b.notes[0]
+        assert "has 5 bytes" in a.notes[0] and "unknown encoding 'yuv9'" in b.notes[0]
         assert [bool(r["file"]) for r in table(tmp_path / images / "a.csv")] == [False, True]
 
 
