@@ -1,12 +1,11 @@
-"""ROS 2 messages: dataclasses that rosbags makes, built from plain values and serialised as CDR.
+"""ROS 2 messages: dataclasses of rosbags, built from plain values and serialised as CDR.
 
     msgs.make("geometry_msgs/msg/Twist", linear={"x": 0.2})
     msgs.type_of("sensor_msgs/msg/Imu")  # the class itself, for the fast path
     msgs.header(sim.time_ns, "imu_link")
 
-Type names, plain values and CDR bytes enter; message objects, CDR bytes, and definitions and messages as text leave.
-The room knows messages alone, never a topic that carries them, a simulation or a bag; `import simkit.msgs` loads
-neither rosbags nor NumPy.
+This package builds, encodes and decodes messages, and formats messages and definitions as text. It does not depend on
+topics, simulations or bags. `import simkit.msgs` imports neither rosbags nor NumPy.
 """
 
 from __future__ import annotations
@@ -47,32 +46,32 @@ __all__ = [
 
 _NS = 1_000_000_000
 
-if not TYPE_CHECKING:  # to a type checker a class that does not exist is an error
+if not TYPE_CHECKING:  # hidden from type checkers, so that they report unknown classes
     __getattr__ = message_class
 
 
 @cache
 def _builder_of() -> Callable[[str], MessageBuilder]:
-    """Return what finds builders of messages; it needs NumPy, which reading a simulation's state alone does not."""
+    """Return `message_builder.builder_of`. It is imported late, because reading a simulation's state needs no NumPy."""
     from simkit.msgs.message_builder import builder_of
 
     return builder_of
 
 
 def make(type_name: str, /, **fields: FieldValue) -> Message:
-    """Build a message; fields left out are zero (a quaternion's w is 1), dicts become messages, numbers become arrays.
+    """Build a message. Missing fields are zero (a quaternion's w is 1), dicts become messages, numbers become arrays.
 
     Raises:
-        MessageError: an unknown type or field (the closest is named), or a value that does not fit.
+        MessageError: the type or a field is unknown (the message suggests the closest), or a value does not match.
     """
     return _builder_of()(type_name).build(fields)
 
 
 def from_dict(type_names: Sequence[str], values: Mapping[str, FieldValue]) -> Message:
-    """Build a message of the first type that the values fit.
+    """Build a message of the first type that the values match.
 
     Raises:
-        MessageError: they fit none; says why for the first type, and which others were tried.
+        MessageError: the values match no type; with the error of the first type, and the names of the other types.
     """
     first: MessageError | None = None
     for name in type_names:
@@ -81,8 +80,8 @@ def from_dict(type_names: Sequence[str], values: Mapping[str, FieldValue]) -> Me
         except MessageError as error:
             first = first or error
     if first is None:
-        raise MessageError("no message type is taken here")
-    others = f" (nor does it fit {', '.join(type_names[1:])})" if len(type_names) > 1 else ""
+        raise MessageError("this topic accepts no message type")
+    others = f" (also tried: {', '.join(type_names[1:])})" if len(type_names) > 1 else ""
     raise MessageError(f"{first}{others}")
 
 
@@ -90,7 +89,7 @@ def type_name(message: Message) -> str:
     """Return the ROS type name of a message object, such as `sensor_msgs/msg/Imu`.
 
     Raises:
-        MessageError: the object is no message.
+        MessageError: the object is not a message.
     """
     name = getattr(message, "__msgtype__", None)
     if not isinstance(name, str):
@@ -126,7 +125,7 @@ def header(time_ns: int, frame_id: str) -> Header:
 
 
 def headers(time_ns: int) -> Callable[[str], Header]:
-    """Return a function from frame to `header(time_ns, frame)`, which is faster where there are many frames."""
+    """Return a function from frame to `header(time_ns, frame)`; faster than `header` for many frames."""
     stamp, _, header_type = _stamp_types()
     seconds, rest = divmod(time_ns, _NS)
     return lambda frame_id: header_type(stamp(seconds, rest), frame_id)
@@ -138,18 +137,18 @@ def stamp_ns(stamp: Time | Duration) -> int:
 
 
 def serialize(message: Message) -> bytes:
-    """Serialise a message as CDR, little-endian, as ROS 2 sends it.
+    """Serialise a message as little-endian CDR, as ROS 2 sends it.
 
     Raises:
-        MessageError: a field holds what its type cannot.
+        MessageError: the value of a field does not match its type.
     """
     name = type_name(message)
     try:
         return bytes(type_store().serialize_cdr(message, name, little_endian=True))
     except (struct.error, TypeError, ValueError, AttributeError, AssertionError, OverflowError) as error:
-        raise MessageError(f"{name} cannot be written: {error}") from None
+        raise MessageError(f"{name} cannot be serialised: {error}") from None
 
 
 def deserialize(data: bytes | memoryview, type_name: str) -> Message:
-    """Return the message that `serialize` wrote."""
+    """Decode a message that `serialize` encoded."""
     return type_store().deserialize_cdr(data, full_name(type_name))

@@ -1,4 +1,4 @@
-"""Interfaces as `ros2 interface` shows them: names of messages, services and actions, definitions, prototypes."""
+"""Interfaces as in `ros2 interface`: names of messages, services and actions, their definitions and prototypes."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def full_interface_name(name: str) -> str:
     """Return the full name of a message, service or action: `std_msgs/String` is `std_msgs/msg/String`.
 
     Raises:
-        MessageError: none of that name; the closest is told.
+        MessageError: the name is unknown; the message suggests the closest name.
     """
     package, _, rest = name.partition("/")
     ours = definition_files()
@@ -43,16 +43,16 @@ def full_interface_name(name: str) -> str:
     except MessageError:
         known = [known for kind in ("msg", "srv", "action") for known in interface_names(kind)]
         hint = did_you_mean(name, known)
-        raise MessageError(f"no interface {name!r} is known; {hint}".rstrip("; ")) from None
+        raise MessageError(f"unknown interface {name!r}; {hint}".rstrip("; ")) from None
 
 
 def interface_text(
     type_name: str, *, comments: bool = True, all_comments: bool = False, store: Typestore | None = None
 ) -> str:
-    """Return the definition of a type with those of its fields' types indented below, as `ros2 interface show` does.
+    """Return the definition of a type, with those of its fields' types indented below, as `ros2 interface show` does.
 
     Raises:
-        MessageError: no such type.
+        MessageError: the type is unknown.
     """
     return "\n".join(_lines(type_name if store else full_interface_name(type_name), 0, comments, all_comments, store))
 
@@ -73,7 +73,7 @@ def _lines(name: str, depth: int, comments: bool, below: bool, store: Typestore 
 
 
 def _text(name: str, store: Typestore | None) -> str:
-    """Return what the file of a type holds, as far as it is known."""
+    """Return the text of a type's definition file, as far as it is known."""
     if store is None and name in definition_files():
         return definition_text(name)
     found = (store or type_store()).generate_msgdef(name if store else full_name(name), ros_version=2)[0]
@@ -81,10 +81,12 @@ def _text(name: str, store: Typestore | None) -> str:
 
 
 def prototype(type_name: str) -> dict[str, FieldValue]:
-    """Return the fields of a message with their defaults, to be filled in: of a service's request, an action's goal.
+    """Return the fields of a message with their default values, as a template.
+
+    For a service, these are the fields of the request; for an action, the fields of the goal.
 
     Raises:
-        MessageError: no such type.
+        MessageError: the type is unknown.
     """
     name = full_interface_name(type_name)
     if name in definition_files():

@@ -1,4 +1,4 @@
-"""Build messages from plain values: fields left out are zero, dicts become messages, numbers become arrays."""
+"""Builder of messages from plain values: missing fields are zero, dicts become messages, numbers become arrays."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _INTEGERS: dict[str, tuple[int, int]] = {
 }
 _DTYPES = {"byte": "uint8", "char": "uint8", "bool": "bool"}
 
-# The defaults that ROS gives other than zero.
+# ROS defaults that are not zero.
 _DEFAULTS: dict[tuple[str, str], float] = {("geometry_msgs/msg/Quaternion", "w"): 1.0}
 
 _Default = Callable[[], FieldValue]
@@ -33,7 +33,7 @@ class MessageBuilder:
 
     Attributes:
         name: full name of the type.
-        cls: its dataclass.
+        cls: dataclass of the type.
         fields: attribute, default and conversion of each field, in order.
     """
 
@@ -56,10 +56,10 @@ class MessageBuilder:
         return self.cls(*[default() for default in self._defaults])
 
     def build(self, fields: Mapping[str, FieldValue]) -> Message:
-        """Return a message of the given fields; the others have their defaults.
+        """Return a message of the given fields; all other fields have their defaults.
 
         Raises:
-            MessageError: an unknown field, or a value that does not fit.
+            MessageError: a field is unknown, or a value does not match its field.
         """
         values = []
         found = 0
@@ -77,7 +77,7 @@ class MessageBuilder:
         if found != len(fields):
             known = [name for name, _, _ in self.fields]
             unknown = next(name for name in fields if name not in known)
-            hint = did_you_mean(str(unknown), known) or f"its fields are {', '.join(known)}"
+            hint = did_you_mean(str(unknown), known) or f"its fields: {', '.join(known)}"
             raise MessageError(f"{self.name} has no field {unknown!r}; {hint}")
         return self.cls(*values)
 
@@ -104,14 +104,14 @@ def _short(value: object) -> str:
 
 
 def _default_and_conversion(node: FieldNode) -> tuple[_Default, _Conversion]:
-    """Return what makes the default of a field, and what converts a value for it, from its node in the type store."""
-    kind, what = int(node[0]), node[1]
+    """Return the default factory and the conversion of a field, from its node in the type store."""
+    kind, content = int(node[0]), node[1]
     if kind == NAME:
-        builder = builder_of(what)
+        builder = builder_of(content)
         return builder.default, builder.convert
     if kind == BASE:
-        return _scalar(what[0])
-    (inner_kind, inner), size = what
+        return _scalar(content[0])
+    (inner_kind, inner), size = content
     length = size if kind == ARRAY else 0
     bound = size if kind == SEQUENCE and size else None
     if int(inner_kind) == BASE and inner[0] != "string":

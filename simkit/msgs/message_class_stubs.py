@@ -1,4 +1,4 @@
-"""Write the stubs of all message classes.
+"""Generator of the stubs of all message classes.
 
 python -m simkit.msgs.message_class_stubs > simkit/msgs/message_classes.pyi
 """

@@ -1,7 +1,7 @@
 """Message classes by name, for annotations and `isinstance`: `from simkit.msgs import LaserScan`.
 
-Type checkers and editors read the fields of every class from the file `message_classes.pyi` beside this one, which
-`python -m simkit.msgs.message_class_stubs` writes.
+Type checkers and editors read the fields of every class from the file `message_classes.pyi` next to this module.
+`python -m simkit.msgs.message_class_stubs` generates that file.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""Format messages as ROS 2's commands print them: YAML, CSV, Python, plain values; find a field by its path.
+"""Text formats of messages, as ROS 2's commands print them: YAML, CSV, Python and plain values; and fields by path.
 
-Every function takes the type store that the message is of, where that is not simkit's: a bag brings its own.
+Every function accepts the type store of the message; the default is simkit's. A bag has its own type store.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ NUMBER_CODES = {"float32": "f", "float64": "d", "char": "B", "octet": "B"} | {
     for bits, code in ((8, "b"), (16, "h"), (32, "i"), (64, "q"))
     for name, letter in ((f"int{bits}", code), (f"uint{bits}", code.upper()))
 }
-"""Letters of Python's `array` (in which rclpy keeps numbers) and `struct` for the numbers of messages."""
+"""Type codes of Python's `array` (used by rclpy for numbers) and `struct`, by the name of the number type."""
 _STEP = re.compile(r"([^.\[\]]+)|\[(-?\d*)(:?)(-?\d*)\]")
 _TypedValue = tuple[FieldValue, FieldNode | None]
 _WIDEST = 2**31 - 1
@@ -33,13 +33,13 @@ _WIDEST = 2**31 - 1
 
 @dataclass(frozen=True)
 class TextStyle:
-    """How much of a message is shown.
+    """Amount of detail in the text of a message.
 
     Attributes:
-        truncate: arrays and texts longer than this are cut; None for none.
-        no_arr: arrays are told by type and length only.
-        no_str: so are texts.
-        flow: YAML on one line.
+        truncate: length above which arrays and strings are truncated; None for no limit.
+        no_arr: True to print arrays as type and length.
+        no_str: True to print strings as their length.
+        flow: True for YAML on one line.
     """
 
     truncate: int | None = None
@@ -52,13 +52,13 @@ FULL_TEXT = TextStyle()
 
 
 def field_nodes(type_name: str, store: Typestore | None = None) -> list[tuple[str, FieldNode]]:
-    """Return the name of each field of a type with its node in the type store; nothing of a type without fields."""
+    """Return the name of each field of a type with its node in the type store; empty for a type without fields."""
     found = (store or type_store()).fielddefs[type_name][1]
     return [(name, node) for name, node in found if name != _EMPTY]
 
 
 def field_value(message: Message, field: str) -> FieldValue:
-    """Return a field's value; a field that is named like a keyword of Python is an attribute with `_` at its end."""
+    """Return a field's value. A field named like a Python keyword is an attribute with a trailing `_`."""
     try:
         return getattr(message, field)
     except AttributeError:
@@ -118,7 +118,7 @@ def message_to_yaml(message: Message, style: TextStyle = FULL_TEXT, store: Types
 
 
 def to_yaml(value: object, *, flow: bool | None = False) -> str:
-    """Format plain values as YAML with lines of any length; mappings keep their order."""
+    """Format plain values as YAML without line wrapping; mappings keep their order."""
     import yaml
 
     dumper = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
@@ -128,7 +128,7 @@ def to_yaml(value: object, *, flow: bool | None = False) -> str:
 
 
 def message_to_csv(message: Message, style: TextStyle = FULL_TEXT, store: Typestore | None = None) -> str:
-    """Format all numbers and texts of a message with commas between, in the order of its fields."""
+    """Format all numbers and strings of a message as comma-separated values, in the order of its fields."""
     parts = []
     for name, node in field_nodes(message.__msgtype__, store):
         value = field_value(message, name)
@@ -153,7 +153,7 @@ def _csv_values(value: FieldValue, style: TextStyle, store: Typestore | None) ->
 
 
 def to_python(value: FieldValue, store: Typestore | None = None) -> str:
-    """Format a message as rclpy writes it: `geometry_msgs.msg.Point(x=0.0, y=0.0, z=1.0)`."""
+    """Format a message as rclpy does: `geometry_msgs.msg.Point(x=0.0, y=0.0, z=1.0)`."""
     if is_message(value):
         name = value.__msgtype__.replace("/", ".")
         fields = field_nodes(value.__msgtype__, store)
@@ -171,7 +171,7 @@ def _python_field(value: FieldValue, node: FieldNode, store: Typestore | None) -
 
 
 def field_text(value: FieldValue, node: FieldNode | None, store: Typestore | None = None) -> str:
-    """Format one field alone, as `ros2 topic echo --field` prints a value that is no message."""
+    """Format one field, as `ros2 topic echo --field` prints a value that is not a message."""
     if isinstance(value, np.ndarray):
         inner = node[1][0] if node is not None and int(node[0]) in (ARRAY, SEQUENCE) else None
         code = NUMBER_CODES.get(_node_type(inner)) if inner is not None else None
@@ -187,10 +187,10 @@ def field_at_path(message: Message, path: str, store: Typestore | None = None) -
     """Return the value at a path such as `pose.pose.position.x`, `transforms[0].child_frame_id` or `ranges[0:9]`.
 
     Returns:
-        The value, and its description in the type store (None for an item of an array).
+        The value, and its node in the type store (None for an item of an array).
 
     Raises:
-        MessageError: there is no such field; names the closest.
+        MessageError: a field is unknown; the message suggests the closest name.
     """
     value, node = message, None
     walked, at = "", 0
@@ -200,7 +200,7 @@ def field_at_path(message: Message, path: str, store: Typestore | None = None) -
             at += 1
         found = _STEP.match(text, at)
         if found is None:
-            raise MessageError(f"{path!r} is no path of fields, such as pose.position.x or ranges[0]")
+            raise MessageError(f"{path!r} is not a field path such as pose.position.x or ranges[0]")
         if found[1] is not None:
             value, node = _step_into_field(value, found[1], walked, store)
         else:
@@ -212,17 +212,17 @@ def field_at_path(message: Message, path: str, store: Typestore | None = None) -
 
 def _step_into_field(value: FieldValue, name: str, walked: str, store: Typestore | None) -> _TypedValue:
     if not is_message(value):
-        raise MessageError(f"{walked!r} is no message and has no field {name!r}")
+        raise MessageError(f"{walked!r} is not a message and has no field {name!r}")
     fields = dict(field_nodes(value.__msgtype__, store))
     if name not in fields:
-        hint = did_you_mean(name, fields) or "its fields are " + (", ".join(fields) or "none")
+        hint = did_you_mean(name, fields) or "its fields: " + (", ".join(fields) or "none")
         raise MessageError(f"{value.__msgtype__} has no field {name!r}; {hint}")
     return field_value(value, name), fields[name]
 
 
 def _step_into_item(value: FieldValue, found: re.Match[str], node: FieldNode | None, walked: str) -> _TypedValue:
     if not isinstance(value, (list, tuple, np.ndarray)):
-        raise MessageError(f"{walked!r} is no array and has no item {found[0]}")
+        raise MessageError(f"{walked!r} is not an array and has no item {found[0]}")
     if found[3]:
         return value[int(found[2]) if found[2] else None : int(found[4]) if found[4] else None], node
     try:

@@ -1,9 +1,9 @@
-"""Message types: ROS 2 Jazzy's own from rosbags, and those of `definitions/`, which are read at their first use.
+"""Message types: those of ROS 2 Jazzy from rosbags, and those of `definitions/`, which are read at their first use.
 
-The definition of a type of ours is the file `definitions/<package>/<msg, srv or action>/<Name>.<msg, srv or action>`,
-with the published fields in the published order. Constants are part of a definition but not of its hash; field names,
-types and order are. A service or action is several message types: `<package>/srv/<Name>_Request` and `…_Response`,
-`<package>/action/<Name>_Goal`, `…_Result` and `…_Feedback`, divided by `---` in its file.
+The definition of a simkit type is the file `definitions/<package>/<msg, srv or action>/<Name>.<msg, srv or action>`,
+with the published fields in the published order. Constants are part of a definition but not of its hash. Field names,
+types and order are part of both. A service or action is several message types: `<package>/srv/<Name>_Request` and
+`…_Response`, `<package>/action/<Name>_Goal`, `…_Result` and `…_Feedback`, divided by `---` in its file.
 """
 
 from __future__ import annotations
@@ -37,14 +37,14 @@ def definition_files() -> dict[str, str]:
 
 @cache
 def definition_text(interface_name: str) -> str:
-    """Return the text of the definition file of a message, service or action of ours."""
+    """Return the text of the definition file of a message, service or action in `definitions/`."""
     with open(definition_files()[interface_name], encoding="utf-8") as file:
         return file.read()
 
 
 @cache
 def _message_sources() -> dict[str, tuple[str, int]]:
-    """Return, for each message type of ours, the interface that defines it and the part of the file that it is."""
+    """Return the interface of each message type in `definitions/`, and the index of its part in that file."""
     return {
         f"{interface}{part}": (interface, index)
         for interface in definition_files()
@@ -52,17 +52,17 @@ def _message_sources() -> dict[str, tuple[str, int]]:
     }
 
 
-# A message of any type: an object of a dataclass that rosbags makes while a program runs.
+# Message of any type: an object of a dataclass that rosbags creates at run time.
 Message = Any
 # Value of a message's field: a number, a text, an array, a message or a list of such.
 FieldValue = Any
-# Type of a field in the type store: its kind (`BASE`, `NAME`, `ARRAY`, `SEQUENCE`) and what the kind says of it.
+# Type of a field in the type store: its kind (`BASE`, `NAME`, `ARRAY`, `SEQUENCE`) and the details of that kind.
 FieldNode = tuple[int, Any]
-_Entry = Any  # of the type store: a class, or its constants and fields
+_Entry = Any  # entry of the type store: a class, or its constants and fields
 
 
 class _ReadOnDemand(dict[str, _Entry]):
-    """Table of the type store that contains our types as well; one is registered when it is first looked up."""
+    """Table of the type store that also contains the types of `definitions/`, each registered on first access."""
 
     def __contains__(self, type_name: object) -> bool:
         return super().__contains__(type_name) or type_name in _message_sources()
@@ -74,7 +74,7 @@ class _ReadOnDemand(dict[str, _Entry]):
 
 @cache
 def type_store() -> Typestore:
-    """Return the type store, which knows every message type that simkit knows."""
+    """Return the type store of all message types that simkit knows."""
     from rosbags.typesys import Stores, get_typestore
 
     store = get_typestore(Stores.ROS2_JAZZY)
@@ -83,23 +83,23 @@ def type_store() -> Typestore:
 
 
 def _register(type_name: str) -> None:
-    """Read the definition of one message type of ours into the type store.
+    """Read the definition of one message type of `definitions/` into the type store.
 
     Raises:
-        KeyError: the type is not ours.
+        KeyError: the type is not in `definitions/`.
     """
     from rosbags.typesys import get_types_from_msg
 
     interface, part = _message_sources()[type_name]
     package, kind, name = type_name.split("/")
     text = definition_text(interface).split("---\n")[part]
-    # rosbags' parser has no services: it takes every name for a message's
+    # rosbags' parser has no services; it parses every definition as a message
     (definition,) = get_types_from_msg(text, f"{package}/msg/{name}").values()
     type_store().register({f"{package}/{kind}/{name}": definition})
 
 
 def message_type_names() -> list[str]:
-    """Return the full name of every message type, those that services and actions consist of included."""
+    """Return the full name of every message type, including the parts of services and actions."""
     return sorted({*type_store().fielddefs, *_message_sources()})
 
 
@@ -107,7 +107,7 @@ def full_name(type_name: str) -> str:
     """Return the full name of a message type: `sensor_msgs/Imu` is `sensor_msgs/msg/Imu`.
 
     Raises:
-        MessageError: no such type is known; names the closest.
+        MessageError: the type is unknown; the message suggests the closest name.
     """
     known = type_store().fielddefs
     package, _, rest = type_name.partition("/")
@@ -117,12 +117,12 @@ def full_name(type_name: str) -> str:
             return name
     is_long = any(f"/{kind}/" in type_name for kind in _PARTS)
     hint = did_you_mean(type_name if is_long else long, [*known, *_message_sources()])
-    raise MessageError(f"no message type {type_name!r} is known; {hint}".rstrip("; "))
+    raise MessageError(f"unknown message type {type_name!r}; {hint}".rstrip("; "))
 
 
 @cache
 def type_of(type_name: str) -> type[Message]:
-    """Return the dataclass of a message type; construct it directly where every microsecond counts."""
+    """Return the dataclass of a message type. Construct it directly in code that must be fast."""
     return type_store().types[full_name(type_name)]
 
 
@@ -130,12 +130,12 @@ def type_of(type_name: str) -> type[Message]:
 def class_names() -> dict[str, str]:
     """Return the type name of each message class by the class's name in `simkit.msgs`.
 
-    That is the last part of the type name: `LaserScan`. Where several types share it, it is the name of ROS's own type
-    if there is one; every other is named in full: `gazebo_msgs__srv__SpawnEntity_Request`.
+    A class has the last part of its type name: `LaserScan`. If several types share it, ROS's own type has the short
+    name. The other types have their full name: `gazebo_msgs__srv__SpawnEntity_Request`.
     """
     names = message_type_names()
     candidates: dict[str, list[str]] = {}
-    for name in sorted(names, key=_message_sources().__contains__):  # ROS's own first
+    for name in sorted(names, key=_message_sources().__contains__):  # ROS's own types first
         candidates.setdefault(name.rpartition("/")[2], []).append(name)
     found = {}
     for name in names:
@@ -150,9 +150,9 @@ def message_class(class_name: str) -> type[Message]:
     """Return a message class by its name in `simkit.msgs`.
 
     Raises:
-        AttributeError: there is no message class of that name; the closest is named.
+        AttributeError: the name is unknown; the message suggests the closest name.
     """
-    # what begins with a small letter is a submodule or a slip; it does not load the type store
+    # a lower-case name is a submodule or a typing error; it must not load the type store
     if class_name[:1].isupper() or "__" in class_name.strip("_"):
         names = class_names()
         if class_name in names:
@@ -163,13 +163,13 @@ def message_class(class_name: str) -> type[Message]:
 
 @cache
 def types_of(*type_names: str) -> tuple[type[Message], ...]:
-    """Return the dataclasses of several types; the first call of a process loads the type store, which takes 0.2 s."""
+    """Return the dataclasses of several types. The first call of a process loads the type store, which takes 0.2 s."""
     return tuple(map(type_of, type_names))
 
 
 @cache
 def definition(type_name: str) -> str:
-    """Return the `ros2msg` text of a type, with those of all types it uses."""
+    """Return the `ros2msg` text of a type, with those of all types that it uses."""
     return type_store().generate_msgdef(full_name(type_name), ros_version=2)[0]
 
 

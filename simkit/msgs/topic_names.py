@@ -6,9 +6,9 @@ import re
 
 
 def valid_topic(name: str) -> str:
-    """Convert `name` to an absolute topic as gz-transport does: spaces become `_`, other bad characters go.
+    """Convert a name to an absolute topic as gz-transport does.
 
-    A part between two slashes that is then empty goes too.
+    Spaces become `_`; other invalid characters and empty parts between slashes are removed.
     """
-    kept = re.sub(r"[^A-Za-z0-9_/.:-]|:=", "", name.replace(" ", "_"))
-    return "/" + re.sub("/{2,}", "/", kept).strip("/")
+    valid = re.sub(r"[^A-Za-z0-9_/.:-]|:=", "", name.replace(" ", "_"))
+    return "/" + re.sub("/{2,}", "/", valid).strip("/")

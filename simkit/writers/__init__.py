@@ -1,5 +1,4 @@
-"""Writers: scenes and compiled worlds become files again.
+"""Writers of files: scenes and compiled worlds as SDF, MJCF, self-contained folders, plain data or corrected files.
 
-A scene, a compiled world or a folder of files enters; SDF, MJCF, a self-contained folder, plain data or a mended file
-leaves, whole or not at all. Nothing here changes what it writes.
+Files are written completely or not at all. No writer changes its input.
 """

@@ -1,4 +1,4 @@
-"""Write a scene as an SDF file with copies of its meshes and pictures in a folder beside it."""
+"""Writer of a scene as an SDF file, with copies of its meshes and textures in an asset folder."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ MOST_FILES = 100_000
 
 
 class AssetFolder:
-    """A folder that takes files together with what they name themselves, each once.
+    """Folder for copies of files and of the files that they refer to, each once.
 
-    Files that belong together keep their places to one another, so that a mesh finds its pictures.
+    Files that refer to each other keep their relative positions, so that a mesh finds its textures.
 
     Args:
-        folder: where they are written; made with the first.
+        folder: folder of the copies; created with the first copy.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -34,25 +34,25 @@ class AssetFolder:
         self._placed: dict[Path, str] = {}
 
     def add(self, file: Path) -> str:
-        """Copies a file and its companions; returns its path from the folder's parent, with `/`.
+        """Copy a file and its companions; return its path relative to the folder's parent, with `/`.
 
         Raises:
-            OSError: it cannot be copied.
+            OSError: a file cannot be copied.
         """
         file = Path(os.path.abspath(file))  # noqa: PTH100 - resolve() would follow links
         if file not in self._placed:
-            beside = companion_files(file)
-            root = Path(os.path.commonpath([file.parent, *(c.parent for c in beside)]))
-            if any(root in c.parents and len(c.relative_to(root).parts) > 4 for c in (file, *beside)):
-                root, beside = file.parent, []
-            slot = self._free_place(root)
-            for source in (file, *beside):
+            companions = companion_files(file)
+            root = Path(os.path.commonpath([file.parent, *(c.parent for c in companions)]))
+            if any(root in c.parents and len(c.relative_to(root).parts) > 4 for c in (file, *companions)):
+                root, companions = file.parent, []
+            slot = self._slot_name(root)
+            for source in (file, *companions):
                 self._copy(source, self.folder / slot / source.relative_to(root))
             self._placed[file] = f"{self.folder.name}/{slot}/{file.relative_to(root).as_posix()}"
         return self._placed[file]
 
-    def _free_place(self, root: Path) -> str:
-        """A folder of its own for each place that files come from, named after it."""
+    def _slot_name(self, root: Path) -> str:
+        """Return a unique folder name for the files from one source folder, derived from its name."""
         if root not in self._slots:
             generic = {"meshes", "mesh", "visual", "collision", "textures", "materials"}
             names = [
@@ -77,7 +77,7 @@ class AssetFolder:
 
 
 def companion_files(file: Path) -> list[Path]:
-    """Files that a mesh names and that are there: materials, buffers, pictures; none for other files."""
+    """Return the existing files that a mesh refers to: materials, buffers and textures; empty for other files."""
     if file.suffix.lower() not in SUFFIXES:
         return []
     try:
@@ -89,7 +89,7 @@ def companion_files(file: Path) -> list[Path]:
 
 @dataclass(frozen=True, slots=True)
 class WrittenFiles:
-    """What was written: the file, and how many files lie in the folder beside it."""
+    """Written file, and the number of files in its asset folder."""
 
     path: Path
     files: int = 0
@@ -98,23 +98,25 @@ class WrittenFiles:
 def write_sdf(
     scene: Scene, path: Path, diagnostics: Diagnostics, *, keep_uris: bool = False, overwrite: bool = False
 ) -> WrittenFiles:
-    """Writes `path`, and copies of the files that it names into `<stem>_assets` beside it; all or nothing.
+    """Write an SDF file, and copies of its files to the folder `<stem>_assets`; all or nothing.
 
-    A file that lies below the folder of `path` already is not copied but named from there.
+    A file below the folder of `path` is not copied; the SDF file refers to it by a relative path.
 
     Args:
-        diagnostics: gets a warning for each thing that SDF has no word for.
-        keep_uris: writes every URI as it was, and copies nothing.
-        overwrite: replaces what is there.
+        scene: scene to write.
+        path: SDF file to write.
+        diagnostics: collector of a warning for each feature that SDF does not support.
+        keep_uris: keep every URI unchanged and copy nothing.
+        overwrite: replace existing files.
 
     Raises:
-        InputError: SK-CLI-016 something is there already, or it cannot be written.
+        InputError: SK-CLI-016 a file exists, or is not writable.
     """
     here = path.absolute().parent
     with AtomicOutput(path, f"{path.stem}_assets", overwrite=overwrite) as staging:
         assets = AssetFolder(staging.folder)
 
-        def place(file: Path, uri: str) -> str:
+        def uri_of(file: Path, uri: str) -> str:
             if not file.is_file():
                 return uri
             inside = Path(os.path.abspath(file))  # noqa: PTH100 - resolve() would follow links
@@ -122,6 +124,6 @@ def write_sdf(
                 return inside.relative_to(here).as_posix()
             return assets.add(file)
 
-        text = sdf_text(scene, diagnostics, None if keep_uris else place)
+        text = sdf_text(scene, diagnostics, None if keep_uris else uri_of)
         staging.file.write_text(text, encoding="utf-8")
     return WrittenFiles(path, assets.count)

@@ -1,4 +1,4 @@
-"""Write files and folders that appear as a whole or not at all."""
+"""Output of files and folders that appear completely or not at all."""
 
 from __future__ import annotations
 
@@ -13,40 +13,40 @@ from typing import Final
 from simkit.errors import InputError
 
 _MARK: Final = ".unfinished-"
-_MODE = 0o666  # less the process's mask: what `open` would give
+_MODE = 0o666  # as `open`: the process's umask is subtracted
 
 
 def check_file(path: Path, *, overwrite: bool) -> None:
-    """Check that a file may be written: it replaces a file only where that is wanted, and anything else never.
+    """Check that a file may be written. Only a file can be replaced, and only with `overwrite`.
 
     Raises:
-        InputError: SK-CLI-016 something is there already.
+        InputError: SK-CLI-016 the path exists.
     """
     if path.exists() and not path.is_file():
-        what = "it is a folder" if path.is_dir() else "it is no plain file"
-        raise InputError(f"SK-CLI-016 cannot write {path}: {what}", "SK-CLI-016")
+        reason = "it is a folder" if path.is_dir() else "it is not a regular file"
+        raise InputError(f"SK-CLI-016 cannot write {path}: {reason}", "SK-CLI-016")
     if path.exists() and not overwrite:
         raise _report_existing(path)
 
 
 def write_obstacle(path: Path) -> str:
-    """Why nothing can come to be at a path, whose folders may have to be made; empty where it can."""
+    """Return the reason why a path cannot be created; empty if it can. Missing parent folders are no obstacle."""
     parent = path.absolute().parent
     while not parent.exists():
         parent = parent.parent
     if not parent.is_dir():
-        return f"{parent} is no folder"
+        return f"{parent} is not a folder"
     return "" if os.access(parent, os.W_OK) else f"the folder {parent} is not writable"
 
 
 def check_folder(path: Path) -> None:
-    """Check that files may be written into a folder, which need not exist yet.
+    """Check that files can be written to a folder, which need not exist yet.
 
     Raises:
-        InputError: SK-CLI-016 it is none, or nothing can be written there.
+        InputError: SK-CLI-016 the path is not a folder, or is not writable.
     """
     try:
-        why = "it is no folder" if path.exists() and not path.is_dir() else write_obstacle(path / "file")
+        why = "it is not a folder" if path.exists() and not path.is_dir() else write_obstacle(path / "file")
     except (OSError, ValueError) as error:
         why = getattr(error, "strerror", None) or str(error)
     if why:
@@ -54,14 +54,14 @@ def check_folder(path: Path) -> None:
 
 
 def check_target(path: Path, folder: str, *, overwrite: bool) -> None:
-    """Check that a file and the folder beside it may be written.
+    """Check that a file and its asset folder can be written.
 
     Raises:
-        InputError: SK-CLI-016 something is there already, or there is no folder to write into.
+        InputError: SK-CLI-016 a path exists, or the parent folder does not exist.
     """
-    whole = path.absolute()
-    if not whole.parent.is_dir():
-        raise InputError(f"SK-CLI-016 there is no folder {whole.parent}", "SK-CLI-016")
+    absolute = path.absolute()
+    if not absolute.parent.is_dir():
+        raise InputError(f"SK-CLI-016 folder {absolute.parent} does not exist", "SK-CLI-016")
     check_file(path, overwrite=overwrite)
     beside = path.with_name(folder)
     if beside.exists() and not overwrite:
@@ -69,23 +69,22 @@ def check_target(path: Path, folder: str, *, overwrite: bool) -> None:
 
 
 def _report_existing(path: Path) -> InputError:
-    said = f"SK-CLI-016 {path} exists already and is not overwritten\n    help: --force replaces it"
-    return InputError(said, "SK-CLI-016")
+    return InputError(f"SK-CLI-016 {path} already exists\n    help: replace it with --force", "SK-CLI-016")
 
 
 class AtomicOutput:
-    """A file with a folder beside it, made in a hidden folder and moved into place at the end.
+    """File with an asset folder, written to a hidden folder and moved to its path at the end.
 
     Args:
-        path: the file.
-        folder: name of the folder beside it, which need not come to be.
-        overwrite: replaces what is there.
+        path: file to write.
+        folder: name of the asset folder next to the file; it need not be created.
+        overwrite: replace existing files.
 
     Attributes:
-        file, folder: where to write while it is open; the folder is not made.
+        file, folder: temporary paths to write to inside the context; the folder is not created.
 
     Raises:
-        InputError: SK-CLI-016 something is there already, or the place cannot be written.
+        InputError: SK-CLI-016 a path exists, or is not writable.
     """
 
     def __init__(self, path: Path, folder: str, *, overwrite: bool = False) -> None:
@@ -114,7 +113,7 @@ class AtomicOutput:
             raise self._failed(error) from None
 
     def _move(self) -> None:
-        """The folder first: the file that speaks of it comes when it is there."""
+        """Move the folder first, because the file refers to it."""
         old = self._stage / "old"
         if self._beside.exists():
             self._beside.rename(old)
@@ -133,20 +132,20 @@ class AtomicOutput:
 
 
 def unfinished_folder(parent: Path, name: str) -> Path:
-    """A new folder, which says whose it is: what a killed process left is found by that.
+    """Create a temporary folder whose name holds the process number, so that folders of killed processes can be found.
 
     Args:
-        parent: where it is made, beside what it is made for.
-        name: of what it is made for.
+        parent: parent folder.
+        name: name of the final file or folder.
 
     Raises:
-        OSError: nothing can be written there.
+        OSError: the parent is not writable.
     """
     return Path(tempfile.mkdtemp(prefix=f"{_prefix(name)}{os.getpid()}-", dir=parent))
 
 
 def abandoned_folders(parent: Path, name: str) -> Iterator[Path]:
-    """Folders made for a name by processes that are no more."""
+    """Yield the temporary folders of a name whose processes have ended."""
     prefix = _prefix(name)
     for path in sorted(parent.iterdir()) if parent.is_dir() else ():
         if path.name.startswith(prefix) and _has_ended(path.name[len(prefix) :].partition("-")[0]):
@@ -154,7 +153,7 @@ def abandoned_folders(parent: Path, name: str) -> Iterator[Path]:
 
 
 def remove_abandoned(parent: Path, name: str) -> None:
-    """Takes away what killed processes left, where that is possible."""
+    """Remove the temporary folders of killed processes, as far as possible."""
     for path in abandoned_folders(parent, name):
         shutil.rmtree(path, ignore_errors=True)
 
@@ -164,8 +163,8 @@ def _prefix(name: str) -> str:
 
 
 def _has_ended(process: str) -> bool:
-    """Check whether the process of a number has ended."""
-    if os.name == "nt":  # os.kill would end it there
+    """Check whether the process with a number has ended."""
+    if os.name == "nt":  # on Windows, os.kill would terminate the process
         return False
     try:
         os.kill(int(process), 0)
@@ -177,13 +176,13 @@ def _has_ended(process: str) -> bool:
 
 
 def check_writable(path: str | os.PathLike[str] | None) -> None:
-    """Check that `write_atomically` can write a file, before the work whose result goes into it.
+    """Check that `write_atomically` can write a file, before the work for its content.
 
     Args:
-        path: the file; None for none.
+        path: file to write; None for none.
 
     Raises:
-        InputError: SK-CLI-016 the place cannot be written.
+        InputError: SK-CLI-016 the path is not writable.
     """
     if path is None:
         return
@@ -197,12 +196,12 @@ def check_writable(path: str | os.PathLike[str] | None) -> None:
 
 
 def write_atomically(path: str | os.PathLike[str], data: bytes) -> None:
-    """Writes a file, or leaves what was there: whoever reads it meanwhile sees the old one or the new one.
+    """Write a file completely, or keep the old one. A reader always sees the old or the new content.
 
-    Folders on the way to it are made. What is no plain file (`/dev/stdout`, a pipe) is written as it is.
+    Missing parent folders are created. A special file (`/dev/stdout`, a pipe) is written directly.
 
     Raises:
-        InputError: SK-CLI-016 the place cannot be written.
+        InputError: SK-CLI-016 the path is not writable.
     """
     target = Path(path)
     try:
@@ -223,12 +222,12 @@ def write_atomically(path: str | os.PathLike[str], data: bytes) -> None:
             Path(temporary).unlink(missing_ok=True)
             raise
     except (OSError, ValueError) as error:
-        said = (error.strerror or str(error)) if isinstance(error, OSError) else str(error)
-        raise InputError(f"SK-CLI-016 cannot write {path}: {said}", "SK-CLI-016") from None
+        reason = (error.strerror or str(error)) if isinstance(error, OSError) else str(error)
+        raise InputError(f"SK-CLI-016 cannot write {path}: {reason}", "SK-CLI-016") from None
 
 
 def current_umask() -> int:
-    """Return the permissions that a new file is not given; there is no way to ask without setting them."""
+    """Return the umask of the process. The system can only report the umask by setting a new one."""
     mask = os.umask(0o022)
     os.umask(mask)
     return mask

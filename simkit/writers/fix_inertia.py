@@ -1,4 +1,4 @@
-"""Find inertias that no solid has, and write the file with repaired numbers (`simkit check --fix-inertia`)."""
+"""Corrections of impossible inertias, and the file with corrected values (`simkit check --fix-inertia`)."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ from simkit.loaders import Resolver, load_scene
 from simkit.loaders.inertia_text import MOMENT_NAMES, WrittenInertia, find_inertias, replace_numbers
 from simkit.scene import Inertial, Scene
 
-_SLACK = 1e-6  # of the largest moment: room for the digits that a file is written with
+_SLACK = 1e-6  # relative to the largest moment; tolerance for rounded values in files
 
 
 @dataclass(frozen=True, slots=True)
 class InertiaFix:
-    """New numbers for one link.
+    """Corrected inertia of one link.
 
     Attributes:
-        file, line: where its `<inertia>` stands.
+        file, line: location of its `<inertia>`.
         old, new: principal moments [kg·m²].
-        numbers: the changed ones of ixx, iyy, izz, ixy, ixz, iyz, as they are written, in the file's axes.
-        why: what is wrong with the old ones.
+        numbers: changed values among ixx, iyy, izz, ixy, ixz, iyz, as text, in the axes of the file.
+        why: problem of the old values.
     """
 
     file: Path
@@ -47,11 +47,11 @@ class InertiaFix:
 
 @dataclass(frozen=True, slots=True)
 class InertiaFixes:
-    """Inertias of a file, and of the files it includes, that need other numbers.
+    """Corrections for the impossible inertias of a file and of its included files.
 
     Attributes:
-        source: the file that was asked about.
-        problems: files that could not be looked into, with the reason.
+        source: checked file.
+        problems: files that could not be checked, with the reason.
     """
 
     source: Path
@@ -60,20 +60,20 @@ class InertiaFixes:
 
     @property
     def elsewhere(self) -> tuple[InertiaFix, ...]:
-        """Fixes in files that the source includes."""
+        """Corrections in files that the source includes."""
         return tuple(f for f in self.fixes if f.file.resolve() != self.source.resolve())
 
     def write(self, target: Path) -> int:
-        """Writes the source with the new numbers and every other byte as it is; returns how many links it changed.
+        """Write the source with corrected values and all other bytes unchanged; return the number of changed links.
 
         The file is complete before it gets its name.
 
         Raises:
-            InputError: SK-CLI-016 it cannot be written.
+            InputError: SK-CLI-016 the file is not writable.
         """
-        wanted = {(f.link, f.line): f.numbers for f in self.fixes if f not in self.elsewhere}
+        numbers_by_link = {(f.link, f.line): f.numbers for f in self.fixes if f not in self.elsewhere}
         data, inertias = find_inertias(self.source)
-        changes = [(i, wanted[i.link, i.line]) for i in inertias if (i.link, i.line) in wanted]
+        changes = [(i, numbers_by_link[i.link, i.line]) for i in inertias if (i.link, i.line) in numbers_by_link]
         temporary = target.with_name(f".{target.name}.part")
         try:
             temporary.write_bytes(replace_numbers(data, changes))
@@ -85,10 +85,10 @@ class InertiaFixes:
 
 
 def find_inertia_fixes(source: Path, resource_paths: Sequence[Path] = ()) -> InertiaFixes:
-    """Every inertia that no solid has, in a file and in what it includes.
+    """Find all impossible inertias in a file and in its included files.
 
     Raises:
-        InputError: SK-LOAD-002 no such file.
+        InputError: SK-LOAD-002 the file does not exist.
     """
     resolver = Resolver(list(resource_paths), missing_meshes=True)
     diagnostics = Diagnostics()
@@ -96,12 +96,12 @@ def find_inertia_fixes(source: Path, resource_paths: Sequence[Path] = ()) -> Ine
     path = Path(scene.file or source)
     if not path.is_file():
         diagnostics.raise_if_errors()
-        raise InputError(f"SK-LOAD-002 {source} is no file", "SK-LOAD-002")
+        raise InputError(f"SK-LOAD-002 {source} is not a file", "SK-LOAD-002")
     fixes: list[InertiaFix] = []
     problems: list[str] = []
     for file in dict.fromkeys([path, *_scene_files(scene)]):
         if file.suffix == ".xacro":
-            problems.append(f"{file}: the numbers of a xacro file are made when it is expanded; fix the expanded file")
+            problems.append(f"{file}: xacro files compute their values; correct the expanded file")
             continue
         try:
             _, inertias = find_inertias(file)
@@ -113,18 +113,18 @@ def find_inertia_fixes(source: Path, resource_paths: Sequence[Path] = ()) -> Ine
 
 
 def _scene_files(scene: Scene) -> list[Path]:
-    """The files that the scene's links were read from."""
+    """Return the files that the links of a scene come from."""
     tops = [m for w in scene.worlds for m in w.models] + ([scene.model] if scene.model is not None else [])
     named = {link.where.file for top in tops for link in top.all_links() if link.where.file}
     return [path for name in sorted(named) if (path := Path(name)).is_file()]
 
 
 def _fix_inertia(file: Path, inertia: WrittenInertia) -> InertiaFix | None:
-    """New numbers for an inertia; None where it is sound, or the link has no mass and is but a frame."""
-    given = Inertial(inertia.mass, (0.0, 0.0, 0.0), inertia.six)
+    """Return the correction of an inertia; None if it is valid, or if the link has no mass."""
+    original = Inertial(inertia.mass, (0.0, 0.0, 0.0), inertia.six)
     if inertia.mass <= 0:
         return None
-    found = repair_inertia(given, slack=_SLACK)
+    found = repair_inertia(original, slack=_SLACK)
     if found.verdict == "sound":
         return None
     new = dict(zip(MOMENT_NAMES, found.inertial.inertia, strict=True))

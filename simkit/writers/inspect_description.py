@@ -1,4 +1,4 @@
-"""What a file means once resolved, as plain data: what `simkit inspect --json` prints."""
+"""Description of a resolved file as plain data, as `simkit inspect --json` prints it."""
 
 from __future__ import annotations
 
@@ -36,16 +36,16 @@ _SAME_KIND = {
     "boundingbox": "boundingbox_camera",
 }
 SensorReader = Callable[[SceneSensor, Diagnostics], tuple[SceneSensor, Block | None]]
-"""Gives a sensor with the defaults of its preset, and its options as plain data; None where its kind is unknown."""
+"""Function that returns a sensor with the defaults of its preset, and its options (None for an unknown type)."""
 
 
 def describe_scene(scene: Scene, diagnostics: Diagnostics, read_sensor: SensorReader) -> Block:
-    """The scene as a dict that JSON can hold.
+    """Describe a scene as a dict of JSON values.
 
     Args:
-        scene: what was loaded.
-        diagnostics: what loading found; options of sensors that cannot be read are added.
-        read_sensor: reads the options of a sensor.
+        scene: loaded scene.
+        diagnostics: diagnostics of loading; diagnostics of invalid sensor options are added.
+        read_sensor: function that reads the options of a sensor.
     """
     worlds = [_world(w, diagnostics, read_sensor) for w in scene.worlds]
     model = None if scene.model is None else _model(scene.model, diagnostics, read_sensor)
@@ -58,7 +58,7 @@ def describe_scene(scene: Scene, diagnostics: Diagnostics, read_sensor: SensorRe
 
 
 def _block_of_unknown(sensor: SceneSensor) -> Block:
-    """What a kind that nothing simulates yet has in common with those that are: its camera or its scan."""
+    """Return the camera and scan options of a sensor type that simkit does not simulate."""
     block: Block = {}
     camera = sensor.params.child("camera")
     if camera is not None:
@@ -188,7 +188,7 @@ def _axis(axis: Axis) -> Block:
 
 
 def _numbers_of(settings: Atmosphere | SphericalCoordinates | None) -> Block | None:
-    """Settings in the units of the scene: angles in rad."""
+    """Return settings in the units of the scene; angles in rad."""
     if settings is None:
         return None
     return {f.name: _plain(getattr(settings, f.name)) for f in fields(settings) if f.name != "where"}
@@ -213,7 +213,7 @@ def _plugin(plugin: ScenePlugin) -> Block:
 
 
 def _json_number(value: float) -> float | str:
-    """Infinities are the texts `inf` and `-inf`, which JSON can hold."""
+    """Convert infinities to the texts `inf` and `-inf`, because JSON has no infinity."""
     if math.isinf(value):
         return "inf" if value > 0 else "-inf"
     return value

@@ -1,4 +1,4 @@
-"""Write the compiled world as MJCF with its assets, for MuJoCo alone."""
+"""Writer of a compiled world as MJCF with its assets, for MuJoCo alone."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True)
 class WrittenMjcf:
-    """Files that were written.
+    """Written files.
 
     Attributes:
-        files: how many files lie in the folder beside the XML.
-        balanced: links whose inertia MuJoCo's compiler refuses; the file has the nearest that it takes.
+        files: number of files in the asset folder.
+        balanced: links whose inertia MuJoCo's compiler rejects; the file has the nearest valid inertia.
     """
 
     path: Path
@@ -36,23 +36,23 @@ class WrittenMjcf:
 
 
 def write_mjcf(builder: SpecBuilder, path: Path, *, overwrite: bool = False) -> WrittenMjcf:
-    """Write `path` and the folder `<stem>_assets` beside it. Nothing is left behind when it fails.
+    """Write an MJCF file and its folder `<stem>_assets`. Nothing is left behind after an error.
 
     Args:
-        builder: of the compiled world.
-        path: of the XML file.
-        overwrite: whether older files may be replaced.
+        builder: builder of the compiled world.
+        path: XML file to write.
+        overwrite: replace existing files.
 
     Raises:
-        InputError: SK-CLI-016 something is there already, it cannot be written, or MuJoCo cannot read it back.
+        InputError: SK-CLI-016 a file exists or is not writable, or MuJoCo cannot read the result.
     """
     with AtomicOutput(path, f"{path.stem}_assets", overwrite=overwrite) as staging:
-        # A copy: naming files in the spec of a running simulation would change what a later spawn compiles.
+        # work on a copy: file names in the spec of a running simulation would affect later spawns
         spec = builder.spec.copy()
         count = _Assets(spec, staging.folder).write()
         for body in spec.bodies:
             if body.explicitinertial and body.mass > 0 and not np.isfinite(body.ipos[0]):
-                body.ipos = (0.0, 0.0, 0.0)  # without a place the XML would not say what it weighs
+                body.ipos = (0.0, 0.0, 0.0)  # without a position, the XML would not contain the mass
         spec.modelfiledir = str(staging.file.parent)
         try:
             spec.compile()
@@ -60,49 +60,49 @@ def write_mjcf(builder: SpecBuilder, path: Path, *, overwrite: bool = False) -> 
                 staging.file.write_text(spec.to_xml(), encoding="utf-8")
             _read_back(staging.file)
         except ValueError as error:
-            raise InputError(f"SK-CLI-016 cannot write {path}: MuJoCo says: {error}", "SK-CLI-016") from None
+            raise InputError(f"SK-CLI-016 cannot write {path}: MuJoCo reports: {error}", "SK-CLI-016") from None
     balanced = [name for record in builder.records.values() for name in record.exact]
     return WrittenMjcf(path, count, balanced)
 
 
 @contextmanager
 def _full_precision() -> Iterator[None]:
-    """Lets MuJoCo write numbers with 17 digits instead of 6, where its library has a way to be told."""
+    """Make MuJoCo write numbers with 17 digits instead of 6, if its library has the private setter."""
     import mujoco
 
     found = sorted(Path(mujoco.__file__).parent.glob("*mujoco*.*"))
     libraries = [p for p in found if ".so" in p.name or p.suffix in (".dylib", ".dll")]
     try:
-        library = ctypes.CDLL(str(libraries[0]))  # the one that is loaded already
-        get, put = library._mjPRIVATE__get_xml_precision, library._mjPRIVATE__set_xml_precision
+        library = ctypes.CDLL(str(libraries[0]))  # returns the already loaded library
+        get, set_ = library._mjPRIVATE__get_xml_precision, library._mjPRIVATE__set_xml_precision
     except (IndexError, OSError, AttributeError):
         yield
         return
-    usual = int(get())
-    put(17)
+    original = int(get())
+    set_(17)
     try:
         yield
     finally:
-        put(usual)
+        set_(original)
 
 
 def _read_back(file: Path) -> None:
-    """Raises ValueError where MuJoCo cannot open the file."""
+    """Read the file with MuJoCo; raise ValueError if it is invalid."""
     import mujoco
 
     mujoco.MjModel.from_xml_path(str(file))
 
 
 class _Assets:
-    """Gives every asset of a specification a file of its own."""
+    """Assets of a specification, each written to its own file."""
 
     def __init__(self, spec: mujoco.MjSpec, folder: Path) -> None:
         self.spec, self.folder = spec, folder
-        self._taken: set[str] = set()
+        self._used_names: set[str] = set()
         self._known: dict[bytes, str] = {}
 
     def write(self) -> int:
-        """Writes them all; returns how many files there are."""
+        """Write all assets; return the number of files."""
         spec = self.spec
         self._textures(spec.textures)
         for item in (*spec.meshes, *spec.hfields, *spec.skins):
@@ -112,9 +112,9 @@ class _Assets:
         spec.meshdir = spec.texturedir = ""
         for name in list(spec.assets):
             del spec.assets[name]
-        # what an attached file brought has no folder of its own to be found in: it stays in memory for the compile
+        # assets of attached files have no folder on disk, so the compiler needs them in memory
         spec.assets.update({name: content for content, name in self._known.items()})
-        return len(self._taken)
+        return len(self._used_names)
 
     def _textures(self, textures: Iterable[mujoco.MjsTexture]) -> None:
         for texture in textures:
@@ -135,25 +135,25 @@ class _Assets:
                 texture.nchannel = 3
 
     def _content(self, file: str, below: str) -> bytes:
-        """The bytes of an asset in memory or on disk."""
-        held = self.spec.assets.get(file)
-        if held is not None:
-            return bytes(held)
-        at = Path(self.spec.modelfiledir or ".")
-        for place in (Path(file), at / below / file, at / file):
-            if place.is_file():
-                return place.read_bytes()
-        raise InputError(f"SK-CLI-016 the asset {file} is not there any more", "SK-CLI-016")
+        """Return the bytes of an asset in memory or on disk."""
+        content = self.spec.assets.get(file)
+        if content is not None:
+            return bytes(content)
+        folder = Path(self.spec.modelfiledir or ".")
+        for path in (Path(file), folder / below / file, folder / file):
+            if path.is_file():
+                return path.read_bytes()
+        raise InputError(f"SK-CLI-016 the asset {file} does not exist any more", "SK-CLI-016")
 
     def _save(self, content: bytes, stem: str, suffix: str) -> str:
-        """Writes a file under a name that no other has; equal contents are one file. Returns the path from the XML."""
+        """Write a file under a unique name; return its path relative to the XML file. Equal contents share one file."""
         if content in self._known:
             return self._known[content]
         name, k = f"{stem}{suffix.lower()}", 1
-        while name.lower() in self._taken:
+        while name.lower() in self._used_names:
             k += 1
             name = f"{stem}_{k}{suffix.lower()}"
-        self._taken.add(name.lower())
+        self._used_names.add(name.lower())
         self.folder.mkdir(exist_ok=True)
         (self.folder / name).write_bytes(content)
         self._known[content] = f"{self.folder.name}/{name}"
@@ -161,7 +161,7 @@ class _Assets:
 
 
 def _file_stem(name: str) -> str:
-    """A file name without ending that every system takes."""
+    """Convert a name to a file name without suffix that every system accepts."""
     return re.sub(r"[^A-Za-z0-9_-]+", "_", name.rsplit("/", 1)[-1].partition(".")[0]).strip("_")[:80] or "asset"
 
 
@@ -170,8 +170,8 @@ def _png(texture: mujoco.MjsTexture) -> bytes:
 
     pixels = np.frombuffer(bytes(texture.data), np.uint8).reshape(texture.height, texture.width, texture.nchannel)
     if texture.height == 6 * texture.width:
-        pixels = pixels[: texture.width]  # the six sides of a cube are the same picture
-    done, encoded = cv2.imencode(".png", pixels[:, :, ::-1])
-    if not done:
-        raise InputError(f"SK-CLI-016 the texture {texture.name} cannot be written", "SK-CLI-016")
+        pixels = pixels[: texture.width]  # all six sides of the cube have the same image
+    is_encoded, encoded = cv2.imencode(".png", pixels[:, :, ::-1])
+    if not is_encoded:
+        raise InputError(f"SK-CLI-016 cannot write the texture {texture.name}", "SK-CLI-016")
     return bytes(encoded.tobytes())

@@ -1,4 +1,4 @@
-"""What is in a link or joint, as SDF elements: shapes, looks, surfaces, lights, axes, sensors, plugins."""
+"""SDF elements inside links and joints: shapes, materials, surfaces, lights, axes, sensors, plugins."""
 
 from __future__ import annotations
 
@@ -35,12 +35,12 @@ from simkit.writers.xml_text import (
     text_element,
 )
 
-Place = Callable[[Path, str], str]
-"""Gives the URI to write for a file that was named by some other."""
+UriOf = Callable[[Path, str], str]
+"""Function from a file and its original URI to the URI to write."""
 
 
 def inertial(value: Inertial) -> Params | None:
-    """None where the format's default is meant."""
+    """Return `<inertial>`; None for the format's default."""
     if not value.given and value.mass == 1.0 and value.inertia == (1.0, 1.0, 1.0, 0.0, 0.0, 0.0):
         return None
     ixx, iyy, izz, ixy, ixz, iyz = value.inertia
@@ -49,27 +49,27 @@ def inertial(value: Inertial) -> Params | None:
     return element("inertial", [pose(Pose(value.com)), text_element("mass", value.mass), inertia])
 
 
-def geometry(shape: shapes.Geometry, place: Place) -> Params:
+def geometry(shape: shapes.Geometry, uri_of: UriOf) -> Params:
     """`<geometry>`."""
     if isinstance(shape, shapes.Polyline):
         height = text_element("height", shape.height)
         outlines = ([*(text_element("point", point) for point in outline), height] for outline in shape.outlines)
         return element("geometry", [element("polyline", outline) for outline in outlines])
     if isinstance(shape, Mesh):
-        return element("geometry", [_mesh(shape, place)])
+        return element("geometry", [_mesh(shape, uri_of)])
     if isinstance(shape, shapes.Heightmap):
-        uri = text_element("uri", place(shape.file, shape.uri))
+        uri = text_element("uri", uri_of(shape.file, shape.uri))
         size, position = text_element("size", shape.size), text_element("pos", shape.position)
         return element("geometry", [element("heightmap", [uri, size, position])])
     names = [field.name for field in fields(shape)]  # those of a primitive are SDF's own
     return element("geometry", [element(type(shape).__name__.lower(), field_elements(shape, *names))])
 
 
-def _mesh(shape: Mesh, place: Place) -> Params:
+def _mesh(shape: Mesh, uri_of: UriOf) -> Params:
     part = element("submesh", [text_element("name", shape.submesh), text_element("center", shape.center)])
     pieces = element("convex_decomposition", [text_element("max_convex_hulls", f"{shape.max_hulls}")])
     children = [
-        text_element("uri", shape.uri if shape.missing else place(shape.file, shape.uri)),
+        text_element("uri", shape.uri if shape.missing else uri_of(shape.file, shape.uri)),
         *changed_elements(shape, "scale"),
         part if shape.submesh or shape.center else None,
         pieces if shape.max_hulls != 16 else None,
@@ -77,14 +77,14 @@ def _mesh(shape: Mesh, place: Place) -> Params:
     return element("mesh", children, **({"optimization": shape.optimization} if shape.optimization else {}))
 
 
-def collision(value: SceneCollision, place: Place) -> Params:
+def collision(value: SceneCollision, uri_of: UriOf) -> Params:
     """`<collision>`."""
-    shape, retro = geometry(value.geometry, place), changed_elements(value, "laser_retro")
+    shape, retro = geometry(value.geometry, uri_of), changed_elements(value, "laser_retro")
     return element("collision", [pose(value.pose_link), shape, surface(value.surface), *retro], name=value.name)
 
 
 def _direction(value: Surface) -> Params | None:
-    """`<fdir1>`, and the link that it is told in, as Gazebo's own attribute."""
+    """Return `<fdir1>`, with the link of its frame as Gazebo's own attribute."""
     if not any(value.fdir1):
         return None
     frame = {"gz:expressed_in": value.fdir1_frame} if value.fdir1_frame else {}
@@ -92,7 +92,7 @@ def _direction(value: Surface) -> Params | None:
 
 
 def surface(value: Surface) -> Params | None:
-    """`<surface>`; None where all is the format's default."""
+    """Return `<surface>`; None if all values are the format's defaults."""
     if replace(value, where=NOWHERE) == Surface():
         return None
     ode = [*field_elements(value, "mu", "mu2"), _direction(value), *changed_elements(value, "slip1", "slip2")]
@@ -127,33 +127,33 @@ def _mask(name: str, bits: int) -> Params | None:
     return None if bits == 0xFFFF else element(name, f"0x{bits:x}")
 
 
-def visual(value: SceneVisual, place: Place) -> Params:
-    """`<visual>`."""
+def visual(value: SceneVisual, uri_of: UriOf) -> Params:
+    """Return `<visual>`."""
     flags = None if value.visibility_flags == 0xFFFFFFFF else element("visibility_flags", str(value.visibility_flags))
     children = [
         pose(value.pose_link),
-        geometry(value.geometry, place),
-        None if value.material is None else material(value.material, place),
+        geometry(value.geometry, uri_of),
+        None if value.material is None else material(value.material, uri_of),
         *changed_elements(value, "transparency", "cast_shadows"),
         flags,
         *changed_elements(value, "laser_retro"),
-        *(_of_visual(plugin(p), place) for p in value.plugins),
+        *(_of_visual(plugin(p), uri_of) for p in value.plugins),
     ]
     return element("visual", children, name=value.name)
 
 
-def _of_visual(written: Params, place: Place) -> Params:
-    """A visual's plugin with the picture of its temperatures named from the new file's place."""
+def _of_visual(written: Params, uri_of: UriOf) -> Params:
+    """A visual's plugin with the picture of its temperatures named from the new file's uri_of."""
     for i, child in enumerate(written.children):
         if child.name == "heat_signature" and child.where.file and child.value:
-            uri = place(Path(child.where.file).parent / child.value, child.value)
+            uri = uri_of(Path(child.where.file).parent / child.value, child.value)
             written.children[i] = text_element(child.name, uri)
     return written
 
 
-def material(value: Material, place: Place) -> Params:
+def material(value: Material, uri_of: UriOf) -> Params:
     """`<material>`, with every colour written out so that no script is needed for them."""
-    texture = None if value.texture is None else text_element("albedo_map", place(value.texture, value.texture.name))
+    texture = None if value.texture is None else text_element("albedo_map", uri_of(value.texture, value.texture.name))
     metal = group_element("metal", [texture, *changed_elements(value, "roughness")])
     children = [
         element("script", [text_element("name", value.script)]) if value.script else None,
@@ -165,7 +165,7 @@ def material(value: Material, place: Place) -> Params:
 
 
 def light(value: SceneLight, at: Pose) -> Params:
-    """`<light>`; `at` is its pose in the frame of what holds it."""
+    """Return `<light>`; `at` is its pose in the frame of its parent element."""
     names = ("range", "constant", "linear", "quadratic")
     fade = [text_element(n, v) for n, v in zip(names, value.attenuation, strict=True)]
     spot = [text_element(n, v) for n, v in zip(("inner_angle", "outer_angle", "falloff"), value.spot, strict=True)]
@@ -218,6 +218,6 @@ def sensor(value: SceneSensor, at: Pose) -> Params:
 
 
 def plugin(value: ScenePlugin) -> Params:
-    """`<plugin>` as it was written."""
+    """Return `<plugin>` as it was written."""
     attributes = {**value.params.attributes, "name": value.name, "filename": value.filename}
     return Params("plugin", value.params.value, attributes, value.params.children)

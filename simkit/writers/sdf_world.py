@@ -1,4 +1,4 @@
-"""Scenes as SDF: one file with everything in it, includes written out and every pose resolved."""
+"""SDF text of a scene: one file with all content, without includes and with resolved poses."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from simkit.scene import (
 )
 from simkit.scene.simkit_elements import written_name
 from simkit.writers import sdf_elements as parts
-from simkit.writers.sdf_elements import Place
+from simkit.writers.sdf_elements import UriOf
 from simkit.writers.sdf_world_settings import (
     atmosphere_element,
     physics_element,
@@ -45,29 +45,31 @@ from simkit.writers.xml_text import (
 
 _WORLD = "world"
 _VERSION = "1.11"
-_LENIENT = "1.6"  # the last in which siblings of different kinds may share a name, and a name may have `::` in it
+_LENIENT = "1.6"  # last version that allows equal names of different elements, and `::` in names
 _FRAMES = ("model", "link", "joint", "frame")
 _NOT_IN_SDF = ("planar", "floating")
 
 
-def sdf_text(scene: Scene, diagnostics: Diagnostics, place: Place | None = None) -> str:
-    """The text of an SDF file that means what the scene means.
+def sdf_text(scene: Scene, diagnostics: Diagnostics, uri_of: UriOf | None = None) -> str:
+    """Return the text of an SDF file with the content of a scene.
 
     Args:
         scene: worlds, or one bare model or light.
-        diagnostics: gets a warning for each thing that SDF has no word for.
-        place: gives the URI to write for a file; None keeps each as it was written.
+        diagnostics: collector of a warning for each feature that SDF does not support.
+        uri_of: function from a file and its original URI to the URI to write; None keeps all URIs.
     """
-    return document(_Writer(diagnostics, place or _as_written).root(scene))
+    return document(_Writer(diagnostics, uri_of or _original_uri).root(scene))
 
 
-def _as_written(_file: Path, uri: str) -> str:
+def _original_uri(_file: Path, uri: str) -> str:
     return uri
 
 
 class _Writer:
-    def __init__(self, diagnostics: Diagnostics, place: Place) -> None:
-        self.diagnostics, self.place = diagnostics, place
+    """Writer of the elements of one scene."""
+
+    def __init__(self, diagnostics: Diagnostics, uri_of: UriOf) -> None:
+        self.diagnostics, self.uri_of = diagnostics, uri_of
 
     def root(self, scene: Scene) -> Params:
         children: list[Params] = [self.world(w) for w in scene.worlds]
@@ -102,7 +104,7 @@ class _Writer:
     # ------------------------------------------------------------------ models
 
     def model(self, model: SceneModel, outer: Pose) -> Params:
-        """A model; `outer` is the world pose of what holds it."""
+        """Return a model; `outer` is the world pose of its parent."""
         here = model.pose_world
         model = self._without_world_link(model)
         links = {link.scoped: link for link in model.all_links()}
@@ -126,7 +128,7 @@ class _Writer:
         return element("model", children, **attributes)
 
     def frame(self, frame: SceneFrame, here: Pose, model: str, links: dict[str, SceneLink]) -> Params:
-        """A frame; its pose is relative to what it is attached to, which is the format's own rule."""
+        """Return a frame; its pose is relative to the frame that it is attached to, as SDF requires."""
         attributes = {"name": frame.name}
         carrier = links.get(frame.attached_to)
         if carrier is not None:
@@ -143,8 +145,8 @@ class _Writer:
             parts.inertial(self._written_inertia(link)),
             *changed_elements(link, "gravity", "kinematic", "self_collide", "enable_wind"),
             decay if linear or angular else None,
-            *(parts.collision(c, self.place) for c in link.collisions),
-            *(parts.visual(v, self.place) for v in link.visuals),
+            *(parts.collision(c, self.uri_of) for c in link.collisions),
+            *(parts.visual(v, self.uri_of) for v in link.visuals),
             *(parts.light(li, inverse @ li.pose_world) for li in link.lights),
             *(parts.sensor(s, s.pose_link) for s in link.sensors),
             *(parts.plugin(p) for p in link.plugins),
@@ -152,7 +154,7 @@ class _Writer:
         return element("link", children, name=link.name)
 
     def joint(self, joint: SceneJoint, model: str, links: dict[str, SceneLink]) -> Params | None:
-        """A joint; None, with a warning, where SDF has none of its kind."""
+        """Return a joint; None, with a warning, for a joint type that SDF does not have."""
         if joint.type in _NOT_IN_SDF:
             left = "its child link moves freely" if joint.type == "floating" else "it is left out"
             message = f"joint {joint.scoped!r}: SDF has no {joint.type} joint; {left}"
@@ -182,7 +184,7 @@ class _Writer:
         return element("joint", children, name=joint.name, type=joint.type)
 
     def _written_inertia(self, link: SceneLink) -> Inertial:
-        """The link's inertia; the nearest that SDF takes where it has a negative moment."""
+        """Return the link's inertia; for a negative moment, the nearest inertia that SDF accepts."""
         found = repair_inertia(link.inertial)
         if link.inertial.mass <= 0 or found.old[0] >= -1e-15:
             return link.inertial
@@ -192,7 +194,7 @@ class _Writer:
         return found.inertial
 
     def _without_world_link(self, model: SceneModel) -> SceneModel:
-        """A URDF link called `world` is the world itself."""
+        """Replace a URDF link named `world` by the world itself."""
         scoped = f"{model.scoped}::{_WORLD}"
         ground = next((link for link in model.links if link.name == _WORLD), None)
         if ground is None or model.base != "fixed" or any(j.child_link == scoped for j in model.joints):
@@ -202,10 +204,10 @@ class _Writer:
             self.diagnostics.warning("SK-WRITE-002", message, ground.where)
         links = tuple(link for link in model.links if link is not ground)
         joints = tuple(replace(j, parent_link=_WORLD) if j.parent_link == scoped else j for j in model.joints)
-        held = any(j.parent_link == _WORLD for j in joints)
+        is_fixed = any(j.parent_link == _WORLD for j in joints)
         first = links[0].scoped if links else ""
         canonical = first if model.canonical_link == scoped else model.canonical_link
-        base = "auto" if held else model.base
+        base = "auto" if is_fixed else model.base
         return replace(model, links=links, joints=joints, canonical_link=canonical, base=base)
 
     def _report_lost(self, model: SceneModel) -> None:
@@ -256,15 +258,15 @@ def _animation(move: Animation) -> Params:
 def _world_joint(model: SceneModel, canonical: str) -> Params:
     """The joint that holds a model to the world that was asked to stand still."""
     ends = [text_element("parent", _WORLD), text_element("child", canonical)]
-    taken = {j.name for j in model.joints} | {link.name for link in model.links}
+    used_names = {j.name for j in model.joints} | {link.name for link in model.links}
     name = "fixed_to_world"
-    while name in taken:
+    while name in used_names:
         name += "_"
     return element("joint", ends, name=name, type="fixed")
 
 
 def _name_inside(scoped: str, model: str) -> str:
-    """A scoped name as it is written inside a model."""
+    """Return a scoped name as it is written inside a model."""
     return scoped.removeprefix(f"{model}::") if model else scoped
 
 
@@ -279,7 +281,7 @@ def _links_of(models: Iterable[SceneModel]) -> dict[str, SceneLink]:
 
 
 def _needs_lenience(nodes: Iterable[Params]) -> bool:
-    """Whether there are names that SDF 1.7 and later refuse."""
+    """Check whether there are names that SDF 1.7 and later reject."""
     stack = list(nodes)
     while stack:
         node = stack.pop()

@@ -1,4 +1,4 @@
-"""Collect a world and every file that it names into one self-contained folder."""
+"""Self-contained folder with a world and every file that it uses."""
 
 from __future__ import annotations
 
@@ -34,11 +34,12 @@ _FILE_SUFFIX = re.compile(r"\.[A-Za-z0-9]{2,8}$")
 
 
 class WorldCollector:
-    """Collects what one world needs.
+    """Collector of the files that one world uses.
 
     Args:
-        resolver: finds what the files name.
-        folder: where everything goes; made anew.
+        resolver: resolver of the URIs.
+        folder: folder to write; must be new.
+        diagnostics: collector of warnings.
     """
 
     def __init__(self, resolver: Resolver, folder: Path, diagnostics: Diagnostics) -> None:
@@ -52,7 +53,8 @@ class WorldCollector:
         """Collect the outermost file; return its path in the folder.
 
         Args:
-            expanded: the tree is not what the file says (xacro), so it is written anew.
+            document: outermost file.
+            expanded: True if the tree differs from the file (xacro); the file is then written from the tree.
         """
         assert document.path is not None
         path = absolute_path(document.path)
@@ -68,7 +70,7 @@ class WorldCollector:
     # ------------------------------------------------------------------ files
 
     def _write_document(self, target: PurePosixPath, document: Document, path: Path, expanded: bool = False) -> None:
-        """Write a file with its URIs changed."""
+        """Write a file with adapted URIs."""
         if document.root.name == "mujoco":
             self._mjcf_files(document.root, path.parent, target.parent)
             self._write_bytes(target, document.text)
@@ -92,8 +94,8 @@ class WorldCollector:
                 self._write_document(target, document, path)
                 return target
         self._copy(path, target)
-        for other in companion_files(path):
-            self._copy(other, target.parent / _relative(other, path.parent))
+        for companion in companion_files(path):
+            self._copy(companion, target.parent / _relative(companion, path.parent))
         return target
 
     def _collect_model(self, folder: Path, file: Path) -> PurePosixPath:
@@ -112,10 +114,10 @@ class WorldCollector:
             self._copy(source, target / source.relative_to(path).as_posix())
         return target
 
-    def _copy_licences(self, folder: Path, place: PurePosixPath) -> None:
+    def _copy_licences(self, folder: Path, target: PurePosixPath) -> None:
         for source in sorted(folder.iterdir()) if folder.is_dir() else ():
             if source.is_file() and (source.name in _COPIED_FILES or _LICENCES.match(source.name)):
-                self._copy(source, place / source.name)
+                self._copy(source, target / source.name)
 
     def _target_path(self, path: Path) -> PurePosixPath:
         """Return the path of a file: as below the world's folder, else in the folder of its model or package."""
@@ -128,7 +130,7 @@ class WorldCollector:
         return self._roots[known] / path.relative_to(known).as_posix()
 
     def _register_root(self, uri: str, path: Path) -> None:
-        """Keep the name of a folder that `model://NAME/...` or `package://NAME/...` stands for."""
+        """Register the folder of a `model://NAME/...` or `package://NAME/...` URI under its name."""
         scheme, _, rest = uri.partition("://")
         name, _, inside = rest.strip("/").partition("/")
         if scheme not in ("model", "package") or path.is_relative_to(self.home):
@@ -148,43 +150,42 @@ class WorldCollector:
     def _copy(self, source: Path, target: PurePosixPath) -> None:
         if not (self.folder / target).exists():
             self._count(source.stat().st_size)
-            place = self._prepare_target(target)
-            shutil.copyfile(source, place)
+            shutil.copyfile(source, self._prepare_target(target))
 
     def _write_bytes(self, target: PurePosixPath, content: bytes) -> None:
         self._count(len(content))
         self._prepare_target(target).write_bytes(content)
 
     def _prepare_target(self, target: PurePosixPath) -> Path:
-        place = Path(os.path.abspath(self.folder / target))  # noqa: PTH100 - without `..`
-        if not place.is_relative_to(self.folder):
-            raise OSError(f"{target} would lie outside of the folder")
-        place.parent.mkdir(parents=True, exist_ok=True)
-        return place
+        path = Path(os.path.abspath(self.folder / target))  # noqa: PTH100 - without `..`
+        if not path.is_relative_to(self.folder):
+            raise OSError(f"{target} would be outside the folder")
+        path.parent.mkdir(parents=True, exist_ok=True)
+        return path
 
     def _count(self, size: int) -> None:
         self.count, self.size = self.count + 1, self.size + size
         if self.count > MOST_FILES or self.size > MOST_BYTES:
             raise OSError(f"more than {MOST_FILES} files or {MOST_BYTES >> 30} GiB")
 
-    # ------------------------------------------------------------------ what a file names
+    # ------------------------------------------------------------------ URIs in a file
 
     def _uri_changes(self, root: Params, folder: Path, here: PurePosixPath) -> Iterator[tuple[str, str]]:
-        """Yield each URI of a file with the path that it becomes, relative to `here`."""
+        """Yield each URI of a file with its new path, relative to `here`."""
         seen: set[str] = set()
         for element, parent in _elements(root):
             for reference in _file_references(element, parent):
                 if reference in seen:
                     continue
-                place = self._collected_path(reference, element, parent, folder)
-                if place is not None:
+                collected = self._collected_path(reference, element, parent, folder)
+                if collected is not None:
                     seen.add(reference)
-                    new = _relative(place, here)
+                    new = _relative(collected, here)
                     if new != reference:
                         yield reference, new
 
     def _collected_path(self, reference: str, element: Params, parent: str, folder: Path) -> PurePosixPath | None:
-        """Collect what a text names and return its path; None where it names no file that exists."""
+        """Collect the file of a URI and return its path; None if the URI means no existing file."""
         uri = turtlebot3_uri(reference, element.where, Diagnostics()) or reference
         path, _ = self.resolver.search(uri, folder)
         if path is None:
@@ -198,7 +199,7 @@ class WorldCollector:
         return self._collect_folder(path) if "://" in reference or "/" in reference else None
 
     def _mjcf_files(self, root: Params, folder: Path, here: PurePosixPath) -> None:
-        """Collect the files that a file in MuJoCo's format names; they keep their places beside it."""
+        """Collect the files of an MJCF file; they keep their relative positions."""
         below: dict[str, str] = {}
         for compiler in root.all("compiler"):
             below |= {k: v for k, v in compiler.attributes.items() if k in ("meshdir", "texturedir", "assetdir")}
@@ -228,22 +229,26 @@ def vendor(
     xacro_args: Mapping[str, str] | None = None,
     base: str = "auto",
 ) -> tuple[PurePosixPath, int]:
-    """Writes a self-contained folder and makes sure that it means the same.
+    """Write a self-contained folder and verify that it has the same content.
 
     Args:
-        source: a file, or the bare name of a world or model.
-        target: the folder; it must not exist, or be empty.
+        source: file, or the bare name of a world or model.
+        target: folder to write; must be new or empty.
         describe: `simkit.describe`.
+        resource_paths: search folders for URIs.
+        package_paths: ROS package -> folder.
+        xacro_args: arguments of a xacro file.
+        base: base of a bare model: fixed, floating or auto.
 
     Returns:
-        The file to open, seen from the folder, and how many files there are.
+        File to open, relative to the folder, and the number of files.
 
     Raises:
-        InputError: SK-CLI-016 the folder is not empty or cannot be written, SK-CLI-019 it would mean something else.
+        InputError: SK-CLI-016 the folder is not empty or not writable; SK-CLI-019 its content would differ.
         LoadError: the source has errors.
     """
     if target.exists() and (not target.is_dir() or any(target.iterdir())):
-        raise InputError(f"SK-CLI-016 {target} is not an empty folder; vendor writes into a new one", "SK-CLI-016")
+        raise InputError(f"SK-CLI-016 {target} is not an empty folder; give a new or empty folder", "SK-CLI-016")
     options = {"resource_paths": resource_paths, "package_paths": package_paths, "base": base}
     before = describe(source, xacro_args=xacro_args, **options)
     diagnostics = Diagnostics()
@@ -251,7 +256,7 @@ def vendor(
     document, expanded = find_document(source, resolver, diagnostics, xacro_args)
     diagnostics.raise_if_errors()
     if document is None or document.path is None:
-        raise InputError(f"SK-LOAD-002 {source} is no file", "SK-LOAD-002")
+        raise InputError(f"SK-LOAD-002 {source} is not a file", "SK-LOAD-002")
     stage: Path | None = None
     try:
         stage = Path(tempfile.mkdtemp(prefix=f".{target.name}.", dir=target.absolute().parent))
@@ -260,7 +265,9 @@ def vendor(
         after = describe(stage / main, base=base)
         differs = _difference(before, after) or _file_outside(after, stage)
         if differs:
-            raise InputError(f"SK-CLI-019 the folder would not mean the same as {source}: {differs}", "SK-CLI-019")
+            raise InputError(
+                f"SK-CLI-019 the content of the folder would differ from {source}: {differs}", "SK-CLI-019"
+            )
         if target.exists():
             target.rmdir()
         stage.chmod(0o755)
@@ -274,7 +281,7 @@ def vendor(
 
 
 def _elements(root: Params) -> Iterator[tuple[Params, str]]:
-    """Every element with the name of the one that holds it."""
+    """Yield every element with the name of its parent."""
     stack = [(root, "")]
     while stack:
         element, parent = stack.pop()
@@ -283,7 +290,7 @@ def _elements(root: Params) -> Iterator[tuple[Params, str]]:
 
 
 def _file_references(element: Params, parent: str) -> Iterator[str]:
-    """Texts of an element that may name a file."""
+    """Yield the texts of an element that may be file names."""
     is_include = element.name == "uri" and parent == "include"
     is_text = bool(element.value) and not element.children and len(element.value) < 1000
     if is_text and (is_include or _may_be_file(element.value)):
@@ -299,24 +306,24 @@ def _may_be_file(text: str) -> bool:
 
 
 def _replace_uris(text: bytes, changes: Mapping[str, str]) -> bytes:
-    """A file's text with each URI replaced where it stands alone in an element or an attribute."""
+    """Replace each URI in a file's text, where it is the whole text of an element or attribute."""
     for old, new in changes.items():
-        for spelt in dict.fromkeys((old, escape(old, quote=False), escape(old))):
-            before, after = re.escape(spelt.encode()), escape(new).encode().replace(b"\\", rb"\\")
+        for spelling in dict.fromkeys((old, escape(old, quote=False), escape(old))):
+            before, after = re.escape(spelling.encode()), escape(new).encode().replace(b"\\", rb"\\")
             text = re.sub(rb"(>\s*)" + before + rb"(\s*<)", rb"\g<1>" + after + rb"\g<2>", text)
             text = re.sub(rb"([\"'])\s*" + before + rb"\s*\1", rb"\g<1>" + after + rb"\g<1>", text)
     return text
 
 
 def _replace_in_tree(node: Params, changes: Mapping[str, str]) -> Params:
-    """A tree with each URI replaced."""
+    """Return a tree with each URI replaced."""
     attributes = {k: changes.get(v, v) for k, v in node.attributes.items()}
     children = [_replace_in_tree(c, changes) for c in node.children]
     return Params(node.name, changes.get(node.value, node.value), attributes, children)
 
 
 def _root_of(path: Path) -> Path:
-    """The outermost model or package that a file belongs to, else the folder above `meshes`, `materials` and so on."""
+    """Return the outermost model or package of a file, else the folder above `meshes`, `materials` and so on."""
     found = None
     for ancestor in (path, *list(path.parents)[:8]):
         if any((ancestor / name).is_file() for name in _MANIFESTS):
@@ -329,23 +336,23 @@ def _root_of(path: Path) -> Path:
     return folder
 
 
-def _relative(place: Path | PurePosixPath, here: Path | PurePosixPath) -> str:
-    return Path(os.path.relpath(str(place), str(here) or ".")).as_posix()
+def _relative(path: Path | PurePosixPath, here: Path | PurePosixPath) -> str:
+    return Path(os.path.relpath(str(path), str(here) or ".")).as_posix()
 
 
 def _file_outside(described: object, folder: Path) -> str:
-    """A mesh or picture that is read from outside of a folder; empty where there is none."""
+    """Describe a mesh or texture that is read from outside a folder; empty if there is none."""
     stack = [described]
     while stack:
-        one = stack.pop()
-        if isinstance(one, dict):
-            file = one.get("file")
-            is_read = "uri" in one and isinstance(file, str) and not one.get("missing")
+        item = stack.pop()
+        if isinstance(item, dict):
+            file = item.get("file")
+            is_read = "uri" in item and isinstance(file, str) and not item.get("missing")
             if is_read and not Path(os.path.realpath(str(file))).is_relative_to(Path(os.path.realpath(folder))):
-                return f"{one['uri']} is read from {file}"
-            stack += one.values()
-        elif isinstance(one, list):
-            stack += one
+                return f"{item['uri']} is read from {file}"
+            stack += item.values()
+        elif isinstance(item, list):
+            stack += item
     return ""
 
 
@@ -353,7 +360,7 @@ _PATH_KEYS: frozenset[str] = frozenset(("file", "uri", "diagnostics"))
 
 
 def _difference(a: object, b: object, path: str = "") -> str:
-    """The first place where two descriptions differ, the paths of files aside; empty where there is none."""
+    """Describe the first difference of two descriptions, ignoring file paths; empty if there is none."""
     if isinstance(a, dict) and isinstance(b, dict):
         parts: Iterable[tuple[str, object, object]] = (
             (f"{path}.{k}", a.get(k), b.get(k)) for k in sorted(a.keys() | b.keys()) if k not in _PATH_KEYS

@@ -1,4 +1,4 @@
-"""Trees of elements as XML text."""
+"""XML text of element trees."""
 
 from __future__ import annotations
 
@@ -63,20 +63,21 @@ def group_element(name: str, children: Iterable[Params | None], /, **attributes:
 
 
 def number(value: float) -> str:
-    """The shortest text that is read as the same number; `inf` and `-inf` too."""
+    """Return the shortest text that reads back as the same number, including `inf` and `-inf`."""
     value = float(value)
     text = repr(value)
     return text.removesuffix(".0") if text != "-0.0" else "0"
 
 
 def numbers(values: Iterable[float]) -> str:
+    """Return numbers as text, separated by spaces."""
     return " ".join(number(v) for v in values)
 
 
 def pose(value: Pose) -> Params | None:
     """`<pose>`, or None for none at all.
 
-    Angles where they say the same rotation to 1e-12, else a quaternion.
+    The rotation is written as angles if they are exact to 1e-12, else as a quaternion.
     """
     x, y, z = (float(v) for v in value.position)
     roll, pitch, yaw = (float(v) for v in value.rpy)
@@ -90,7 +91,10 @@ def pose(value: Pose) -> Params | None:
 
 
 def document(root: Params) -> str:
-    """The file: declaration, elements indented by two spaces, our own with our prefix, the prefixes that are used."""
+    """Return the text of a file: XML declaration, elements with two spaces of indent, and the used prefixes.
+
+    Simkit's own elements get the prefix `simkit`.
+    """
     root = _with_prefixes(root)
     for prefix in sorted(_prefixes(root)):
         root.attributes.setdefault(f"xmlns:{prefix}", _KNOWN.get(prefix, f"urn:{prefix}"))
@@ -98,7 +102,7 @@ def document(root: Params) -> str:
 
 
 def _with_prefixes(node: Params) -> Params:
-    """A copy in which elements of our own have our prefix; what is inside a plugin's is its own."""
+    """Copy a tree with the `simkit` prefix on simkit's own elements. The content of plugins is not changed."""
     children = node.children if node.name == "plugin" else [_with_prefixes(child) for child in node.children]
     copies = [Params(written_name(c.name, node.name), c.value, c.attributes, c.children) for c in children]
     return Params(node.name, node.value, node.attributes, copies)
@@ -124,8 +128,8 @@ def _prefixes(node: Params) -> set[str]:
     stack: list[Params] = [node]
     found: set[str] = set()
     while stack:
-        one = stack.pop()
-        names: Sequence[str] = (one.name, *one.attributes)
+        child = stack.pop()
+        names: Sequence[str] = (child.name, *child.attributes)
         found |= {n.partition(":")[0] for n in names if ":" in n and not n.startswith(("xml:", "xmlns:"))}
-        stack += one.children
+        stack += child.children
     return {p for p in found if f"xmlns:{p}" not in node.attributes}

@@ -70,11 +70,11 @@ def test_a_part_is_found_by_its_path() -> None:
     [
         ("nam", "did you mean 'name'"),
         ("name[2]", "has 2 items"),
-        ("header[0]", "is no array"),
-        ("name.x", "is no message"),
+        ("header[0]", "is not an array"),
+        ("name.x", "is not a message"),
         ("header.stamp.", ""),
         ("..", ""),
-        ("name[", "no path of fields"),
+        ("name[", "is not a field path"),
     ],
 )
 def test_a_path_that_leads_nowhere_says_so(path: str, told: str) -> None:
