@@ -1,7 +1,7 @@
-"""The command line `simkit`: one file for each command, `cli/<command>.py`, with what they share in `cli/terminal`.
+"""Command line `simkit`: one file for each command, `cli/<command>.py`, with shared code in `cli/terminal`.
 
-Words of the user enter; lines of text, files and exit codes leave. A command is thin: it parses its options, calls the
-library and prints. Nothing below imports this room, and a command's module is loaded only when the command is used.
+A command is thin: it parses its options, calls the library and prints lines, files and an exit code. No other package
+imports this one. A command's module is imported only when the command runs.
 """
 
 from __future__ import annotations
@@ -19,46 +19,46 @@ from simkit.version import __version__
 app = typer.Typer(
     name="simkit",
     cls=Commands,
-    help="A robot simulator: Gazebo worlds and robots, stepped by MuJoCo, answering with ROS 2 messages.",
+    help="Robot simulator for Gazebo worlds and robots, with MuJoCo physics and ROS 2 messages.",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
 COMMANDS = {
-    "run": "Runs a world headless, as fast as it goes.",
-    "check": "Prints every problem of a file, not only the first; runs nothing.",
-    "certify": "Runs a world in fresh processes with other surroundings, and shows that the bits are the same.",
-    "explain": "Says what a code means, what helps, and shows an input that brings it about.",
-    "inspect": "Shows what a file means once it is resolved.",
-    "convert": "Writes a world or model as MJCF, to be opened by MuJoCo alone, or as SDF in one file.",
-    "vendor": "Writes a folder that holds a world and everything it names, and that opens anywhere.",
-    "bench": "Times a world and, in the same run, bare MuJoCo on the same compiled model.",
-    "grade": "Runs an exercise with plugins that were handed in, and says what each got and why.",
-    "doctor": "Prints what simkit found on this machine, and what helps where something is missing.",
-    "golden": "Golden runs: sensor outputs kept, and compared with today's.",
-    "bundle": "Runs a world or a scenario, and packs it into one file that repeats it anywhere.",
-    "replay": "Repeats the run in a bundle: exit 0 if it came out the same, bit by bit, exit 5 if not.",
-    "bag": "Recordings: what is in them, new ones, and broken ones mended.",
-    "plot": "Draws fields of topics over time: of bags, and of worlds that are run for it.",
-    "motion": "Lists the motions that a robot knows by name, and plays them.",
-    "plugin": "Lists plugins, says what one reads and publishes, and begins new ones.",
-    "topic": "Topics of a running simulation, or of a bag.",
-    "service": "Services of a running simulation.",
-    "param": "Live parameters of a running simulation.",
-    "action": "Actions of a running simulation.",
-    "node": "Nodes of a running simulation: its plugins, sensors and clients.",
-    "interface": "Types of messages, services and actions.",
-    "model": "Models of a running simulation.",
-    "tf": "Frames of a running simulation, or of a bag.",
+    "run": "Run a world without a window, as fast as possible.",
+    "check": "Print all problems of a file without running it.",
+    "certify": "Verify that a run is bit-identical in different environments.",
+    "explain": "Explain a diagnostic code, with its remedy and an example.",
+    "inspect": "Show the resolved content of a file.",
+    "convert": "Convert a world or model to MJCF or to a single SDF file.",
+    "vendor": "Copy a world and all files that it uses into one folder.",
+    "bench": "Compare the speed of a world with bare MuJoCo.",
+    "grade": "Run an exercise with submitted plugins and print the results.",
+    "doctor": "Check the installation and print a remedy for each problem.",
+    "golden": "Record and compare golden runs (reference sensor outputs).",
+    "bundle": "Run a world or scenario and pack it into a repeatable bundle.",
+    "replay": "Repeat the run in a bundle and compare the results bit by bit.",
+    "bag": "Record, describe, play, export and recover bags.",
+    "plot": "Plot fields of bags, worlds and scenarios over time.",
+    "motion": "List and play the named motions of a robot.",
+    "plugin": "List, describe and create plugins.",
+    "topic": "Inspect and publish topics of a simulation or a bag.",
+    "service": "List and call the services of a running simulation.",
+    "param": "List, read and set the parameters of a running simulation.",
+    "action": "List the actions of a running simulation and send goals.",
+    "node": "List the nodes of a running simulation.",
+    "interface": "List and show the types of messages, services and actions.",
+    "model": "Show models, poses and joints of a running simulation.",
+    "tf": "Show the frames of a running simulation or of a bag.",
 }
-"""Commands with the line that stands beside each; its module in this folder has its name, and is not read before."""
+"""Commands and their help lines. The module of each command has the command's name and is imported on first use."""
 
 for _name, _line in COMMANDS.items():
     defer(app, _name, _line)
 
 
-def _print_version(wanted: bool) -> None:
-    if wanted:
+def _print_version(requested: bool) -> None:
+    if requested:
         typer.echo(f"simkit {__version__}")
         raise typer.Exit
 
@@ -66,15 +66,15 @@ def _print_version(wanted: bool) -> None:
 @app.callback()
 def _options(
     version: Annotated[
-        bool, Option("--version", callback=_print_version, is_eager=True, help="Prints the version.")
+        bool, Option("--version", callback=_print_version, is_eager=True, help="Print the version.")
     ] = False,
 ) -> None:
-    """A robot simulator: Gazebo worlds and robots, stepped by MuJoCo, answering with ROS 2 messages."""
+    """Robot simulator for Gazebo worlds and robots, with MuJoCo physics and ROS 2 messages."""
 
 
 def main() -> None:
-    """The entry point `simkit`."""
+    """Run the command line `simkit`."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="replace")  # a terminal without our signs or the file's names ends no run
+            stream.reconfigure(errors="replace")  # a terminal that cannot show a character must not end the run
     app()

@@ -1,4 +1,4 @@
-"""The command `simkit action`: list the actions of a running simulation and send goals, as `ros2 action` does."""
+"""Command `simkit action`: list the actions of a running simulation and send goals, as `ros2 action` does."""
 
 from __future__ import annotations
 
@@ -24,19 +24,19 @@ from simkit.cli.terminal.topic_sources import connect_to_simulation, interface_t
 if TYPE_CHECKING:
     from simkit.live import Client, LiveGoal
 
-_PATIENCE = 5.0  # [s] of wall time in which a goal that is called off should end
-action = typer.Typer(help="Actions of a running simulation.", no_args_is_help=True)
-Name = Annotated[str, argument("Name of an action.", "ACTION", completion.actions)]
+_CANCEL_TIMEOUT = 5.0  # [s] of wall time for the end of a cancelled goal
+action = typer.Typer(help="List the actions of a running simulation and send goals.", no_args_is_help=True)
+Name = Annotated[str, argument("Name of the action.", "ACTION", completion.actions)]
 
 
 @live_command(action, "list")
 def list_(
     show_types: options.ShowTypes = False,
-    count: Annotated[bool, Option("--count-actions", "-c", help="Says only how many.")] = False,
+    count: Annotated[bool, Option("--count-actions", "-c", help="Print only the number of actions.")] = False,
     sim: options.Sim = None,
     json_: options.Json = False,
 ) -> None:
-    """Lists the actions."""
+    """List the actions."""
     with connect_to_simulation(sim) as client:
         found = dict(sorted(client.actions().items()))
     print_names_and_types(found, show_types=show_types, count=count, json_=json_)
@@ -44,7 +44,7 @@ def list_(
 
 @live_command(action, "type")
 def type_(action: Name, sim: options.Sim = None, json_: options.Json = False) -> None:
-    """Prints an action's type."""
+    """Print the type of an action."""
     with connect_to_simulation(sim) as client:
         found = interface_type(client, "action", client.actions(), action)
     print_names([found], json_=json_)
@@ -54,11 +54,11 @@ def type_(action: Name, sim: options.Sim = None, json_: options.Json = False) ->
 def info(
     action: Name,
     show_types: options.ShowTypes = False,
-    count: Annotated[bool, Option("--count", "-c", help="Says only how many.")] = False,
+    count: Annotated[bool, Option("--count", "-c", help="Print only the numbers of clients and servers.")] = False,
     sim: options.Sim = None,
     json_: options.Json = False,
 ) -> None:
-    """Says who serves an action."""
+    """Print the node that serves an action."""
     with connect_to_simulation(sim) as client:
         found = interface_type(client, "action", client.actions(), action)
         nodes = client.ask("nodes")
@@ -75,16 +75,16 @@ def info(
 def send_goal(
     action: Name,
     action_type: Annotated[
-        str | None, argument("Its type, which need not be said.", "[TYPE]", completion.action_types)
+        str | None, argument("Type of the action (optional).", "[TYPE]", completion.action_types)
     ] = None,
-    goal: Annotated[str | None, argument("The goal as YAML: '{order: 5}'.", "[GOAL]", completion.goal_values)] = None,
-    stdin: Annotated[bool, Option("--stdin", help="Reads the goal from standard input.")] = False,
-    feedback: Annotated[bool, Option("--feedback", "-f", help="Prints the feedback.")] = False,
-    timeout: Annotated[float | None, option("Calls it off after so long (wall time).", "S", "--timeout", min=0)] = None,
+    goal: Annotated[str | None, argument("Goal as YAML: '{order: 5}'.", "[GOAL]", completion.goal_values)] = None,
+    stdin: Annotated[bool, Option("--stdin", help="Read the goal from standard input.")] = False,
+    feedback: Annotated[bool, Option("--feedback", "-f", help="Print the feedback.")] = False,
+    timeout: Annotated[float | None, option("Cancel the goal after this wall time.", "S", "--timeout", min=0)] = None,
     sim: options.Sim = None,
     json_: options.Json = False,
 ) -> None:
-    """Sends a goal and waits for its end; Ctrl-C calls it off."""
+    """Send a goal and wait for its end. Ctrl-C cancels the goal."""
     action_type, goal = split_type_and_values(action_type, goal)
     fields = parse_fields(sys.stdin.read() if stdin else goal or "{}", "the goal")
     with connect_to_simulation(sim) as client:
@@ -94,15 +94,15 @@ def send_goal(
 
 
 live_command(action, "send_goal")(send_goal)
-action.command("send", cls=options.Ros2Command, help="The same as send_goal.")(report_errors_quietly(send_goal))
+action.command("send", cls=options.Ros2Command, help="Alias of send_goal.")(report_errors_quietly(send_goal))
 
 
 class _GoalRun:
-    """Goal from its sending to its end."""
+    """Goal that was sent, with the printing of its progress."""
 
     def __init__(self, client: Client, json_: bool, feedback: bool) -> None:
         self._client, self._json, self._feedback = client, json_, feedback
-        self._early: list[object] | None = []  # feedback that came before it was said that the goal is accepted
+        self._early: list[object] | None = []  # feedback that arrived before the line "Goal accepted"
 
     def send(self, name: str, goal: object, timeout: float | None) -> None:
         self._print_line("Waiting for an action server to become available...")
@@ -130,7 +130,7 @@ class _GoalRun:
         self._print_line("Canceling goal...")
         handle.cancel()
         self._print_line(
-            "Goal canceled." if handle.wait(_PATIENCE) else "The goal goes on: its action does not stop it."
+            "Goal canceled." if handle.wait(_CANCEL_TIMEOUT) else "The goal continues: its action did not cancel it."
         )
 
     def _print_end(self, handle: LiveGoal) -> None:

@@ -1,4 +1,4 @@
-"""The command `simkit bag`: describe, mend, plot, export, play and record recordings."""
+"""Command `simkit bag`: describe, recover, plot, export, play and record bags."""
 
 from __future__ import annotations
 
@@ -32,11 +32,9 @@ if TYPE_CHECKING:
 
 @report_errors_quietly
 def plot(
-    words: Annotated[
+    arguments: Annotated[
         list[str],
-        argument(
-            "A bag, or several to compare; then fields: /odom.pose.pose.position.x, /scan.ranges[0].", "BAG... FIELD..."
-        ),
+        argument("One or more bags, then fields: /odom.pose.pose.position.x, /scan.ranges[0].", "BAG... FIELD..."),
     ],
     output: options.ChartFile = Path("plot.svg"),
     against: options.Against = None,
@@ -45,13 +43,13 @@ def plot(
     title: options.Title = "",
     json_: options.Json = False,
 ) -> None:
-    """Draws fields of a recording over time; several recordings come into one chart."""
+    """Plot fields of bags over time. Several bags share one chart."""
     from simkit.recording.bags.reader import open_bag_to_read
 
-    sources, fields = split_sources_and_fields(words)
+    sources, fields = split_sources_and_fields(arguments)
     for name in sources:
         if not is_bag(Path(name)):
-            open_bag_to_read(name).close()  # says why not
+            open_bag_to_read(name).close()  # raises an error that describes the problem
     draw_chart(sources, fields, PlotRequest(output, against, start, end, title), json_=json_)
 
 
@@ -59,74 +57,79 @@ def plot(
 def export(
     recording: options.Recording,
     output: Annotated[
-        Path | None, Option("--output", "-o", help="The folder; NAME_export beside the bag's name where not given.")
+        Path | None, Option("--output", "-o", help="Folder to write; default: NAME_export in the current folder.")
     ] = None,
-    topic: Annotated[list[str], option("Only topics of this pattern; repeatable.", "PATTERN")] = [],
-    skip: Annotated[list[str], option("All but topics of this pattern; repeatable.", "PATTERN")] = [],
+    topic: Annotated[list[str], option("Only topics that match this pattern; repeatable.", "PATTERN")] = [],
+    skip: Annotated[list[str], option("Leave out topics that match this pattern; repeatable.", "PATTERN")] = [],
     format_: Annotated[
-        str, option("Of tables; parquet is the extra of that name.", "csv|npz|parquet", "--format")
+        str, option("Format of the tables; parquet needs the extra of that name.", "csv|npz|parquet", "--format")
     ] = "csv",
-    images: Annotated[str, option("What becomes of pictures.", "png|mp4|npz|none")] = "png",
-    clouds: Annotated[str, option("What becomes of point clouds.", "npz|ply|none")] = "npz",
+    images: Annotated[str, option("Format of the images.", "png|mp4|npz|none")] = "png",
+    clouds: Annotated[str, option("Format of the point clouds.", "npz|ply|none")] = "npz",
     start: options.Start = None,
     end: options.End = None,
     force: options.Force = False,
     json_: options.Json = False,
 ) -> None:
-    """Writes a recording as tables, a file a topic, with pictures and point clouds beside them."""
+    """Export a bag as tables, images and point clouds."""
     from simkit.recording.export import CLOUDS, FORMATS, IMAGES, ExportOptions, export_bag
 
     options.validate_word("--format", format_, FORMATS)
     options.validate_word("--images", images, IMAGES)
     options.validate_word("--clouds", clouds, CLOUDS)
     target = output or Path(f"{recording.resolve().stem}_export")
-    wanted = ExportOptions(tuple(topic), tuple(skip), format_, images, clouds, start, end, force)
-    found = export_bag(recording, target, wanted)
+    export_options = ExportOptions(tuple(topic), tuple(skip), format_, images, clouds, start, end, force)
+    exports = export_bag(recording, target, export_options)
     if json_:
-        print_json({"output": str(target), "topics": [asdict(one) for one in found]})
+        print_json({"output": str(target), "topics": [asdict(e) for e in exports]})
         return
-    width = max(len(one.topic) for one in found)
-    for one in found:
-        beside = f" and {one.beside}" if one.beside else ""
-        print_line(f"{one.topic:<{width}}  {one.count:>8}  {one.file}{beside}")
-    for one in found:
-        for note in one.notes:
-            print_note(f"note: {one.topic}: {note}")
-    print_line(f"{target}: {sum(one.count for one in found)} messages of {len(found)} topics")
+    width = max(len(e.topic) for e in exports)
+    for e in exports:
+        beside = f" and {e.beside}" if e.beside else ""
+        print_line(f"{e.topic:<{width}}  {e.count:>8}  {e.file}{beside}")
+    for e in exports:
+        for note in e.notes:
+            print_note(f"note: {e.topic}: {note}")
+    print_line(f"{target}: {sum(e.count for e in exports)} messages of {len(exports)} topics")
 
 
 @report_errors_quietly
 def play(
     recording: options.Recording,
     topics: Annotated[
-        list[str], Option("--topics", help="Only this one; repeatable. Else all that the world takes.")
+        list[str], Option("--topics", help="Topic to play; repeatable. Default: all inputs of the world.")
     ] = [],
-    rate: Annotated[float, option("Times as fast, of simulated time.", "N", "--rate", "-r", min=1e-3)] = 1.0,
-    start: Annotated[float, option("Begins so far into the bag.", "S", "--start-offset", min=0)] = 0.0,
-    remap: Annotated[list[str], option("Plays OLD on NEW; repeatable.", "OLD:=NEW", "--remap", "-m")] = [],
-    loop: Annotated[bool, Option("--loop", "-l", help="Again and again until Ctrl-C.")] = False,
+    rate: Annotated[float, option("Playback speed factor.", "N", "--rate", "-r", min=1e-3)] = 1.0,
+    start: Annotated[float, option("Start at this offset into the bag.", "S", "--start-offset", min=0)] = 0.0,
+    remap: Annotated[list[str], option("Play OLD as NEW; repeatable.", "OLD:=NEW", "--remap", "-m")] = [],
+    loop: Annotated[bool, Option("--loop", "-l", help="Repeat until Ctrl-C.")] = False,
     sim: options.Sim = None,
     json_: options.Json = False,
 ) -> None:
-    """Plays the messages of a bag into a running simulation, by its clock."""
+    """Play the messages of a bag into a running simulation.
+
+    The simulation's clock sets the pace.
+    """
     from simkit.recording.bags.reader import open_bag_to_read
 
     names = _parse_remappings(remap)
     with open_bag_to_read(recording) as reader, connect_to_simulation(sim) as client:
-        there = list(dict.fromkeys(t.name for t in reader.topics))
-        wanted = [absolute_name(t) for t in topics] or _input_topics(client, there, names)
-        if not wanted:
-            text = f"nothing of {recording} is taken here; --topics says what is to be played"
+        bag_topics = list(dict.fromkeys(t.name for t in reader.topics))
+        selected = [absolute_name(t) for t in topics] or _input_topics(client, bag_topics, names)
+        if not selected:
+            text = f"the world subscribes to no topic of {recording}; choose topics with --topics"
             raise InputError(f"SK-CLI-030 {text}", "SK-CLI-030")
-        for unknown in [t for t in wanted if t not in there][:1]:
+        for unknown in [t for t in selected if t not in bag_topics][:1]:
             next(reader.messages([unknown]))
         publishers = {
-            t.name: client.advertise(names.get(t.name, t.name), t.type_name) for t in reader.topics if t.name in wanted
+            t.name: client.advertise(names.get(t.name, t.name), t.type_name)
+            for t in reader.topics
+            if t.name in selected
         }
         if not json_:
             print_note(f"[INFO] [rosbag2_player]: playing {', '.join(publishers)}")
         count = _play_once(client, reader, publishers, rate, start)
-        while loop and count:  # a round of nothing takes no time
+        while loop and count:  # an empty round takes no time and would repeat for ever
             count += _play_once(client, reader, publishers, rate, start)
         client.flush()
     if json_:
@@ -144,7 +147,7 @@ def _parse_remappings(pairs: list[str]) -> dict[str, str]:
 
 
 def _input_topics(client: Client, topics: list[str], names: dict[str, str]) -> list[str]:
-    """Return the topics that plugins of the world subscribe to; readings of its own sensors are left out."""
+    """Return the topics that plugins of the world subscribe to, without those that only clients subscribe to."""
     inputs = {row["name"] for row in client.topics() if any(s.get("kind") != "client" for s in row["subscribers"])}
     return [t for t in topics if names.get(t, t) in inputs]
 
@@ -152,7 +155,7 @@ def _input_topics(client: Client, topics: list[str], names: dict[str, str]) -> l
 def _play_once(
     client: Client, reader: BagReader, publishers: dict[str, LivePublisher], rate: float, start: float
 ) -> int:
-    """Plays the bag once; how many messages that was."""
+    """Play the bag once; return the number of messages."""
     clock = SimClock(client)
     first_ns = reader.start + round(start * 1e9)
     begun_ns = clock.now_ns()
@@ -160,24 +163,24 @@ def _play_once(
     for message in reader.messages(list(publishers), first_ns):
         due_ns = begun_ns + round((message.time_ns - first_ns) / rate)
         if not clock.wait_until(due_ns, begun_ns):
-            print_note("note: the simulation was reset; what is left is not played")
+            print_note("note: the simulation was reset; the remaining messages are not played")
             break
         publishers[message.topic].publish(message.data)
         count += 1
     return count
 
 
-bag = typer.Typer(help="Recordings: what is in them, new ones, and broken ones mended.", no_args_is_help=True)
+bag = typer.Typer(help="Record, describe, play, export and recover bags.", no_args_is_help=True)
 
 
 @bag.command()
 @report_errors_quietly
 def info(
     recording: options.Recording,
-    topic_name: Annotated[bool, Option("--topic-name", "-t", help="Prints the names of the topics only.")] = False,
+    topic_name: Annotated[bool, Option("--topic-name", "-t", help="Print only the names of the topics.")] = False,
     json_: options.Json = False,
 ) -> None:
-    """Says what is in a recording."""
+    """Describe a bag: time span, topics, types and numbers of messages."""
     from simkit.recording.bags.reader import open_bag_to_read
     from simkit.recording.bags.summary import bag_summary, bag_text
 
@@ -202,16 +205,16 @@ bag.command()(export)
 @bag.command()
 @report_errors
 def recover(
-    broken: Annotated[Path, argument("The recording that was cut off: an MCAP file or a rosbag2 folder.")],
-    mended: Annotated[Path | None, argument("Where the whole one goes; beside it where not given.")] = None,
-    output: Annotated[Path | None, option("The same.", "MENDED", "--output", "-o")] = None,
+    broken: Annotated[Path, argument("Bag that was cut off: an MCAP file or a rosbag2 folder.")],
+    mended: Annotated[Path | None, argument("Bag to write; default: NAME_recovered in the same folder.")] = None,
+    output: Annotated[Path | None, option("Alias of the argument MENDED.", "MENDED", "--output", "-o")] = None,
     force: options.Force = False,
 ) -> None:
-    """Copies what is readable of a recording into a whole one; the broken one stays as it is."""
+    """Copy the readable part of a bag into a new, complete bag. The original is not changed."""
     from simkit.recording.bags.recovery import recover_bag
 
     target = output or mended or broken.with_name(f"{broken.stem}_recovered{broken.suffix}")
     found = recover_bag(broken, target, overwrite=force)
     span = (found.end - found.start) * 1e-9
-    state = "it was whole" if found.complete else "it was cut off"
+    state = "the bag was complete" if found.complete else "the bag was cut off"
     stdout_console().print(f"{target}: {found.messages} messages on {found.topics} topics over {span:.3f} s ({state})")

@@ -1,4 +1,4 @@
-"""The command `simkit bag record`: record a simulation that runs in another terminal."""
+"""Command `simkit bag record`: record a simulation that runs in another terminal."""
 
 from __future__ import annotations
 
@@ -22,42 +22,43 @@ if TYPE_CHECKING:
     from simkit.cli.terminal.topic_sources import LiveFeed, ReceivedMessage
     from simkit.recording.bags.writer import McapBag
 
-_DEPTH = 20_000  # messages of a topic that wait while the disk is busy
-_LOOK = 0.2  # [s] of wall time between two looks at Ctrl-C
-_NEW = 1.0  # [s] of wall time between two looks for new topics
+_DEPTH = 20_000  # queued messages of a topic while the disk is busy
+_RECEIVE_TIMEOUT = 0.2  # [s] of wall time between two checks for Ctrl-C
+_DISCOVERY_PERIOD = 1.0  # [s] of wall time between two searches for new topics
 
 
 @report_errors_quietly
 def record(
     topics: Annotated[list[str] | None, argument("Topics to record.", "[TOPIC]...", completion.topics)] = None,
-    all_: Annotated[bool, Option("--all", "-a", help="All topics, those that come later too.")] = False,
-    regex: Annotated[str | None, option("Topics that this fits.", "REGEX", "--regex", "-e", show_default=False)] = None,
+    all_: Annotated[bool, Option("--all", "-a", help="Record all topics, including new ones.")] = False,
+    regex: Annotated[str | None, option("Matching topics.", "REGEX", "--regex", "-e", show_default=False)] = None,
     exclude: Annotated[
-        str | None, option("But not these.", "REGEX", "--exclude-regex", "--exclude", "-x", show_default=False)
+        str | None,
+        option("Exclude topics that match.", "REGEX", "--exclude-regex", "--exclude", "-x", show_default=False),
     ] = None,
-    topics_too: Annotated[list[str], option("The same as arguments; repeatable.", "TOPIC", "--topics")] = [],
+    topics_too: Annotated[list[str], option("Topic to record; repeatable.", "TOPIC", "--topics")] = [],
     output: Annotated[
-        Path | None, option("x.mcap one file, else a rosbag2 folder.", "OUT", "--output", "-o", show_default=False)
+        Path | None, option("NAME.mcap: one file; else a rosbag2 folder.", "OUT", "--output", "-o", show_default=False)
     ] = None,
-    duration: Annotated[float | None, option("Ends after so long (simulated).", "S", "--duration", "-d", min=0)] = None,
-    hidden: Annotated[bool, Option("--include-hidden-topics", help="Hidden ones too.")] = False,
-    storage: Annotated[str, option("mcap is all there is.", "mcap", "--storage", "-s")] = "mcap",
+    duration: Annotated[float | None, option("Simulated seconds to record.", "S", "--duration", "-d", min=0)] = None,
+    hidden: Annotated[bool, Option("--include-hidden-topics", help="Include hidden topics.")] = False,
+    storage: Annotated[str, option("Storage format; only mcap.", "mcap", "--storage", "-s")] = "mcap",
     force: options.Force = False,
     sim: options.Sim = None,
     json_: options.Json = False,
 ) -> int:
-    """Records topics of a running simulation until Ctrl-C; `simkit run --record` loses nothing at any speed."""
+    """Record topics of a running simulation until Ctrl-C. `simkit run --record` drops no message at any speed."""
     from simkit.recording.bags.recorder import open_bag
 
     named = [absolute_name(t) for t in (*(topics or ()), *topics_too)]
-    wanted = _TopicSelection(
+    selection = _TopicSelection(
         named, all_, compile_pattern(regex, "--regex"), compile_pattern(exclude, "--exclude-regex"), hidden
     )
     if storage != "mcap":
         raise InputError(f"SK-CLI-018 --storage: found {storage!r}, allowed is mcap", "SK-CLI-018")
     target = output or Path(time.strftime("rosbag2_%Y_%m_%d-%H_%M_%S"))
     with connect_to_simulation(sim) as client:
-        recording = _Recording(LiveSource(client), wanted, duration)
+        recording = _Recording(LiveSource(client), selection, duration)
         with Interrupts() as stop:
             bag = open_bag(target, overwrite=force)
             try:
@@ -70,20 +71,18 @@ def record(
     else:
         print_note(f"{target}: {bag.span.count} messages on {len(bag.channels)} topics")
         if recording.lost:
-            print_note(
-                f"note: {recording.lost} messages came faster than they were written; simkit run --record loses none"
-            )
+            print_note(f"note: {recording.lost} messages were dropped; `simkit run --record` drops none")
     return stop.exit_code
 
 
 class _TopicSelection:
-    """Which topics are recorded."""
+    """Selection of the topics to record."""
 
     def __init__(
         self, named: list[str], all_: bool, regex: re.Pattern[str] | None, exclude: re.Pattern[str] | None, hidden: bool
     ) -> None:
         if not named and not all_ and regex is None:
-            text = "no topics to record; name them, or --all, or --regex"
+            text = "no topics to record; give names, --all or --regex"
             raise InputError(f"SK-CLI-018 {text}", "SK-CLI-018")
         self._named, self._all, self._regex, self._exclude, self._hidden = set(named), all_, regex, exclude, hidden
         self.named = named
@@ -99,38 +98,38 @@ class _TopicSelection:
 
 
 class _Recording:
-    """Writes what comes on the wanted topics."""
+    """Recording of the selected topics of a running simulation."""
 
-    def __init__(self, source: LiveSource, wanted: _TopicSelection, duration: float | None) -> None:
-        self._source, self._wanted, self._duration = source, wanted, duration
+    def __init__(self, source: LiveSource, selection: _TopicSelection, duration: float | None) -> None:
+        self._source, self._selection, self._duration = source, selection, duration
         self._feeds: list[LiveFeed] = []
         self._known: set[str] = set()
         self._latched: set[str] = set()
-        self._looked = -_NEW
+        self._looked = -_DISCOVERY_PERIOD
         self._begun_ns: int | None = None
-        there = source.topics()
-        for name in wanted.named:
-            if name not in there:
-                hint = did_you_mean(name, there)
-                print_note(f"note: {name} is not there yet{'; ' + hint if hint else ''}")
+        existing = source.topics()
+        for name in selection.named:
+            if name not in existing:
+                hint = did_you_mean(name, existing)
+                print_note(f"note: topic {name} does not exist yet{'; ' + hint if hint else ''}")
 
     @property
     def lost(self) -> int:
-        """Number of messages dropped."""
+        """Number of dropped messages."""
         return sum(feed.lost for feed in self._feeds)
 
     def run(self, bag: McapBag, stop: Interrupts) -> None:
-        """Records to the end of the simulation, or until asked to stop."""
+        """Record until the end of the simulation, the end of the duration or Ctrl-C."""
         from simkit.live import LiveClosed
 
         try:
             started_ns = self._now_ns()
             while not stop.exit_code:
                 self._subscribe(bag)
-                came = self._take_messages()
-                if self._write(bag, came) or (not came and any(feed.is_over for feed in self._feeds)):
+                received = self._take_messages()
+                if self._write(bag, received) or (not received and any(feed.is_over for feed in self._feeds)):
                     return
-                if self._duration is not None and not came:
+                if self._duration is not None and not received:
                     begun_ns = started_ns if self._begun_ns is None else self._begun_ns
                     if self._now_ns() - begun_ns > self._duration * 1e9:
                         return
@@ -144,9 +143,9 @@ class _Recording:
     def _now_ns(self) -> int:
         return int(self._source.client.state()["time_ns"])
 
-    def _write(self, bag: McapBag, came: list[ReceivedMessage]) -> bool:
-        """Writes messages; whether one is behind the end of what was asked for."""
-        for received in came:
+    def _write(self, bag: McapBag, messages: list[ReceivedMessage]) -> bool:
+        """Write messages; return True at the first message after the end of the duration."""
+        for received in messages:
             time_ns = int(received.time_ns)
             self._begun_ns = time_ns if self._begun_ns is None else min(self._begun_ns, time_ns)
             if self._duration is not None and time_ns - self._begun_ns > self._duration * 1e9:
@@ -155,8 +154,8 @@ class _Recording:
             bag.write_raw(channel, received.data, time_ns)
         return False
 
-    def _take_messages(self, wait: float = _LOOK) -> list[ReceivedMessage]:
-        """Return received messages in the order of times; wait where there are none [s, wall time]."""
+    def _take_messages(self, wait: float = _RECEIVE_TIMEOUT) -> list[ReceivedMessage]:
+        """Return the received messages, sorted by time; if there are none, wait for them [s, wall time]."""
         if not self._feeds:
             time.sleep(wait)
             return []
@@ -173,11 +172,11 @@ class _Recording:
         return sorted(found, key=lambda r: int(r.time_ns))
 
     def _subscribe(self, bag: McapBag) -> None:
-        """Looks for topics that are wanted and new."""
-        if time.monotonic() - self._looked < _NEW:
+        """Subscribe to new topics of the selection."""
+        if time.monotonic() - self._looked < _DISCOVERY_PERIOD:
             return
         self._looked = time.monotonic()
-        fresh = {n: e for n, e in self._source.topics().items() if n in self._wanted and n not in self._known}
+        fresh = {n: e for n, e in self._source.topics().items() if n in self._selection and n not in self._known}
         if not fresh:
             return
         for name, entry in fresh.items():
@@ -188,4 +187,4 @@ class _Recording:
         for name, entry in fresh.items():
             print_note(f"[INFO] [rosbag2_recorder]: Subscribed to topic '{name}'")
             for end in entry.publishers[:1] or entry.subscribers[:1]:
-                bag.channel(name, end.types[0], end.latched)  # listed though nothing may come
+                bag.channel(name, end.types[0], end.latched)  # list the topic even if it has no messages

@@ -1,4 +1,4 @@
-"""The command `simkit bench`: compare the speed of a world with bare MuJoCo."""
+"""Command `simkit bench`: compare the speed of a world with bare MuJoCo."""
 
 from __future__ import annotations
 
@@ -18,22 +18,22 @@ _HOUR = 3600.0
 @report_errors
 def bench(
     world: options.World,
-    rounds: Annotated[int, option("Timings of each side.", "N", min=1)] = 9,
-    full: Annotated[bool, Option("--full", help="Memory over a whole simulated hour, not a minute.")] = False,
+    rounds: Annotated[int, option("Number of timings of each side.", "N", min=1)] = 9,
+    full: Annotated[bool, Option("--full", help="Measure memory over a simulated hour, not a minute.")] = False,
     resource_path: options.ResourcePaths = [],
     plugin_path: options.PluginPaths = [],
     package_path: options.PackagePaths = [],
     xacro_arg: options.XacroArgs = [],
     base: options.Base = "auto",
 ) -> None:
-    """Times a world and, in the same run, bare MuJoCo on the same compiled model."""
+    """Compare the speed of a world with bare MuJoCo."""
     from simkit.mujoco_import import import_mujoco
 
     import_mujoco()
     from simkit.build import load
     from simkit.cli.bench_figures import compare_with_bare_mujoco, measure_import_time, measure_memory_growth
 
-    stdout_console().print(f"{'':<52}{'simkit':>12}{'bare':>12}{'ratio':>8}{'aim':>8}")
+    stdout_console().print(f"{'':<52}{'simkit':>12}{'bare':>12}{'ratio':>8}{'goal':>8}")
     spec = RunSpec(world, options=load_options(resource_path, package_path, xacro_arg, base, plugin_path))
     for figure in compare_with_bare_mujoco(spec, rounds=rounds):
         bare = "" if figure.bare is None else f"{figure.bare * 1e6:.1f} µs"

@@ -1,4 +1,4 @@
-"""Run the same compiled model, and take the same readings of it, with MuJoCo alone."""
+"""Comparison side of `simkit bench`: the same compiled model, stepped and measured with MuJoCo alone."""
 
 from __future__ import annotations
 
@@ -29,15 +29,15 @@ _SPARE_GEOMS = 16
 
 
 class BareCamera:
-    """Camera image drawn by MuJoCo alone; colour and depth as the driver gives them.
+    """Camera image drawn by MuJoCo alone, with colour and depth as the driver returns them.
 
-    That is bottom row first, black where there is nothing, depth not in metres. Model and context are of its own, with
-    the simulation's multisampling and shadow maps.
+    The image starts with the bottom row. The background is black, and depth is not in metres. The camera has its own
+    model and context, with the simulation's multisampling and shadow maps.
 
     Args:
-        sim: the simulation.
-        sensor: a camera that one picture is drawn for; its view and pose are taken.
-        model, data: to be drawn; the simulation's by default.
+        sim: simulation to draw.
+        sensor: camera with one image per sample; source of the view and the pose.
+        model, data: model and state to draw; default: those of the simulation.
     """
 
     def __init__(
@@ -67,12 +67,12 @@ class BareCamera:
 
     @contextlib.contextmanager
     def current(self) -> Iterator[None]:
-        """While it lasts, `draw` may be called."""
+        """Make the graphics context current; `draw` may be called inside the block."""
         with gl_context.current():
             yield
 
     def draw(self) -> None:
-        """The picture of `data` as they are now."""
+        """Draw the current state of `data`."""
         mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN, self._context)
         mujoco.mjv_updateScene(self.model, self.data, self._option, None, self._aside, _ALL_GEOMS, self._scene)
         aim(self._scene, *self.sensor._frame_in_world(self.data), self.view)
@@ -81,13 +81,13 @@ class BareCamera:
         mujoco.mjr_readPixels(self.colours, depths, self._rectangle, self._context)
 
     def draw_many(self, count: int) -> None:
-        """Draw several images in one go."""
+        """Draw several images in one context switch."""
         with self.current():
             for _ in range(count):
                 self.draw()
 
     def reading(self, random: np.random.Generator) -> Callable[[], object]:
-        """Return a function that takes a whole reading: upright, depths in metres, with noise, in arrays of its own."""
+        """Return a function that takes a complete reading: top row first, depth in metres, noise, new arrays."""
         view, noise = self.view, self.sensor.options.noise
         slope = np.float32(view.near * view.far / (view.far - view.near))
         offset = np.float32(view.near / (view.far - view.near))
@@ -115,20 +115,20 @@ class BareCamera:
         return read
 
     def free(self) -> None:
-        """Gives the graphics memory back."""
+        """Release the graphics memory."""
         with self.current():
             self._context.free()
 
 
 def _upload(model: mujoco.MjModel, renderer: Renderer) -> mujoco.MjrContext:
-    """The engine's context with as many samples and as large a shadow map as the simulation's cameras have."""
-    own, wanted = model.vis.quality, renderer._appearance.quality
-    kept = own.offsamples, own.shadowsize
-    own.offsamples, own.shadowsize = wanted.samples, wanted.shadow_map
+    """Create MuJoCo's context with the multisampling and the shadow map size of the simulation's cameras."""
+    own, target = model.vis.quality, renderer._appearance.quality
+    original = own.offsamples, own.shadowsize
+    own.offsamples, own.shadowsize = target.samples, target.shadow_map
     try:
         context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100)
     finally:
-        own.offsamples, own.shadowsize = kept
+        own.offsamples, own.shadowsize = original
     context.readDepthMap = mujoco.mjtDepthMap.mjDEPTH_ZEROFAR
     return context
 
@@ -137,7 +137,7 @@ _EULER = (mujoco.mjtIntegrator.mjINT_EULER,)
 
 
 class BareEngine:
-    """The same model and state in the engine alone."""
+    """Copy of a simulation's model and state, stepped by MuJoCo alone."""
 
     def __init__(self, sim: Simulation) -> None:
         self.model = copy.copy(sim.mj_model)
@@ -148,13 +148,13 @@ class BareEngine:
 
 
 class HandWrittenLoop(BareEngine):
-    """The tightest loop that takes the same readings: engine calls and plain NumPy, no messages, no topics.
+    """Fastest loop with the same readings: MuJoCo calls and plain NumPy, without messages and topics.
 
-    A reading's forward pass serves as the next step's first half.
+    The forward pass of a reading also serves as the first half of the next step.
 
     Args:
-        sim: the simulation; read for poses and rates, not stepped.
-        periods: topic -> steps between its messages, for the topics that are read.
+        sim: simulation that provides poses and rates; it is not stepped.
+        periods: topic -> steps between its messages, for the topics to read.
     """
 
     def __init__(self, sim: Simulation, periods: dict[str, int]) -> None:
@@ -190,7 +190,7 @@ class HandWrittenLoop(BareEngine):
                     latest[topic] = read()
 
     def _plan(self, count: int) -> list[tuple[int, list[tuple[str, Callable[[], object]]]]]:
-        """Plan the steps between two readings, and what to read then; computed once."""
+        """Plan the steps between two readings, and the readings at each stop. Each plan is computed once."""
         plan, at = [], 0
         for tick in sorted({count, *(t for period, _, _ in self._due for t in range(period, count + 1, period))}):
             plan.append((tick - at, [(topic, read) for period, topic, read in self._due if tick % period == 0]))
@@ -209,7 +209,7 @@ class HandWrittenLoop(BareEngine):
             return self._odometry
         if kind == "JointState":
             return lambda: (self.data.qpos.copy(), self.data.qvel.copy())
-        if kind == "Imu":  # made up by a plugin
+        if kind == "Imu":  # computed by a plugin, without a sensor
             return lambda: self.data.xquat[self._root].copy()
         return lambda: (self.data.time, self.data.xpos[self._root].copy(), self.data.xquat[self._root].copy())
 
@@ -247,7 +247,11 @@ class HandWrittenLoop(BareEngine):
 
 
 def cast_bare_scan(sensor: Lidar, model: mujoco.MjModel, data: mujoco.MjData) -> Callable[[], Numbers]:
-    """The same rays from the same place, groups and excluded body included; gives distances, shape (n,)."""
+    """Return a function that casts a lidar's rays with MuJoCo alone.
+
+    The rays have the same origin, geom groups and excluded body as the lidar's. The function returns the distances [m],
+    shape (n,).
+    """
     fan = sensor._fan
     ids, distances, rotated = np.zeros(fan.count, np.int32), np.zeros(fan.count), np.zeros((fan.count, 3))
     origin, rotation = (np.array(part) for part in sensor._frame_in_world(data))

@@ -1,4 +1,4 @@
-"""Measure the speed of simkit and of bare MuJoCo on the same compiled model, in turn; report medians."""
+"""Speed of simkit and of bare MuJoCo on the same compiled model, measured in turn and reported as medians."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from simkit.runtime import Simulation, Subscription
     from simkit.sensors.base import Sensor
 
-_CHUNK = 500  # steps a round
+_CHUNK = 500  # steps per round
 _CAMERAS = frozenset({"sensor_msgs/msg/Image", "sensor_msgs/msg/CameraInfo", "sensor_msgs/msg/PointCloud2"})
 
 
@@ -33,9 +33,10 @@ class Figure:
     """Comparison of two times [s].
 
     Attributes:
-        ours, bare: median time of one unit; `bare` is None where there is nothing to compare with.
-        aim: highest ratio aimed at, or None.
-        most: longest time aimed at, or None.
+        name, unit: name of the comparison, and the unit of both times (a step or a sample).
+        ours, bare: median time of one unit; `bare` is None if there is no counterpart in MuJoCo.
+        aim: target for the highest ratio, or None.
+        most: target for the longest time, or None.
     """
 
     name: str
@@ -51,7 +52,7 @@ class Figure:
 
 
 class EveryStepPlugin(WorldPlugin):
-    """The least that a plugin can do: it is called after every step."""
+    """Minimal plugin that is called after every step."""
 
     def load(self, parent: object, params: object) -> None:
         self.calls = 0
@@ -63,30 +64,32 @@ class EveryStepPlugin(WorldPlugin):
 def time_interleaved(
     sides: Sequence[Callable[[], object]], rounds: int, clock: Callable[[], float] = time.process_time
 ) -> list[float]:
-    """Median time of one call of each side [s]; the sides alternate, so that a busy machine hits all alike.
+    """Return the median time of one call of each side [s].
+
+    The sides alternate, so that a busy machine slows all sides alike.
 
     Args:
-        sides: what is timed.
-        rounds: how often.
-        clock: CPU time of all threads by default.
+        sides: functions to time.
+        rounds: number of timings of each function.
+        clock: clock to read; default: CPU time of all threads.
     """
-    taken: list[list[float]] = [[] for _ in sides]
+    durations: list[list[float]] = [[] for _ in sides]
     for side in sides:
         side()
     for _ in range(rounds):
-        for side, times in zip(sides, taken, strict=True):
+        for side, times in zip(sides, durations, strict=True):
             start = clock()
             side()
             times.append(clock() - start)
-    return [statistics.median(times) for times in taken]
+    return [statistics.median(times) for times in durations]
 
 
 def compare_with_bare_mujoco(spec: RunSpec, *, rounds: int = 9, what: str = "all") -> Iterator[Figure]:
-    """Yield each figure of a world as soon as it is known.
+    """Yield each figure of a world as soon as it is measured.
 
     Args:
-        spec: the world and how it is loaded; the figures decide what is run.
-        rounds: timings of each side.
+        spec: world and load options; the comparison chooses the durations.
+        rounds: number of timings of each side.
         what: "steps", "sensors" or "all".
     """
 
@@ -129,21 +132,24 @@ def _step_figures(load: Callable[..., Simulation], rounds: int) -> Iterator[Figu
 
 
 def measure_import_time(rounds: int) -> float:
-    """Measure what `import simkit` adds to a fresh interpreter [s], wall time."""
-    # the same simkit as this one, wherever it was imported from
+    """Measure the time that `import simkit` adds to the start of an interpreter [s], wall time."""
+    # import the same copy of simkit as this process
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
-    taken: dict[str, list[float]] = {"pass": [], "import simkit": []}
+    durations: dict[str, list[float]] = {"pass": [], "import simkit": []}
     for _ in range(rounds):
-        for statement, times in taken.items():
+        for statement, times in durations.items():
             start = time.perf_counter()
             subprocess.run([sys.executable, "-c", statement], check=True, env=environment)
             times.append(time.perf_counter() - start)
-    empty, ours = (statistics.median(times) for times in taken.values())
+    empty, ours = (statistics.median(times) for times in durations.values())
     return ours - empty
 
 
 def measure_memory_growth(sim: Simulation, duration: float) -> float:
-    """Bytes a simulated second adds to the process with all but images read; the first half is left to settle."""
+    """Measure the memory growth of the process [bytes per simulated second] with all topics read except images.
+
+    The first half of the duration is not counted: caches fill up in it.
+    """
     _count_messages(sim, _topics_without_images(sim))
     sim.run(duration / 2)
     before = _resident_memory()
@@ -152,13 +158,13 @@ def measure_memory_growth(sim: Simulation, duration: float) -> float:
 
 
 def _topics_without_images(sim: Simulation) -> set[str]:
-    """The topics for which nothing is drawn; boxes around what is seen are for example not among them."""
+    """Return the topics that need no rendering. Bounding boxes of a camera, for example, need rendering."""
     drawn = {t for s in sim.contents.sensors.values() if isinstance(s, RenderedCamera) for t in s._topics.values()}
     return {topic for topic, type_name in sim.topics().items() if type_name not in _CAMERAS} - drawn
 
 
 def compare_stepping(sim: Simulation, rounds: int) -> Figure:
-    """Steps with nothing due beside `mj_step` on a copy of the same model and state."""
+    """Compare steps without due tasks with `mj_step` on a copy of the same model and state."""
     sim.step(100)
     sim.engine.scheduler.clear()
     sim.engine.scheduler.rewind(sim.tick)
@@ -166,7 +172,7 @@ def compare_stepping(sim: Simulation, rounds: int) -> Figure:
 
 
 def _schedule_only(sim: Simulation, rate: float | None, task: Callable[[int], None], phase: Phase) -> None:
-    """Nothing but `task` is due in this simulation from now on."""
+    """Remove all tasks of the simulation except `task`."""
     sim.engine.scheduler.clear()
     sim.engine.scheduler.every(rate, task, phase)
     sim.engine.scheduler.rewind(sim.tick)
@@ -180,11 +186,13 @@ def _compare_step(sim: Simulation, rounds: int, name: str, aim: float) -> Figure
 
 
 def compare_motion_and_scans(sim: Simulation, topics: set[str], rounds: int, how: str) -> Figure:
-    """The world with its plugins, IMUs and lidars read, beside a hand-written loop that takes these readings alone.
+    """Compare the world with its plugins, IMUs and lidars with a hand-written loop that takes only these readings.
 
     Args:
-        topics: of the sensors.
-        how: "looked at later" keeps the newest message of each, "each message made" is called back with it.
+        sim: simulation to time.
+        topics: topics of the IMUs and lidars.
+        rounds: number of timings of each side.
+        how: "looked at later" queues the newest message of each topic; "each message made" calls back with every one.
     """
     name = f"step, all plugins, imu and lidar read, {how}"
     if how == "looked at later":
@@ -194,7 +202,7 @@ def compare_motion_and_scans(sim: Simulation, topics: set[str], rounds: int, how
 
 
 def compare_all_readings(sim: Simulation, rounds: int) -> Figure:
-    """The world with its plugins and every topic but images read, beside a hand-written loop of the same readings."""
+    """Compare the world with its plugins and all topics except images with a hand-written loop of the same readings."""
     topics = _topics_without_images(sim)
     return _compare_hand_written(sim, topics, rounds, "step, all plugins, all sensors read but images", 1 / 0.85)
 
@@ -202,9 +210,13 @@ def compare_all_readings(sim: Simulation, rounds: int) -> Figure:
 def _compare_hand_written(
     sim: Simulation, topics: set[str], rounds: int, name: str, aim: float, *, keeps_counting: bool = True
 ) -> Figure:
-    """Each topic's messages are counted to learn its period; where asked for, that goes on while it is timed."""
+    """Compare a simulation with a hand-written loop.
+
+    The messages of each topic are counted to determine its period. With `keeps_counting`, the counting continues while
+    the loop is timed.
+    """
     second = round(1.0 / sim.timestep)
-    sim.step(second)  # the first sample of all comes early
+    sim.step(second)  # skip the first sample: all sensors publish it at tick 1
     counts, taps = _count_messages(sim, topics)
     sim.step(second)
     periods = {topic: max(1, round(second / n)) for topic, n in counts.items() if n > 1}
@@ -217,8 +229,11 @@ def _compare_hand_written(
 
 
 def compare_sensor(sim: Simulation, sensor: Sensor, rounds: int) -> Figure:
-    """A whole sample with its message, of data that are up to date; a scan beside its bare rays, a picture beside one
-    bare pass. Pictures are without noise, and clouds are not made."""
+    """Compare one sample of a sensor, including its message, with bare MuJoCo on up-to-date data.
+
+    A scan is compared with its bare rays, an image with one bare rendering pass. Images have no noise here, and point
+    clouds are not built.
+    """
     clouds = [p for p, product in sensor._products.items() if product.type_name == "sensor_msgs/msg/PointCloud2"]
     taps = [sim.communication.bus.tap(t, _ignore_message) for p, t in sensor._topics.items() if p not in clouds]
     sim.engine.physics.fresh_accelerations()
@@ -228,7 +243,7 @@ def compare_sensor(sim: Simulation, sensor: Sensor, rounds: int) -> Figure:
     count = 200
     if isinstance(sensor, RenderedCamera):
         count = 5
-        vars(sensor)["perturb"] = lambda reading, _index: reading  # of this one sensor
+        vars(sensor)["perturb"] = lambda reading, _index: reading  # for this sensor only
         if len(sensor.shots()) == 1 and not sensor.shots()[0].ids:
             one_pass, aim = BareCamera(sim, sensor), 1.15
         name += ", no noise"
@@ -245,8 +260,8 @@ def compare_sensor(sim: Simulation, sensor: Sensor, rounds: int) -> Figure:
         bare = functools.partial(one_pass.draw_many, count)
         sides.append(bare)
     elif bare is not None:
-        one = bare
-        sides.append(lambda: [one() for _ in range(count)])
+        cast = bare
+        sides.append(lambda: [cast() for _ in range(count)])
     times = time_interleaved(sides, max(3, rounds))
     if one_pass is not None:
         one_pass.free()
@@ -257,14 +272,14 @@ def compare_sensor(sim: Simulation, sensor: Sensor, rounds: int) -> Figure:
 
 
 def _count_messages(sim: Simulation, topics: set[str]) -> tuple[dict[str, int], list[Subscription]]:
-    """Reads these topics; gives how many messages came, by topic, and the subscriptions."""
+    """Subscribe to topics; return the numbers of their messages, by topic, and the subscriptions."""
     counts: dict[str, int] = {}
 
     def count(topic: str) -> Callable[[object], None]:
-        def one_more(_: object) -> None:
+        def increment(_: object) -> None:
             counts[topic] = counts.get(topic, 0) + 1
 
-        return one_more
+        return increment
 
     return counts, [sim.communication.bus.tap(topic, count(topic)) for topic in sorted(topics)]
 
@@ -274,7 +289,7 @@ def _ignore_message(_: object) -> None:
 
 
 def _resident_memory() -> int:
-    """Memory of this process in use now [B]; an estimate from Python's blocks where the system does not say."""
+    """Return the memory that this process uses now [bytes]; without /proc, an estimate from Python's memory blocks."""
     try:
         with open("/proc/self/statm", encoding="ascii") as file:
             return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")

@@ -1,4 +1,4 @@
-"""The command `simkit bundle`: pack a run into one file that repeats it."""
+"""Command `simkit bundle`: pack a run into one file that repeats it."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ from simkit.writers.atomic_output import check_file
 
 @report_errors
 def bundle(
-    world: Annotated[str, argument("A world, a model, or the file of a scenario.", "WORLD")],
-    output: Annotated[Path, option("The file to write.", "FILE.zip", "--output", "-o")],
-    duration: Annotated[float | None, option("Simulated seconds to run; 10, or the scenario's.", "S", min=0)] = None,
+    world: Annotated[str, argument("World, model or scenario file.", "WORLD")],
+    output: Annotated[Path, option("Bundle to write.", "FILE.zip", "--output", "-o")],
+    duration: Annotated[
+        float | None, option("Simulated seconds to run; default: the scenario's, else 10.", "S", min=0)
+    ] = None,
     seed: options.Seed = None,
     cmd_vel: options.CmdVel = None,
     script: options.Script = None,
     set_: options.Overrides = [],
     spawn: options.Spawns = [],
     params_file: options.ParamsFiles = [],
-    last: Annotated[float, option("Keeps the messages of so many last seconds.", "S", min=0)] = 10.0,
-    topic: Annotated[
-        list[str], option("Keeps topics of this pattern although they are pictures; repeatable.", "PATTERN")
-    ] = [],
-    no_code: Annotated[bool, Option("--no-code", help="Leaves the code of plugins out.")] = False,
+    last: Annotated[float, option("Seconds of messages to keep before the end.", "S", min=0)] = 10.0,
+    topic: Annotated[list[str], option("Keep image topics that match this pattern, too; repeatable.", "PATTERN")] = [],
+    no_code: Annotated[bool, Option("--no-code", help="Leave out the code of plugins.")] = False,
     force: options.Force = False,
     resource_path: options.ResourcePaths = [],
     package_path: options.PackagePaths = [],
@@ -38,10 +38,10 @@ def bundle(
     xacro_arg: options.XacroArgs = [],
     base: options.Base = "auto",
 ) -> None:
-    """Runs a world or a scenario, and packs it into one file that repeats it anywhere.
+    """Run a world or scenario and pack it into a repeatable bundle.
 
-    In it are the world and everything it names, the code of plugins, the seed, the versions, every command that came in
-    with its tick, the messages of the last seconds, and the hashes at the end. `simkit replay` repeats the run.
+    The file holds the world with all files that it uses, the code of plugins, the seed, the versions, every command
+    with its tick, the messages of the last seconds, and the hashes of the end state. `simkit replay` repeats the run.
     """
     from simkit.testing.bundles import BundleRecorder, write_bundle
     from simkit.testing.bundles.manifest import failure_from_checks, failure_from_error
@@ -54,21 +54,21 @@ def bundle(
     )  # fmt: skip
     with open_scenario(scenario) as sim:
         print_diagnostics(sim.diagnostics, verbose=False)
-        keeper = BundleRecorder(sim, last, topic)
+        recorder = BundleRecorder(sim, last, topic)
         scenario = resolve_commands(scenario, sim.topics())
         failure = None
         try:
             ended = run_scenario(scenario, sim)
             failure = failure_from_checks(ended.results, was_given_up=ended.reason == "wall_timeout")
             if failure is not None:
-                print_status(f"what did not hold, which is in the bundle: {failure.text}")
+                print_status(f"the run failed; the bundle contains the failure: {failure.text}")
         except InputError:
             raise
         except SimkitError as error:
             failure = failure_from_error(error)
-            print_status(f"the run failed, which is in the bundle: {error}")
+            print_status(f"the run failed; the bundle contains the failure: {error}")
         name = scenario.name or ("" if scenario.file is None else scenario.file.stem)
-        write_bundle(keeper, output, failure, name=name, overwrite=force, with_code=not no_code)
-        stdout_console().print(f"state {keeper.end().state}")
+        write_bundle(recorder, output, failure, name=name, overwrite=force, with_code=not no_code)
+        stdout_console().print(f"state {recorder.end().state}")
         size = output.stat().st_size
-        stdout_console().print(f"{output}: {sim.time:g} s, {keeper.journal.count} commands, {size / 1000:.0f} kB")
+        stdout_console().print(f"{output}: {sim.time:g} s, {recorder.journal.count} commands, {size / 1000:.0f} kB")

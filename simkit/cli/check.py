@@ -1,4 +1,4 @@
-"""The command `simkit check`: print every problem of a file."""
+"""Command `simkit check`: print every problem of a file."""
 
 from __future__ import annotations
 
@@ -23,11 +23,13 @@ def check(
     file: options.File,
     json_: options.Json = False,
     strict: options.Strict = False,
-    every: Annotated[bool, Option("--all", help="Lists repeats one by one.")] = False,
+    every: Annotated[bool, Option("--all", help="List repeated problems one by one.")] = False,
     fix_inertia: Annotated[
-        bool, Option("--fix-inertia", help="Shows new numbers for inertias that no solid has.")
+        bool, Option("--fix-inertia", help="Show corrected values for impossible inertias.")
     ] = False,
-    output: Annotated[Path | None, option("With --fix-inertia: the file with them.", "OUT", "--output", "-o")] = None,
+    output: Annotated[
+        Path | None, option("With --fix-inertia: corrected file to write.", "OUT", "--output", "-o")
+    ] = None,
     force: options.Force = False,
     resource_path: options.ResourcePaths = [],
     package_path: options.PackagePaths = [],
@@ -35,13 +37,13 @@ def check(
     xacro_arg: options.XacroArgs = [],
     base: options.Base = "auto",
 ) -> int:
-    """Prints every problem of a file, not only the first; runs nothing."""
+    """Print all problems of a file without running it."""
     from simkit.build import check as check_file
 
     if fix_inertia:
         return _fix_inertia(file, output, force, resource_path, json_)
     if output is not None:
-        raise InputError("SK-CLI-018 check writes a file only with --fix-inertia", "SK-CLI-018")
+        raise InputError("SK-CLI-018 --output needs --fix-inertia", "SK-CLI-018")
     source = options.source_arguments(resource_path, package_path, xacro_arg, base)
     found = list(check_file(file, plugin_paths=plugin_path, **source))
     if json_:
@@ -76,10 +78,10 @@ def _fix_inertia(file: str, output: Path | None, force: bool, resource_paths: li
             stdout_console().print(str(fix))
         for problem in found.problems:
             stdout_console().print(problem)
-        stdout_console().print(f"{len(found.fixes)} inertias that no solid has")
+        stdout_console().print(f"{len(found.fixes)} impossible inertias")
     if output is not None:
         count = found.write(output)
-        rest = f"; {len(found.elsewhere)} stand in other files" if found.elsewhere else ""
+        rest = f"; {len(found.elsewhere)} are in other files" if found.elsewhere else ""
         if not json_:
             stdout_console().print(f"{output}: {count} links changed{rest}")
     return 0

@@ -1,4 +1,4 @@
-"""The command `simkit convert`: write a world or model in another format."""
+"""Command `simkit convert`: write a world or model in another format."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def convert(
     output: Annotated[
         Path,
         option(
-            "OUT.xml is MJCF, OUT.sdf (or .world) SDF; meshes and pictures go beside it.",
+            "File to write: .xml or .mjcf for MJCF, .sdf or .world for SDF. Its assets go to OUT_assets.",
             "OUT",
             "--output",
             "-o",
@@ -30,7 +30,7 @@ def convert(
         ),
     ],
     keep_uris: Annotated[
-        bool, Option("--keep-uris", help="SDF: writes model:// and package:// as they are, copies nothing.")
+        bool, Option("--keep-uris", help="SDF: keep model:// and package:// URIs and copy no files.")
     ] = False,
     strict: options.Strict = False,
     resource_path: options.ResourcePaths = [],
@@ -40,7 +40,7 @@ def convert(
     force: options.Force = False,
     verbose: options.Verbose = False,
 ) -> None:
-    """Writes a world or model as MJCF, to be opened by MuJoCo alone, or as SDF in one file."""
+    """Convert a world or model to MJCF or to a single SDF file."""
     source = options.source_arguments(resource_path, package_path, xacro_arg, base)
     ending = output.suffix.lower()
     if ending in (".sdf", ".world"):
@@ -54,7 +54,7 @@ def convert(
 
 
 def _to_mjcf(file: str, output: Path, source: SourceOptions, *, strict: bool, force: bool, verbose: bool) -> int:
-    """Write MJCF; return the number of files beside it."""
+    """Write MJCF; return the number of files in its asset folder."""
     from simkit.build import load
     from simkit.writers.mjcf import write_mjcf
 
@@ -64,8 +64,8 @@ def _to_mjcf(file: str, output: Path, source: SourceOptions, *, strict: bool, fo
         written = write_mjcf(sim.engine.compiled.builder, output, overwrite=force)
     if written.balanced:
         print_status(
-            f"MuJoCo's compiler refuses the inertia of {', '.join(written.balanced[:6])}"
-            f"{' and others' if len(written.balanced) > 6 else ''}; the file has the nearest that it takes"
+            f"MuJoCo's compiler rejects the inertia of {', '.join(written.balanced[:6])}"
+            f"{' and others' if len(written.balanced) > 6 else ''}; the file has the nearest valid inertia"
         )
     return written.files
 
@@ -73,7 +73,7 @@ def _to_mjcf(file: str, output: Path, source: SourceOptions, *, strict: bool, fo
 def _to_sdf(
     file: str, output: Path, source: SourceOptions, *, keep_uris: bool, strict: bool, force: bool, verbose: bool
 ) -> int:
-    """Write SDF; return the number of files beside it."""
+    """Write SDF; return the number of files in its asset folder."""
     from simkit.build import read_scene
     from simkit.writers.asset_folder import write_sdf
 

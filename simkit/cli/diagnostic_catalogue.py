@@ -1,11 +1,10 @@
-"""Catalogue of diagnostic codes: read them from `diagnostic_codes/<area>.toml`, and write them out as text.
+"""Catalogue of diagnostic codes: reads them from `diagnostic_codes/<area>.toml` and formats them as text.
 
-`simkit explain` prints codes, `python -m simkit.cli.diagnostic_catalogue > docs/diagnostics.md` writes the page of all,
-and a test runs every example. A code keeps its meaning for ever and is never given to another.
+`simkit explain` prints codes. `python -m simkit.cli.diagnostic_catalogue > docs/diagnostics.md` writes the page of all
+codes. A test runs every example. A code keeps its meaning for ever and is never reused.
 
-A file of an area has its `title` on the page, its `position` there (areas without one come last, in the order of the
-alphabet) and one table for each code, with the attributes of `Code`. A file of an example that is no text is
-`{ hex = "…" }`.
+The file of an area has a `title` for the page and a `position` on it (areas without one come last, sorted by name).
+It has one table for each code, with the attributes of `Code`. A binary file of an example is `{ hex = "…" }`.
 """
 
 from __future__ import annotations
@@ -26,19 +25,19 @@ Kind = Literal["xml", "command", "python"]
 _FOLDER = Path(__file__).with_name("diagnostic_codes")
 _INTRODUCTION = """# Diagnostics
 
-Everything simkit has to say about your input carries a code, `SK-AREA-NNN`. A code keeps its meaning and is never given
-to another. `simkit check FILE` prints all of a file's at once; in Python `sim.diagnostics` holds them, and
-`simkit.LoadError` carries them in `.diagnostics`. `simkit explain CODE` prints what stands here.
+Every message about your input has a code, `SK-AREA-NNN`. A code keeps its meaning and is never reused.
+`simkit check FILE` prints all diagnostics of a file at once. In Python they are in `sim.diagnostics`, and in the
+attribute `.diagnostics` of `simkit.LoadError`. `simkit explain CODE` prints an entry of this page.
 
-This page is written from the tables in `simkit/cli/diagnostic_codes` (`python -m simkit.cli.diagnostic_catalogue`), and
-a test runs every example.
+This page is generated from the tables in `simkit/cli/diagnostic_codes` (`python -m simkit.cli.diagnostic_catalogue`).
+A test runs every example.
 
 | severity | |
 |---|---|
 | error | the input cannot be used; exit code 2 |
-| warning | something has no effect here, or another one than written; an error with `--strict` |
-| note | a standing conversion that keeps the meaning as closely as the engine can |
-| stop | no report on a file but the reason why a run ended; its exit code is in the row |
+| warning | a part of the input has no effect, or a different effect than written; an error with `--strict` |
+| note | a conversion that keeps the meaning as closely as MuJoCo can represent it |
+| stop | the reason why a run ended, not a problem of a file; the row gives the exit code |
 """
 _LAST = sys.maxsize
 _LANGUAGE_OF_KIND = {"xml": "xml", "command": "sh", "python": "python"}
@@ -54,12 +53,12 @@ class Example:
     """Input that causes a diagnostic code.
 
     Attributes:
-        text: `xml`: a file that `simkit check` is given (SDF, URDF, ...); `command`: a line for the shell, beginning
-            with `simkit`, run in an empty folder that holds `files`; `python`: a script run there, which prints the
-            code, raises the error that carries it, or leaves it in a simulation called `sim`.
-        kind: how `text` is run.
-        files: further files by relative path, text or bytes.
-        suffix: of the file that `text` becomes, for `xml`.
+        text: for `xml`, a file for `simkit check` (SDF, URDF, ...). For `command`, a shell line that begins with
+            `simkit` and runs in a folder with only `files`. For `python`, a script that runs there. The script prints
+            the code, raises the error with the code, or leaves the code in a simulation called `sim`.
+        kind: way of running `text`.
+        files: additional files, relative path -> text or bytes.
+        suffix: file name suffix of `text`, for `xml`.
     """
 
     text: str
@@ -74,11 +73,11 @@ class Code:
 
     Attributes:
         code: `SK-AREA-NNN`.
-        severity: "error", "warning", "note" or "stop"; two joined by ", " where it depends.
-        meaning: what was found, in general.
-        helps: what helps; may be empty.
-        example: None only where no input of a user causes the code; `without` then says why.
-        without: why there is no example.
+        severity: "error", "warning", "note" or "stop"; two joined by ", " if the severity depends on the case.
+        meaning: general description of the problem.
+        helps: remedy; may be empty.
+        example: input that causes the code; None if no user input can cause it.
+        without: reason for the missing example.
     """
 
     code: str
@@ -91,7 +90,7 @@ class Code:
 
 @dataclass(frozen=True, slots=True)
 class Area:
-    """One area of codes: the middle of their names, its title and position on the page, and its codes by name."""
+    """Area of codes: the middle part of their names, its title and position on the page, and its codes by name."""
 
     name: str
     title: str
@@ -100,7 +99,7 @@ class Area:
 
 
 def catalogue(prefix: str = "SK-") -> Mapping[str, Code]:
-    """Return the codes whose names begin with `prefix`, in order; only the files of their areas are read."""
+    """Return the codes whose names begin with `prefix`, in order. Only the files of their areas are read."""
     area, dash, _ = prefix.removeprefix("SK-").partition("-")
     names = [name for name in _area_names() if (name == area if dash else name.startswith(area))]
     codes = (code for name in names for code in _area(name).codes.values() if code.code.startswith(prefix))
@@ -108,7 +107,7 @@ def catalogue(prefix: str = "SK-") -> Mapping[str, Code]:
 
 
 def code_text(code: Code) -> str:
-    """Format one code as plain text: severity, meaning, what helps, and an example."""
+    """Format one code as plain text: severity, meaning, remedy and an example."""
     lines = [f"{code.code} ({code.severity})", f"  {code.meaning}"]
     if code.helps:
         lines.append(f"  help: {code.helps}")
@@ -154,7 +153,7 @@ def _example(entry: JsonObject) -> Example:
 
 
 def _example_files(example: Example) -> list[tuple[str, str]]:
-    """Return a title and a text for each part of an example; the part that is run comes last."""
+    """Return a title and a text for each file of an example; the file that is run comes last."""
     files = [
         (f"{name}:", content if isinstance(content, str) else f"({len(content)} bytes)")
         for name, content in example.files.items()

@@ -1,4 +1,4 @@
-"""The command `simkit doctor`: report what is installed, what is missing and what helps."""
+"""Command `simkit doctor`: report the installed and missing parts, with remedies."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _FOLDERS = (
 _REINSTALL = "pip uninstall -y mujoco mujoco-core && pip install 'mujoco>=4.0,<5'"
 _RENDERER_TIMEOUT = 60.0  # [s]
 
-# Drivers crash in their own ways; in a process of its own such a crash is a finding.
+# Graphics drivers can crash the process; in a separate process, the crash is one more result of the check.
 _DRAW = """
 import simkit
 from simkit.mujoco_import import import_mujoco
@@ -54,13 +54,13 @@ print("OK", describe_renderer() or "renderer", "black" if picture.max() == pictu
 
 @report_errors
 def doctor() -> int:
-    """Prints what simkit found on this machine, and what helps where something is missing."""
+    """Check the installation and print a remedy for each problem."""
     broken = _versions() + _engine()
-    wanting = _renderer()
+    unusable = _renderer()
     _folders()
-    for problem in (*broken, *wanting):
+    for problem in (*broken, *unusable):
         stdout_console().print(problem, style="yellow")
-    stdout_console().print("all is well" if not (broken or wanting) else "see the lines above")
+    stdout_console().print("no problems found" if not (broken or unusable) else "problems found; see the lines above")
     return 1 if broken else 0
 
 
@@ -83,7 +83,7 @@ def _versions() -> list[str]:
 
 
 def _engine() -> list[str]:
-    """The engine's version, and the mixtures of 3.x and 4.x that an upgrade in place leaves behind."""
+    """Report the version of MuJoCo, and mixtures of 3.x and 4.x that an in-place upgrade can leave."""
     found: dict[str, str] = {}
     for name in ("mujoco", "mujoco-core"):
         try:
@@ -93,7 +93,7 @@ def _engine() -> list[str]:
     _line("mujoco", f"{found['mujoco'] or 'missing'} (core {found['mujoco-core'] or 'missing'})")
     problems = []
     if not found["mujoco"] or not found["mujoco-core"] or found["mujoco"] != found["mujoco-core"]:
-        problems.append(f"mujoco and mujoco-core do not fit together, as after an upgrade from 3.x: {_REINSTALL}")
+        problems.append(f"mujoco and mujoco-core have different versions, as after an upgrade from 3.x: {_REINSTALL}")
     elif not found["mujoco"].startswith("4."):
         problems.append(f"simkit needs mujoco 4: {_REINSTALL}")
     probe = subprocess.run(
@@ -101,7 +101,7 @@ def _engine() -> list[str]:
         capture_output=True,
         text=True,
         check=False,
-        env={**os.environ, "MUJOCO_GL": "disable"},  # a renderer that is missing is no fault of the engine
+        env={**os.environ, "MUJOCO_GL": "disable"},  # a missing renderer is not a fault of the engine
     )
     if probe.returncode:
         problems.append(f"mujoco cannot be imported ({_last_line(probe.stderr)}): {_REINSTALL}")
@@ -116,7 +116,7 @@ def _renderer() -> list[str]:
     except subprocess.TimeoutExpired:
         _line("renderer", "hangs")
         return [
-            f"drawing a small picture took more than {_RENDERER_TIMEOUT:g} s; cameras and --picture do not work here"
+            f"rendering a small image took more than {_RENDERER_TIMEOUT:g} s; cameras and --picture do not work here"
         ]
     answer = next((line for line in probe.stdout.splitlines() if line.startswith("OK ")), None)
     if answer is None:
@@ -126,18 +126,18 @@ def _renderer() -> list[str]:
         _line("renderer", "none (only cameras and --picture need one)")
         return [f"no renderer: {reason}"]
     _line("renderer", answer.removeprefix("OK ").removesuffix(" black").strip())
-    return ["the renderer draws only black"] if answer.endswith(" black") else []
+    return ["the renderer draws only black images"] if answer.endswith(" black") else []
 
 
 def _folders() -> None:
     for name in _FOLDERS:
         for folder in filter(None, os.environ.get(name, "").split(os.pathsep)):
-            _line(name, folder if Path(folder).is_dir() else f"{folder} (is not there)")
+            _line(name, folder if Path(folder).is_dir() else f"{folder} (missing)")
     try:
-        where = str(distribution("simkit-robotics").locate_file(""))
+        location = str(distribution("simkit-robotics").locate_file(""))
     except PackageNotFoundError:
-        where = "run from a checkout"
-    _line("installed in", where)
+        location = "run from a checkout"
+    _line("installed in", location)
 
 
 def _last_line(text: str) -> str:

@@ -1,4 +1,4 @@
-"""The command `simkit explain`: explain a diagnostic code."""
+"""Command `simkit explain`: explain a diagnostic code."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from simkit.errors import InputError
 
 @report_errors
 def explain(
-    code: Annotated[str, argument("A code such as SK-SDF-004, or the beginning of several.")],
+    code: Annotated[str, argument("Code such as SK-SDF-004, or the beginning of several codes.")],
     json_: options.Json = False,
 ) -> None:
-    """Says what a code means, what helps, and shows an input that brings it about."""
+    """Explain a diagnostic code, with its remedy and an example."""
     from simkit.cli.diagnostic_catalogue import catalogue, code_text
 
-    wanted = code.strip().upper()
-    wanted = wanted if wanted.startswith("SK-") else f"SK-{wanted}"
-    found = list(catalogue(wanted).values())
+    prefix = code.strip().upper()
+    prefix = prefix if prefix.startswith("SK-") else f"SK-{prefix}"
+    found = list(catalogue(prefix).values())
     if not found:
-        hint = did_you_mean(wanted, catalogue()) or "`simkit explain SK-` lists them all"
+        hint = did_you_mean(prefix, catalogue()) or "list all codes with `simkit explain SK-`"
         raise InputError(f"SK-CLI-017 there is no code {code!r}; {hint}", "SK-CLI-017")
     if json_:
         stdout_console().file.write(json.dumps([asdict(c) for c in found], indent=2, default=_text) + "\n")
@@ -37,5 +37,5 @@ def explain(
 
 
 def _text(value: object) -> str:
-    """Bytes of an example's file, which JSON cannot hold."""
+    """Format a value that JSON does not support; bytes become their number."""
     return f"({len(value)} bytes)" if isinstance(value, bytes) else str(value)

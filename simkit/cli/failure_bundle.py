@@ -1,4 +1,4 @@
-"""`simkit run --bundle-on-failure`: a run that fails leaves one file with which it is repeated."""
+"""`simkit run --bundle-on-failure`: write a bundle that repeats a failed run."""
 
 from __future__ import annotations
 
@@ -16,36 +16,36 @@ if TYPE_CHECKING:
     from simkit.testing.bundles.manifest import Failure
 
 DEFAULT_FOLDER: Final = "bundles"
-"""Where bundles go when no folder is said."""
+"""Default folder of bundles."""
 _FAILED: Final = (1, 3, 4, 5)
 
 
 class FailureBundle:
-    """Keeps what a bundle needs, and writes it where a run fails; a context manager around loading and running.
+    """Recorder that writes a bundle if a run fails; a context manager around loading and running.
 
     Args:
-        folder: where bundles go; None where none is wanted.
-        verdict: knows what became of the run.
-        spec: what is run, for a world that fails while it is loaded.
+        folder: folder for bundles; None to record nothing.
+        verdict: result of the run.
+        spec: run specification, for a world that fails while it is loaded.
 
     Raises:
-        InputError: SK-CLI-016 nothing can be written there.
+        InputError: SK-CLI-016 the folder is not writable.
     """
 
     def __init__(self, folder: Path | None, verdict: RunVerdict, spec: RunSpec) -> None:
         self._folder, self._verdict, self._spec = folder, verdict, spec
-        self._keeper: BundleRecorder | None = None
+        self._recorder: BundleRecorder | None = None
         if folder is not None:
             from simkit.writers.atomic_output import check_folder
 
             check_folder(folder)
 
     def keep(self, sim: Simulation) -> None:
-        """Begins to keep what a bundle needs; to be called right after loading."""
+        """Start recording the content of a bundle; call this method right after loading."""
         if self._folder is not None:
             from simkit.testing.bundles import BundleRecorder
 
-            self._keeper = BundleRecorder(sim)
+            self._recorder = BundleRecorder(sim)
 
     def __enter__(self) -> FailureBundle:
         return self
@@ -70,15 +70,15 @@ class FailureBundle:
         return None
 
     def _write(self, folder: Path, failure: Failure) -> None:
-        """Says where the bundle is; that there is none changes nothing of what the run ends with."""
+        """Write the bundle and print its path. A failure to write does not change the exit code of the run."""
         from simkit.testing.bundles.bundle_writer import pack_load_failure, write_failed
 
         try:
-            if self._keeper is not None:
-                path = write_failed(self._keeper, folder, failure)
+            if self._recorder is not None:
+                path = write_failed(self._recorder, folder, failure)
             else:
                 path = pack_load_failure(self._spec, folder, failure)
         except (SimkitError, OSError) as error:
             print_status(f"no bundle was written: {error}")
         else:
-            print_status(f"bundle {path}; simkit replay {path} repeats the run")
+            print_status(f"bundle {path}; repeat the run with `simkit replay {path}`")

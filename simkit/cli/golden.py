@@ -1,4 +1,4 @@
-"""The command `simkit golden`: record golden runs and check them."""
+"""Command `simkit golden`: record golden runs and check them."""
 
 from __future__ import annotations
 
@@ -37,13 +37,13 @@ if TYPE_CHECKING:
 
 
 def record_golden(spec: RunSpec, folder: Path, *, force: bool = False) -> RunRecord:
-    """Runs what is asked for and makes it golden.
+    """Run a specification and store the result as a golden run.
 
     Returns:
-        The record; its simulation is still open.
+        Record of the run; its simulation is still open.
 
     Raises:
-        SimkitError: what went wrong; then nothing is written.
+        SimkitError: the run failed; nothing is written.
     """
     from simkit.scene.overrides import check_used
     from simkit.testing.golden.store import MAIN_FILE, write_golden
@@ -52,11 +52,11 @@ def record_golden(spec: RunSpec, folder: Path, *, force: bool = False) -> RunRec
 
     if (folder / MAIN_FILE).exists() and not force:
         raise InputError(
-            f"SK-GOLDEN-005 {folder} is a golden run already and is not overwritten\n"
-            "    help: simkit golden check --bless 'REASON' changes it and keeps why; --force begins anew",
+            f"SK-GOLDEN-005 {folder} already contains a golden run\n"
+            "    help: update it with `simkit golden check --bless 'REASON'`, or replace it with --force",
             "SK-GOLDEN-005",
         )
-    with chdir("."):  # a plugin that goes elsewhere as it is loaded
+    with chdir("."):  # a plugin may change the working directory while it is loaded
         sim = open_scenario(spec)
     try:
         check_used(sim.diagnostics)
@@ -79,17 +79,18 @@ def report_results(
     as_json: bool = False,
     quiet: bool = False,
 ) -> int:
-    """Prints results, the worst first, and writes what else is asked for.
+    """Print results, the worst first, and write the requested reports.
 
     Args:
-        results: of the checks.
-        blessed: whether what differed has become golden.
-        html, junit: where reports go.
-        as_json: whether one JSON value is printed instead of text.
-        quiet: whether nothing is said of what passed.
+        results: results of the checks.
+        blessed: True if the differences were accepted as the new golden runs.
+        html: HTML report to write.
+        junit: JUnit XML report to write.
+        as_json: print one JSON value instead of text.
+        quiet: print nothing about golden runs that passed.
 
     Returns:
-        The exit code: of what could not be checked, else 5 where something differs.
+        Exit code: that of the first check that could not run, else 5 if any golden run differs, else 0.
     """
     verdicts = [result.verdict for result in results if result.verdict is not None]
     if html is not None:
@@ -121,9 +122,9 @@ def _print_results(results: Sequence[CheckResult], *, blessed: bool, quiet: bool
             print_error(result.error)
         elif verdict is not None and _was_blessed(verdict, blessed):
             count = len(verdict.comparison.differences)
-            stdout_console().print(f"{verdict.name}: golden now, with {count} difference{'s' if count > 1 else ''}:")
-            for one in verdict.comparison.differences[:5]:
-                stdout_console().print(f"  {one.words}")
+            stdout_console().print(f"{verdict.name}: updated, with {count} difference{'s' if count > 1 else ''}:")
+            for difference in verdict.comparison.differences[:5]:
+                stdout_console().print(f"  {difference.words}")
         elif verdict is not None and not (verdict.passed and quiet):
             for line in text_report(verdict, width):
                 stdout_console().print(line)
@@ -151,7 +152,7 @@ def _write_junit(path: Path, results: Sequence[CheckResult], verdicts: list[Verd
 
 
 def result_dict(result: CheckResult) -> JsonObject:
-    """A result for programs."""
+    """Return a result as a JSON object."""
     if result.verdict is None:
         code = getattr(result.error, "code", "")
         return {"folder": str(result.folder), "passed": False, "error": {"code": code, "message": str(result.error)}}
@@ -164,12 +165,12 @@ def result_dict(result: CheckResult) -> JsonObject:
         "tier": comparison.tier,
         "elapsed": round(verdict.elapsed, 3),
         "end": verdict.run.end,
-        "differences": [_json_number(vars(one) if hasattr(one, "__dict__") else one) for one in comparison.differences],
+        "differences": [_json_number(vars(d) if hasattr(d, "__dict__") else d) for d in comparison.differences],
         "notes": list(comparison.notes),
         "machine": {name: {"golden": a, "run": b} for name, (a, b) in comparison.machine.items()},
         "checks": [
-            {"title": one.check.title, "passed": one.passed, "message": one.message, "time": _json_number(one.time)}
-            for one in verdict.checks
+            {"title": c.check.title, "passed": c.passed, "message": c.message, "time": _json_number(c.time)}
+            for c in verdict.checks
         ],
     }
     if explanation is not None:
@@ -194,18 +195,18 @@ def _json_number(value: JsonValue) -> object:
     return value if isinstance(value, (bool, int, str)) or value is None else str(value)
 
 
-golden = typer.Typer(help="Golden runs: sensor outputs kept, and compared with today's.", no_args_is_help=True)
+golden = typer.Typer(help="Record and compare golden runs (reference sensor outputs).", no_args_is_help=True)
 
 
 @golden.command()
 @report_errors
 def record(
-    world: Annotated[str, Argument(help="A scenario (.yaml, .py), a world, or a bare name.", metavar="WORLD|SCENARIO")],
-    out_: Annotated[Path, option("The folder that it goes into.", "DIR", "--out", "-o")],
-    duration: Annotated[float | None, option("Simulated seconds; 10 where nothing says it.", "S", min=0)] = None,
+    world: Annotated[str, Argument(help="Scenario (.yaml, .py), world or bare name.", metavar="WORLD|SCENARIO")],
+    out_: Annotated[Path, option("Folder to write.", "DIR", "--out", "-o")],
+    duration: Annotated[float | None, option("Simulated seconds; default: 10.", "S", min=0)] = None,
     seed: options.Seed = None,
-    topic: Annotated[list[str], option("Keeps only topics of this pattern; repeatable.", "PATTERN")] = [],
-    skip: Annotated[list[str], option("Keeps all but topics of this pattern; repeatable.", "PATTERN")] = [],
+    topic: Annotated[list[str], option("Record only topics that match this pattern; repeatable.", "PATTERN")] = [],
+    skip: Annotated[list[str], option("Leave out topics that match this pattern; repeatable.", "PATTERN")] = [],
     set_: options.Overrides = [],
     spawn: options.Spawns = [],
     params_file: options.ParamsFiles = [],
@@ -218,15 +219,15 @@ def record(
     base: options.Base = "auto",
     force: options.Force = False,
 ) -> None:
-    """Runs a scenario and keeps what it gives as a golden run."""
-    given = load_options(resource_path, package_path, xacro_arg, base, plugin_path, params_file)
+    """Run a scenario and store the result as a golden run."""
+    loading = load_options(resource_path, package_path, xacro_arg, base, plugin_path, params_file)
     spec = scenario_spec(
-        world, given, duration=duration, seed=seed, topics=topic, skip=skip, overrides=set_, spawn=spawn,
+        world, loading, duration=duration, seed=seed, topics=topic, skip=skip, overrides=set_, spawn=spawn,
         cmd_vel=cmd_vel, script=script,
     )  # fmt: skip
     is_changed = duration is not None or seed is not None
-    if is_changed or any((topic, skip, set_, spawn, cmd_vel, script, given)):
-        spec = replace(spec, file=None)  # what differs from the file is kept in the golden run itself
+    if is_changed or any((topic, skip, set_, spawn, cmd_vel, script, loading)):
+        spec = replace(spec, file=None)  # the golden run itself keeps the changes to the scenario file
     found = record_golden(spec, out_, force=force)
     if found.simulation is not None:
         print_diagnostics(found.simulation.diagnostics, verbose=False)
@@ -236,31 +237,31 @@ def record(
     stdout_console().print(f"{out_}: {len(found.streams)} topics, {messages} messages, {size / 1000:.1f} kB")
     for result in found.checks:
         if not result.passed:
-            print_status(f"warning: the scenario's own check does not hold: {result.check.title}: {result.message}")
+            print_status(f"warning: the scenario's own check failed: {result.check.title}: {result.message}")
 
 
 @golden.command()
 @report_errors
 def check(
-    folders: Annotated[list[Path], argument("Golden runs, or folders that hold some.", "DIR...")],
-    bless: Annotated[str | None, option("Makes what differs golden, and keeps why that is right.", "REASON")] = None,
+    folders: Annotated[list[Path], argument("Golden runs, or folders that contain golden runs.", "DIR...")],
+    bless: Annotated[str | None, option("Accept the differences as golden, with the reason.", "REASON")] = None,
     bless_other_renderer: Annotated[
-        bool, Option("--bless-other-renderer", help="Also where pictures were drawn by another renderer.")
+        bool, Option("--bless-other-renderer", help="Accept images of another renderer, too.")
     ] = False,
-    html: Annotated[Path | None, option("Writes the report as one page with plots and pictures.", "OUT.html")] = None,
-    junit: Annotated[Path | None, option("Writes JUnit XML.", "OUT.xml")] = None,
-    jobs: Annotated[int, option("So many at once.", "N", "--jobs", "-n", min=1)] = 1,
-    causes: Annotated[bool, Option("--causes/--no-causes", help="Looks for where differences come from.")] = True,
-    budget: Annotated[float, option("Wall time that this may take for one of them.", "S", min=0)] = 60.0,
+    html: Annotated[Path | None, option("HTML report to write, with plots and images.", "OUT.html")] = None,
+    junit: Annotated[Path | None, option("JUnit XML report to write.", "OUT.xml")] = None,
+    jobs: Annotated[int, option("Number of parallel processes.", "N", "--jobs", "-n", min=1)] = 1,
+    causes: Annotated[bool, Option("--causes/--no-causes", help="Search for the causes of differences.")] = True,
+    budget: Annotated[float, option("Wall time limit of the search for each golden run.", "S", min=0)] = 60.0,
     json_: options.Json = False,
-    quiet: Annotated[bool, Option("--quiet", "-q", help="Says nothing of what passes.")] = False,
+    quiet: Annotated[bool, Option("--quiet", "-q", help="Print only failures.")] = False,
 ) -> int:
-    """Runs golden runs again and compares; says what differs first, and why. Exit code 5 where something does."""
+    """Repeat golden runs and report the first difference and its cause. Exit code 5 if any golden run differs."""
     from simkit.testing.golden.parallel_check import CheckOptions, check_goldens
 
     check_writable(html)
     check_writable(junit)
-    wanted = CheckOptions(bless, bless_other_renderer, causes, budget)
-    with redirect_stdout(sys.stderr) if json_ else nullcontext():  # what a plugin prints is no JSON
-        results = check_goldens(folders, wanted, jobs)
+    check_options = CheckOptions(bless, bless_other_renderer, causes, budget)
+    with redirect_stdout(sys.stderr) if json_ else nullcontext():  # the output of plugins is not JSON
+        results = check_goldens(folders, check_options, jobs)
     return report_results(results, blessed=bless is not None, html=html, junit=junit, as_json=json_, quiet=quiet)

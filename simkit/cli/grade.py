@@ -1,4 +1,4 @@
-"""The command `simkit grade`: run an exercise with plugins that were handed in, and report their results."""
+"""Command `simkit grade`: run an exercise with submitted plugins and report their results."""
 
 from __future__ import annotations
 
@@ -18,53 +18,52 @@ _FAILED = 5
 
 @report_errors
 def grade(
-    exercise: Annotated[Path, argument("The exercise's YAML file.", "EXERCISE.yaml")],
-    hand_ins: Annotated[
+    exercise: Annotated[Path, argument("YAML file of the exercise.", "EXERCISE.yaml")],
+    submissions: Annotated[
         list[Path] | None,
-        Argument(help="Plugins that were handed in; that of the exercise where not given.", metavar="PLUGIN.py"),
+        Argument(help="Submitted plugins; default: the plugin that the exercise names.", metavar="PLUGIN.py"),
     ] = None,
-    junit: Annotated[Path | None, option("Writes the results for CI.", "OUT.xml")] = None,
-    pictures: Annotated[Path | None, option("Draws the path of each run into a folder.", "DIR")] = None,
-    jobs: Annotated[int, option("Processes at a time.", "N", min=1, max=256)] = 1,
+    junit: Annotated[Path | None, option("JUnit XML report to write.", "OUT.xml")] = None,
+    pictures: Annotated[Path | None, option("Folder for a picture of the path of each run.", "DIR")] = None,
+    jobs: Annotated[int, option("Number of parallel processes.", "N", min=1, max=256)] = 1,
     json_: options.Json = False,
 ) -> int:
-    """Runs an exercise with plugins that were handed in, and says what each got and why."""
+    """Run an exercise with submitted plugins and print the results."""
     from simkit.testing.scenarios.exercise import read_exercise
     from simkit.testing.scenarios.grading import grade_all, grade_json, grade_text, junit_cases
 
     check_writable(junit)
-    asked = read_exercise(exercise)
-    files = _files(hand_ins, exercise.parent / asked.hand_in if asked.hand_in else None)
+    task = read_exercise(exercise)
+    files = _files(submissions, exercise.parent / task.hand_in if task.hand_in else None)
     if pictures is not None:
         pictures.mkdir(parents=True, exist_ok=True)
-    graded = []
-    for one in grade_all(asked, files, pictures, jobs):
-        graded.append(one)
+    grades = []
+    for result in grade_all(task, files, pictures, jobs):
+        grades.append(result)
         if not json_:
-            for line in grade_text(one):
+            for line in grade_text(result):
                 stdout_console().print(line)
     if json_:
-        print_json([grade_json(one) for one in graded])
+        print_json([grade_json(result) for result in grades])
     if junit is not None:
         from simkit.testing.junit import write_junit
 
-        write_junit(junit, asked.title, [case for one in graded for case in junit_cases(one)])
-    if len(graded) > 1 and not json_:
+        write_junit(junit, task.title, [case for result in grades for case in junit_cases(result)])
+    if len(grades) > 1 and not json_:
         stdout_console().print("")
-        for one in graded:
-            stdout_console().print(
-                f"{one.points:>6g} of {one.worth:g}  {'passed' if one.passed else 'not passed':<11}{one.hand_in}"
-            )
-    return 0 if all(one.passed for one in graded) else _FAILED
+        for result in grades:
+            state = "passed" if result.passed else "not passed"
+            stdout_console().print(f"{result.points:>6g} of {result.worth:g}  {state:<11}{result.hand_in}")
+    return 0 if all(result.passed for result in grades) else _FAILED
 
 
-def _files(given: list[Path] | None, own: Path | None) -> list[Path | None]:
-    """The plugins to be tried.
+def _files(submissions: list[Path] | None, own: Path | None) -> list[Path | None]:
+    """Return the plugins to grade.
 
     Raises:
-        InputError: SK-SCEN-007 one is not there.
+        InputError: SK-SCEN-007 a file does not exist.
     """
-    files: list[Path | None] = list(given) if given else [own]
+    files: list[Path | None] = list(submissions) if submissions else [own]
     missing = [str(file) for file in files if file is not None and not file.is_file()]
     if missing:
         hint = "simkit grade EXERCISE.yaml PLUGIN.py"

@@ -1,4 +1,4 @@
-"""The command `simkit inspect`: show what a file means once it is resolved."""
+"""Command `simkit inspect`: show the resolved content of a file."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def inspect(
     xacro_arg: options.XacroArgs = [],
     base: options.Base = "auto",
 ) -> int:
-    """Shows what a file means once it is resolved."""
+    """Show the resolved content of a file."""
     from simkit.build import describe
 
     found = describe(file, **options.source_arguments(resource_path, package_path, xacro_arg, base))
@@ -45,7 +45,7 @@ def _tree(found: JsonObject) -> Iterator[str]:
     severities = [d["severity"] for d in found["diagnostics"]]
     if severities:
         counts = ", ".join(f"{severities.count(s)} {s}s" for s in ("error", "warning", "note") if s in severities)
-        yield f"{counts}; simkit check shows them"
+        yield f"{counts}; show them with `simkit check`"
 
 
 def _model(model: JsonObject, indent: str) -> Iterator[str]:

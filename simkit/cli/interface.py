@@ -1,4 +1,4 @@
-"""The command `simkit interface`: show message, service and action types, as `ros2 interface` does."""
+"""Command `simkit interface`: show message, service and action types, as `ros2 interface` does."""
 
 from __future__ import annotations
 
@@ -14,25 +14,25 @@ from simkit.cli.terminal.output import not_found_error, print_json, print_line, 
 from simkit.errors import InputError, MessageError
 
 _KINDS = (("msg", "Messages"), ("srv", "Services"), ("action", "Actions"))
-interface = typer.Typer(help="Types of messages, services and actions.", no_args_is_help=True)
+interface = typer.Typer(help="List and show the types of messages, services and actions.", no_args_is_help=True)
 TypeName = Annotated[
-    str, argument("Such as geometry_msgs/msg/Twist; - reads it from standard input.", "TYPE", completion.interfaces)
+    str, argument("Type such as geometry_msgs/msg/Twist; - for standard input.", "TYPE", completion.interfaces)
 ]
 
 
 @interface.command("list")
 @report_errors_quietly
 def list_(
-    only_msgs: Annotated[bool, Option("--only-msgs", "-m", help="Message types only.")] = False,
-    only_srvs: Annotated[bool, Option("--only-srvs", "-s", help="Service types only.")] = False,
-    only_actions: Annotated[bool, Option("--only-actions", "-a", help="Action types only.")] = False,
+    only_msgs: Annotated[bool, Option("--only-msgs", "-m", help="List only message types.")] = False,
+    only_srvs: Annotated[bool, Option("--only-srvs", "-s", help="List only service types.")] = False,
+    only_actions: Annotated[bool, Option("--only-actions", "-a", help="List only action types.")] = False,
     json_: options.Json = False,
 ) -> None:
-    """Lists the types that simkit knows."""
+    """List the types that simkit knows."""
     from simkit.msgs.interface_definitions import interface_names
 
-    wanted = {"msg": only_msgs, "srv": only_srvs, "action": only_actions}
-    kinds = [(kind, title) for kind, title in _KINDS if wanted[kind] or not any(wanted.values())]
+    requested_kinds = {"msg": only_msgs, "srv": only_srvs, "action": only_actions}
+    kinds = [(kind, title) for kind, title in _KINDS if requested_kinds[kind] or not any(requested_kinds.values())]
     if json_:
         print_json({kind: interface_names(kind) for kind, _ in kinds})
         return
@@ -45,7 +45,7 @@ def list_(
 @interface.command()
 @report_errors_quietly
 def packages(json_: options.Json = False) -> None:
-    """Lists the packages that the types are of."""
+    """List the packages that define types."""
     from simkit.msgs.interface_definitions import interface_names
 
     found = sorted({name.split("/")[0] for kind, _ in _KINDS for name in interface_names(kind)})
@@ -55,7 +55,7 @@ def packages(json_: options.Json = False) -> None:
 @interface.command()
 @report_errors_quietly
 def package(name: Annotated[str, Argument(metavar="PACKAGE", show_default=False)], json_: options.Json = False) -> None:
-    """Lists the types of a package."""
+    """List the types of a package."""
     from simkit.msgs.interface_definitions import interface_names
 
     known = [n for kind, _ in _KINDS for n in interface_names(kind)]
@@ -69,12 +69,12 @@ def package(name: Annotated[str, Argument(metavar="PACKAGE", show_default=False)
 @report_errors_quietly
 def show(
     type_: TypeName,
-    all_comments: Annotated[bool, Option("--all-comments", help="With comments, those of parts too.")] = False,
-    no_comments: Annotated[bool, Option("--no-comments", help="Without comments.")] = False,
+    all_comments: Annotated[bool, Option("--all-comments", help="Print the comments of nested types, too.")] = False,
+    no_comments: Annotated[bool, Option("--no-comments", help="Leave out comments.")] = False,
     bag: options.Bag = None,
     json_: options.Json = False,
 ) -> None:
-    """Prints the definition of a type, with those of its parts below."""
+    """Print the definition of a type, followed by the definitions of its nested types."""
     from simkit.msgs.interface_definitions import interface_text
 
     name = _read(type_)
@@ -92,7 +92,7 @@ def show(
 
 
 def _of_bag(name: str, bag: object, *, comments: bool, all_comments: bool) -> str:
-    """The definition as a bag has it."""
+    """Return the definition of a type as stored in a bag."""
     from simkit.msgs.interface_definitions import interface_text
     from simkit.recording.bags.reader import open_bag_to_read
 
@@ -106,10 +106,10 @@ def _of_bag(name: str, bag: object, *, comments: bool, all_comments: bool) -> st
 @report_errors_quietly
 def proto(
     type_: TypeName,
-    no_quotes: Annotated[bool, Option("--no-quotes", help="Without quotes around it.")] = False,
+    no_quotes: Annotated[bool, Option("--no-quotes", help="Leave out the quotes around the text.")] = False,
     json_: options.Json = False,
 ) -> None:
-    """Prints a message with every field, to be filled in."""
+    """Print a message with all fields, as a template."""
     from simkit.msgs.interface_definitions import prototype
     from simkit.msgs.message_text import to_yaml
 

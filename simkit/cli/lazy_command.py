@@ -1,6 +1,6 @@
-"""Commands with a name and a help line whose module is imported when they are used.
+"""Commands with a name and a help line whose module is imported on first use.
 
-A shell that completes a word, or a user who asks a running simulation something, waits for one command and not for all.
+A shell completion, or a request to a running simulation, then waits for the import of one command instead of all.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import Any
 import typer
 from typer.core import TyperCommand, TyperGroup
 
-# Command of click, which newer versions of Typer have as a private module.
+# Command of click; newer versions of Typer have click as a private module.
 Command = Any
 # Context of click.
 Context = Any
@@ -22,12 +22,12 @@ Parameter = Any
 
 
 class Commands(TyperGroup):
-    """All commands of the command line."""
+    """Group of all commands of the command line."""
 
     _is_spared = False
 
     def make_context(self, info_name: str | None, args: list[str], parent: Context = None, **extra: object) -> Context:
-        """The context of what is on a line, or on one that is being completed."""
+        """Create the context of a command line, or of one that is being completed."""
         if not self._is_spared:
             self._is_spared = True
             _bypass_conversion(self)
@@ -35,17 +35,17 @@ class Commands(TyperGroup):
 
 
 class DeferredCommand(TyperCommand):
-    """A command, or a group of them, that stands in `simkit.cli.<name>` under its own name.
+    """Command, or group of commands, defined in `simkit.cli.<name>` under its own name.
 
-    What lists commands sees only name and help line; what goes on to run one, to complete its words or to show its help
-    comes through `make_context`, and finds the real one.
+    A list of commands uses only name and help line. Running, completing and showing help go through `make_context`,
+    which imports the real command.
     """
 
     _real: Command | None = None
 
     @property
     def real(self) -> Command:
-        """The command itself."""
+        """The real command; its module is imported on first access."""
         if self._real is None:
             assert self.name is not None
             module = import_module(f"simkit.cli.{self.name}")
@@ -56,54 +56,54 @@ class DeferredCommand(TyperCommand):
                 maker.add_typer(found, name=self.name)
             else:
                 maker.command(self.name, cls=getattr(module, "COMMAND", None))(found)
-            made: Command = typer.main.get_command(maker)
-            self._real = made.commands[self.name]
+            group: Command = typer.main.get_command(maker)
+            self._real = group.commands[self.name]
             _bypass_conversion(self._real)
         return self._real
 
     def make_context(self, info_name: str | None, args: list[str], parent: Context = None, **extra: object) -> Context:
-        """The context of the real one."""
+        """Create the context of the real command."""
         return self.real.make_context(info_name, args, parent, **extra)
 
 
 def defer(app: typer.Typer, name: str, line: str) -> None:
-    """Gives an application a command.
+    """Add a command to an application.
 
     Args:
-        app: the application.
-        name: of the command, of its module in `simkit.cli` and of what it is called there.
-        line: the first of its help.
+        app: application to extend.
+        name: name of the command, of its module in `simkit.cli`, and of the object in that module.
+        line: first line of the command's help.
     """
     app.command(name, cls=DeferredCommand, help=line)(_placeholder)
 
 
 def _placeholder() -> None:
-    """Stands for a command until its module is there."""
+    """Callback of a command whose module is not imported yet."""
 
 
 def _bypass_conversion(command: Command) -> None:
-    """Takes texts, defaults and what is not given as they are.
+    """Accept texts, defaults and missing values without conversion.
 
-    Typer may send these too through pydantic, whose import takes longer than many a command.
+    Typer may send these values through pydantic, too. The import of pydantic takes longer than many commands.
     """
     for each in getattr(command, "commands", {}).values():
         _bypass_conversion(each)
     command.get_params = partial(_converted_parameters, command.get_params)
 
 
-def _converted_parameters(usual: Callable[[Context], list[Parameter]], ctx: Context) -> list[Parameter]:
-    """The parameters of a command, `--help` among them."""
-    found = usual(ctx)
+def _converted_parameters(original: Callable[[Context], list[Parameter]], ctx: Context) -> list[Parameter]:
+    """Return the parameters of a command, including `--help`."""
+    found = original(ctx)
     for each in found:
         if each.nargs == 1 and not getattr(each, "multiple", False) and "process_value" not in vars(each):
             each.process_value = partial(_process_value, each, each.process_value)
     return found
 
 
-def _process_value(parameter: Parameter, usual: Callable[..., object], ctx: Context, value: object) -> object:
-    """The value of a parameter that is to have one."""
+def _process_value(parameter: Parameter, original: Callable[..., object], ctx: Context, value: object) -> object:
+    """Return the value of a parameter; convert it only if its type differs."""
     kind = getattr(getattr(parameter, "type_descriptor", None), "annotation", None)
     is_there = type(value) is kind and (kind is str or value is parameter.default)
     if not is_there and (value is not None or (parameter.required and not ctx.resilient_parsing)):
-        return usual(ctx, value)
+        return original(ctx, value)
     return value if parameter.callback is None else parameter.callback(ctx, parameter, value)

@@ -1,4 +1,4 @@
-"""The command `simkit model`: show poses, links and joints of models in a running simulation."""
+"""Command `simkit model`: show poses, links and joints of models in a running simulation."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from simkit.cli.terminal.topic_sources import connect_to_simulation, connection_
 if TYPE_CHECKING:
     from simkit.live import Client
 
-model = typer.Typer(help="Models of a running simulation.", no_args_is_help=True)
-Model = Annotated[str, argument("Name of a model; nested ones with ::.", "MODEL", completion.models)]
+model = typer.Typer(help="Show models, poses and joints of a running simulation.", no_args_is_help=True)
+Model = Annotated[str, argument("Name of the model; for a nested model OUTER::INNER.", "MODEL", completion.models)]
 
 
 @model.command("list")
 @report_errors_quietly
 def list_(
-    verbose: Annotated[bool, Option("--verbose", "-v", help="With poses, links and joints.")] = False,
+    verbose: Annotated[bool, Option("--verbose", "-v", help="Show poses, links and joints, too.")] = False,
     sim: options.Sim = None,
     json_: options.Json = False,
 ) -> None:
-    """Lists the models."""
+    """List the models."""
     with connect_to_simulation(sim) as client:
         names: list[str] = client.models()
         found = {name: client.model(name) for name in names} if verbose else {}
@@ -38,25 +38,25 @@ def list_(
         if not verbose:
             print_line(name)
             continue
-        one = found[name]
-        counts = f"{_count_text(one['links'], 'link')}, {_count_text(one['joints'], 'joint')}"
-        print_line(f"{name}: {_pose_text(one['pose'])} ({'static, ' if one.get('static') else ''}{counts})")
+        state = found[name]
+        counts = f"{_count_text(state['links'], 'link')}, {_count_text(state['joints'], 'joint')}"
+        print_line(f"{name}: {_pose_text(state['pose'])} ({'static, ' if state.get('static') else ''}{counts})")
 
 
-def _count_text(found: Sequence[object], what: str) -> str:
-    return f"{len(found)} {what}{'' if len(found) == 1 else 's'}"
+def _count_text(items: Sequence[object], noun: str) -> str:
+    return f"{len(items)} {noun}{'' if len(items) == 1 else 's'}"
 
 
 @model.command()
 @report_errors_quietly
 def pose(
     model: Model,
-    link: Annotated[str | None, argument("One of its links.", "[LINK]", completion.links)] = None,
-    links: Annotated[bool, Option("--links", "-l", help="All its links too.")] = False,
+    link: Annotated[str | None, argument("Link of the model.", "[LINK]", completion.links)] = None,
+    links: Annotated[bool, Option("--links", "-l", help="Print the poses of all links, too.")] = False,
     sim: options.Sim = None,
     json_: options.Json = False,
 ) -> None:
-    """Prints a pose in the world: x y z [m], roll pitch yaw [rad]."""
+    """Print a pose in the world frame: x y z [m], roll pitch yaw [rad]."""
     with connect_to_simulation(sim) as client:
         found = _model_state(client, model)
     if link is not None:
@@ -66,7 +66,7 @@ def pose(
     else:
         rows = {model: found["pose"]}
         if links:
-            rows |= {f"{model}::{n}": one["pose"] for n, one in found["links"].items()}
+            rows |= {f"{model}::{n}": state["pose"] for n, state in found["links"].items()}
     if json_:
         print_json(rows if links else next(iter(rows.values())))
         return
@@ -86,12 +86,12 @@ def _pose_text(pose: JsonObject) -> str:
 def joint(
     model: Model,
     joint: Annotated[
-        str | None, argument("One of its joints; all where not given.", "[JOINT]", completion.joints)
+        str | None, argument("Joint of the model; default: all joints.", "[JOINT]", completion.joints)
     ] = None,
     sim: options.Sim = None,
     json_: options.Json = False,
 ) -> None:
-    """Prints the state of joints: position, velocity, effort [rad, rad/s, N·m or m, m/s, N]."""
+    """Print the state of joints: position, velocity, effort [rad, rad/s, N·m or m, m/s, N]."""
     with connect_to_simulation(sim) as client:
         found = _model_state(client, model)["joints"]
     if joint is not None and joint not in found:
@@ -104,9 +104,9 @@ def joint(
         print_line(f"{model} has no joints")
         return
     width, kinds = max(map(len, rows)), max(len(str(r["type"])) for r in rows.values())
-    for name, one in rows.items():
-        state = "  ".join(f"{key} {_numbers(one[key])}" for key in ("position", "velocity", "effort"))
-        print_line(f"{name:<{width}}  {one['type']:<{kinds}}  {state}")
+    for name, row in rows.items():
+        state = "  ".join(f"{key} {_numbers(row[key])}" for key in ("position", "velocity", "effort"))
+        print_line(f"{name:<{width}}  {row['type']:<{kinds}}  {state}")
 
 
 def _numbers(value: float | list[float]) -> str:
@@ -116,10 +116,10 @@ def _numbers(value: float | list[float]) -> str:
 
 
 def _model_state(client: Client, name: str) -> JsonObject:
-    """The state of a model.
+    """Return the state of a model.
 
     Raises:
-        InputError: SK-CLI-038 there is none of that name.
+        InputError: SK-CLI-038 no model has the name.
     """
     from simkit.live import LiveClosed, LiveError
 

@@ -1,4 +1,4 @@
-"""The command `simkit motion`: list the named motions of a robot and play them."""
+"""Command `simkit motion`: list the named motions of a robot and play them."""
 
 from __future__ import annotations
 
@@ -22,19 +22,19 @@ if TYPE_CHECKING:
     from simkit.plugins.play_motion.motion import Motion
     from simkit.runtime import Model, Simulation
 
-motion = typer.Typer(help="Lists the motions that a robot knows by name, and plays them.", no_args_is_help=True)
+motion = typer.Typer(help="List and play the named motions of a robot.", no_args_is_help=True)
 
 ROBOT = "tiago"
 Motions = Annotated[
-    list[Path], option("One more file of motions, play_motion's or play_motion2's.", "FILE.yaml", "--motions")
+    list[Path], option("Additional motion file (play_motion or play_motion2); repeatable.", "FILE.yaml", "--motions")
 ]
-OfModel = Annotated[str | None, option("Which robot, where several play.", "NAME", "--model")]
+OfModel = Annotated[str | None, option("Robot that plays the motions, if the world has several.", "NAME", "--model")]
 
 
 @motion.command("list")
 @report_errors
 def list_motions(
-    file: Annotated[str, Argument(help="A robot, a world with one, or a file of motions.", metavar="[FILE]")] = ROBOT,
+    file: Annotated[str, Argument(help="Robot, world with a robot, or motion file.", metavar="[FILE]")] = ROBOT,
     motions: Motions = [],
     model: OfModel = None,
     json_: options.Json = False,
@@ -43,7 +43,7 @@ def list_motions(
     plugin_path: options.PluginPaths = [],
     xacro_arg: options.XacroArgs = [],
 ) -> None:
-    """Lists motions: joints, points, how long each takes, and what it is for."""
+    """List motions: name, duration, points, joints and description."""
     if Path(file).suffix.lower() in (".yaml", ".yml"):
         found = _read_motions([Path(file), *motions])
     else:
@@ -53,41 +53,36 @@ def list_motions(
         with _open_world(file, None, motions, 0, plugin_path, source, verbose=False) as sim:
             found = list(choose_player(motion_players(sim), model).motions.values())
     if json_:
-        shown = [{**one.as_message(), "duration": one.duration, "file": one.where.file} for one in found]
+        shown = [{**m.as_message(), "duration": m.duration, "file": m.where.file} for m in found]
         stdout_console().file.write(json.dumps(shown, indent=2) + "\n")
         return
     rows = [
-        (
-            one.key,
-            f"{one.duration:g} s",
-            f"{len(one.times)} point{'s' * (len(one.times) > 1)}",
-            _joint_ranges(one.joints),
-        )
-        for one in found
+        (m.key, f"{m.duration:g} s", f"{len(m.times)} point{'s' * (len(m.times) > 1)}", _joint_ranges(m.joints))
+        for m in found
     ]
     widths = [max((len(row[k]) for row in rows), default=0) for k in range(4)]
-    for one, row in zip(found, rows, strict=True):
+    for entry, row in zip(found, rows, strict=True):
         columns = "  ".join(f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True))
-        stdout_console().print(f"{columns}  {one.description}".rstrip())
+        stdout_console().print(f"{columns}  {entry.description}".rstrip())
 
 
 @motion.command("play")
 @report_errors
 def play(
-    names: Annotated[list[str], argument("Motions, played one after another.", "MOTION...")],
-    world: Annotated[str | None, option("Where: a file or a bare name; level ground otherwise.", "WORLD")] = None,
+    names: Annotated[list[str], argument("Motions to play, one after another.", "MOTION...")],
+    world: Annotated[str | None, option("World (a file or a bare name); default: level ground.", "WORLD")] = None,
     robot: Annotated[
-        str | None, option(f"Who: a file or a bare name; {ROBOT} where no world is given.", "MODEL")
+        str | None, option(f"Robot (a file or a bare name); default without --world: {ROBOT}.", "MODEL")
     ] = None,
     motions: Motions = [],
     model: OfModel = None,
     skip_planning: Annotated[
-        bool, Option("--skip-planning", help="Does not look whether anything is in the way.")
+        bool, Option("--skip-planning", help="Do not check for collisions on the way to the first point.")
     ] = False,
-    seed: Annotated[int, option("Seed of all noise.", "N", min=0)] = 0,
-    record: Annotated[Path | None, option("Writes all topics: x.mcap one file, else a rosbag2 folder.", "OUT")] = None,
+    seed: Annotated[int, option("Seed of all random streams.", "N", min=0)] = 0,
+    record: Annotated[Path | None, option("Bag to write: NAME.mcap, else a rosbag2 folder.", "OUT")] = None,
     force: options.Force = False,
-    picture: Annotated[Path | None, option("Draws the scene at the end.", "OUT.png")] = None,
+    picture: Annotated[Path | None, option("Picture of the scene at the end, to write.", "OUT.png")] = None,
     json_: options.Json = False,
     verbose: options.Verbose = False,
     resource_path: options.ResourcePaths = [],
@@ -96,7 +91,7 @@ def play(
     xacro_arg: options.XacroArgs = [],
     params_file: options.ParamsFiles = [],
 ) -> None:
-    """Plays motions: the way to the first point no faster than is safe, then as the file has it."""
+    """Play motions: at a safe speed to the first point, then with the timing of the motion file."""
     from simkit.plugins.play_motion.motion_session import choose_player, motion_players, play_motions
     from simkit.recording import run_picture as pictures
     from simkit.recording.bags import recorder
@@ -133,7 +128,7 @@ def _open_world(
     *,
     verbose: bool,
 ) -> Simulation:
-    """The world with its robot, ready to play; further motions are known by then."""
+    """Load the world with its robot, ready to play the motions of all files."""
     from simkit.build import load
     from simkit.plugins.play_motion.motion_session import controlled_models, empty_world_with, motion_players
     from simkit.plugins.play_motion.play_motion_plugin import PlayMotion
@@ -145,25 +140,25 @@ def _open_world(
         source = {**source, "resource_paths": [*source["resource_paths"], *folders]}
     sim = load(text, seed=seed, plugin_paths=plugin_paths, **source)
     spawned = _spawn_robot(sim, robot) if world is not None and robot is not None else None
-    there = motion_players(sim)
-    for player in there.values():
+    players = motion_players(sim)
+    for player in players.values():
         for path in motions:
             player.read(path)
-    if motions and not there:
+    if motions and not players:
         hosts = controlled_models(sim)
         sim.close()
         if len(hosts) != 1 or spawned is not None:
-            what = f"here are {len(hosts)} of them" if spawned is None else "put the robot into the world's file"
-            message = f"SK-MOTION-010 --motions is for the one robot that a controller manager moves; {what}"
+            detail = f"found {len(hosts)}" if spawned is None else "add the robot to the world file instead of --robot"
+            message = f"SK-MOTION-010 --motions needs exactly one robot with a controller manager; {detail}"
             raise InputError(message, "SK-MOTION-010")
-        made = PlayMotion(motions=[str(path.resolve()) for path in motions])
-        sim = load(text, seed=seed, plugin_paths=plugin_paths, plugins=[(hosts[0], made)], **source)
+        player_plugin = PlayMotion(motions=[str(path.resolve()) for path in motions])
+        sim = load(text, seed=seed, plugin_paths=plugin_paths, plugins=[(hosts[0], player_plugin)], **source)
     print_diagnostics(sim.diagnostics, verbose=verbose)
     return sim
 
 
 def _read_motions(paths: Sequence[Path]) -> list[Motion]:
-    """The motions of files, without a robot."""
+    """Read the motions of files, without a robot."""
     from simkit.plugins.play_motion.motion_files import read_motions
 
     _check_files(paths)
@@ -177,30 +172,30 @@ def _read_motions(paths: Sequence[Path]) -> list[Motion]:
 
 
 def _check_files(paths: Sequence[Path]) -> None:
-    """Raises where a file of motions is not there, or broken: what it says is not to be missed."""
+    """Raise an error if a motion file is missing or invalid."""
     from simkit.plugins.play_motion.motion_files import read_motions
 
     broken = Diagnostics()
     for path in paths:
         if not path.is_file():
-            raise InputError(f"SK-MOTION-001 there is no file of motions {path}", "SK-MOTION-001")
+            raise InputError(f"SK-MOTION-001 motion file {path} does not exist", "SK-MOTION-001")
         read_motions(path, broken)
     broken.raise_if_errors()
 
 
 def _spawn_robot(sim: Simulation, robot: str) -> Model:
-    """The robot, put into a world that may have it already."""
+    """Spawn the robot, unless the world already has it."""
     from simkit.plugins.play_motion.motion_session import motion_players
 
-    there = [scoped for scoped in motion_players(sim) if scoped == Path(robot).stem]
-    if there:
-        message = f"SK-MOTION-010 the world has a robot {there[0]!r} already; leave --robot out"
+    existing = [scoped for scoped in motion_players(sim) if scoped == Path(robot).stem]
+    if existing:
+        message = f"SK-MOTION-010 the world already has a robot {existing[0]!r}; leave out --robot"
         raise InputError(message, "SK-MOTION-010")
     return sim.spawn(robot)
 
 
 def _joint_ranges(names: Sequence[str]) -> str:
-    """Joints in short: `arm_1_joint` to `arm_7_joint` are `arm_1-7`."""
+    """Abbreviate joint names: `arm_1_joint` to `arm_7_joint` become `arm_1-7`."""
     short: list[tuple[str, int | None, int | None]] = []
     for name in names:
         stem = name.removesuffix("_joint")

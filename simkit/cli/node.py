@@ -1,4 +1,4 @@
-"""The command `simkit node`: show plugins and sensors of a running simulation as nodes, as `ros2 node` does."""
+"""Command `simkit node`: show plugins and sensors of a running simulation as nodes, as `ros2 node` does."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ from simkit.cli.terminal.output import (
 )
 from simkit.cli.terminal.topic_sources import connect_to_simulation, connection_name, node_names
 
-node = typer.Typer(help="Nodes of a running simulation: its plugins, sensors and clients.", no_args_is_help=True)
-Hidden = Annotated[bool, Option("--all", "-a", "--include-hidden", help="Shows hidden ones too.")]
+node = typer.Typer(help="List the nodes of a running simulation.", no_args_is_help=True)
+Hidden = Annotated[bool, Option("--all", "-a", "--include-hidden", help="Include hidden names.")]
 
 
 @live_command(node, "list")
 def list_(
     hidden: Hidden = False,
-    count: Annotated[bool, Option("--count-nodes", "-c", help="Says only how many.")] = False,
+    count: Annotated[bool, Option("--count-nodes", "-c", help="Print only the number of nodes.")] = False,
     sim: options.Sim = None,
     json_: options.Json = False,
 ) -> None:
-    """Lists the nodes."""
+    """List the nodes."""
     with connect_to_simulation(sim) as client:
         found = node_names(client, hidden=hidden)
     print_names(found, count=count, json_=json_)
@@ -39,24 +39,24 @@ def list_(
 
 @live_command(node)
 def info(
-    node: Annotated[str, argument("Name of a node.", "NODE", completion.all_nodes)],
+    node: Annotated[str, argument("Name of the node.", "NODE", completion.all_nodes)],
     hidden: Hidden = False,
     sim: options.Sim = None,
     json_: options.Json = False,
 ) -> None:
-    """Says what a node publishes, takes and offers."""
+    """Print the publishers, subscribers, services and actions of a node."""
     with connect_to_simulation(sim) as client:
         nodes: dict[str, JsonObject] = client.ask("nodes")
-    wanted = absolute_name(node)
-    if wanted not in nodes:
+    node_name = absolute_name(node)
+    if node_name not in nodes:
         raise not_found_error(
-            "node", wanted, [n for n in nodes if not is_hidden(n)], "SK-CLI-034", connection_name(client)
+            "node", node_name, [n for n in nodes if not is_hidden(n)], "SK-CLI-034", connection_name(client)
         )
-    found = nodes[wanted]
+    found = nodes[node_name]
     if json_:
-        print_json({"name": wanted, **found})
+        print_json({"name": node_name, **found})
         return
-    print_line(wanted)
+    print_line(node_name)
     for title, key in (
         ("Subscribers", "subscribers"),
         ("Publishers", "publishers"),

@@ -1,4 +1,4 @@
-"""The command `simkit param`: show and change live parameters of a running simulation, as `ros2 param` does."""
+"""Command `simkit param`: show and change parameters of a running simulation, as `ros2 param` does."""
 
 from __future__ import annotations
 
@@ -28,28 +28,28 @@ if TYPE_CHECKING:
     from simkit.live import Client
     from simkit.msgs import ParameterValue
 
-param = typer.Typer(help="Live parameters of a running simulation.", no_args_is_help=True)
-Node = Annotated[str, argument("Name of a node.", "NODE", completion.nodes)]
-Names = Annotated[list[str], argument("Names of parameters.", "NAME...", completion.parameters)]
-Name = Annotated[str, argument("Name of a parameter.", "NAME", completion.parameters)]
+param = typer.Typer(help="List, read and set the parameters of a running simulation.", no_args_is_help=True)
+Node = Annotated[str, argument("Name of the node.", "NODE", completion.nodes)]
+Names = Annotated[list[str], argument("Names of the parameters.", "NAME...", completion.parameters)]
+Name = Annotated[str, argument("Name of the parameter.", "NAME", completion.parameters)]
 
 
 @live_command(param, "list")
 def list_(
-    node: Annotated[str | None, argument("Only of this one.", "[NODE]", completion.nodes)] = None,
-    param_type: Annotated[bool, Option("--param-type", help="Shows the types too.")] = False,
-    prefix: Annotated[list[str], option("Only names that begin so; repeatable.", "PREFIX", "--param-prefixes")] = [],
-    filter_: Annotated[str | None, option("Only names this regular expression fits.", "REGEX", "--filter")] = None,
+    node: Annotated[str | None, argument("Name of a node; default: all nodes.", "[NODE]", completion.nodes)] = None,
+    param_type: Annotated[bool, Option("--param-type", help="Show the types, too.")] = False,
+    prefix: Annotated[list[str], option("Prefix of the names; repeatable.", "PREFIX", "--param-prefixes")] = [],
+    filter_: Annotated[str | None, option("List only names that match.", "REGEX", "--filter")] = None,
     sim: options.Sim = None,
     json_: options.Json = False,
 ) -> None:
-    """Lists nodes with parameters and these."""
-    wanted = compile_pattern(filter_, "--filter")
+    """List the nodes and their parameters."""
+    pattern = compile_pattern(filter_, "--filter")
     found: dict[str, dict[str, str]] = {}
     with connect_to_simulation(sim) as client:
         for name in parameter_nodes(client) if node is None else [_resolve_node(client, node)]:
             names = sorted(client.call(name + LIST_PARAMETERS, {"prefixes": prefix}).result.names)
-            names = [n for n in names if wanted is None or wanted.search(n)]
+            names = [n for n in names if pattern is None or pattern.search(n)]
             types = client.call(f"{name}/get_parameter_types", {"names": names}).types if names else []
             found[name] = {n: KINDS[int(t)] for n, t in zip(names, types, strict=True)}
     if json_:
@@ -66,11 +66,11 @@ def list_(
 def get(
     node: Node,
     name: Name,
-    hide_type: Annotated[bool, Option("--hide-type", help="The value alone.")] = False,
+    hide_type: Annotated[bool, Option("--hide-type", help="Print only the value.")] = False,
     sim: options.Sim = None,
     json_: options.Json = False,
 ) -> None:
-    """Prints the value of a parameter."""
+    """Print the value of a parameter."""
     with connect_to_simulation(sim) as client:
         full = _resolve_node(client, node)
         found = _existing_values(client, full, [name])[0]
@@ -95,11 +95,11 @@ def _value_text(value: object, kind: str) -> str:
 def set_(
     node: Node,
     pairs: Annotated[list[str], argument("Names and values: p_gain 12.5.", "NAME VALUE...", completion.parameters)],
-    atomic: Annotated[bool, Option("--atomic", help="All of them or none.")] = False,
+    atomic: Annotated[bool, Option("--atomic", help="Set all parameters or none.")] = False,
     sim: options.Sim = None,
     json_: options.Json = False,
 ) -> int:
-    """Changes parameters; exit code 2 where one is refused."""
+    """Set parameters; exit code 2 if a value is rejected."""
     if len(pairs) % 2:
         text = f"found {len(pairs)} words, allowed are pairs: name value [name value ...]"
         raise InputError(f"SK-CLI-031 the parameters: {text}", "SK-CLI-031")
@@ -120,16 +120,16 @@ def _set_values(client: Client, node: str, values: list[tuple[str, JsonObject]],
         if json_:
             break
         head = f"{name}: " if len(values) > 1 and not atomic else ""
-        what = "parameters atomically" if atomic else "parameter"
-        good, bad = f"{head}Set {what} successful", f"{head}Setting {what} failed"
+        noun = "parameters atomically" if atomic else "parameter"
+        success, failure = f"{head}Set {noun} successful", f"{head}Setting {noun} failed"
         reason = f": {result.reason}" if result.reason else ""
-        (print_line if result.successful else print_note)((good if result.successful else bad) + reason)
+        (print_line if result.successful else print_note)((success if result.successful else failure) + reason)
     return 0 if all(r.successful for r in results) else 2
 
 
 @live_command(param)
 def delete(node: Node, name: Name, sim: options.Sim = None, json_: options.Json = False) -> int:
-    """Deletes a parameter, which no node here allows."""
+    """Delete a parameter; no node of simkit allows this."""
     with connect_to_simulation(sim) as client:
         full = _resolve_node(client, node)
         _existing_values(client, full, [name])
@@ -143,7 +143,7 @@ def delete(node: Node, name: Name, sim: options.Sim = None, json_: options.Json 
 
 @live_command(param)
 def describe(node: Node, names: Names, sim: options.Sim = None, json_: options.Json = False) -> None:
-    """Says what parameters are, and what they take."""
+    """Print type, description and constraints of parameters."""
     from simkit.msgs.message_text import message_to_dict
 
     with connect_to_simulation(sim) as client:
@@ -153,24 +153,24 @@ def describe(node: Node, names: Names, sim: options.Sim = None, json_: options.J
     if json_:
         print_json([message_to_dict(d) | {"type": KINDS[int(d.type)]} for d in found])
         return
-    for one in found:
-        print_line(f"Parameter name: {one.name}\n  Type: {KINDS[int(one.type)]}")
-        if one.description:
-            print_line(f"  Description: {one.description}")
+    for parameter in found:
+        print_line(f"Parameter name: {parameter.name}\n  Type: {KINDS[int(parameter.type)]}")
+        if parameter.description:
+            print_line(f"  Description: {parameter.description}")
         print_line("  Constraints:")
-        if one.read_only:
+        if parameter.read_only:
             print_line("    Read only: true")
-        for bounds in [*one.floating_point_range, *one.integer_range][:1]:
+        for bounds in [*parameter.floating_point_range, *parameter.integer_range][:1]:
             print_line(f"    Min value: {bounds.from_value}\n    Max value: {bounds.to_value}")
             if bounds.step:
                 print_line(f"    Step: {bounds.step}")
-        if one.additional_constraints:
-            print_line(f"    Additional constraints: {one.additional_constraints}")
+        if parameter.additional_constraints:
+            print_line(f"    Additional constraints: {parameter.additional_constraints}")
 
 
 @live_command(param)
 def dump(node: Node, sim: options.Sim = None, json_: options.Json = False) -> None:
-    """Prints all parameters of a node as a parameter file."""
+    """Print all parameters of a node as a parameter file."""
     from simkit.msgs.message_text import to_yaml as as_yaml
 
     with connect_to_simulation(sim) as client:
@@ -180,10 +180,10 @@ def dump(node: Node, sim: options.Sim = None, json_: options.Json = False) -> No
     tree: JsonObject = {}
     for name, value in zip(names, values, strict=True):
         *above, last = name.split(".")
-        place = tree
+        branch = tree
         for part in above:
-            place = place.setdefault(part, {})
-        place[last] = plain_value(value)
+            branch = branch.setdefault(part, {})
+        branch[last] = plain_value(value)
     found = {full: {"ros__parameters": tree}}
     if json_:
         print_json(found)
@@ -194,12 +194,12 @@ def dump(node: Node, sim: options.Sim = None, json_: options.Json = False) -> No
 @live_command(param)
 def load(
     node: Node,
-    file: Annotated[Path, argument("A parameter file.", "FILE.yaml")],
-    no_wildcard: Annotated[bool, Option("--no-use-wildcard", help="Leaves out what stands for all: /**.")] = False,
+    file: Annotated[Path, argument("Parameter file.", "FILE.yaml")],
+    no_wildcard: Annotated[bool, Option("--no-use-wildcard", help="Ignore the values for all nodes (/**).")] = False,
     sim: options.Sim = None,
     json_: options.Json = False,
 ) -> int:
-    """Takes the values of a parameter file for a node; exit code 2 where one is refused."""
+    """Set the parameters of a node from a parameter file; exit code 2 if a value is rejected."""
     with connect_to_simulation(sim) as client:
         full = _resolve_node(client, node)
         values = read_parameter_file(file, full, wildcard=not no_wildcard)
@@ -207,26 +207,26 @@ def load(
         results = client.call(f"{full}/set_parameters", request).results
     rows = [(n, bool(r.successful), str(r.reason)) for (n, _), r in zip(values, results, strict=True)]
     if json_:
-        print_json([{"name": n, "successful": good, "reason": reason} for n, good, reason in rows])
-    for name, good, reason in () if json_ else rows:
-        text = f"Set parameter {name} {'successful' if good else 'failed'}{': ' + reason if reason else ''}"
-        (print_line if good else print_note)(text)
-    return 0 if all(good for _, good, _ in rows) else 2
+        print_json([{"name": n, "successful": successful, "reason": reason} for n, successful, reason in rows])
+    for name, successful, reason in () if json_ else rows:
+        text = f"Set parameter {name} {'successful' if successful else 'failed'}{': ' + reason if reason else ''}"
+        (print_line if successful else print_note)(text)
+    return 0 if all(successful for _, successful, _ in rows) else 2
 
 
 def _resolve_node(client: Client, name: str) -> str:
     nodes = parameter_nodes(client)
-    wanted = absolute_name(name)
-    if wanted not in nodes:
-        raise not_found_error("node with parameters", wanted, nodes, "SK-CLI-034", connection_name(client))
-    return wanted
+    node = absolute_name(name)
+    if node not in nodes:
+        raise not_found_error("node with parameters", node, nodes, "SK-CLI-034", connection_name(client))
+    return node
 
 
 def _existing_values(client: Client, node: str, names: list[str]) -> list[ParameterValue]:
-    """The values of parameters, which are there."""
+    """Return the values of parameters; raise an error for a parameter that does not exist."""
     values = list(client.call(f"{node}/get_parameters", {"names": names}).values)
     for name, value in zip(names, values, strict=True):
         if not int(value.type):
-            there = client.call(node + LIST_PARAMETERS, {}).result.names
-            raise not_found_error("parameter", name, sorted(there), "SK-CLI-034", f"node {node}")
+            existing = client.call(node + LIST_PARAMETERS, {}).result.names
+            raise not_found_error("parameter", name, sorted(existing), "SK-CLI-034", f"node {node}")
     return values

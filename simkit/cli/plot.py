@@ -1,4 +1,4 @@
-"""The command `simkit plot`: draw fields of topics over time, of worlds, scenarios and bags, as SVG or PNG."""
+"""Command `simkit plot`: plot fields of topics over time, from worlds, scenarios and bags, as SVG or PNG."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from simkit.cli.terminal.output import report_errors_quietly
 
 @report_errors_quietly
 def plot(
-    words: Annotated[
+    arguments: Annotated[
         list[str],
         argument(
-            "A world, scenario or bag, or several; then fields: /odom.pose.pose.position.x, /scan.ranges[0].",
+            "One or more worlds, scenarios or bags, then fields: /odom.pose.pose.position.x, /scan.ranges[0].",
             "WORLD-or-BAG... FIELD...",
         ),
     ],
@@ -27,9 +27,7 @@ def plot(
     start: options.Start = None,
     end: options.End = None,
     title: options.Title = "",
-    duration: Annotated[
-        float | None, option("Simulated seconds that a world is run for; 10 where not given.", "S", min=0)
-    ] = None,
+    duration: Annotated[float | None, option("Simulated seconds to run a world; default: 10.", "S", min=0)] = None,
     seed: options.Seed = None,
     set_: options.Overrides = [],
     cmd_vel: options.CmdVel = None,
@@ -41,10 +39,10 @@ def plot(
     base: options.Base = "auto",
     json_: options.Json = False,
 ) -> None:
-    """Draws fields of topics over time: of bags, and of worlds that are run for it."""
-    sources, fields = split_sources_and_fields(words)
-    given = load_options(resource_path, package_path, xacro_arg, base, plugin_path)
+    """Plot fields of bags, worlds and scenarios over time."""
+    sources, fields = split_sources_and_fields(arguments)
+    loading = load_options(resource_path, package_path, xacro_arg, base, plugin_path)
     run = partial(
-        scenario_spec, options=given, duration=duration, seed=seed, overrides=set_, cmd_vel=cmd_vel, script=script
+        scenario_spec, options=loading, duration=duration, seed=seed, overrides=set_, cmd_vel=cmd_vel, script=script
     )
     draw_chart(sources, fields, PlotRequest(output, against, start, end, title, run), json_=json_)

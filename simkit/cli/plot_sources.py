@@ -1,4 +1,4 @@
-"""Draw fields of bags, and of worlds and scenarios that are run for it: `simkit plot` and `simkit bag plot`."""
+"""Charts of bags, and of worlds and scenarios that are run for the chart: `simkit plot` and `simkit bag plot`."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 _BAGS: Final = (".mcap", ".db3")
 _SCENARIOS: Final = (".yaml", ".yml")
 _WORLDS: Final = (".sdf", ".world", ".urdf", ".xacro", ".xml", ".model", ".mjcf", ".erb", ".config")
-_TOPICS_LISTED: Final = 20  # topics that are listed where no field is named
+_TOPICS_LISTED: Final = 20  # topics in the error message for a plot without fields
 
 
 def _world_spec(world: str) -> RunSpec:
@@ -37,11 +37,11 @@ class PlotRequest:
     """Options of a plot.
 
     Attributes:
-        output: the file.
-        against: the field that is drawn to the right, in place of time.
-        start, end: times between which numbers are drawn [s].
-        title: above all.
-        run: how a world is run.
+        output: file to write.
+        against: field for the horizontal axis instead of time.
+        start, end: limits of the plotted times [s].
+        title: title of the chart.
+        run: function that returns the run specification of a world.
     """
 
     output: Path
@@ -53,85 +53,88 @@ class PlotRequest:
 
 
 def is_bag(path: Path) -> bool:
-    """Check whether a path is a recording."""
+    """Check whether a path is a bag."""
     if path.suffix.lower() in _BAGS:
         return True
     return path.is_dir() and ((path / "metadata.yaml").exists() or any(path.glob("*.mcap")))
 
 
-def split_sources_and_fields(words: Sequence[str]) -> tuple[list[str], list[str]]:
-    """Sources and fields: the first word is a source, and so is each further one that is there or looks like one."""
-    sources: list[str] = list(words[:1])
+def split_sources_and_fields(arguments: Sequence[str]) -> tuple[list[str], list[str]]:
+    """Split arguments into sources and fields.
+
+    The first argument is a source. Each further argument is a source if it exists or looks like one.
+    """
+    sources: list[str] = list(arguments[:1])
     fields: list[str] = []
-    for word in words[1:]:
-        path = Path(word)
+    for argument in arguments[1:]:
+        path = Path(argument)
         known = path.suffix.lower() in (*_BAGS, *_SCENARIOS, *_WORLDS)
-        is_name = "/" not in word and "." not in word
-        (sources if known or is_name or path.exists() else fields).append(word)
+        is_name = "/" not in argument and "." not in argument
+        (sources if known or is_name or path.exists() else fields).append(argument)
     return sources, fields
 
 
 def draw_chart(sources: Sequence[str], fields: Sequence[str], request: PlotRequest, *, json_: bool) -> None:
-    """Draws fields of sources to a file.
+    """Draw fields of sources to a file.
 
     Raises:
-        InputError: SK-BAG-010 to 012, SK-CLI-016, SK-CLI-030, SK-CLI-033, SK-CLI-035; what a world's loading raises.
+        InputError: SK-BAG-010 to 012, SK-CLI-016, SK-CLI-030, SK-CLI-033, SK-CLI-035; errors of loading a world.
     """
     from simkit.recording.charts.chart import check_suffix, render_chart
 
     check_suffix(request.output.name)
     check_writable(request.output)
-    named = _source_labels(sources)
+    labels = _source_labels(sources)
     found: list[tuple[Series, Style]] = []
     for number, source in enumerate(sources):
-        prefix = f"{named[number]}: " if len(sources) > 1 else ""
+        prefix = f"{labels[number]}: " if len(sources) > 1 else ""
         found += _with_styles(_series(source, fields, request), number, prefix, alone=len(sources) == 1)
-    found = [(one, style) for one, style in found if _has_numbers(one)]
+    found = [(series, style) for series, style in found if _has_numbers(series)]
     if not found:
-        raise InputError("SK-BAG-011 there is nothing to draw: no number came", "SK-BAG-011")
+        raise InputError("SK-BAG-011 nothing to plot: the fields have no samples", "SK-BAG-011")
     if len(sources) > 1:
         found.sort(key=lambda pair: pair[1].colour)
     write_atomically(request.output, render_chart(_chart(found, request), request.output.suffix))
-    _summary(request.output, [one for one, _ in found], json_=json_)
+    _summary(request.output, [series for series, _ in found], json_=json_)
 
 
 def _source_labels(sources: Sequence[str]) -> list[str]:
-    """Return the names of sources in the chart: their stems, where those differ."""
+    """Return the names of sources in the chart: their stems, if all stems differ."""
     stems = [Path(source).stem if "<" not in source else "world" for source in sources]
     return stems if len(set(stems)) == len(stems) else list(sources)
 
 
 def _with_styles(series: list[Series], number: int, prefix: str, *, alone: bool) -> list[tuple[Series, Style]]:
-    """A colour for each field, a way of dashing for each source."""
+    """Assign a colour to each field and a dash pattern to each source."""
     from simkit.recording.charts.chart import Style
 
     return [
-        (replace(one, label=prefix + one.label), Style(colour, number) if not alone else Style(colour))
-        for colour, one in enumerate(series)
+        (replace(curve, label=prefix + curve.label), Style(colour, number) if not alone else Style(colour))
+        for colour, curve in enumerate(series)
     ]
 
 
-def _has_numbers(one: Series) -> bool:
-    if not one.count:
-        print_note(f"note: {one.label}: no number came, it is left out")
-    return bool(one.count)
+def _has_numbers(series: Series) -> bool:
+    if not series.count:
+        print_note(f"note: {series.label}: no samples, left out")
+    return bool(series.count)
 
 
 def _chart(found: list[tuple[Series, Style]], request: PlotRequest) -> Chart:
     from simkit.recording.charts.chart import Chart
 
-    series = [one for one, _ in found]
-    # one source draws each curve in a colour of its own; with several, equal fields are equal in colour
+    series = [curve for curve, _ in found]
+    # with one source, each curve has its own colour; with several, equal fields have equal colours
     label, is_plane = "time [s]", False
     if request.against is not None:
         unit = series[0].base_unit
         label = request.against + (f" [{unit}]" if unit else "")
-        is_plane = unit == "m" and {one.unit for one in series} == {"m"}
+        is_plane = unit == "m" and {curve.unit for curve in series} == {"m"}
     return Chart(series, [style for _, style in found], request.title, label, is_plane)
 
 
 def _summary(output: Path, series: list[Series], *, json_: bool) -> None:
-    rows = [one.summary() for one in series]
+    rows = [curve.summary() for curve in series]
     if json_:
         print_json({"output": str(output), "curves": rows})
         return
@@ -150,23 +153,23 @@ def _series(source: str, fields: Sequence[str], request: PlotRequest) -> list[Se
     from simkit.recording.charts.series import series_over
 
     path = Path(source)
-    take = _bag_series if is_bag(path) else _world_series
-    wanted = list(fields) if request.against is None else [*fields, request.against]
-    found, counts = take(source, wanted, request)
+    read_series = _bag_series if is_bag(path) else _world_series
+    plotted = list(fields) if request.against is None else [*fields, request.against]
+    found, counts = read_series(source, plotted, request)
     if request.start is not None or request.end is not None:
-        found = [one.between(request.start, request.end) for one in found]
+        found = [series.between(request.start, request.end) for series in found]
     if request.against is None:
         return found
     base = found[-counts[-1] :]
     if len(base) != 1:
-        raise InputError(f"SK-BAG-010 --against {request.against}: stands for {len(base)} numbers", "SK-BAG-010")
+        raise InputError(f"SK-BAG-010 --against {request.against}: has {len(base)} numbers, allowed is 1", "SK-BAG-010")
     return series_over(found[: -counts[-1]], base[0])
 
 
 def _curves(
     fields: Sequence[str], topics: Mapping[str, str], store_of: Callable[[str], Typestore], where: str
 ) -> tuple[list[Curve], list[int]]:
-    """The curves of fields, and how many each field stands for."""
+    """Return the curves of fields, and the number of curves of each field."""
     from simkit.recording.charts.fields import curves_of
     from simkit.testing.golden.compare.units import unit_of
 
@@ -175,7 +178,7 @@ def _curves(
         listed = ", ".join(names[:_TOPICS_LISTED]) + (
             f" and {len(names) - _TOPICS_LISTED} more" if len(names) > _TOPICS_LISTED else ""
         )
-        text = f"name a field to draw, such as /odom.pose.pose.position.x; {where} has {listed or 'no topics'}"
+        text = f"give a field to plot, such as /odom.pose.pose.position.x; {where} has {listed or 'no topics'}"
         raise InputError(f"SK-BAG-011 {text}", "SK-BAG-011")
     found = [curves_of(text, topics, store_of, where, unit_of) for text in fields]
     return [curve for curves in found for curve in curves], [len(curves) for curves in found]
@@ -191,7 +194,7 @@ def _bag_series(source: str, fields: Sequence[str], _: PlotRequest) -> tuple[lis
         topics = {t.name: t.type_name for t in sorted(bag.topics, key=lambda t: t.count)}
         for topic in bag.topics:
             if topic.type_name != topics[topic.name]:
-                print_note(f"note: {topic.name} has messages of {topic.type_name} too, which are left out")
+                print_note(f"note: {topic.name} also has messages of type {topic.type_name}; they are left out")
         topics = dict(sorted(topics.items()))
         curves, counts = _curves(fields, topics, bag.store_of, f"the bag {source}")
         return bag_series(bag, curves), counts

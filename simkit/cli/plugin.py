@@ -1,4 +1,4 @@
-"""The command `simkit plugin`: list plugins, describe what one reads and publishes, and start a new one."""
+"""Command `simkit plugin`: list plugins, describe their parameters and topics, and create new plugins."""
 
 from __future__ import annotations
 
@@ -20,34 +20,34 @@ if TYPE_CHECKING:
     from simkit.plugins.authoring.catalogue import Entry
     from simkit.plugins.authoring.plugin_facts import Facts, Parameter, Service, Topic
 
-plugin = typer.Typer(
-    help="Lists plugins, says what one reads and publishes, and begins new ones.", no_args_is_help=True
-)
+plugin = typer.Typer(help="List, describe and create plugins.", no_args_is_help=True)
 
 
 @plugin.command("list")
 @report_errors
 def list_plugins(
-    words: Annotated[list[str] | None, argument("Only names that contain one of these.")] = None,
+    words: Annotated[list[str] | None, argument("List only names that contain one of these words.")] = None,
     plugin_path: options.PluginPaths = [],
     json_: options.Json = False,
 ) -> None:
-    """Lists every name that a world may give a plugin, with what it hangs on."""
+    """List all names that a world can use for a plugin, with the elements that can have the plugin."""
     from simkit.plugins.authoring.catalogue import known_plugins
 
-    wanted = [word.casefold() for word in words or ()]
+    search_words = [word.casefold() for word in words or ()]
     problems = Diagnostics()
     entries = known_plugins(plugin_path, problems)
     print_diagnostics(problems, verbose=True)
     if json_:
-        shown = [_as_dict(e) for e in entries if _matching(e, wanted) or not wanted]
+        shown = [_as_dict(e) for e in entries if _matching(e, search_words) or not search_words]
         stdout_console().file.write(json.dumps(shown, indent=2) + "\n")
         return
     rows = [
-        (name, " or ".join(e.parents), e) for e in entries for name in (_matching(e, wanted) if wanted else e.names)
+        (name, " or ".join(e.parents), e)
+        for e in entries
+        for name in (_matching(e, search_words) if search_words else e.names)
     ]
     if not rows:
-        print_status(f"no name contains {' or '.join(words or ())}; simkit plugin list names them all")
+        print_status(f"no plugin name contains {' or '.join(words or ())}; list all with `simkit plugin list`")
         return
     width = max(len(name) for name, _, _ in rows)
     places = max(len(parents) for _, parents, _ in rows)
@@ -57,20 +57,20 @@ def list_plugins(
         )
 
 
-def _matching(entry: Entry, wanted: list[str]) -> list[str]:
-    if any(word in entry.cls.__name__.casefold() for word in wanted):
+def _matching(entry: Entry, search_words: list[str]) -> list[str]:
+    if any(word in entry.cls.__name__.casefold() for word in search_words):
         return list(entry.names)
-    return [name for name in entry.names if any(word in name.casefold() for word in wanted)]
+    return [name for name in entry.names if any(word in name.casefold() for word in search_words)]
 
 
 @plugin.command("info")
 @report_errors
 def show_info(
-    name: Annotated[str, argument("A name in any spelling, a class, MODULE:CLASS or FILE.py.")],
+    name: Annotated[str, argument("Name in any spelling, class, MODULE:CLASS or FILE.py.")],
     plugin_path: options.PluginPaths = [],
     json_: options.Json = False,
 ) -> None:
-    """Says which parameters a plugin reads, and which topics and services it opens."""
+    """Print the parameters, topics, services and actions of a plugin."""
     from simkit.plugins.authoring.catalogue import common_facts, facts_of, find_entry
 
     entry = find_entry(name, plugin_path)
@@ -87,10 +87,10 @@ def show_info(
         stdout_console().print(f"  {entry.summary}")
     stdout_console().print(f"  from {entry.source or entry.origin}")
     if others:
-        stdout_console().print(f"  also written {', '.join(others)}")
+        stdout_console().print(f"  other names: {', '.join(others)}")
     _print_table("parameters", [_parameter_row(p) for p in facts.parameters])
     _print_table("publishes", [_topic_row(t) for t in facts.topics if t.published])
-    _print_table("listens to", [_topic_row(t) for t in facts.topics if not t.published])
+    _print_table("subscribes to", [_topic_row(t) for t in facts.topics if not t.published])
     _print_table("services", [_service_row(s) for s in facts.services if not s.is_action])
     _print_table("actions", [_service_row(s) for s in facts.services if s.is_action])
 
@@ -98,39 +98,39 @@ def show_info(
 @plugin.command("new")
 @report_errors
 def new_plugin(
-    name: Annotated[str | None, argument("wheel_brake, WheelBrake or libwheel_brake.so.")] = None,
+    name: Annotated[str | None, argument("Name of the plugin: wheel_brake, WheelBrake or libwheel_brake.so.")] = None,
     from_: Annotated[
-        str | None, option("One for each library of a world that nothing stands for.", "WORLD", "--from")
+        str | None, option("Create a plugin for each unknown plugin library of this world.", "WORLD", "--from")
     ] = None,
-    on: Annotated[str, Option(help="What it hangs on: world, model, visual or sensor.")] = "model",
-    folder: Annotated[Path, option("Where the files go.", "DIR")] = Path(),
+    on: Annotated[str, Option(help="Parent element of the plugin: world, model, visual or sensor.")] = "model",
+    folder: Annotated[Path, option("Folder for the new files.", "DIR")] = Path(),
     force: options.Force = False,
     resource_path: options.ResourcePaths = [],
     package_path: options.PackagePaths = [],
     plugin_path: options.PluginPaths = [],
     xacro_arg: options.XacroArgs = [],
 ) -> None:
-    """Writes a plugin with typed parameters, and a test that passes."""
+    """Create a plugin with typed parameters, and a test that passes."""
     from simkit.plugins.authoring.new_plugins import plugin_named, plugins_missing_in
     from simkit.plugins.authoring.plugin_skeleton import write_plugins
 
     if (name is None) == (from_ is None):
-        raise InputError("SK-PLUGIN-072 give either a NAME or --from WORLD", "SK-PLUGIN-072")
+        raise InputError("SK-PLUGIN-072 give either NAME or --from WORLD", "SK-PLUGIN-072")
     if from_ is None:
         assert name is not None
-        wanted = [plugin_named(name, on)]
+        new_plugins = [plugin_named(name, on)]
     else:
         from simkit.build import read_scene
 
         source = options.source_arguments(resource_path, package_path, xacro_arg)
         scene, _ = read_scene(from_, missing_meshes=True, **source)
-        wanted = plugins_missing_in(scene, plugin_path)
-        if not wanted:
+        new_plugins = plugins_missing_in(scene, plugin_path)
+        if not new_plugins:
             print_status("every plugin of this file is known; nothing to write")
             return
-    for path in write_plugins(wanted, folder, overwrite=force):
+    for path in write_plugins(new_plugins, folder, overwrite=force):
         stdout_console().print(str(path))
-    print_status(f"run the tests: python -m pytest {folder}; a world finds the plugins with --plugin-path {folder}")
+    print_status(f"run the tests with `python -m pytest {folder}`; use the plugins with --plugin-path {folder}")
 
 
 # ---------------------------------------------------------------------- as text
@@ -155,7 +155,7 @@ def _print_table(title: str, rows: list[tuple[str, ...]]) -> None:
 def _parameter_row(p: Parameter) -> tuple[str, ...]:
     kind = f"{p.size} numbers" if p.kind == "vector" and p.size else {"vector": "numbers"}.get(p.kind, p.kind)
     notes = [_range(p), "one of " + ", ".join(map(repr, p.choices)) if p.choices else ""]
-    notes += ["any number of them" if p.repeated else "", "live" if p.live else "", p.says]
+    notes += ["repeatable" if p.repeated else "", "live" if p.live else "", p.says]
     depth = "  " * (len(p.path) - 1)
     return depth + p.path[-1], kind or "(taken)", _default(p), p.unit, "; ".join(filter(None, notes))
 
@@ -255,7 +255,7 @@ def _service_as_dict(service: Service) -> JsonObject:
 
 
 def _plain(value: object) -> object:
-    """A value that JSON can hold; what is infinite as text."""
+    """Convert a value to JSON; infinity becomes text."""
     if isinstance(value, tuple):
         return [_plain(v) for v in value]
     return str(value) if isinstance(value, float) and not math.isfinite(value) else value

@@ -1,4 +1,4 @@
-"""`simkit run --watch`: a plugin whose file was changed is reloaded, and the run goes on from where it is."""
+"""`simkit run --watch`: reload a plugin after its file has changed, and continue the run from the present state."""
 
 from __future__ import annotations
 
@@ -16,18 +16,20 @@ if TYPE_CHECKING:
     from simkit.cli.run_loop import Interrupts, RunLoop
     from simkit.runtime import Simulation, Snapshot
 
-_POLL_SECONDS = 0.1  # [s] of wall time between two looks at the files while the run waits
+_POLL_SECONDS = 0.1  # [s] of wall time between two checks of the files while the run waits
 
 
 class PluginWatch:
-    """Polls between the slices of a run, and takes it up again after a plugin has raised and was mended.
+    """Watcher of plugin files that is polled between the slices of a run.
+
+    After a plugin has raised an error and was corrected, the watcher continues the run.
 
     Args:
-        sim: the simulation.
-        plugin_paths: folders whose plugins are watched.
-        interrupts: end the waiting.
-        waits: whether the run waits for an edit when a plugin raises. A recording that goes on would have the time
-            since the last slice twice, so with one it does not.
+        sim: simulation to watch.
+        plugin_paths: folders of the watched plugins.
+        interrupts: Ctrl-C handler; it ends the wait for a correction.
+        waits: True to wait for a correction when a plugin raises an error. Must be False while recording: the
+            recording would contain the time since the last slice twice.
     """
 
     def __init__(self, sim: Simulation, plugin_paths: Sequence[Path], interrupts: Interrupts, *, waits: bool) -> None:
@@ -40,23 +42,25 @@ class PluginWatch:
         if files:
             print_status(f"watching {', '.join(path.name for path in files)}")
         else:
-            print_status("--watch: no plugin of this world comes from a file of yours (--plugin-path DIR allows some)")
+            print_status("--watch: no plugin of this world is in a folder of yours; add one with --plugin-path DIR")
 
     def poll(self) -> None:
-        """Reloads what was changed."""
+        """Reload the plugins whose files have changed."""
         self._reloader.poll()
 
     def keep(self) -> None:
-        """Remembers the state before a slice."""
+        """Store the state before a slice."""
         if self._waits:
             self._checkpoint = self._sim.snapshot()
 
     def run(self, loop: RunLoop, duration: float | None) -> None:
-        """Advances `duration` [s], for ever where None; a plugin that raises is waited for.
+        """Advance the run by `duration` [s], or for ever if it is None.
+
+        If a plugin raises an error, wait until its file is corrected.
 
         Raises:
-            PluginError: a plugin raised, and it is not to be waited for.
-            typer.Exit: it was interrupted while it waited.
+            PluginError: a plugin raised an error, and the watcher does not wait.
+            typer.Exit: the user interrupted the wait.
         """
         sim = self._sim
         end = None if duration is None else sim.tick + round(duration / sim.timestep)
@@ -70,11 +74,11 @@ class PluginWatch:
                     raise
                 print_error(error)
                 sim.restore(self._checkpoint)
-                print_status(f"waiting at {sim.time:.6g} s for the plugin to be mended; Ctrl-C ends the run")
-                if not self._is_mended():
+                print_status(f"waiting at {sim.time:.6g} s for a correction of the plugin; Ctrl-C ends the run")
+                if not self._is_corrected():
                     raise typer.Exit(error.exit_code) from None
 
-    def _is_mended(self) -> bool:
+    def _is_corrected(self) -> bool:
         while not self._reloader.poll():
             if self._interrupts.exit_code:
                 return False

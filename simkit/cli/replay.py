@@ -1,4 +1,4 @@
-"""The command `simkit replay`: repeat the run in a bundle."""
+"""Command `simkit replay`: repeat the run in a bundle."""
 
 from __future__ import annotations
 
@@ -18,24 +18,24 @@ from simkit.errors import InputError
 if TYPE_CHECKING:
     from simkit.testing.bundles import Bundle, ReplayResult
 
-_MOST = 40  # commands that are listed
+_MOST = 40  # commands that --list prints
 _DIFFERENT = 5
 
 
 @report_errors
 def replay(
-    bundle: Annotated[Path, argument("A bundle.")],
+    bundle: Annotated[Path, argument("Bundle to repeat.")],
     allow_code: Annotated[
-        bool, Option("--allow-code", help="Lets the code of plugins in it run; it may do all that you may.")
+        bool, Option("--allow-code", help="Run the plugin code in the bundle, with all your rights.")
     ] = False,
-    list_: Annotated[bool, Option("--list", help="Prints what is in it; runs nothing.")] = False,
-    extract: Annotated[Path | None, option("Writes its files into a new folder; runs nothing.", "DIR")] = None,
-    record: Annotated[Path | None, option("Records all topics of the replay: OUT.mcap.", "OUT")] = None,
+    list_: Annotated[bool, Option("--list", help="Print the content of the bundle and run nothing.")] = False,
+    extract: Annotated[Path | None, option("Extract the files into a new folder and run nothing.", "DIR")] = None,
+    record: Annotated[Path | None, option("Bag of the replay to write: OUT.mcap.", "OUT")] = None,
     as_json: options.Json = False,
 ) -> int:
-    """Repeats the run in a bundle: exit 0 if it came out the same, bit by bit, exit 5 if not.
+    """Repeat the run in a bundle and compare the results bit by bit.
 
-    A run that failed has come out the same when it fails again in the same way.
+    Exit code 0 if the results are bit-identical, 5 if not. A failed run must fail again in the same way.
     """
     from simkit.testing.bundles import open_bundle
     from simkit.testing.bundles import replay as play
@@ -59,29 +59,28 @@ def replay(
 def _print_result(found: ReplayResult, seconds: float) -> None:
     from simkit.testing.bundles.manifest import CHECK
 
-    said = found.manifest
+    manifest = found.manifest
     print_ = stdout_console().print
-    print_(printable_text(f"{said.name}: replayed {found.time:g} s with {said.commands} commands in {seconds:.1f} s"))
-    for text in said.missing:
+    title = f"{manifest.name}: replayed {found.time:g} s"
+    print_(printable_text(f"{title} with {manifest.commands} commands in {seconds:.1f} s"))
+    for text in manifest.missing:
         print_(printable_text(f"note: {text}"), style="yellow")
-    for name, (there, here) in found.machine.items():
-        print_(
-            printable_text(f"note: {name} is {here or 'none'} here, was {there or 'none'}: the bits may be others"),
-            style="yellow",
-        )
+    for name, (recorded, current) in found.machine.items():
+        text = f"note: {name} is {current or 'none'} here, was {recorded or 'none'}: the bits may differ"
+        print_(printable_text(text), style="yellow")
     if found.failure is not None and found.is_same:
-        print_(printable_text(f"it failed as it did: {found.failure.text}"))
-    elif said.end.failure is not None and said.end.failure.kind == CHECK:
-        print_(printable_text(f"what did not hold in the run: {said.end.failure.text}"))
+        print_(printable_text(f"failed as in the bundle: {found.failure.text}"))
+    elif manifest.end.failure is not None and manifest.end.failure.kind == CHECK:
+        print_(printable_text(f"failed in the recorded run: {manifest.end.failure.text}"))
     for text in found.differences:
         print_(printable_text(text), style="red")
     if found.is_same:
         print_(f"state {found.state}")
-        print_(f"the same: state, and {found.messages} messages of the last seconds on {len(said.streams)} topics")
+        print_(f"identical: state, and {found.messages} messages of the last seconds on {len(manifest.streams)} topics")
     else:
         for text in found.refused[:5]:
-            print_(printable_text(f"not done: {text}"), style="yellow")
-        print_(f"not the same: {len(found.differences)} differences", style="bold red")
+            print_(printable_text(f"refused: {text}"), style="yellow")
+        print_(f"not identical: {len(found.differences)} differences", style="bold red")
 
 
 def _result_dict(found: ReplayResult) -> JsonObject:
@@ -99,7 +98,7 @@ def _result_dict(found: ReplayResult) -> JsonObject:
 
 
 def _extract(bundle: Bundle, folder: Path) -> None:
-    """Writes everything, code too: to be read, for nothing runs it."""
+    """Write all files, including code. Extracted code is only for reading; it is not run."""
     try:
         if folder.exists() and any(folder.iterdir()):
             raise InputError(f"SK-CLI-016 {folder} is not an empty folder", "SK-CLI-016")
@@ -111,33 +110,34 @@ def _extract(bundle: Bundle, folder: Path) -> None:
 
 
 def _print_contents(bundle: Bundle, *, as_json: bool) -> None:
-    said = bundle.manifest
+    manifest = bundle.manifest
     if as_json:
-        typer.echo(said.text())
+        typer.echo(manifest.text())
         return
     print_ = stdout_console().print
-    end = said.end
-    print_(printable_text(f"{said.name}: {end.time_ns / 1e9:g} s, seed {said.seed}, {said.commands} commands"))
-    print_(printable_text(f"world {said.world}" + "".join(f" --set {one}" for one in said.overrides)))
-    print_(printable_text("made by " + ", ".join(f"{k} {v}" for k, v in said.fingerprint.items() if v)))
+    end = manifest.end
+    title = f"{manifest.name}: {end.time_ns / 1e9:g} s, seed {manifest.seed}"
+    print_(printable_text(f"{title}, {manifest.commands} commands"))
+    print_(printable_text(f"world {manifest.world}" + "".join(f" --set {override}" for override in manifest.overrides)))
+    print_(printable_text("created by " + ", ".join(f"{k} {v}" for k, v in manifest.fingerprint.items() if v)))
     print_(f"state {printable_text(end.state)}")
     if end.failure is not None:
         print_(printable_text(f"failed: {end.failure.text}"), style="red")
-    for text in said.missing:
+    for text in manifest.missing:
         print_(printable_text(f"note: {text}"), style="yellow")
-    print_(f"{len(said.files)} files, {sum(f['size'] for f in said.files.values()) / 1000:.0f} kB")
-    for name in said.code:
-        print_(printable_text(f"code  {name}  ({said.files[name]['size']} bytes)"), style="yellow")
-    for topic, one in said.streams.items():
-        print_(printable_text(f"last seconds  {topic}  {one['count']} × {one['type']}"))
+    print_(f"{len(manifest.files)} files, {sum(f['size'] for f in manifest.files.values()) / 1000:.0f} kB")
+    for name in manifest.code:
+        print_(printable_text(f"code  {name}  ({manifest.files[name]['size']} bytes)"), style="yellow")
+    for topic, stream in manifest.streams.items():
+        print_(printable_text(f"last seconds  {topic}  {stream['count']} × {stream['type']}"))
     for number, entry in enumerate(bundle.commands()):
         if number == _MOST:
-            print_(f"… {said.commands - _MOST} more commands")
+            print_(f"… {manifest.commands - _MOST} more commands")
             break
-        words = {k: v for k, v in entry.items() if k not in ("steps", "tick", "do", "served")}
-        print_(printable_text(f"after {entry['steps']} steps  {entry['do']}  {json.dumps(words):.160}"))
+        arguments = {k: v for k, v in entry.items() if k not in ("steps", "tick", "do", "served")}
+        print_(printable_text(f"after {entry['steps']} steps  {entry['do']}  {json.dumps(arguments):.160}"))
 
 
 def printable_text(text: str) -> str:
-    """A text of a stranger as a terminal may have it: without what would move its cursor."""
+    """Replace the control characters of an untrusted text, which could move the terminal's cursor."""
     return "".join(c if c.isprintable() or c == "\n" else "\N{REPLACEMENT CHARACTER}" for c in text)

@@ -1,4 +1,4 @@
-"""`simkit run`: a world, headless, as fast as it goes."""
+"""Command `simkit run`: run a world without a window, as fast as possible."""
 
 from __future__ import annotations
 
@@ -27,109 +27,104 @@ _TOPIC = re.compile(r"/[A-Za-z0-9_/]*")
 
 
 class RunCommand(TyperCommand):
-    """Options that take a value or none: `--teleop` and `--bundle-on-failure`.
+    """Command with options that work with or without a value: `--teleop` and `--bundle-on-failure`.
 
-    `--teleop` takes the topic after it, where that is one: a word that begins with a slash and names no file.
-    `--bundle-on-failure` takes the folder after it, where that is one: it is there or ends with a slash, or the world
-    has been named before.
+    `--teleop` takes the next word as its topic if the word begins with a slash and is not a file. `--bundle-on-failure`
+    takes the next word as its folder if the folder exists, the word ends with a slash, or the world came first.
     """
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Gives both the value that they have without one."""
-        given: list[str] = []
-        for at, word in enumerate(args):
+        """Insert the default value of both options where the value is missing."""
+        completed: list[str] = []
+        for index, word in enumerate(args):
             if word == "--":
-                given += args[at:]
+                completed += args[index:]
                 break
-            if word == "--teleop":
-                follows = args[at + 1] if at + 1 < len(args) else ""
-                if not _TOPIC.fullmatch(follows) or Path(follows).exists():
-                    word = "--teleop="
+            following = args[index + 1] if index + 1 < len(args) else ""
+            if word == "--teleop" and (not _TOPIC.fullmatch(following) or Path(following).exists()):
+                word = "--teleop="
             if word == "--bundle-on-failure":
-                follows = args[at + 1] if at + 1 < len(args) else ""
-                is_folder = follows.endswith("/") or Path(follows or "-").is_dir() or args[0][0:1] != "-"
-                if follows.startswith("-") or not follows or not is_folder:
+                is_folder = following.endswith("/") or Path(following or "-").is_dir() or args[0][0:1] != "-"
+                if following.startswith("-") or not following or not is_folder:
                     word = f"--bundle-on-failure={BUNDLES}"
-            given.append(word)
-        return super().parse_args(ctx, given)
+            completed.append(word)
+        return super().parse_args(ctx, completed)
 
 
 COMMAND = RunCommand
 
 
 def _seconds(text: str) -> float:
-    """A time: `30`, `30s`, `500ms` or `2min`."""
+    """Parse a time: `30`, `30s`, `500ms` or `2min`."""
     match = _TIME.fullmatch(text.strip())
     if match is None or not float(match[1]) > 0:
-        raise typer.BadParameter(f"{text!r} is no time; allowed are seconds greater than 0, as 30, 30s, 500ms or 2min")
+        raise typer.BadParameter(f"{text!r} is not a time; allowed are times above 0 such as 30, 30s, 500ms or 2min")
     return float(match[1]) * _UNITS[match[2]]
 
 
 @report_errors
 def run(
     world: options.World,
-    duration: Annotated[float | None, option("Simulated seconds; until Ctrl-C where not given.", "S", min=0)] = None,
-    seed: Annotated[int, option("Seed of all noise.", "N", min=0)] = 0,
-    record: Annotated[Path | None, option("Writes all topics: x.mcap one file, else a rosbag2 folder.", "OUT")] = None,
-    topic: Annotated[list[str], option("Records only topics of this pattern; repeatable.", "PATTERN")] = [],
-    skip: Annotated[list[str], option("Records all but topics of this pattern; repeatable.", "PATTERN")] = [],
+    duration: Annotated[float | None, option("Simulated seconds to run; default: until Ctrl-C.", "S", min=0)] = None,
+    seed: Annotated[int, option("Seed of all random streams.", "N", min=0)] = 0,
+    record: Annotated[Path | None, option("Bag to write: NAME.mcap, else a rosbag2 folder.", "OUT")] = None,
+    topic: Annotated[list[str], option("Record only topics that match this pattern; repeatable.", "PATTERN")] = [],
+    skip: Annotated[list[str], option("Do not record topics that match this pattern; repeatable.", "PATTERN")] = [],
     force: options.Force = False,
     rtf: Annotated[
-        float | None, option("No faster than X times real time; 1 with --teleop and --view.", "X", min=1e-3)
+        float | None, option("Highest real-time factor; default: no limit, 1 with --teleop or --view.", "X", min=1e-3)
     ] = None,
-    teleop: Annotated[str | None, option("Drives with the keyboard: who takes velocities there.", "[TOPIC]")] = None,
+    teleop: Annotated[str | None, option("Drive with the keyboard, on this velocity topic.", "[TOPIC]")] = None,
     key_timeout: Annotated[
-        float, option("--teleop stops after so many simulated seconds without a key; inf: never.", "S")
+        float, option("Simulated seconds without a key after which --teleop stops; inf: never.", "S")
     ] = KEY_TIMEOUT,
-    paused: Annotated[bool, Option("--paused", help="Begins paused; space or a service lets it go on.")] = False,
-    step: Annotated[int | None, option("Does N steps, then is paused.", "N", min=0)] = None,
+    paused: Annotated[bool, Option("--paused", help="Start paused; space or a service resumes the run.")] = False,
+    step: Annotated[int | None, option("Pause after N steps.", "N", min=0)] = None,
     name: Annotated[
-        str | None, option("What other terminals call this run; else the world's or file's name.", "NAME")
+        str | None, option("Name of the run for other terminals; default: the world's or file's name.", "NAME")
     ] = None,
     set_: options.Overrides = [],
     spawn: options.Spawns = [],
     params_file: options.ParamsFiles = [],
     strict: options.Strict = False,
-    view: Annotated[bool, Option("--view", help="Opens a viewer.")] = False,
-    picture: Annotated[Path | None, option("Draws the scene at the end, with path and last scan.", "OUT.png")] = None,
+    view: Annotated[bool, Option("--view", help="Show the run in a viewer window.")] = False,
+    picture: Annotated[Path | None, option("Picture of the end to write, with path and scan.", "OUT.png")] = None,
     cmd_vel: options.CmdVel = None,
     script: options.Script = None,
-    play: Annotated[Path | None, option("Commands of a recording, at their ticks; runs as long.", "BAG")] = None,
+    play: Annotated[Path | None, option("Bag whose commands to play at their ticks.", "BAG")] = None,
     play_topic: Annotated[
-        list[str], option("Plays only this topic, or it on another one; repeatable.", "TOPIC[:=NEW]", "--play-topic")
+        list[str], option("Topic to play, optionally under a new name; repeatable.", "TOPIC[:=NEW]", "--play-topic")
     ] = [],
     resource_path: options.ResourcePaths = [],
     package_path: options.PackagePaths = [],
     plugin_path: options.PluginPaths = [],
-    watch: Annotated[bool, Option("--watch", help="Reloads a plugin whose file is edited, and goes on.")] = False,
+    watch: Annotated[bool, Option("--watch", help="Reload a plugin when its file changes.")] = False,
     xacro_arg: options.XacroArgs = [],
     base: options.Base = "auto",
     on_plugin_error: Annotated[
         str | None,
         option(
-            "What becomes of a plugin that raises: stop ends the run (exit 4), disable goes on without it.",
+            "Action if a plugin raises an error: stop ends the run (exit 4), disable continues without the plugin.",
             "stop|disable",
         ),
     ] = None,
     bundle_on_failure: Annotated[
         Path | None,
-        option(
-            "Where the run fails: writes it into one file there, which simkit replay repeats; else bundles/.", "[DIR]"
-        ),
+        option("Write a bundle for simkit replay into this folder if the run fails; default: bundles/.", "[DIR]"),
     ] = None,
     verbose: options.Verbose = False,
-    quiet: Annotated[bool, Option("--quiet", "-q", help="One line at the end, no table of topics.")] = False,
-    until: Annotated[str | None, option("Ends as soon as this holds: \"pose('tb3').x > 2\".", "EXPR")] = None,
+    quiet: Annotated[bool, Option("--quiet", "-q", help="Print no table of topics at the end.")] = False,
+    until: Annotated[str | None, option("End as soon as this condition holds: \"pose('tb3').x > 2\".", "EXPR")] = None,
     timeout: Annotated[
-        float | None, option("Simulated time by which --until must hold, else exit 5.", "S", parser=_seconds)
+        float | None, option("Simulated time limit for --until; then exit 5.", "S", parser=_seconds)
     ] = None,
     wall_timeout: Annotated[
-        float | None, option("Wall time after which the run is given up, exit 5.", "S", parser=_seconds)
+        float | None, option("Wall time limit of the run; then exit 5.", "S", parser=_seconds)
     ] = None,
-    assert_: Annotated[list[str], option("Must hold at the end, else exit 5; repeatable.", "EXPR", "--assert")] = [],
-    junit: Annotated[Path | None, option("Writes what held and what did not, for a CI.", "FILE.xml")] = None,
+    assert_: Annotated[list[str], option("Condition at the end, else exit 5; repeatable.", "EXPR", "--assert")] = [],
+    junit: Annotated[Path | None, option("JUnit XML report to write.", "FILE.xml")] = None,
 ) -> int:
-    """Runs a world headless, as fast as it goes."""
+    """Run a world without a window, as fast as possible."""
     spec = RunSpec(
         world,
         duration=duration if duration is not None and math.isfinite(duration) else math.inf,
@@ -168,46 +163,46 @@ def run(
 
 
 def _on_error(word: str | None) -> PluginErrorPolicy | None:
-    """The word as one of those that are allowed."""
+    """Validate the value of --on-plugin-error."""
     if word not in (None, "stop", "disable"):
         raise typer.BadParameter(f"{word!r} is not stop or disable", param_hint="--on-plugin-error")
     return word  # type: ignore[return-value]
 
 
 def _timeout(seconds: float) -> float:
-    """A time to wait that is one."""
+    """Validate the value of --key-timeout."""
     if not seconds > 0:
         raise typer.BadParameter(f"{seconds} is not greater than 0", param_hint="--key-timeout")
     return seconds
 
 
 def _expression(until: str | None) -> str:
-    """A condition; an empty one is a variable of a script that was not set, and asks for nothing by mistake."""
+    """Validate a condition. An empty one is rejected: it usually comes from an unset variable of a shell script."""
     if until is not None and not until.strip():
         raise typer.BadParameter("an expression is empty", param_hint="--until")
     return until or ""
 
 
 def _until_when(timeout: float | None, until: str | None) -> float | None:
-    """The time by which a condition must hold."""
+    """Validate the time limit of a condition."""
     if timeout is not None and not until:
-        message = "there is no --until to wait for; --duration S ends a run by itself"
+        message = "--timeout needs --until; limit the run with --duration S"
         raise typer.BadParameter(message, param_hint="--timeout")
     return timeout
 
 
 def highest_pace(rtf: float | None, *, is_watched: bool) -> float | None:
-    """Return the highest real-time factor, None for none: real time for those who watch or drive and say nothing."""
+    """Return the highest real-time factor; None for no limit. The default is 1 for runs with a viewer or teleop."""
     if rtf is None:
         return 1.0 if is_watched else None
     return rtf if math.isfinite(rtf) else None
 
 
 def execute(spec: RunSpec, display: RunDisplay) -> int:
-    """Runs what is asked for; returns the exit code.
+    """Run a specification and return the exit code.
 
     Raises:
-        SimkitError: what went wrong; the recording up to there is complete by then.
+        SimkitError: the run failed; the recording up to the failure is complete.
     """
     from simkit.bridges import viewer
     from simkit.build import load

@@ -1,4 +1,4 @@
-"""Advance a run in short slices, with commands, pace, progress and Ctrl-C between two of them."""
+"""Loop that advances a run in short slices, with commands, pace, progress and Ctrl-C between the slices."""
 
 from __future__ import annotations
 
@@ -22,45 +22,45 @@ if TYPE_CHECKING:
     from simkit.runtime import Simulation
 
 
-_LONG, _SHORT = 0.05, 0.02  # [s] of wall time that a slice may and should take
-_PACED = 0.02  # [s] of wall time that a slice stands for when a real-time factor is held
+_LONG, _SHORT = 0.05, 0.02  # [s] of wall time above which slices are halved, and below which they are doubled
+_PACED = 0.02  # [s] of wall time per slice with a limited real-time factor
 _PATH = 0.05  # [s] of simulated time between two points of a path
-_PAUSE_POLL_SECONDS = 0.02  # [s] of wall time between two looks at keys, and at whether a paused world goes on
-_MAX_LAG_SECONDS = 0.25  # [s] of wall time that is caught up; of more (a process that was stopped) the pace counts anew
+_PAUSE_POLL_SECONDS = 0.02  # [s] of wall time between two checks for keys and for the end of a pause
+_MAX_LAG_SECONDS = 0.25  # [s] of wall time that a run catches up; after a longer lag (Ctrl-Z) the pace restarts
 
 
 class CommandSender(Protocol):
-    """Sends commands at their ticks."""
+    """Protocol of a sender of commands at given ticks."""
 
     @property
     def next_tick(self) -> int | None:
-        """The tick at which something is to be sent next; None for not at all."""
+        """Tick of the next command; None if there is none."""
         ...
 
     def send_due(self) -> None:
-        """Sends what is due at the present tick."""
+        """Send the commands that are due at the present tick."""
         ...
 
 
 class RunLoop:
-    """Runs a simulation to an end.
+    """Loop that runs a simulation to its end.
 
     Args:
-        sim: the simulation.
-        commands: sent at their ticks.
-        interrupts: asked between slices.
-        watchers: called after every slice.
-        rtf: highest real-time factor, until somebody asks for another; None for what was asked for, else as fast as it
-            goes.
-        follow: whether slices are short enough to draw a path from.
+        sim: simulation to run.
+        commands: commands to send at their ticks.
+        interrupts: Ctrl-C handler, checked between slices.
+        watchers: callbacks after every slice.
+        rtf: highest real-time factor, until a client changes it; None keeps the simulation's current limit.
+        follow: True for slices that are short enough to draw a path (0.05 s of simulated time).
 
     Attributes:
-        keep_going, is_over: asked between slices: the run was ended, or has come to its end.
-        before_slice: called before each.
-        senders: all that sends commands.
-        poll_keys: called between slices and while the run waits: what a driver at the keyboard says.
-        server: lets other processes talk to the run.
-        on_pause: called when the world comes to stand still.
+        keep_going: check between slices; False ends the run early.
+        is_over: check between slices; True ends the run because it has reached its goal.
+        before_slice: callback before each slice.
+        senders: all senders of commands.
+        poll_keys: callback between slices and during waits, for the keyboard.
+        server: server for other processes.
+        on_pause: callback when the world becomes paused.
     """
 
     def __init__(
@@ -78,7 +78,7 @@ class RunLoop:
             sim.control.pausing.pace = rtf
         self._longest = max(1, round(_PATH / sim.timestep)) if follow else 1 << 30
         self._slice = min(max(1, round(0.01 / sim.timestep)), self._longest)
-        self._count_anew()
+        self._restart_pace()
         self.senders: list[CommandSender] = [commands]
         self.keep_going: Callable[[], bool] = lambda: True
         self.is_over: Callable[[], bool] = lambda: False
@@ -88,13 +88,13 @@ class RunLoop:
         self.on_pause: Callable[[], None] = self._say_paused
 
     def run(self, duration: float | None) -> bool:
-        """Advances `duration` [s], for ever where None; whether it came to its end without being stopped.
+        """Advance `duration` [s], or for ever if it is None; return True if the run reached its end.
 
-        What a plugin took back by a reset on the way counts, so that a run comes to an end.
+        Steps that a plugin undid with a reset count, too. Otherwise a plugin that resets could keep a run from ending.
         """
         sim = self._sim
         end = None if duration is None else sim.engine.steps + round(duration / sim.timestep)
-        self._count_anew()
+        self._restart_pace()
         was_paused = False
         with sim.control.pausing.served():
             while end is None or sim.engine.steps < end:
@@ -109,13 +109,13 @@ class RunLoop:
                 if sim.paused and not was_paused:
                     self.on_pause()
                 if sim.paused or was_paused or sim.tick < before:
-                    self._count_anew()
+                    self._restart_pace()
                 was_paused = sim.paused
                 self._wait(_PAUSE_POLL_SECONDS if was_paused else self._ahead())
         return True
 
     def _take_commands(self) -> None:
-        """What comes in between two slices: keys, commands that are due, what clients ask for."""
+        """Process the input between two slices: keys, due commands and requests of clients."""
         if self.poll_keys is not None:
             self.poll_keys()
         for sender in self.senders:
@@ -126,12 +126,12 @@ class RunLoop:
             self.server.poll()
 
     def _say_paused(self) -> None:
-        print_status(f"paused at t={self._sim.time:g} s until a service lets it go on (Ctrl-C ends)")
+        print_status(f"paused at t={self._sim.time:g} s until a service resumes it (Ctrl-C ends)")
 
     # ------------------------------------------------------------------ pace
 
-    def _count_anew(self) -> None:
-        """From here and now on."""
+    def _restart_pace(self) -> None:
+        """Restart the measurement of the pace at the present tick and wall time."""
         self._start: tuple[int, float, float | None] = (
             self._sim.tick,
             time.perf_counter(),
@@ -139,20 +139,20 @@ class RunLoop:
         )
 
     def _ahead(self) -> float:
-        """How long the run is to wait so that it is no faster than it may be [s]."""
+        """Return the wall time [s] by which the run is ahead of its highest real-time factor."""
         tick, wall, pace = self._start
         if pace != self._sim.control.pausing.pace:
-            self._count_anew()
+            self._restart_pace()
             return 0.0
         if pace is None:
             return 0.0
         ahead: float = (self._sim.tick - tick) * self._sim.timestep / pace - (time.perf_counter() - wall)
         if ahead < -_MAX_LAG_SECONDS:
-            self._count_anew()
+            self._restart_pace()
         return ahead
 
     def _wait(self, seconds: float) -> None:
-        """Lets wall time pass, which is the clients' [s]; not all of it where the world is paused, or let go on."""
+        """Serve clients for some wall time [s]. Return early if the world is paused or resumed, or the pace changes."""
         sim, end = self._sim, time.perf_counter() + seconds
         was_paused, pace, until = sim.paused, sim.control.pausing.pace, sim.control.pausing.until
         while (left := end - time.perf_counter()) > 0 and not self._interrupts.exit_code:
@@ -180,22 +180,22 @@ class RunLoop:
         whole = stop - sim.tick == self._slice
         begun = time.perf_counter()
         sim.control.pausing.advance(stop - sim.tick)
-        taken = time.perf_counter() - begun
+        elapsed = time.perf_counter() - begun
         long, short = (_LONG, _SHORT) if self.server is None else self.server.slices(_LONG, _SHORT)
-        if taken > long:
+        if elapsed > long:
             self._slice = max(1, self._slice // 2)
-        elif whole and taken < short:
+        elif whole and elapsed < short:
             self._slice = min(self._slice * 2, self._longest)
 
 
 class Interrupts:
-    """While entered, an interrupt is noted instead of raised.
+    """Context manager that stores an interrupt instead of raising it.
 
     Args:
-        noted: called when one is.
+        noted: callback for a stored interrupt.
 
     Attributes:
-        exit_code: 0, or what the process is to return for the signal that came.
+        exit_code: 0, or the exit code of the process for the received signal.
     """
 
     def __init__(self, noted: Callable[[], None] | None = None) -> None:
@@ -207,7 +207,7 @@ class Interrupts:
         if threading.current_thread() is threading.main_thread():
             for number in (signal.SIGINT, signal.SIGTERM):
                 self._before[number] = signal.signal(number, self._note)
-            hang_up = getattr(signal, "SIGHUP", None)  # Windows has none
+            hang_up = getattr(signal, "SIGHUP", None)  # Windows has no SIGHUP
             if hang_up is not None and signal.getsignal(hang_up) is signal.SIG_DFL:
                 self._before[hang_up] = signal.signal(hang_up, self._hang_up)
         return self
@@ -217,13 +217,13 @@ class Interrupts:
             signal.signal(number, handler)
 
     def _hang_up(self, number: int, frame: FrameType | None) -> None:
-        """The terminal is gone: what would still be written to it goes nowhere."""
-        nowhere = os.open(os.devnull, os.O_WRONLY)
+        """Redirect output to the null device after the terminal has closed."""
+        null_device = os.open(os.devnull, os.O_WRONLY)
         for file in (1, 2):
             with suppress(OSError):
-                if stat.S_ISCHR(os.fstat(file).st_mode):  # isatty says no of a terminal that is gone
-                    os.dup2(nowhere, file)
-        os.close(nowhere)
+                if stat.S_ISCHR(os.fstat(file).st_mode):  # isatty is False for a closed terminal
+                    os.dup2(null_device, file)
+        os.close(null_device)
         self._note(number, frame)
 
     def _note(self, number: int, frame: FrameType | None) -> None:

@@ -1,4 +1,4 @@
-"""Make run specifications from the options of a command, and hold what a terminal shows of a run."""
+"""Conversion of command-line options to run specifications, and the options for the terminal."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from simkit.run_spec import LoadOptions, PluginErrorPolicy, RunSpec
 
 @dataclass(frozen=True)
 class RunDisplay:
-    """What a terminal shows of a run, who drives it there, and which files tell of it.
+    """Display, keyboard and report options of a run.
 
     Attributes:
-        view: whether a viewer is opened.
+        view: True to open a viewer window.
         picture: file for a picture of the scene at the end.
-        teleop: topic that the keyboard sends velocities to; empty for the only one there is, None for no keyboard.
+        teleop: topic for the keyboard's velocities; empty for the world's only velocity topic, None for no keyboard.
         key_timeout: simulated time without a key after which driving stops [s].
-        verbose: whether every note is shown.
-        quiet: whether the table of topics is left out.
-        watch: whether plugins whose files are edited are reloaded.
-        junit: file for the results, for a CI.
-        bundles: folder for a bundle of a run that fails.
+        verbose: True to print every note.
+        quiet: True to print no table of topics.
+        watch: True to reload plugins whose files change.
+        junit: file for a JUnit XML report.
+        bundles: folder for the bundle of a failed run.
     """
 
     view: bool = False
@@ -50,15 +50,15 @@ def load_options(
     on_error: PluginErrorPolicy | None = None,
     strict: bool = False,
 ) -> LoadOptions:
-    """Return the options of a command that say how a world is loaded; those that were not given are not in it."""
-    given = {
+    """Return the load options of a command, without the options that have their default value."""
+    values = {
         **source_arguments(resource_paths, package_paths, xacro_args, base),
         "plugin_paths": tuple(plugin_paths),
         "params_files": tuple(params_files),
         "on_error": on_error,
         "strict": strict,
     }
-    return cast(LoadOptions, {name: value for name, value in given.items() if value and value != "auto"})
+    return cast(LoadOptions, {name: value for name, value in values.items() if value and value != "auto"})
 
 
 def scenario_spec(
@@ -75,20 +75,23 @@ def scenario_spec(
     script: Path | None = None,
     usual_duration: float = 10.0,
 ) -> RunSpec:
-    """Return the run of a world, or of a scenario file with the options of a command over it.
+    """Return the run specification of a world, or of a scenario file with the options of a command.
 
     Args:
-        world: a world, or the file of a scenario.
-        options: how the world is loaded.
+        world: world or scenario file.
+        options: load options of the world.
         duration: simulated time [s]; None for the scenario's.
-        seed: of all noise; None for the scenario's.
-        topics: patterns of topics, in place of the scenario's.
-        skip, overrides, spawn: in addition to the scenario's.
-        cmd_vel, script: commands in addition to the scenario's.
-        usual_duration: of a world that no scenario gives a length [s].
+        seed: seed of all random streams; None for the scenario's.
+        topics: topic patterns that replace the scenario's.
+        skip: topic patterns to leave out, in addition to the scenario's.
+        overrides: parameter overrides, in addition to the scenario's.
+        spawn: models to spawn, in addition to the scenario's.
+        cmd_vel: constant velocity command; None for the scenario's.
+        script: command script; None for the scenario's.
+        usual_duration: simulated time of a world without a scenario [s].
 
     Raises:
-        LoadError: the file of the scenario has errors.
+        LoadError: the scenario file has errors.
     """
     from simkit.testing.scenarios.scenario_file import is_scenario_file, read_scenario
 

@@ -1,4 +1,4 @@
-"""Run a loaded world from its first slice to its summary."""
+"""Session of a loaded world, from its first slice to its summary."""
 
 from __future__ import annotations
 
@@ -34,14 +34,14 @@ if TYPE_CHECKING:
 def print_summary(
     sim: Simulation, counter: TopicCounter, recording: Recorder | None, elapsed: float, *, quiet: bool
 ) -> None:
-    """Topics with their true rates, then one line, then the hash of the physics state.
+    """Print the topics with their measured rates, then one summary line, then the hash of the physics state.
 
     Args:
-        sim: the simulation.
-        counter: of its topics.
-        recording: what was recorded.
+        sim: simulation that has ended.
+        counter: message counts of its topics.
+        recording: recorder of the run, if it was recorded.
         elapsed: wall time of the run [s].
-        quiet: whether the topics are left out.
+        quiet: True to print no topics.
     """
     from simkit.cli.terminal.progress import rate_text
 
@@ -58,7 +58,7 @@ def print_summary(
 
 
 def draw_picture(sim: Simulation, path: Path, driven: DrivenPath) -> None:
-    """The scene at the end, with the path that was driven."""
+    """Draw the scene at the end, with the driven path."""
     from simkit.build import render_view
     from simkit.recording.run_picture import save_picture
 
@@ -71,41 +71,41 @@ def draw_picture(sim: Simulation, path: Path, driven: DrivenPath) -> None:
 
 
 def check_keyboard(display: RunDisplay) -> None:
-    """Says before a run why nobody can drive.
+    """Check before a run whether keys can be read for --teleop.
 
     Raises:
-        InputError: SK-CLI-050 there is no terminal.
+        InputError: SK-CLI-050 standard input is not a terminal.
     """
     from simkit.cli.terminal.keyboard import open_keyboard
 
     if display.teleop is not None and open_keyboard(sys.stdin) is None:
         raise InputError(
-            "SK-CLI-050 --teleop reads keys, and standard input is no terminal\n"
-            "    help: --cmd-vel V,W or --script FILE.yaml drive without one, simkit topic pub from another terminal",
+            "SK-CLI-050 --teleop needs a terminal, but standard input is not a terminal\n"
+            "    help: drive with --cmd-vel V,W or --script FILE.yaml, or with `simkit topic pub` in another terminal",
             "SK-CLI-050",
         )
 
 
 def run_length(spec: RunSpec, played: float | None = None) -> float | None:
-    """Return the simulated time [s] after which a run ends at the latest; None for until Ctrl-C.
+    """Return the simulated time [s] after which a run ends at the latest; None for a run until Ctrl-C.
 
     Args:
-        spec: the run.
-        played: how long the recording is that is played, which is the run's length where nothing else is said.
+        spec: run specification.
+        played: length of the played bag [s]; it limits a run without a duration.
     """
     duration = played if spec.is_endless else spec.duration
     return min((t for t in (duration, spec.timeout) if t is not None), default=None)
 
 
 def _endless_text(spec: RunSpec) -> str:
-    """What is said of a run that has no end of its own."""
+    """Return the start message of a run without a time limit."""
     if spec.until:
-        return "running until the condition holds, or Ctrl-C (--timeout S gives up then)"
-    return "running until Ctrl-C (--duration S stops by itself)"
+        return "running until the condition holds, or Ctrl-C (set a limit with --timeout S)"
+    return "running until Ctrl-C (set a limit with --duration S)"
 
 
 def _interrupt_text(interrupts: Interrupts, loop: RunLoop) -> str:
-    """Who ended a run before its time; empty for nobody."""
+    """Return the reason for an early end of a run; empty if the run was not interrupted."""
     if interrupts.exit_code:
         return "an interrupt"
     return "" if loop.keep_going() else "the viewer's"
@@ -115,11 +115,11 @@ class Session:
     """One run of a loaded world.
 
     Args:
-        spec: what it is to do.
-        display: what the terminal shows of it.
-        sim: the simulation.
-        blocked: tells of plugins that keep it waiting.
-        verdict: what is asked of it.
+        spec: run specification.
+        display: display, keyboard and report options.
+        sim: loaded simulation.
+        blocked: reporter of plugins that block the run.
+        verdict: result of the run.
     """
 
     def __init__(
@@ -130,7 +130,7 @@ class Session:
         self._teleop: Teleop | None = None
 
     def execute(self) -> int:
-        """Runs it to its end; the exit code."""
+        """Run the simulation to its end and return the exit code."""
         from simkit.recording.bags.recorder import Recorder
         from simkit.recording.command_script import Commands
         from simkit.recording.run_picture import DrivenPath
@@ -147,7 +147,7 @@ class Session:
         with ExitStack() as stack:
             if played is not None:
                 stack.enter_context(played)
-            interrupts = stack.enter_context(Interrupts(self.blocked.ask))
+            interrupts = stack.enter_context(Interrupts(self.blocked.hasten))
             recording = None
             if spec.recording is not None:
                 bag = spec.recording
@@ -170,7 +170,7 @@ class Session:
                 self._open_viewer(stack, loop, watchers)
             if keyboard is not None:
                 stack.enter_context(keyboard)
-                self._listen_to(keyboard, loop)
+                self._connect_keys(keyboard, loop)
             self._serve(stack, loop)
             self._hold()
             stack.enter_context(conditions)
@@ -189,12 +189,12 @@ class Session:
                 if recording is not None:
                     recording.close()
                 print_summary(sim, counter, recording, elapsed, quiet=display.quiet)
-                self.verdict.tell()
+                self.verdict.print_results()
         if driven is not None and display.picture is not None:
             draw_picture(sim, display.picture, driven)
         return interrupts.exit_code or self.verdict.code
 
-    # ------------------------------------------------------------------ who drives
+    # ------------------------------------------------------------------ commands
 
     def _commands(self) -> list[Command]:
         from simkit.recording.command_script import read_script, steady_velocity
@@ -208,19 +208,19 @@ class Session:
         return found
 
     def _played(self) -> Playback | None:
-        """The commands of the recording that is named, where one is."""
+        """Open the bag to play, if the specification names one."""
         from simkit.recording.bags.playback import Playback
 
         bag = self.spec.played_bag
         if bag is None:
             if self.spec.play_topics:
-                raise InputError("SK-CLI-018 --play-topic: found no --play BAG beside it", "SK-CLI-018")
+                raise InputError("SK-CLI-018 --play-topic needs --play BAG", "SK-CLI-018")
             return None
         played = Playback(self.sim, bag, self.spec.play_topics)
         for note in played.notes:
             print_status(f"note: {note}")
-        said = [old if old == new else f"{old} on {new}" for old, new in played.names.items()]
-        print_status(f"playing {', '.join(said)} of {bag}")
+        remappings = [old if old == new else f"{old} on {new}" for old, new in played.names.items()]
+        print_status(f"playing {', '.join(remappings)} of {bag}")
         return played
 
     def _driver(self) -> Teleop | None:
@@ -232,15 +232,18 @@ class Session:
         return Teleop(self.sim, find_target(self.sim, display.teleop), display.key_timeout)
 
     def _keyboard(self) -> Keyboard | WindowsKeyboard | None:
-        """The terminal's, where somebody drives or sees what keys do: a pager that shows our output has its own."""
+        """Open the terminal's keyboard if somebody drives or the output goes to the terminal.
+
+        A pager that shows the output reads the keys itself.
+        """
         from simkit.cli.terminal.keyboard import open_keyboard
 
         if self._teleop is None and (sys.stdout is None or sys.stdout.closed or not sys.stdout.isatty()):
             return None
         return open_keyboard(sys.stdin)
 
-    def _listen_to(self, keyboard: Keyboard | WindowsKeyboard, loop: RunLoop) -> None:
-        """Lets keys pause, step and drive the run."""
+    def _connect_keys(self, keyboard: Keyboard | WindowsKeyboard, loop: RunLoop) -> None:
+        """Connect the keyboard to the loop, so that keys pause, step and drive the run."""
         from simkit.cli.run_keys import RunKeys
 
         keys = RunKeys(self.sim, keyboard, self._teleop)
@@ -258,13 +261,13 @@ class Session:
         return Progress(self.sim, counter, duration, console, DriverLine(self.sim, self._teleop).lines)
 
     def _hold(self) -> None:
-        """Has the run begin paused, or be so after some steps."""
+        """Start the run paused, or pause it after some steps, as specified."""
         if self.spec.steps is not None:
             self.sim.control.pausing.step(self.spec.steps)
         elif self.spec.paused:
             self.sim.paused = True
 
-    # ------------------------------------------------------------------ who looks on
+    # ------------------------------------------------------------------ viewer, clients and plugin files
 
     def _open_viewer(self, stack: ExitStack, loop: RunLoop, watchers: list[Callable[[], None]]) -> None:
         from simkit.bridges.viewer import Viewer
@@ -274,11 +277,11 @@ class Session:
         loop.keep_going = viewer.is_open
 
     def _serve(self, stack: ExitStack, loop: RunLoop) -> None:
-        """Lets other terminals talk to the run."""
+        """Open the socket for other terminals."""
         from simkit.bridges.live.server import serve
 
         name = self.spec.name or None
-        if name is None and self.sim.world.name == "default":  # a bare model's, and many a world's
+        if name is None and self.sim.world.name == "default":  # name of the world of a bare model, and of many worlds
             name = Path(self.spec.world).name.partition(".")[0] or None
         loop.server, note = serve(self.sim, name)
         if loop.server is None:
@@ -289,7 +292,7 @@ class Session:
     def _watched(
         self, loop: RunLoop, interrupts: Interrupts, watchers: list[Callable[[], None]]
     ) -> Callable[[float | None], object]:
-        """The same loop, which reloads plugins that are edited."""
+        """Return the loop's `run` with reloading of plugins whose files change."""
         from simkit.cli.plugin_watch import PluginWatch
 
         folders = [Path(folder) for folder in self.spec.options.get("plugin_paths", ())]

@@ -1,4 +1,4 @@
-"""Whether a run did what was asked of it: its conditions, its time, and a file that says so to a CI."""
+"""Verdict on a run: its conditions, its time limits, and its JUnit XML report."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ FAILED: Final = RegressionError.exit_code
 
 
 class RunVerdict:
-    """What is asked of a run, and what became of it; a context manager around the run, loading included.
+    """Verdict on a run; a context manager around the run, including loading.
 
     Args:
-        spec: what the run is to do.
-        junit: file for the results; None for none.
+        spec: run specification.
+        junit: JUnit XML report to write; None for none.
 
     Attributes:
-        code: the exit code.
-        reason: how the run ended, as `Watch.results` has it; empty before.
-        results: of what was asked.
+        code: exit code.
+        reason: reason for the end of the run, as in `Watch.results`; empty before the end.
+        results: results of the conditions.
     """
 
     def __init__(self, spec: RunSpec, junit: Path | None = None) -> None:
@@ -52,14 +52,14 @@ class RunVerdict:
         return self
 
     def __exit__(self, kind: object, error: BaseException | None, trace: object) -> bool:
-        """Writes the file for the CI; a run that was interrupted for its wall time has failed, no more."""
+        """Write the report. An interrupt at the wall time limit fails the run, but its exception is suppressed."""
         self._wall.__exit__()
         if error is not None and not self.reason:
             self._conclude(error)
         if isinstance(error, WallTimeExceeded):
             self.code = FAILED
             if self._watch is None:
-                print_status(self._gave_up())
+                print_status(self._wall_timeout_text())
         if error is None or isinstance(error, (SimkitError, KeyboardInterrupt)):
             self._write(error)
         return isinstance(error, WallTimeExceeded)
@@ -67,14 +67,14 @@ class RunVerdict:
     # ------------------------------------------------------------------ the run
 
     def watch(self, sim: Simulation, longest: float | None) -> Watch:
-        """What looks at the conditions, to be entered around the run.
+        """Return the watch on the conditions, a context manager around the run.
 
         Args:
-            sim: the simulation.
-            longest: the simulated time [s] after which the run ends at the latest; None for until Ctrl-C.
+            sim: loaded simulation.
+            longest: simulated time [s] after which the run ends at the latest; None for a run until Ctrl-C.
 
         Raises:
-            InputError: an expression cannot be read, or names what the world does not have.
+            InputError: an expression is invalid, or names something that the world does not have.
         """
         from simkit.testing.conditions import Watch
 
@@ -83,25 +83,25 @@ class RunVerdict:
         return self._watch
 
     def is_over(self) -> bool:
-        """Whether the run is to end: the condition holds, or the wall time is over."""
+        """Check whether the run must end: the condition holds, or the wall time limit is reached."""
         return self._wall.is_over or (self._watch is not None and self._watch.ended)
 
     def end(self, error: BaseException | None, interrupted_by: str) -> None:
-        """Says what became of the run, as soon as it has ended.
+        """Determine the verdict after the end of the run.
 
         Args:
-            error: that ended it.
-            interrupted_by: who, where somebody ended it before its time; empty for nobody.
+            error: error that ended the run, if any.
+            interrupted_by: reason for an early end; empty if the run was not interrupted.
         """
         self._wall.end()
         self._conclude(error, interrupted_by)
         if error is None and not interrupted_by and not self._has_passed:
             self.code = FAILED
 
-    def tell(self) -> None:
-        """Prints a line a condition."""
+    def print_results(self) -> None:
+        """Print one line per condition."""
         if self.reason == "wall_timeout":
-            stdout_console().print(f"FAILED  {self._gave_up()}", style="red")
+            stdout_console().print(f"FAILED  {self._wall_timeout_text()}", style="red")
         for result in self.results:
             word, style = ("passed", None) if result.passed else ("FAILED", "red")
             stdout_console().print(f"{word}  {result.check.title}: {result.message}", style=style)
@@ -128,9 +128,10 @@ class RunVerdict:
             return interrupted_by
         return "timeout" if self._spec.until else "duration"
 
-    def _gave_up(self) -> str:
-        blocked = f", where it waited for {self._wall.blocked_by}" if self._wall.blocked_by else ""
-        return f"the run was given up after {self._wall.seconds:g} s of wall time (--wall-timeout){blocked}"
+    def _wall_timeout_text(self) -> str:
+        """Return the failure message of a run that reached its wall time limit."""
+        blocked = f", while it waited for {self._wall.blocked_by}" if self._wall.blocked_by else ""
+        return f"the run was stopped after {self._wall.seconds:g} s of wall time (--wall-timeout){blocked}"
 
     # ------------------------------------------------------------------ the file
 
@@ -144,22 +145,22 @@ class RunVerdict:
         from simkit.testing.junit import JunitCase
 
         seconds, group = time.perf_counter() - self._begun, f"simkit.{self._name.replace('.', '_')}"
-        text = self._gave_up() if self.reason == "wall_timeout" else ""
+        text = self._wall_timeout_text() if self.reason == "wall_timeout" else ""
         failed = (text, text) if text else None
-        met = None
+        raised = None
         if error is not None and not text:
             lines = str(error).splitlines() or [type(error).__name__]
-            met = (lines[0], "\n".join(lines))
-        cases = [JunitCase("run", group, seconds, failure=failed, error=met)]
+            raised = (lines[0], "\n".join(lines))
+        cases = [JunitCase("run", group, seconds, failure=failed, error=raised)]
         for result in self.results:
-            told = None if result.passed else (result.message, f"{result.check.title}: {result.message}")
+            failure = None if result.passed else (result.message, f"{result.check.title}: {result.message}")
             cases.append(
-                JunitCase(result.check.title, group, failure=told, output=result.message if result.passed else "")
+                JunitCase(result.check.title, group, failure=failure, output=result.message if result.passed else "")
             )
         return cases
 
     def _give_up(self) -> int:
-        """The run cannot be ended: what is known is written, by another thread than its own."""
+        """Write the report from the time limit's thread, because the run is blocked; return the exit code."""
         self.reason = "wall_timeout"
         self._write(None)
         return FAILED

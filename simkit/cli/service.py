@@ -1,4 +1,4 @@
-"""The command `simkit service`: show and call the services of a running simulation, as `ros2 service` does."""
+"""Command `simkit service`: show and call the services of a running simulation, as `ros2 service` does."""
 
 from __future__ import annotations
 
@@ -31,20 +31,20 @@ from simkit.cli.terminal.topic_sources import connect_to_simulation, interface_t
 if TYPE_CHECKING:
     from simkit.live import Client
 
-service = typer.Typer(help="Services of a running simulation.", no_args_is_help=True)
-Name = Annotated[str, argument("Name of a service.", "SERVICE", completion.services)]
-Count = Annotated[bool, Option("--count-services", "--count", "-c", help="Says only how many.")]
+service = typer.Typer(help="List and call the services of a running simulation.", no_args_is_help=True)
+Name = Annotated[str, argument("Name of the service.", "SERVICE", completion.services)]
+Count = Annotated[bool, Option("--count-services", "--count", "-c", help="Print only the number of services.")]
 
 
 @live_command(service, "list")
 def list_(
     show_types: options.ShowTypes = False,
     count: Count = False,
-    hidden: Annotated[bool, Option("--include-hidden-services", "-a", "--all", help="Shows hidden ones too.")] = False,
+    hidden: Annotated[bool, Option("--include-hidden-services", "-a", "--all", help="Include hidden names.")] = False,
     sim: options.Sim = None,
     json_: options.Json = False,
 ) -> None:
-    """Lists the services."""
+    """List the services."""
     with connect_to_simulation(sim) as client:
         found = {n: t for n, t in sorted(client.services().items()) if hidden or not is_hidden(n)}
     print_names_and_types(found, show_types=show_types, count=count, json_=json_)
@@ -52,7 +52,7 @@ def list_(
 
 @live_command(service, "type")
 def type_(service: Name, sim: options.Sim = None, json_: options.Json = False) -> None:
-    """Prints a service's type."""
+    """Print the type of a service."""
     with connect_to_simulation(sim) as client:
         found = interface_type(client, "service", client.services(), service)
     print_names([found], json_=json_)
@@ -60,7 +60,7 @@ def type_(service: Name, sim: options.Sim = None, json_: options.Json = False) -
 
 @live_command(service)
 def info(service: Name, sim: options.Sim = None, json_: options.Json = False) -> None:
-    """Says of what type a service is."""
+    """Print type, clients and servers of a service."""
     with connect_to_simulation(sim) as client:
         found = interface_type(client, "service", client.services(), service)
     if json_:
@@ -71,12 +71,12 @@ def info(service: Name, sim: options.Sim = None, json_: options.Json = False) ->
 
 @live_command(service)
 def find(
-    service_type: Annotated[str, argument("Such as std_srvs/srv/Empty.", "TYPE", completion.service_types)],
+    service_type: Annotated[str, argument("Type such as std_srvs/srv/Empty.", "TYPE", completion.service_types)],
     count: Count = False,
     sim: options.Sim = None,
     json_: options.Json = False,
 ) -> None:
-    """Lists the services of a type."""
+    """List the services of a type."""
     with connect_to_simulation(sim) as client:
         found = [name for name, full in sorted(client.services().items()) if is_same_type(service_type, full)]
     print_names(found, count=count, json_=json_)
@@ -86,19 +86,19 @@ def find(
 def call(
     service: Name,
     service_type: Annotated[
-        str | None, argument("Its type, which need not be said.", "[TYPE]", completion.service_types)
+        str | None, argument("Type of the service (optional).", "[TYPE]", completion.service_types)
     ] = None,
     values: Annotated[
-        str | None, argument("The request as YAML: '{data: true}'.", "[VALUES]", completion.service_values)
+        str | None, argument("Request as YAML: '{data: true}'.", "[VALUES]", completion.service_values)
     ] = None,
-    stdin: Annotated[bool, Option("--stdin", help="Reads the request from standard input.")] = False,
+    stdin: Annotated[bool, Option("--stdin", help="Read the request from standard input.")] = False,
     rate: Annotated[
-        float | None, option("Calls it again N times a second (wall time).", "N", "--rate", "-r", min=1e-3)
+        float | None, option("Repeat the call N times a second (wall time).", "N", "--rate", "-r", min=1e-3)
     ] = None,
     sim: options.Sim = None,
     json_: options.Json = False,
 ) -> None:
-    """Calls a service and prints the response."""
+    """Call a service and print the response."""
     service_type, values = split_type_and_values(service_type, values)
     fields = parse_fields(sys.stdin.read() if stdin else values or "{}", "the request")
     with connect_to_simulation(sim) as client:

@@ -1,4 +1,4 @@
-"""The command `simkit tf`: show the frame tree of a simulation or a bag, and the pose of one frame in another."""
+"""Command `simkit tf`: show the frame tree of a simulation or a bag, and the pose of one frame in another."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ from simkit.errors import InputError
 if TYPE_CHECKING:
     from simkit.pose import Pose
 
-_LISTENED = 1.0  # [s] of wall time in which frames are collected
-tf = typer.Typer(help="Frames of a running simulation, or of a bag.", no_args_is_help=True)
+_COLLECTION_TIME = 1.0  # [s] of wall time
+tf = typer.Typer(help="Show the frames of a running simulation or of a bag.", no_args_is_help=True)
 Topics = Annotated[
-    list[str], option("Where transforms come, other than /tf and /tf_static; repeatable.", "TOPIC", "--topic")
+    list[str], option("Topic of transforms instead of /tf and /tf_static; repeatable.", "TOPIC", "--topic")
 ]
 
 
@@ -31,15 +31,15 @@ Topics = Annotated[
 @report_errors_quietly
 def tree(
     topic: Topics = [],
-    listened: Annotated[float, option("Listens so long (wall time).", "S", "--time", min=0)] = _LISTENED,
+    duration: Annotated[float, option("Wall time for collecting transforms.", "S", "--time", min=0)] = _COLLECTION_TIME,
     sim: options.Sim = None,
     bag: options.Bag = None,
     json_: options.Json = False,
 ) -> None:
-    """Prints which frame hangs on which."""
+    """Print the tree of frames."""
     frames = FrameTree()
     with open_source(sim, bag) as source:
-        for _ in receive_transforms(source, frames, topic or None, duration=listened):
+        for _ in receive_transforms(source, frames, topic or None, duration=duration):
             pass
     if json_:
         rows = {c: {"parent": e.parent, "static": e.static, "time": e.time_ns * 1e-9} for c, e in frames.edges.items()}
@@ -48,7 +48,7 @@ def tree(
         for text in frames.lines():
             print_line(text)
     else:
-        print_line("no transforms came")
+        print_line("no transforms received")
 
 
 @tf.command()
@@ -56,15 +56,15 @@ def tree(
 def echo(
     source_frame: Annotated[str, Argument(metavar="SOURCE", show_default=False, autocompletion=completion.frames)],
     target_frame: Annotated[str, Argument(metavar="TARGET", show_default=False, autocompletion=completion.frames)],
-    rate: Annotated[float, Argument(help="Times a second (wall time).", metavar="[RATE]", min=1e-3)] = 1.0,
-    once: Annotated[bool, Option("--once", help="Ends behind the first one.")] = False,
-    precision: Annotated[int, option("Digits.", "N", "--precision", "-p", min=0, max=15)] = 3,
+    rate: Annotated[float, Argument(help="Lines per second (wall time).", metavar="[RATE]", min=1e-3)] = 1.0,
+    once: Annotated[bool, Option("--once", help="Exit after the first pose.")] = False,
+    precision: Annotated[int, option("Number of decimals.", "N", "--precision", "-p", min=0, max=15)] = 3,
     topic: Topics = [],
     sim: options.Sim = None,
     bag: options.Bag = None,
     json_: options.Json = False,
 ) -> None:
-    """Prints where TARGET is, as seen from SOURCE; of a bag, at its end."""
+    """Print the pose of TARGET in SOURCE; for a bag, at its end."""
     frames = FrameTree()
     with open_source(sim, bag) as source:
         begun = time.monotonic()
@@ -73,7 +73,7 @@ def echo(
                 if once and source.is_live and frames.pose_between(source_frame, target_frame) is not None:
                     break
             found = frames.pose_between(source_frame, target_frame)
-            if found is None and time.monotonic() - begun < _LISTENED and source.is_live:
+            if found is None and time.monotonic() - begun < _COLLECTION_TIME and source.is_live:
                 continue
             if found is None:
                 raise _not_connected(frames, source_frame, target_frame, source.where)
@@ -86,7 +86,7 @@ def _not_connected(frames: FrameTree, source: str, target: str, where: str) -> I
     for name in (source, target):
         if name not in frames.names():
             return not_found_error("frame", name, frames.names(), "SK-CLI-038", where)
-    text = f"SK-CLI-038 {source!r} and {target!r} do not hang together: they are of separate trees in {where}"
+    text = f"SK-CLI-038 {source!r} and {target!r} are not connected: they are in separate trees in {where}"
     return InputError(text, "SK-CLI-038")
 
 

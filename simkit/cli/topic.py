@@ -1,4 +1,4 @@
-"""The command `simkit topic`: show the topics of a running simulation or a bag, as `ros2 topic` does."""
+"""Command `simkit topic`: show the topics of a running simulation or a bag, as `ros2 topic` does."""
 
 from __future__ import annotations
 
@@ -18,26 +18,26 @@ from simkit.cli.topic_pub import pub
 from simkit.cli.topic_rates import bw, delay, hz
 from simkit.errors import MessageError
 
-topic = typer.Typer(help="Topics of a running simulation, or of a bag.", no_args_is_help=True)
+topic = typer.Typer(help="Inspect and publish topics of a simulation or a bag.", no_args_is_help=True)
 
 
-Count = Annotated[bool, Option("--count-topics", "--count", "-c", help="Says only how many.")]
+Count = Annotated[bool, Option("--count-topics", "--count", "-c", help="Print only the number of topics.")]
 Hidden = Annotated[
-    bool, Option("--include-hidden-topics", "-a", "--all", help="Shows those with a part that begins with _ too.")
+    bool, Option("--include-hidden-topics", "-a", "--all", help="Include hidden topics (a name part begins with _).")
 ]
 
 
 @live_command(topic, "list")
 def list_(
     show_types: options.ShowTypes = False,
-    verbose: Annotated[bool, Option("--verbose", "-v", help="Says who publishes and who takes.")] = False,
+    verbose: Annotated[bool, Option("--verbose", "-v", help="Group by publishers and subscribers.")] = False,
     count: Count = False,
     hidden: Hidden = False,
     sim: options.Sim = None,
     bag: options.Bag = None,
     json_: options.Json = False,
 ) -> None:
-    """Lists the topics."""
+    """List the topics."""
     with open_source(sim, bag) as source:
         found = [t for t in source.topics().values() if hidden or not is_hidden(t.name)]
     if json_:
@@ -75,12 +75,12 @@ def _endpoint_dict(end: TopicEndpoint) -> JsonObject:
 @live_command(topic)
 def info(
     topic: options.Topic,
-    verbose: Annotated[bool, Option("--verbose", "-v", help="Says who they are, with their quality.")] = False,
+    verbose: Annotated[bool, Option("--verbose", "-v", help="Print each node with its QoS.")] = False,
     sim: options.Sim = None,
     bag: options.Bag = None,
     json_: options.Json = False,
 ) -> None:
-    """Says of what type a topic is, and how many publish it and take it."""
+    """Print the type of a topic and the numbers of its publishers and subscribers."""
     with open_source(sim, bag) as source:
         entry = find_topic(source, topic)
     if json_:
@@ -100,7 +100,7 @@ def info(
 
 
 def _endpoint_text(topic_name: str, end: TopicEndpoint, type_name: str, kind: str, number: int) -> str:
-    """Everything about one end, as rclpy writes it."""
+    """Describe one endpoint in the format of rclpy."""
     from simkit import msgs
 
     space, _, name = (end.node or "_NODE_NAME_UNKNOWN_").rpartition("/")
@@ -132,7 +132,7 @@ def _endpoint_text(topic_name: str, end: TopicEndpoint, type_name: str, kind: st
 
 @live_command(topic, "type")
 def type_(topic: options.Topic, sim: options.Sim = None, bag: options.Bag = None, json_: options.Json = False) -> None:
-    """Prints a topic's type."""
+    """Print the type of a topic."""
     with open_source(sim, bag) as source:
         entry = find_topic(source, topic)
     print_names(entry.types, json_=json_)
@@ -140,17 +140,17 @@ def type_(topic: options.Topic, sim: options.Sim = None, bag: options.Bag = None
 
 @live_command(topic)
 def find(
-    topic_type: Annotated[str, argument("Such as geometry_msgs/msg/Twist.", "TYPE", completion.message_types)],
+    topic_type: Annotated[str, argument("Type such as geometry_msgs/msg/Twist.", "TYPE", completion.message_types)],
     count: Count = False,
     hidden: Hidden = False,
     sim: options.Sim = None,
     bag: options.Bag = None,
     json_: options.Json = False,
 ) -> None:
-    """Lists the topics of a type."""
+    """List the topics of a type."""
     with open_source(sim, bag) as source:
         found = [
-            t.name for t in source.topics().values() if any(is_same_type(topic_type, one) for one in _all_types(t))
+            t.name for t in source.topics().values() if any(is_same_type(topic_type, known) for known in _all_types(t))
         ]
     found = [name for name in found if hidden or not is_hidden(name)]
     print_names(found, count=count, json_=json_)

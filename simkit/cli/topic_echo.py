@@ -1,4 +1,4 @@
-"""The command `simkit topic echo`: print messages as they arrive."""
+"""Command `simkit topic echo`: print messages as they arrive."""
 
 from __future__ import annotations
 
@@ -30,31 +30,29 @@ _SEPARATOR = "---"
 def echo(
     topic: options.Topic,
     message_type: Annotated[
-        str | None, argument("The topic's type, which need not be said.", "[TYPE]", completion.topic_types)
+        str | None, argument("Type of the topic (optional).", "[TYPE]", completion.topic_types)
     ] = None,
-    once: Annotated[bool, Option("--once", help="Ends behind the first message.")] = False,
+    once: Annotated[bool, Option("--once", help="Exit after the first message.")] = False,
     field: Annotated[
         str | None,
-        option("Only this part: pose.pose.position, ranges[0].", "FIELD", "--field", complete=completion.fields),
+        option("Field to print: pose.pose.position, ranges[0].", "FIELD", "--field", complete=completion.fields),
     ] = None,
-    csv: Annotated[bool, Option("--csv", help="All numbers with commas between, a message a line.")] = False,
-    no_arr: Annotated[bool, Option("--no-arr", help="Arrays by type and length only.")] = False,
-    no_str: Annotated[bool, Option("--no-str", help="Texts by length only.")] = False,
-    flow_style: Annotated[bool, Option("--flow-style", help="A message a line.")] = False,
-    full_length: Annotated[bool, Option("--full-length", "-f", help="Cuts no long arrays and texts.")] = False,
-    truncate_length: Annotated[int, option("Cuts longer ones.", "N", "--truncate-length", "-l", min=0)] = TRUNCATE,
-    raw: Annotated[bool, Option("--raw", help="The bytes.")] = False,
-    filter_: Annotated[
-        str | None, option("Only those m for which this Python is true: m.data > 2.", "EXPR", "--filter")
-    ] = None,
-    info: Annotated[bool, Option("--include-message-info", help="With the time of each.")] = False,
-    no_lost: Annotated[bool, Option("--no-lost-messages", help="Does not tell of lost messages.")] = False,
-    timeout: Annotated[float | None, option("Ends after so long (wall time).", "S", "--timeout", min=0)] = None,
+    csv: Annotated[bool, Option("--csv", help="Print comma-separated values, one message per line.")] = False,
+    no_arr: Annotated[bool, Option("--no-arr", help="Print arrays as type and length.")] = False,
+    no_str: Annotated[bool, Option("--no-str", help="Print strings as their length.")] = False,
+    flow_style: Annotated[bool, Option("--flow-style", help="Print one message per line.")] = False,
+    full_length: Annotated[bool, Option("--full-length", "-f", help="Do not truncate arrays and strings.")] = False,
+    truncate_length: Annotated[int, option("Length to truncate to.", "N", "--truncate-length", "-l", min=0)] = TRUNCATE,
+    raw: Annotated[bool, Option("--raw", help="Print the bytes (CDR).")] = False,
+    filter_: Annotated[str | None, option("Python condition on the message m: m.data > 2.", "EXPR", "--filter")] = None,
+    info: Annotated[bool, Option("--include-message-info", help="Print the time of each message.")] = False,
+    no_lost: Annotated[bool, Option("--no-lost-messages", help="Do not report lost messages.")] = False,
+    timeout: Annotated[float | None, option("Exit after this wall time.", "S", "--timeout", min=0)] = None,
     sim: options.Sim = None,
     bag: options.Bag = None,
     json_: options.Json = False,
 ) -> None:
-    """Prints the messages of a topic; of a bag, all that were recorded."""
+    """Print the messages of a topic; for a bag, all recorded messages."""
     from simkit.msgs.message_text import TextStyle
 
     style = TextStyle(None if full_length or json_ else truncate_length, no_arr, no_str, flow_style)
@@ -64,10 +62,10 @@ def echo(
         check_type(message_type, entry.types, entry.name)
         show = _MessagePrinter(source, style, field, csv, raw, json_, info, compile_filter(filter_))
         source.prepare(entry)
-        _echo_field(source.feed([entry.name]), show, once=once, until=until, tells_lost=not no_lost)
+        _echo_field(source.feed([entry.name]), show, once=once, until=until, reports_lost=not no_lost)
 
 
-def _echo_field(feed: Feed, show: _MessagePrinter, *, once: bool, until: float | None, tells_lost: bool) -> None:
+def _echo_field(feed: Feed, show: _MessagePrinter, *, once: bool, until: float | None, reports_lost: bool) -> None:
     lost = 0
     while True:
         received = feed.take(None if until is None else max(0.0, until - time.monotonic()))
@@ -75,16 +73,16 @@ def _echo_field(feed: Feed, show: _MessagePrinter, *, once: bool, until: float |
             return
         if show(received) and once:
             return
-        if tells_lost and feed.lost > lost:
+        if reports_lost and feed.lost > lost:
             print_note(f"A message was lost!!!\n\ttotal count change:{feed.lost - lost}\n\ttotal count: {feed.lost}")
             lost = feed.lost
 
 
 def compile_filter(expression: str | None) -> MessageFilter | None:
-    """Compile `--filter`, a Python expression of the message `m` as with ROS 2, to a function.
+    """Compile `--filter`, a Python expression with the message as `m` (as in ROS 2), to a function.
 
     Raises:
-        InputError: SK-CLI-033 it is none.
+        InputError: SK-CLI-033 the text is not a Python expression.
     """
     if expression is None:
         return None
@@ -92,22 +90,22 @@ def compile_filter(expression: str | None) -> MessageFilter | None:
         code = compile(expression, "--filter", "eval")
     except (SyntaxError, ValueError) as error:
         raise InputError(
-            f"SK-CLI-033 --filter: {expression!r} is no Python expression: {error}", "SK-CLI-033"
+            f"SK-CLI-033 --filter: {expression!r} is not a Python expression: {error}", "SK-CLI-033"
         ) from None
 
-    def wanted(message: Message) -> bool:
+    def matches(message: Message) -> bool:
         try:
             return bool(eval(code, {"m": message}))
-        except Exception as error:  # noqa: BLE001 (the user's own)
+        except Exception as error:  # noqa: BLE001 - the user's expression may raise anything
             text = f"SK-CLI-033 --filter: {expression!r} fails with this message: {error!r}"
             raise InputError(text, "SK-CLI-033") from None
 
-    return wanted
+    return matches
 
 
 @dataclass(frozen=True)
 class _MessagePrinter:
-    """Prints one message after the other; whether it did."""
+    """Printer of messages; a call returns True if the message was printed."""
 
     source: Source
     style: TextStyle
@@ -116,7 +114,7 @@ class _MessagePrinter:
     raw: bool
     json: bool
     info: bool
-    wanted: MessageFilter | None
+    message_filter: MessageFilter | None
 
     def __call__(self, received: ReceivedMessage) -> bool:
         from simkit.msgs.message_text import field_at_path
@@ -135,7 +133,7 @@ class _MessagePrinter:
                 message, node = field_at_path(message, self.field, store)
             except MessageError as error:
                 raise InputError(f"SK-CLI-033 --field: {error}", "SK-CLI-033") from None
-        if self.wanted is not None and not self.wanted(message):
+        if self.message_filter is not None and not self.message_filter(message):
             return False
         self._print(received, message, node, store)
         return True

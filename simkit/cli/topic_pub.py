@@ -1,4 +1,4 @@
-"""The command `simkit topic pub`: publish messages into a running simulation."""
+"""Command `simkit topic pub`: publish messages into a running simulation."""
 
 from __future__ import annotations
 
@@ -31,27 +31,25 @@ def pub(
     topic: options.Topic,
     message_type: Annotated[
         str | None,
-        argument(
-            "Such as geometry_msgs/msg/Twist; where it is left out, the topic's.", "[TYPE]", completion.topic_types
-        ),
+        argument("Type such as geometry_msgs/msg/Twist; default: the topic's type.", "[TYPE]", completion.topic_types),
     ] = None,
     values: Annotated[
         str | None,
         argument(
-            "YAML: '{linear: {x: 0.2}}'; `header: auto` and `stamp: now` are the time of sending.",
+            "Message as YAML: '{linear: {x: 0.2}}'; `header: auto` and `stamp: now` insert the present time.",
             "[VALUES]",
             completion.message_values,
         ),
     ] = None,
-    stdin: Annotated[bool, Option("--stdin", help="Reads the values from standard input.")] = False,
-    rate: Annotated[float, option("Messages a second of simulated time.", "N", "--rate", "-r", min=1e-3)] = 1.0,
-    every: Annotated[int, option("Prints every Nth message only; 0 for none.", "N", "--print", "-p", min=0)] = 1,
-    once: Annotated[bool, Option("--once", "-1", help="Sends one.")] = False,
-    times: Annotated[int | None, option("Sends N.", "N", "--times", "-t", min=0, show_default=False)] = None,
+    stdin: Annotated[bool, Option("--stdin", help="Read the values from standard input.")] = False,
+    rate: Annotated[float, option("Messages per simulated second.", "N", "--rate", "-r", min=1e-3)] = 1.0,
+    every: Annotated[int, option("Print every Nth message; 0: none.", "N", "--print", "-p", min=0)] = 1,
+    once: Annotated[bool, Option("--once", "-1", help="Publish one message.")] = False,
+    times: Annotated[int | None, option("Publish N messages.", "N", "--times", "-t", min=0, show_default=False)] = None,
     wait: Annotated[
         int | None,
         option(
-            "Waits until so many take it; 1 with --once and --times, else 0.",
+            "Number of subscribers to wait for; default: 1 with --once and --times, else 0.",
             "N",
             "--wait-matching-subscriptions",
             "-w",
@@ -59,12 +57,12 @@ def pub(
             show_default=False,
         ),
     ] = None,
-    keep_alive: Annotated[float, option("Stays so long behind the last one.", "S", "--keep-alive", min=0)] = 0.1,
-    wall_time: Annotated[bool, Option("--wall-time", help="The rate is by the clock on the wall.")] = False,
+    keep_alive: Annotated[float, option("Wall time to stay after the last message.", "S", "--keep-alive", min=0)] = 0.1,
+    wall_time: Annotated[bool, Option("--wall-time", help="Use wall time for the rate.")] = False,
     sim: options.Sim = None,
     json_: options.Json = False,
 ) -> None:
-    """Publishes a message, again and again until Ctrl-C."""
+    """Publish a message repeatedly until Ctrl-C."""
     from simkit.live import LiveClosed
 
     message_type, values = split_type_and_values(message_type, values)
@@ -76,7 +74,7 @@ def pub(
     with connect_to_simulation(sim) as client:
         publisher = client.advertise(topic, _full_type_name(client, topic, message_type))
         make = _message_factory(publisher.type_name, fields)
-        make(0)  # what does not fit is told before anything waits
+        make(0)  # report an invalid message before any waiting
         _wait_matching(
             client, topic, (1 if number else 0) if wait is None else wait, print_note if json_ else print_line
         )
@@ -90,7 +88,7 @@ def pub(
                 publisher.publish(message)
         except LiveClosed as closed:
             if number or closed.code != "SK-LIVE-005":
-                raise  # not all of it has been sent
+                raise  # some of the messages were not sent
             print_note(f"note: {str(closed).removeprefix('SK-LIVE-005 ')}")
             return
         client.flush()
@@ -99,17 +97,17 @@ def pub(
 
 
 def _full_type_name(client: Client, topic: str, type_name: str | None) -> str:
-    """The type's full name, a known one.
+    """Return the full name of a known type.
 
     Raises:
-        InputError: SK-CLI-032 there is no such type; SK-CLI-030 none is said and the topic is not there.
+        InputError: SK-CLI-032 the type is unknown; SK-CLI-030 no type is given and the topic does not exist.
     """
     from simkit import msgs
 
     if type_name is None:
         entry = find_topic(LiveSource(client), topic)
-        takes = [t for end in entry.subscribers for t in end.types]
-        return takes[0] if takes else entry.types[0]
+        subscribed_types = [t for end in entry.subscribers for t in end.types]
+        return subscribed_types[0] if subscribed_types else entry.types[0]
     try:
         return msgs.full_name(type_name)
     except MessageError as error:
@@ -117,7 +115,7 @@ def _full_type_name(client: Client, topic: str, type_name: str | None) -> str:
 
 
 def _message_factory(type_name: str, fields: JsonObject) -> Callable[[int], object]:
-    """Makes the message of a time [ns]; where nothing in it depends on that, it is always the same."""
+    """Return a function that builds the message of a time [ns]. A message without a time is built once."""
     is_stamped = fields.get("header") == "auto" or _uses_time(fields)
 
     def at(now_ns: int) -> object:
@@ -125,8 +123,8 @@ def _message_factory(type_name: str, fields: JsonObject) -> Callable[[int], obje
 
     if is_stamped:
         return at
-    kept = at(0)
-    return lambda _: kept
+    message = at(0)
+    return lambda _: message
 
 
 def _uses_time(value: object) -> bool:
@@ -149,12 +147,12 @@ def _with_time(value: object, now_ns: int) -> JsonValue:
     return [_with_time(v, now_ns) for v in value] if isinstance(value, list) else value
 
 
-def _wait_matching(client: Client, topic: str, number: int, tell: Callable[[str], None]) -> None:
-    told = False
+def _wait_matching(client: Client, topic: str, number: int, print_text: Callable[[str], None]) -> None:
+    was_reported = False
     while number and len(_subscribers(client, absolute_name(topic))) < number:
-        if not told:
-            tell(f"Waiting for at least {number} matching subscription(s)...")
-            told = True
+        if not was_reported:
+            print_text(f"Waiting for at least {number} matching subscription(s)...")
+            was_reported = True
         time.sleep(0.1)
 
 
@@ -163,7 +161,7 @@ def _subscribers(client: Client, topic: str) -> list[JsonObject]:
 
 
 def _times(client: Client, rate: float, number: int, by_wall: bool) -> Iterator[int]:
-    """Simulated times [ns], as often as messages are to be sent: at once, then every 1/rate seconds."""
+    """Yield the simulated times [ns] at which to send messages: at once, then every 1/rate seconds."""
     clock = SimClock(client, by_wall=by_wall)
     period = round(1e9 / rate)
     due = clock.now_ns()
@@ -173,7 +171,7 @@ def _times(client: Client, rate: float, number: int, by_wall: bool) -> Iterator[
             due = clock.now_ns()  # after a reset
         yield clock.sim_ns()
         sent += 1
-        due = max(due + period, clock.now_ns() - period)  # one that came too late is not made up for many times
+        due = max(due + period, clock.now_ns() - period)  # after a delay, at most one message is sent late
 
 
 def _print(message: object, count: int, json_: bool) -> None:

@@ -1,7 +1,7 @@
-"""The commands `simkit topic hz`, `bw` and `delay`: measure rate, bandwidth and delay in simulated time.
+"""Commands `simkit topic hz`, `bw` and `delay`: measure rate, bandwidth and delay in simulated time.
 
-Where a simulation runs faster or slower than real time, its own clock is the one by which sensors have their rates;
-`--wall-time` counts by the clock on the wall.
+A simulation can run faster or slower than real time, and the rates of its sensors refer to its own clock. `--wall-time`
+uses wall time instead.
 """
 
 from __future__ import annotations
@@ -22,42 +22,42 @@ from simkit.cli.topic_echo import MessageFilter, compile_filter
 from simkit.errors import InputError
 
 _PRINT_PERIOD = 1.0  # [s] of wall time between two lines
-_DEPTH = 10_000  # messages that wait while a line is printed
+_DEPTH = 10_000  # queued messages while a line is printed
 Window = Annotated[
-    int | None, option("Counts the last N messages.", "N", "--window", "-w", min=1, max=10**9, show_default=False)
+    int | None, option("Messages to average over.", "N", "--window", "-w", min=1, max=10**9, show_default=False)
 ]
-WallTime = Annotated[bool, Option("--wall-time", help="By the clock on the wall, not the simulation's.")]
+WallTime = Annotated[bool, Option("--wall-time", help="Use wall time instead of simulated time.")]
 
 
 class Meter(Protocol):
-    """Measures what arrives on a topic."""
+    """Protocol of a measurement on a topic."""
 
     def take(self, seconds: float, received: ReceivedMessage) -> None:
-        """Take a message and its time [s]."""
+        """Add a message and its time [s] to the measurement."""
 
     def found(self) -> JsonObject | None:
-        """Return what was measured; None before there is anything."""
+        """Return the measured values; None if there are not enough messages."""
 
     def text(self, found: JsonObject) -> str:
-        """Format what was measured as `ros2 topic` does."""
+        """Format the measured values as `ros2 topic` does."""
 
 
 class Rates:
-    """Rate of what arrives, over a window of messages; a clock that goes back begins anew.
+    """Rate of messages, over a window. A clock that goes back restarts the measurement.
 
     Args:
-        source: decodes the messages.
-        window: how many messages it spans at most.
-        wanted: says which messages count; None for all.
+        source: decoder of the messages.
+        window: highest number of messages in the window.
+        message_filter: condition on the messages to count; None for all.
     """
 
-    def __init__(self, source: Source, window: int, wanted: MessageFilter | None) -> None:
-        self._source, self._wanted = source, wanted
+    def __init__(self, source: Source, window: int, message_filter: MessageFilter | None) -> None:
+        self._source, self._filter = source, message_filter
         self._gaps: deque[float] = deque(maxlen=window)
         self._last: float | None = None
 
     def take(self, seconds: float, received: ReceivedMessage) -> None:
-        if self._wanted is not None and not self._wanted(self._source.decode(received)):
+        if self._filter is not None and not self._filter(self._source.decode(received)):
             return
         if self._last is not None and seconds < self._last:
             self._gaps.clear()
@@ -66,7 +66,7 @@ class Rates:
         self._last = seconds
 
     def found(self) -> JsonObject | None:
-        """`rate` [Hz], `min`, `max`, `std_dev` of the gaps [s] and `window`; None before there is a gap."""
+        """Return `rate` [Hz], `min`, `max` and `std_dev` of the gaps [s] and `window`; None before the first gap."""
         if not self._gaps:
             return None
         mean, spread = _statistics(self._gaps)
@@ -77,9 +77,9 @@ class Rates:
 
 
 def _statistics(seconds: Collection[float]) -> tuple[float, JsonObject]:
-    """The mean of some times [s], and their `min`, `max`, `std_dev` [s] and how many they are: `window`."""
+    """Return the mean of times [s], and their `min`, `max`, `std_dev` [s] and number (`window`)."""
     mean = sum(seconds) / len(seconds)
-    deviation = math.sqrt(sum((one - mean) ** 2 for one in seconds) / len(seconds))
+    deviation = math.sqrt(sum((value - mean) ** 2 for value in seconds) / len(seconds))
     return mean, {"min": min(seconds), "max": max(seconds), "std_dev": deviation, "window": len(seconds)}
 
 
@@ -91,8 +91,8 @@ def _statistics_text(found: JsonObject) -> str:
 _SIZES = ("mean", "min", "max")
 
 
-class Amounts:
-    """Bytes a second, over a window of messages; a clock that goes back begins anew."""
+class Bandwidth:
+    """Bytes per second, over a window of messages. A clock that goes back restarts the measurement."""
 
     def __init__(self, window: int) -> None:
         self._sizes: deque[tuple[float, int]] = deque(maxlen=window)
@@ -103,7 +103,7 @@ class Amounts:
         self._sizes.append((seconds, len(received.data)))
 
     def found(self) -> JsonObject | None:
-        """`bytes_per_second`, `messages`, `mean`, `min` and `max` size; None before there are two messages."""
+        """Return `bytes_per_second`, `messages`, and `mean`, `min` and `max` size; None before the second message."""
         if len(self._sizes) < 2 or self._sizes[-1][0] <= self._sizes[0][0]:
             return None
         sizes = [size for _, size in self._sizes]
@@ -112,7 +112,7 @@ class Amounts:
         return {"bytes_per_second": per_second, "messages": len(sizes), **spread}
 
     def text(self, found: JsonObject) -> str:
-        """All numbers are in the unit that fits the rate."""
+        """Format the measured values, all in the unit that fits the rate."""
         per_second = found["bytes_per_second"]
         unit, size, digits = (
             ("B", 1.0, 0) if per_second < 1e3 else ("KB", 1e3, 2) if per_second < 1e6 else ("MB", 1e6, 2)
@@ -122,7 +122,7 @@ class Amounts:
 
 
 class Delays:
-    """How much later than their stamps messages are published, over a window of messages."""
+    """Delay of messages after their stamps, over a window."""
 
     def __init__(self, source: Source, type_name: str, window: int) -> None:
         self._source, self._type_name = source, type_name
@@ -133,7 +133,7 @@ class Delays:
 
         header = getattr(self._source.decode(received), "header", None)
         if header is None:
-            raise InputError(f"SK-CLI-033 {self._type_name} has no header, so no stamp", "SK-CLI-033")
+            raise InputError(f"SK-CLI-033 {self._type_name} has no header and thus no stamp", "SK-CLI-033")
         self._late.append(seconds - msgs.stamp_ns(header.stamp) * 1e-9)
 
     def found(self) -> JsonObject | None:
@@ -146,37 +146,37 @@ class Delays:
         return f"average delay: {found['delay']:.3f}\n\t{_statistics_text(found)}"
 
 
-def _listen(
+def _measure(
     source: Source, topic: str, meter: Meter, *, by_wall: bool = False, duration: float | None, json_: bool
 ) -> None:
-    """Takes what comes and tells of it once a second; of a bag, once at its end."""
+    """Add messages to a meter and print its values once a second; for a bag, once at its end."""
     feed = source.feed([topic], _DEPTH)
-    begun = told = time.monotonic()
+    begun = printed = time.monotonic()
     lost, any_came = 0, False
     while True:
         now = time.monotonic()
         if duration is not None and now - begun >= duration:
             break
-        wait = max(0.0, told + _PRINT_PERIOD - now)
+        wait = max(0.0, printed + _PRINT_PERIOD - now)
         received = feed.take(wait if duration is None else min(wait, begun + duration - now))
         if received is not None:
             any_came = True
             meter.take(time.monotonic() if by_wall else received.time_ns * 1e-9, received)
         if feed.is_over:
             break
-        if time.monotonic() - told >= _PRINT_PERIOD:
-            told = time.monotonic()
+        if time.monotonic() - printed >= _PRINT_PERIOD:
+            printed = time.monotonic()
             if any_came and feed.is_live:
-                _tell(meter, json_)
+                _print_values(meter, json_)
                 any_came = False
         if feed.lost > lost:
-            print_note(f"note: {feed.lost - lost} messages came faster than they could be counted")
+            print_note(f"note: {feed.lost - lost} messages were dropped: they arrived faster than they were counted")
             lost = feed.lost
     if any_came or not feed.is_live:
-        _tell(meter, json_)
+        _print_values(meter, json_)
 
 
-def _tell(meter: Meter, json_: bool) -> None:
+def _print_values(meter: Meter, json_: bool) -> None:
     found = meter.found()
     if found is not None:
         if json_:
@@ -187,29 +187,31 @@ def _tell(meter: Meter, json_: bool) -> None:
 
 def _check_clock(source: Source, by_wall: bool) -> None:
     if by_wall and not source.is_live:
-        raise InputError("SK-CLI-018 --wall-time: a bag has the clock of the simulation only", "SK-CLI-018")
+        raise InputError(
+            "SK-CLI-018 --wall-time cannot be used with a bag, which has only simulated time", "SK-CLI-018"
+        )
 
 
-Duration = Annotated[float | None, option("Ends after so long (wall time).", "S", "--duration", min=0)]
+Duration = Annotated[float | None, option("Wall time to measure.", "S", "--duration", min=0)]
 
 
 def hz(
     topic: options.Topic,
     window: Window = None,
-    filter_: Annotated[str | None, option("Only those m for which this Python is true.", "EXPR", "--filter")] = None,
+    filter_: Annotated[str | None, option("Python condition on the message m.", "EXPR", "--filter")] = None,
     wall_time: WallTime = False,
     duration: Duration = None,
     sim: options.Sim = None,
     bag: options.Bag = None,
     json_: options.Json = False,
 ) -> None:
-    """Prints how often messages come, by the clock of the simulation."""
-    wanted = compile_filter(filter_)
+    """Print the rate of a topic in simulated time."""
+    message_filter = compile_filter(filter_)
     with open_source(sim, bag) as source:
         entry = find_topic(source, topic)
         _check_clock(source, wall_time)
-        meter = Rates(source, window or 10_000, wanted)
-        _listen(source, entry.name, meter, by_wall=wall_time, duration=duration, json_=json_)
+        meter = Rates(source, window or 10_000, message_filter)
+        _measure(source, entry.name, meter, by_wall=wall_time, duration=duration, json_=json_)
 
 
 def bw(
@@ -221,13 +223,13 @@ def bw(
     bag: options.Bag = None,
     json_: options.Json = False,
 ) -> None:
-    """Prints how many bytes a second come, by the clock of the simulation."""
+    """Print the bandwidth of a topic in simulated time."""
     with open_source(sim, bag) as source:
         entry = find_topic(source, topic)
         _check_clock(source, wall_time)
         if not json_:
             print_line(f"Subscribed to [{entry.name}]")
-        _listen(source, entry.name, Amounts(window or 100), by_wall=wall_time, duration=duration, json_=json_)
+        _measure(source, entry.name, Bandwidth(window or 100), by_wall=wall_time, duration=duration, json_=json_)
 
 
 def delay(
@@ -238,8 +240,8 @@ def delay(
     bag: options.Bag = None,
     json_: options.Json = False,
 ) -> None:
-    """Prints how much later than its stamp a message is published, by the clock of the simulation."""
+    """Print the delay of messages after their stamps, in simulated time."""
     with open_source(sim, bag) as source:
         entry = find_topic(source, topic)
         meter = Delays(source, entry.types[0], window or 10_000)
-        _listen(source, entry.name, meter, duration=duration, json_=json_)
+        _measure(source, entry.name, meter, duration=duration, json_=json_)

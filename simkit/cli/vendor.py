@@ -1,4 +1,4 @@
-"""The command `simkit vendor`: copy a world and every file that it names into one folder."""
+"""Command `simkit vendor`: copy a world and every file that it uses into one folder."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from simkit.cli.terminal.output import report_errors, stdout_console
 @report_errors
 def vendor(
     file: options.File,
-    folder: Annotated[Path, argument("A folder that does not exist yet, or is empty.")],
+    folder: Annotated[Path, argument("New or empty folder to write.")],
     resource_path: options.ResourcePaths = [],
     package_path: options.PackagePaths = [],
     xacro_arg: options.XacroArgs = [],
     base: options.Base = "auto",
 ) -> None:
-    """Writes a folder that holds a world and everything it names, and that opens anywhere."""
+    """Copy a world and all files that it uses into one folder."""
     from simkit.build import describe
     from simkit.writers.vendored_folder import vendor as write
 
     source = options.source_arguments(resource_path, package_path, xacro_arg, base)
     main, count = write(file, folder, describe, **source)
-    stdout_console().print(f"{folder / main} and {count - 1} files that it needs")
+    stdout_console().print(f"{folder / main} and {count - 1} other files")

@@ -1,4 +1,4 @@
-"""The wall time of a run: once it is over the run ends, and what keeps it from that is told, interrupted, and left."""
+"""Wall time limit of a run. A run that does not end in time is reported, interrupted, and finally terminated."""
 
 from __future__ import annotations
 
@@ -14,29 +14,29 @@ from typing import Final
 from simkit.cli.terminal.blocked_plugins import describe_blocking_plugin
 
 GRACE_SECONDS: Final = 2.0
-"""[s] after which what does not come to its end is interrupted."""
+"""Time between the limit and the interrupt of a blocked run [s], wall time."""
 ABORT_SECONDS: Final = 8.0
-"""[s] after which a process that cannot be interrupted is ended."""
+"""Time between the interrupt and the end of a process that cannot be interrupted [s], wall time."""
 SignalHandler = Callable[[int, FrameType | None], object] | int | None
-"""What `signal.signal` takes and returns."""
-_ALARM: Final = getattr(signal, "SIGALRM", None)  # Windows has none
+"""Signal handler, as `signal.signal` accepts and returns it."""
+_ALARM: Final = getattr(signal, "SIGALRM", None)  # Windows has no SIGALRM
 
 
 class WallTimeExceeded(KeyboardInterrupt):
-    """Raised within what did not come to its end."""
+    """Interrupt of a run that did not end in time."""
 
 
 class WallTimeLimit:
-    """While entered, watches the clock; entered by the thread that runs the simulation.
+    """Context manager that limits the wall time of a run. The thread of the simulation must enter it.
 
     Args:
-        seconds: wall time from now on [s]; None for as long as it takes.
-        say: gets a line about what keeps the run.
-        give_up: called, on another thread, before the process is ended; gives the exit code.
+        seconds: wall time limit from the start of the context [s]; None for no limit.
+        say: callback for a line about the blocked run.
+        give_up: callback on another thread before the process is terminated; returns the exit code.
 
     Attributes:
-        is_over: whether the time is.
-        blocked_by: what had to be interrupted; empty for nothing.
+        is_over: True after the limit.
+        blocked_by: description of the interrupted plugin; empty if nothing was interrupted.
     """
 
     def __init__(self, seconds: float | None, say: Callable[[str], None], give_up: Callable[[], int]) -> None:
@@ -60,7 +60,7 @@ class WallTimeLimit:
             signal.signal(_ALARM, self._before)  # type: ignore[arg-type]
 
     def end(self) -> None:
-        """Says that the run has ended."""
+        """Stop the limit after the run has ended."""
         self._ended.set()
 
     def _watch(self) -> None:
@@ -71,17 +71,17 @@ class WallTimeLimit:
         if self._ended.wait(GRACE_SECONDS):
             return
         found = self._at_work()
-        what = self.blocked_by = found[1] if found else "something that is no plugin's"
-        self._say(f"the wall time of {self.seconds:g} s is over, and the run waits for {what}: it is interrupted")
+        blocker = self.blocked_by = found[1] if found else "code outside plugins"
+        self._say(f"the wall time of {self.seconds:g} s is over; interrupting {blocker}")
         deadline, is_first = time.monotonic() + ABORT_SECONDS, True
         while time.monotonic() < deadline:
             now = self._at_work()
-            if self._may_alarm and (is_first or (found and now and found[0] is now[0])):  # one may swallow the first
+            if self._may_alarm and (is_first or (found and now and found[0] is now[0])):  # a plugin may catch the first
                 signal.pthread_kill(self._thread_id, _ALARM)  # type: ignore[arg-type]
             is_first = False
             if self._ended.wait(1.0):
                 return
-        self._say(f"{what} cannot be interrupted: the process ends here; simkit bag recover mends a recording")
+        self._say(f"{blocker} cannot be interrupted; terminating (recover a recording with `simkit bag recover`)")
         code = self._give_up()
         for stream in (sys.stdout, sys.stderr):
             if stream is not None:
@@ -89,7 +89,7 @@ class WallTimeLimit:
         os._exit(code)
 
     def _at_work(self) -> tuple[FrameType, str] | None:
-        """What plugin the run is in: the frame of the call, and which in words."""
+        """Return the frame and the description of the plugin call that is active in the run."""
         return describe_blocking_plugin(sys._current_frames().get(self._thread_id))
 
     def _interrupt(self, number: int, frame: FrameType | None) -> None:

@@ -143,7 +143,7 @@ def visual(value: SceneVisual, uri_of: UriOf) -> Params:
 
 
 def _of_visual(written: Params, uri_of: UriOf) -> Params:
-    """A visual's plugin with the picture of its temperatures named from the new file's uri_of."""
+    """A visual's plugin with the picture of its temperatures with its URI as the new file needs it."""
     for i, child in enumerate(written.children):
         if child.name == "heat_signature" and child.where.file and child.value:
             uri = uri_of(Path(child.where.file).parent / child.value, child.value)

@@ -126,7 +126,7 @@ def test_of_several_types_on_one_topic_the_more_frequent_is_drawn(here: Path, tm
         bag.write_raw(channel, msgs.serialize(message), k)
     bag.close()
     done = simkit_line("plot", str(tmp_path / "mixed.mcap"), "/x", "-o", str(tmp_path / "x.svg"), "--json")
-    assert "std_msgs/msg/String too" in done.stderr
+    assert "also has messages of type std_msgs/msg/String" in done.stderr
     assert json.loads(done.stdout)["curves"][0]["max"] == 2.0
     out = str(tmp_path / "out")
     found = json.loads(simkit_line("bag", "export", str(tmp_path / "mixed.mcap"), "-o", out, "--json").stdout)

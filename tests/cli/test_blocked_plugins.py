@@ -100,7 +100,7 @@ def test_after_a_wish_to_stop_it_is_told_sooner_and_what_helps() -> None:
         told.set()
 
     with BlockedPlugins(say, patience=1e9) as blocked, simkit.load(EMPTY, plugins=[Waiter(told)]) as sim:
-        blocked.ask()
+        blocked.hasten()
         sim.step(5)
     assert len(lines) == 1 and lines[0].endswith("Ctrl-C again stops at once")
 

@@ -87,7 +87,7 @@ def test_a_run_that_fails_leaves_a_bundle_that_fails_as_it_did(folder: Path) -> 
     assert "SK-BUNDLE-005" in refused.output
     found = simkit("replay", str(bundle), "--allow-code")
     assert found.exit_code == 0, found.output
-    assert "it failed as it did: SK-PLUGIN-004" in found.stdout
+    assert "failed as in the bundle: SK-PLUGIN-004" in found.stdout
     assert "no ice" in found.stdout
 
 
@@ -148,7 +148,7 @@ def test_a_run_in_which_something_does_not_hold_leaves_a_bundle(folder: Path) ->
         assert bundle.name.startswith("ice-check-")
         found = simkit("replay", str(bundle))
         assert found.exit_code == 0, found.output
-        assert "what did not hold in the run: time > 9" in found.stdout
+        assert "failed in the recorded run: time > 9" in found.stdout
         bundle.unlink()
 
 
@@ -156,7 +156,7 @@ def test_what_a_scenario_misses_is_in_its_bundle(folder: Path) -> None:
     (folder / "slide.yaml").write_text("world: sled.sdf\nduration: 0.2\ngoals: [time > 9]\n")
     made = simkit("bundle", "slide.yaml", "-o", "run.zip")
     assert made.exit_code == 0
-    assert "what did not hold, which is in the bundle: time > 9" in made.output
+    assert "the run failed; the bundle contains the failure: time > 9" in made.output
     found = simkit("replay", "run.zip")
     assert found.exit_code == 0
     assert "time > 9" in found.stdout
@@ -177,7 +177,7 @@ def test_what_is_no_plain_file_is_never_replaced(folder: Path) -> None:
     for line in (("bundle", "sled.sdf", "--duration", "0.1"), ("convert", "sled.sdf")):
         done = simkit(*line, "-o", "pipe.sdf", "--force")
         assert done.exit_code == 2
-        assert "no plain file" in done.output
+        assert "not a regular file" in done.output
     assert stat.S_ISFIFO((folder / "pipe.sdf").stat().st_mode)
 
 

@@ -22,7 +22,7 @@ def test_the_page_works_from_its_beginning_to_its_end(
     (bundle,) = tmp_path.glob(repeated[1])
     done = simkit_line(repeated[0], str(bundle))
     assert done.exit_code == 0, done.stderr
-    assert "the same: state" in done.stdout
+    assert "identical: state" in done.stdout
     (program,) = re.findall(r"^```python\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
     names: dict[str, Any] = {}
     exec(compile(program, "bundles.md", "exec"), names)

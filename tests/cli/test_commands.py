@@ -259,7 +259,7 @@ def test_bag_recover_mends(world: Path) -> None:
     (world.parent / "torn.mcap").write_bytes(whole[: len(whole) // 2])
     result = simkit("bag", "recover", "torn.mcap", "-o", "mended.mcap")
     assert result.exit_code == 0
-    assert "it was cut off" in result.stdout
+    assert "the bag was cut off" in result.stdout
     with AnyReader([world.parent / "mended.mcap"]) as reader:
         assert reader.message_count > 0
     assert simkit("bag", "recover", "missing.mcap").exit_code == 2
@@ -278,7 +278,7 @@ def test_doctor_names_the_folders_of_its_variables(tmp_path: Path, monkeypatch: 
         monkeypatch.setenv(name, str(folder))
     lines = dict(line.split(maxsplit=1) for line in simkit("doctor").stdout.splitlines() if line.startswith("SIMKIT_"))
     assert lines["SIMKIT_SAVE_PATH"].split() == [str(tmp_path)]
-    assert lines["SIMKIT_RESOURCE_PATH"].endswith("(is not there)")
+    assert lines["SIMKIT_RESOURCE_PATH"].endswith("(missing)")
 
 
 def test_bench_sets_simkit_beside_the_bare_engine(world: Path) -> None:

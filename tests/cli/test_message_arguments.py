@@ -16,7 +16,7 @@ def test_a_type_is_said_in_full_or_short(said: str) -> None:
 
 @pytest.mark.parametrize("said", ["std_srvs", "std_srvs/msg/Empty", "std_srvs/srv/Empty/more/words", "Empty", ""])
 def test_what_is_another_type_is_refused(said: str) -> None:
-    with pytest.raises(InputError, match=r"SK-CLI-032 /thing is of type std_srvs/srv/Empty, found '"):
+    with pytest.raises(InputError, match=r"SK-CLI-032 /thing has type std_srvs/srv/Empty, found '"):
         check_type(said, ["std_srvs/srv/Empty"], "/thing")
 
 

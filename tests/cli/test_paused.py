@@ -40,7 +40,7 @@ def test_it_waits_for_a_service_and_then_comes_to_its_end(capfd: pytest.CaptureF
         assert ticks[3:5] == [5, 5]
         assert ticks[-1] == sim.tick == 50
         assert not sim.control.pausing.is_served
-    assert capfd.readouterr().err.count("paused at t=0 s until a service lets it go on") == 1
+    assert capfd.readouterr().err.count("paused at t=0 s until a service resumes it") == 1
 
 
 def test_the_newest_pace_counts_and_the_users_is_newer_than_what_the_world_asked_for_while_it_was_loaded() -> None:

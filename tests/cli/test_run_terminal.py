@@ -81,7 +81,7 @@ def test_a_drive_by_keys_has_the_bits_of_the_same_drive_by_a_script(
         terminal.wait_for("paused at t=0 s: space goes on")
         assert not terminal.shows_keys()
         terminal.press("www\x1b[D")
-        terminal.wait_for(r"asked 0\.15 m/s, 0\.00 m/s left, 0\.10 rad/s")
+        terminal.wait_for(r"requested 0\.15 m/s, 0\.00 m/s left, 0\.10 rad/s")
         terminal.press(" ")
         assert terminal.wait() == 0
         assert terminal.shows_keys()
@@ -109,7 +109,7 @@ def test_space_pauses_and_n_steps_in_every_run_on_a_terminal(folder: Path) -> No
 def test_ctrl_c_ends_a_drive_and_leaves_the_terminal_as_it_was(folder: Path) -> None:
     with run(folder, "--teleop", "--record", "out.mcap") as terminal:
         terminal.press("ww")
-        terminal.wait_for(r"asked 0\.10 m/s")
+        terminal.wait_for(r"requested 0\.10 m/s")
         terminal.press("\x03")
         assert terminal.wait() == 130
         assert terminal.shows_keys()
@@ -126,7 +126,7 @@ def test_ctrl_c_ends_a_run_at_once_however_slow_it_is(folder: Path) -> None:
 
 def test_a_narrow_window_cuts_the_line_and_one_that_grows_shows_it_again(folder: Path) -> None:
     with run(folder, "--teleop", "--paused", size=(10, 30)) as terminal:
-        terminal.wait_for("asked 0.00 m/s, 0.00 m/s left…")
+        terminal.wait_for("requested 0.00 m/s, 0.00 m/s left…")
         terminal.resize(24, 150)
         terminal.wait_for("Ctrl-C ends")
         terminal.press("\x03")
@@ -175,9 +175,9 @@ def test_who_drives_or_looks_on_has_real_time_unless_they_say_otherwise() -> Non
 def test_ctrl_z_gives_the_terminal_back_and_fg_takes_it_again(folder: Path) -> None:
     with shell(folder) as terminal:
         terminal.press("run --teleop\n")
-        terminal.wait_for("asked 0.00")
+        terminal.wait_for("requested 0.00")
         terminal.press("w")
-        terminal.wait_for(r"asked 0\.05 m/s")
+        terminal.wait_for(r"requested 0\.05 m/s")
         terminal.press("\x1a")
         terminal.wait_for("Stopped")
         terminal.wait_for(r"\$ ")
@@ -186,7 +186,7 @@ def test_ctrl_z_gives_the_terminal_back_and_fg_takes_it_again(folder: Path) -> N
         moving(terminal)
         assert not terminal.shows_keys()
         terminal.press("w")
-        terminal.wait_for(r"asked 0\.10 m/s")
+        terminal.wait_for(r"requested 0\.10 m/s")
         terminal.press("\x03")
         terminal.wait_for("simulated ")
         terminal.wait_for(r"\$ ")
@@ -208,7 +208,7 @@ def test_a_run_in_the_background_leaves_the_terminal_alone_until_it_is_in_front(
         moving(terminal)
         moving(terminal)
         terminal.press("ww")
-        terminal.wait_for(r"asked 0\.10 m/s")
+        terminal.wait_for(r"requested 0\.10 m/s")
         terminal.press("\x03")
         terminal.wait_for("simulated ")
         terminal.wait_for(r"\$ ")  # what is typed before belongs to the drive, and goes with it
@@ -219,9 +219,9 @@ def test_a_run_in_the_background_leaves_the_terminal_alone_until_it_is_in_front(
 def test_after_a_kill_that_nobody_can_catch_the_shell_mends_its_terminal(folder: Path) -> None:
     with shell(folder) as terminal:
         terminal.press("run --teleop\n")
-        terminal.wait_for("asked 0.00")
+        terminal.wait_for("requested 0.00")
         terminal.press("w")
-        terminal.wait_for("asked 0.05")
+        terminal.wait_for("requested 0.05")
         found = os.tcgetpgrp(terminal.far)
         os.kill(found, signal.SIGKILL)
         terminal.wait_for("Killed")
@@ -232,7 +232,7 @@ def test_after_a_kill_that_nobody_can_catch_the_shell_mends_its_terminal(folder:
 def test_a_pager_has_the_keys_of_its_terminal_for_itself(folder: Path) -> None:
     with shell(folder) as terminal:
         terminal.press("run --paused | { read -r key </dev/tty; echo go''t $key; }\n")
-        terminal.wait_for("paused at t=0 s until a service lets it go on")
+        terminal.wait_for("paused at t=0 s until a service resumes it")
         terminal.press("   nnn x\n")
         terminal.wait_for("got nnn x")
         terminal.press("\x03")
@@ -242,7 +242,7 @@ def test_a_run_that_is_to_outlive_its_terminal_goes_on_with_the_robot_standing(f
     line = f"trap '' HUP; exec '{sys.executable}' -m simkit run sled.sdf --teleop --duration 2 --record out.mcap"
     terminal = Terminal("sh", "-c", line, cwd=folder)
     terminal.press("ww")
-    terminal.wait_for(r"asked 0\.10 m/s")
+    terminal.wait_for(r"requested 0\.10 m/s")
     os.close(terminal.near)
     os.close(terminal.far)
     assert terminal.process.wait(60) == 0
@@ -257,7 +257,7 @@ def test_a_run_that_is_to_outlive_its_terminal_goes_on_with_the_robot_standing(f
 def test_a_run_whose_terminal_is_closed_ends_with_its_recording_whole(folder: Path) -> None:
     terminal = run(folder, "--teleop", "--record", "out.mcap")
     terminal.press("ww")
-    terminal.wait_for(r"asked 0\.10 m/s")
+    terminal.wait_for(r"requested 0\.10 m/s")
     os.close(terminal.near)
     os.close(terminal.far)
     assert terminal.process.wait(60) == 128 + signal.SIGHUP

@@ -99,7 +99,7 @@ def test_a_timeout_is_a_time_and_waits_for_something(words: tuple[str, ...], yar
 def test_the_wall_time_ends_a_run_that_stands_still(yard: Path) -> None:
     result = run(yard, "--paused", "--wall-timeout", "500ms", "--assert", "time > 1", "--duration", "2")
     assert result.exit_code == 5
-    assert "FAILED  the run was given up after 0.5 s of wall time (--wall-timeout)" in result.stdout
+    assert "FAILED  the run was stopped after 0.5 s of wall time (--wall-timeout)" in result.stdout
     assert "FAILED  time > 1: was not looked at" in result.stdout
 
 
@@ -114,7 +114,7 @@ def test_a_plugin_that_never_comes_back_is_interrupted_and_named(tmp_path: Path)
     command = [sys.executable, "-m", "simkit", *map(str, words)]
     done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
     assert done.returncode == 5, done.stderr
-    assert "the run waits for plugin 'stuck'" in done.stderr and "stuck.py:7 in load" in done.stderr
+    assert "interrupting plugin 'stuck'" in done.stderr and "stuck.py:7 in load" in done.stderr
     assert cases(file) == {"run": "failure"}
 
 

@@ -156,4 +156,4 @@ def test_a_goal_may_be_waited_for_for_ever(yard: Any, simkit_line: Any) -> None:
 def test_what_is_too_large_to_be_sent_is_told(yard: Any, simkit_line: Any) -> None:
     values = '{data: "' + "x" * (17 << 20) + '"}'
     told = simkit_line("topic", "pub", "--once", "-w", "0", "/big", "std_msgs/msg/String", values)
-    assert told.exit_code == 2 and "is too large to be sent; allowed are 16777216" in told.stderr
+    assert told.exit_code == 2 and "is too large to send; allowed are 16777216" in told.stderr

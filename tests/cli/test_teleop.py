@@ -166,7 +166,7 @@ def test_only_what_can_go_sideways_is_driven_sideways() -> None:
     with simkit.load(world(rover("burger"))) as sim:
         teleop = Teleop(sim, find_target(sim))
         assert not teleop.press("j")
-        assert DriverLine(sim, teleop).asked() == "asked 0.00 m/s, 0.00 rad/s"
+        assert DriverLine(sim, teleop).requested() == "requested 0.00 m/s, 0.00 rad/s"
     with simkit.load(world(sled())) as sim:
         teleop, _ = drive(sim, {0.0: "jjjjwwl"}, 1.0)
         assert sim.model("sled").pose.position == pytest.approx([0.1, 0.15, 1.0], abs=0.002)
@@ -187,7 +187,7 @@ def test_a_robot_without_a_driver_is_stopped_and_then_left_to_others() -> None:
         sim.run(2.0)
         teleop.send_due()
         assert teleop.is_expired
-        assert DriverLine(sim, teleop).asked().endswith("stopped since no key came")
+        assert DriverLine(sim, teleop).requested().endswith("stopped after the key timeout")
 
 
 def test_it_is_silent_until_a_key_comes() -> None:
@@ -295,7 +295,7 @@ def test_a_terminal_that_is_gone_stops_the_robot(capfd: pytest.CaptureFixture[st
         assert teleop.next_tick is None
         sim.run(0.5)
         assert sim.model("sled").pose.position[0] == pytest.approx(0.1, abs=1e-3)
-    assert capfd.readouterr().err.count("the terminal is gone") == 1
+    assert capfd.readouterr().err.count("the terminal has closed") == 1
 
 
 # ---------------------------------------------------------------------- whom
@@ -310,9 +310,9 @@ def test_the_topic_is_the_only_one_or_the_one_that_is_named() -> None:
             find_target(sim)
         assert "--teleop /model/a/cmd_vel" in str(raised.value)
         assert find_target(sim, "model/b/cmd_vel").model == "b"
-        with pytest.raises(InputError, match=r"SK-CLI-051 .*nothing takes velocities on '/model/c/cmd_vel'"):
+        with pytest.raises(InputError, match=r"SK-CLI-051 .*'/model/c/cmd_vel' has no subscriber of velocities"):
             find_target(sim, "/model/c/cmd_vel")
-    with simkit.load(world()) as sim, pytest.raises(InputError, match="SK-CLI-051 .*nothing here takes velocities"):
+    with simkit.load(world()) as sim, pytest.raises(InputError, match="SK-CLI-051 .*the world has no velocity topic"):
         find_target(sim)
 
 
@@ -339,7 +339,7 @@ def test_who_wants_a_stamp_gets_one() -> None:
         assert message.twist.linear.x == pytest.approx(0.05)
         assert (message.header.stamp.sec, message.header.stamp.nanosec) == (1, 100_000_000)
         line = DriverLine(sim, teleop)  # whose it is nobody knows
-        assert (line.text(), line.asked()) == ("driving /cmd_vel", "asked 0.05 m/s, 0.00 rad/s")
+        assert (line.text(), line.requested()) == ("driving /cmd_vel", "requested 0.05 m/s, 0.00 rad/s")
 
 
 def test_a_robot_that_is_removed_is_told_and_one_that_comes_back_is_driven() -> None:
@@ -350,7 +350,7 @@ def test_a_robot_that_is_removed_is_told_and_one_that_comes_back_is_driven() -> 
         sim.remove("sled")
         sim.run(0.1)
         teleop.send_due()
-        assert "no topic '/model/sled/cmd_vel'" in DriverLine(sim, teleop).asked()
+        assert "no topic '/model/sled/cmd_vel'" in DriverLine(sim, teleop).requested()
         assert DriverLine(sim, teleop).text() == "driving /model/sled/cmd_vel"
         sim.spawn(robot)
         teleop.press("w")

@@ -133,7 +133,7 @@ def test_several_go_out_at_a_rate_of_simulated_time(yard: Any, simkit_line: Any)
         (("pub", "-1", "/cmd_vel", "geometry_msgs/msg/Twist", "{linear: {x: }"), "SK-CLI-031", "is not YAML"),
         (("pub", "-1", "/cmd_vel", "geometry_msgs/msg/Twist", "[1]"), "SK-CLI-031", "a mapping"),
         (("pub", "-1", "/cmd_vel", "geometry_msgs/msg/Twst", "{}"), "SK-CLI-032", "geometry_msgs/msg/Twist"),
-        (("hz", "/imu", "--filter", "m >"), "SK-CLI-033", "no Python expression"),
+        (("hz", "/imu", "--filter", "m >"), "SK-CLI-033", "is not a Python expression"),
         (("pub", "-1", "-t", "3", "/cmd_vel", "{}"), "SK-CLI-018", "one of them"),
     ],
 )
@@ -169,7 +169,7 @@ def test_without_a_simulation_the_command_says_how_to_start_one(place: Any, simk
 @pytest.mark.parametrize("name", ["", "/", "//", "/a//b", "/a/", "/ä", "~/x", "/{ns}", "/a b"])
 def test_a_topic_that_is_none_is_not_made(name: str, yard: Any, simkit_line: Any) -> None:
     told = simkit_line("topic", "pub", "--once", "-w", "0", "--", name, "std_msgs/msg/Empty", "{}")
-    assert told.exit_code == 2 and "is no name of a topic" in told.stderr
+    assert told.exit_code == 2 and "is not a topic name" in told.stderr
 
 
 def test_times_without_an_end_are_taken(yard: Any, simkit_line: Any) -> None:

@@ -1,5 +1,4 @@
-"""What several commands share: options, output, completion, keyboard, and where topics are read from.
+"""Shared code of several commands: options, output, completion, keyboard, and sources of topics.
 
-Words of a command line enter, values and lines of text leave. Nothing here is a command or imports one, and nothing
-loads MuJoCo, NumPy or rosbags before a command needs them.
+No module here is a command or imports one. No module imports MuJoCo, NumPy or rosbags before a command needs them.
 """

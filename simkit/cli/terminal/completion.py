@@ -1,6 +1,6 @@
-"""Complete words in a shell with names from the running simulation or the bag.
+"""Shell completion with names from the running simulation or the bag.
 
-Each function is given the half-written command by typer; what was written before is in its parameters.
+Typer passes the incomplete command to each function. The words before the completed one are in its parameters.
 """
 
 from __future__ import annotations
@@ -22,29 +22,29 @@ if TYPE_CHECKING:
     from simkit.live import Client
 
 Completer = Callable[[typer.Context, str], list[str]]
-"""Gives the words that fit what was written so far."""
-_PATIENCE = 1.0  # [s] of wall time that a shell is kept waiting
-_WORD_SO_FAR = __name__  # what was written of the word so far, in the meta of the context
+"""Function that returns the completions of an incomplete word."""
+_TIMEOUT = 1.0  # [s] of wall time that a shell waits at most
+_INCOMPLETE = __name__  # key of the incomplete word in the context's meta
 
 
 def _silent(complete: Callable[[typer.Context], Iterable[str]]) -> Completer:
-    """Nothing is offered where something goes wrong: an error in the middle of a prompt helps nobody."""
+    """Return a completer that offers nothing after an error, because an error message would disturb the prompt."""
 
-    def offered(ctx: typer.Context, incomplete: str) -> list[str]:
+    def matching_names(ctx: typer.Context, incomplete: str) -> list[str]:
         try:
-            ctx.meta[_WORD_SO_FAR] = incomplete
+            ctx.meta[_INCOMPLETE] = incomplete
             return [name for name in complete(ctx) if name.startswith(incomplete)]
         except Exception:  # noqa: BLE001
             return []
 
-    return offered
+    return matching_names
 
 
 @contextmanager
 def _client(ctx: typer.Context) -> Iterator[Client]:
     from simkit.live import connect
 
-    with connect(ctx.params.get("sim") or os.environ.get("SIMKIT_SIM"), timeout=_PATIENCE) as client:
+    with connect(ctx.params.get("sim") or os.environ.get("SIMKIT_SIM"), timeout=_TIMEOUT) as client:
         yield client
 
 
@@ -63,14 +63,14 @@ def _source(ctx: typer.Context) -> Iterator[Source]:
 
 
 def _topic_before(ctx: typer.Context) -> str:
-    """The topic that was written before; click leaves it aside while the value of an option is being written."""
+    """Return the topic earlier on the line. While an option's value is completed, click has the topic in `args`."""
     found = ctx.params.get("topic") or next((word for word in ctx.args if not word.startswith("-")), "")
     return absolute_name(found) if found else ""
 
 
 @_silent
 def simulations(_: typer.Context) -> Iterable[str]:
-    """Names of the runs there are."""
+    """Complete names of running simulations."""
     from simkit.live import simulations as running
 
     return [found.name for found in running()]
@@ -78,16 +78,16 @@ def simulations(_: typer.Context) -> Iterable[str]:
 
 @_silent
 def topics(ctx: typer.Context) -> Iterable[str]:
-    """Topics; a name may be begun without its slash."""
+    """Complete topics, with or without the leading slash."""
     with _source(ctx) as source:
         names = list(source.topics())
-    begun = ctx.meta[_WORD_SO_FAR]
-    return names if begun.startswith("/") or not begun else [n.removeprefix("/") for n in names]
+    incomplete = ctx.meta[_INCOMPLETE]
+    return names if incomplete.startswith("/") or not incomplete else [n.removeprefix("/") for n in names]
 
 
 @_silent
 def topic_types(ctx: typer.Context) -> Iterable[str]:
-    """Types of the topic named before; all message types where it has none yet."""
+    """Complete types of the topic earlier on the line; all message types for a topic that does not exist yet."""
     from simkit.msgs.interface_definitions import interface_names
 
     topic = _topic_before(ctx)
@@ -95,8 +95,8 @@ def topic_types(ctx: typer.Context) -> Iterable[str]:
         with _source(ctx) as source:
             found = source.topics().get(topic)
         if found is not None:
-            ends = [t for end in found.subscribers for t in end.types]
-            return dict.fromkeys([*found.types, *ends])
+            subscribed_types = [t for end in found.subscribers for t in end.types]
+            return dict.fromkeys([*found.types, *subscribed_types])
     return interface_names("msg")
 
 
@@ -118,14 +118,14 @@ def interfaces(_: typer.Context) -> Iterable[str]:
 
 @_silent
 def fields(ctx: typer.Context) -> Iterable[str]:
-    """Paths of fields of the topic named before, one level at a time."""
+    """Complete field paths of the topic earlier on the line, one level at a time."""
     from simkit.msgs.message_text import field_nodes
 
     with _source(ctx) as source:
         entry = source.topics()[_topic_before(ctx)]
         type_name = entry.types[0]
         store = source.store(type_name)
-        before, _, _ = ctx.meta[_WORD_SO_FAR].rpartition(".")
+        before, _, _ = ctx.meta[_INCOMPLETE].rpartition(".")
         for name in before.split(".") if before else ():
             node = dict(field_nodes(_full_type_name(type_name, store), store))[name.partition("[")[0]]
             while int(node[0]) in (3, 4):
@@ -142,7 +142,7 @@ def _full_type_name(type_name: str, store: Typestore | None) -> str:
 
 
 def _prototype_of(parameter: str) -> Completer:
-    """Offer a message of the type that the parameter of that name has, to be filled in."""
+    """Return a completer that offers a message template of the type in that parameter."""
 
     def prototypes(ctx: typer.Context) -> list[str]:
         from simkit.msgs.interface_definitions import prototype
@@ -160,13 +160,13 @@ goal_values = _prototype_of("action_type")
 
 
 def _of_client(names: Callable[[Client, typer.Context], Iterable[str]]) -> Completer:
-    """Offer names that a running simulation tells."""
+    """Return a completer that offers names from a running simulation."""
 
-    def told(ctx: typer.Context) -> Iterable[str]:
+    def client_names(ctx: typer.Context) -> Iterable[str]:
         with _client(ctx) as client:
             return list(names(client, ctx))
 
-    return _silent(told)
+    return _silent(client_names)
 
 
 def _nodes_with_parameters(client: Client, _: typer.Context) -> list[str]:
@@ -182,7 +182,7 @@ def _all_nodes(client: Client, _: typer.Context) -> list[str]:
 
 
 def _parameters_of_node(client: Client, ctx: typer.Context) -> Iterable[str]:
-    """Parameters of the node named before."""
+    """Return the parameters of the node earlier on the line."""
     name = absolute_name(str(ctx.params.get("node") or ""))
     names: Iterable[str] = client.call(f"{name}/list_parameters", {}).result.names
     return names
@@ -200,36 +200,36 @@ joints = _of_client(lambda client, ctx: client.model(str(ctx.params["model"]))["
 
 @_silent
 def service_types(ctx: typer.Context) -> Iterable[str]:
-    """The type of the service named before; all service types where there is none."""
+    """Complete the type of the service earlier on the line; all service types if it does not exist."""
     return _types_of_name(ctx, "service", "srv")
 
 
 @_silent
 def action_types(ctx: typer.Context) -> Iterable[str]:
-    """The type of the action named before; all action types where there is none."""
+    """Complete the type of the action earlier on the line; all action types if it does not exist."""
     return _types_of_name(ctx, "action", "action")
 
 
 def _types_of_name(ctx: typer.Context, what: str, kind: str) -> list[str]:
-    """The type of the service or action that was written before; where there is none, all types of that kind."""
+    """Return the type of the service or action earlier on the line; if it does not exist, all types of that kind."""
     from simkit.msgs.interface_definitions import interface_names
 
     name = ctx.params.get(what)
     if name:
         with _client(ctx) as client:
-            there = client.services() if what == "service" else client.actions()
-        if absolute_name(name) in there:
-            return [there[absolute_name(name)]]
+            types = client.services() if what == "service" else client.actions()
+        if absolute_name(name) in types:
+            return [types[absolute_name(name)]]
     return interface_names(kind)
 
 
 @_silent
 def frames(ctx: typer.Context) -> Iterable[str]:
-    """Frames that come over /tf within a moment."""
+    """Complete frames that arrive on /tf within half a second."""
     from simkit.cli.terminal.frame_tree import FrameTree, receive_transforms
 
     with _source(ctx) as source:
         found = FrameTree()
-        for _ in receive_transforms(source, found, duration=_PATIENCE / 2):
+        for _ in receive_transforms(source, found, duration=_TIMEOUT / 2):
             pass
     return found.names()

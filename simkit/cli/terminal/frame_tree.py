@@ -1,4 +1,4 @@
-"""Collect the coordinate frames that transforms on `/tf` and `/tf_static` describe."""
+"""Tree of the coordinate frames in the transforms on `/tf` and `/tf_static`."""
 
 from __future__ import annotations
 
@@ -21,7 +21,14 @@ _TYPE = "tf2_msgs/msg/TFMessage"
 
 @dataclass(frozen=True)
 class FrameTransform:
-    """A frame in the one it hangs on; the time is that of the transform [ns]."""
+    """Pose of a frame in its parent frame.
+
+    Attributes:
+        parent: name of the parent frame.
+        pose: pose of the frame in the parent frame.
+        time_ns: time of the transform [ns].
+        static: True for a transform from `/tf_static`.
+    """
 
     parent: str
     pose: Pose
@@ -30,22 +37,22 @@ class FrameTransform:
 
 
 class FrameTree:
-    """Every frame that was told of, with its newest transform."""
+    """Newest transform of every received frame."""
 
     def __init__(self) -> None:
         self.edges: dict[str, FrameTransform] = {}
 
     def take(self, message: TFMessage, *, static: bool) -> None:
-        """Takes in a `tf2_msgs/msg/TFMessage`."""
-        from simkit import msgs  # NumPy and rosbags, which completing a word does not wait for
+        """Store the transforms of a `tf2_msgs/msg/TFMessage`."""
+        from simkit import msgs  # imported late: NumPy and rosbags would delay shell completion
         from simkit.pose import Pose
 
-        for one in message.transforms:
-            at, turn = one.transform.translation, one.transform.rotation
-            pose = Pose((at.x, at.y, at.z), (turn.w, turn.x, turn.y, turn.z))
-            child = one.child_frame_id.lstrip("/")
+        for stamped in message.transforms:
+            position, rotation = stamped.transform.translation, stamped.transform.rotation
+            pose = Pose((position.x, position.y, position.z), (rotation.w, rotation.x, rotation.y, rotation.z))
+            child = stamped.child_frame_id.lstrip("/")
             self.edges[child] = FrameTransform(
-                one.header.frame_id.lstrip("/"), pose, msgs.stamp_ns(one.header.stamp), static
+                stamped.header.frame_id.lstrip("/"), pose, msgs.stamp_ns(stamped.header.stamp), static
             )
 
     def names(self) -> list[str]:
@@ -53,7 +60,7 @@ class FrameTree:
         return sorted({*self.edges, *(edge.parent for edge in self.edges.values())})
 
     def lines(self) -> list[str]:
-        """The trees, a frame a line, indented by how deep it hangs."""
+        """Return the trees as text, one frame per line, indented by depth."""
         children: dict[str, list[str]] = {}
         for child, edge in sorted(self.edges.items()):
             children.setdefault(edge.parent, []).append(child)
@@ -72,7 +79,11 @@ class FrameTree:
         return found
 
     def chain(self, name: str) -> list[tuple[str, Pose, int]]:
-        """The frame and those above it: name, pose of `name` in it, oldest time on the way [ns] (-1: static only)."""
+        """Return a frame and its ancestors.
+
+        Returns:
+            For each frame: its name, the pose of `name` in it, and the oldest time on the path [ns] (-1: only static).
+        """
         from simkit.pose import Pose
 
         pose, oldest, found = Pose(), -1, [(name, Pose(), -1)]
@@ -85,32 +96,35 @@ class FrameTree:
         return found
 
     def pose_between(self, source: str, target: str) -> tuple[Pose, int] | None:
-        """The pose of `target` in `source`, and its time [ns]; None where they are of separate trees, or unknown."""
+        """Return the pose of `target` in `source` and its time [ns]; None for unknown frames or separate trees."""
         if source not in self.names():
-            return None  # else any name would have its place in itself
-        below = {name: (pose, at) for name, pose, at in reversed(self.chain(source))}
-        for name, pose, at in self.chain(target):
-            if name in below:
-                mine, when = below[name]
-                times = [t for t in (at, when) if t >= 0]
-                return mine.inverse() @ pose, min(times, default=0)
+            return None  # else an unknown frame would have a pose in itself
+        ancestors = {name: (pose, time_ns) for name, pose, time_ns in reversed(self.chain(source))}
+        for name, pose, time_ns in self.chain(target):
+            if name in ancestors:
+                source_pose, source_time_ns = ancestors[name]
+                times = [t for t in (time_ns, source_time_ns) if t >= 0]
+                return source_pose.inverse() @ pose, min(times, default=0)
         return None
 
 
 def receive_transforms(
     source: Source, frames: FrameTree, topics: list[str] | None = None, *, duration: float
 ) -> Iterator[ReceivedMessage]:
-    """Takes transforms into `frames` for so long [s, wall time, from when it is heard]; of a bag, all there are."""
-    there = source.topics()
-    wanted = topics or [t for t in there if t.rpartition("/")[2] in ("tf", "tf_static") and _TYPE in there[t].types]
-    wanted = [t for t in wanted if t in there] or [t for t in _TOPICS if t in there]
-    if not wanted:
-        raise not_found_error("topic", "/tf", list(there), "SK-CLI-030", source.where)
-    static = {t for t in wanted if any(end.latched for end in there[t].publishers) or t.endswith("tf_static")}
+    """Store transforms in `frames` and yield their messages.
+
+    A live source is read for `duration` [s, wall time, from its subscription on]; a bag is read to its end.
+    """
+    known = source.topics()
+    selected = topics or [t for t in known if t.rpartition("/")[2] in ("tf", "tf_static") and _TYPE in known[t].types]
+    selected = [t for t in selected if t in known] or [t for t in _TOPICS if t in known]
+    if not selected:
+        raise not_found_error("topic", "/tf", list(known), "SK-CLI-030", source.where)
+    static = {t for t in selected if any(end.latched for end in known[t].publishers) or t.endswith("tf_static")}
     from simkit import msgs
 
-    msgs.type_of(_TYPE)  # the first use of a type takes a while, which is not to be listening's
-    feed = source.feed(wanted)
+    msgs.type_of(_TYPE)  # the first use of a type is slow; done before the duration begins
+    feed = source.feed(selected)
     until = time.monotonic() + duration
     try:
         while not source.is_live or time.monotonic() < until:
@@ -119,7 +133,7 @@ def receive_transforms(
                 return
             message = source.decode(received)
             if not hasattr(message, "transforms"):
-                text = f"SK-CLI-032 {received.topic} is of type {received.type_name}, allowed is {_TYPE}"
+                text = f"SK-CLI-032 {received.topic} has type {received.type_name}, allowed is {_TYPE}"
                 raise InputError(text, "SK-CLI-032")
             frames.take(message, static=received.topic in static)
             yield received

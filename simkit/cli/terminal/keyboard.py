@@ -1,4 +1,4 @@
-"""Read keys from a terminal without waiting for them, and decode the sequences that a terminal sends."""
+"""Keyboard of a terminal: reads keys without waiting, and decodes the escape sequences of the terminal."""
 
 from __future__ import annotations
 
@@ -12,30 +12,30 @@ from types import FrameType
 from typing import IO, Any, Final
 
 UP, DOWN, LEFT, RIGHT = "up", "down", "left", "right"
-_LONGEST_SEQUENCE: Final = 32  # [bytes] of a sequence: what is longer is none
+_LONGEST_SEQUENCE: Final = 32  # [bytes]; longer byte strings are not a sequence
 _ESCAPE: Final = 0x1B
 _ARROWS: Final = {"A": UP, "B": DOWN, "C": RIGHT, "D": LEFT}
 _WINDOWS_ARROWS: Final = {"H": UP, "P": DOWN, "M": RIGHT, "K": LEFT}
 
 
 class KeyDecoder:
-    """Splits what comes from a terminal into keys; a sequence may come in pieces.
+    """Splitter of terminal input into keys. An escape sequence may arrive in pieces.
 
-    Arrows with a modifier count as arrows; other keys that are sequences (Home, F5, the mouse, the marks around what is
-    pasted) are none.
+    Arrows with a modifier count as arrows. Other escape sequences (Home, F5, the mouse, the marks around pasted text)
+    are ignored.
     """
 
     def __init__(self) -> None:
         self._rest = b""
 
     def decode(self, data: bytes) -> list[str]:
-        """The keys in `data`, after what was left of the data before."""
+        """Return the keys in `data`, including a sequence that began in earlier data."""
         data, self._rest = self._rest + data, b""
         keys: list[str] = []
         at = 0
         while at < len(data):
             if data[at] != _ESCAPE:
-                if data[at] < 0x80:  # the rest of Unicode is no command
+                if data[at] < 0x80:  # no command is outside ASCII
                     keys.append(chr(data[at]))
                 at += 1
                 continue
@@ -52,24 +52,27 @@ class KeyDecoder:
 
 
 def _end_of_sequence(data: bytes, at: int) -> int | None:
-    """Return the end of the sequence that begins at `at`; None where more is to come (ECMA-48: CSI, SS3)."""
+    """Return the end of the sequence that begins at `at`; None if the sequence is incomplete (ECMA-48: CSI, SS3)."""
     if at + 1 >= len(data):
         return None
     kind = data[at + 1]
     if kind == ord("O"):
         return at + 3 if at + 2 < len(data) else None
     if kind != ord("["):
-        return at + 1  # the key Esc, and then another
+        return at + 1  # the key Esc, followed by another key
     for end in range(at + 2, min(len(data), at + _LONGEST_SEQUENCE)):
         if 0x40 <= data[end] <= 0x7E:
             return end + 1
         if not 0x20 <= data[end] <= 0x3F:
-            return end  # broken off
+            return end  # interrupted sequence
     return None
 
 
 def windows_keys(characters: str) -> list[str]:
-    """The keys of what `msvcrt.getwch` gave: an arrow is two characters, the first of them "\\x00" or "\\xe0"."""
+    """Return the keys in the output of `msvcrt.getwch`.
+
+    An arrow is two characters; the first is NUL or 0xE0.
+    """
     keys: list[str] = []
     found = iter(characters)
     for character in found:
@@ -80,38 +83,38 @@ def windows_keys(characters: str) -> list[str]:
     return keys
 
 
-_READ_BYTES: Final = 1024  # [bytes] looked at at a time
+_READ_BYTES: Final = 1024  # [bytes] per read
 _SHOW_CURSOR: Final = b"\x1b[?25h"
 
 
 def open_keyboard(stream: IO[str] | None) -> Keyboard | WindowsKeyboard | None:
-    """Reads the keys of a terminal; None where `stream` is none."""
+    """Open the keyboard of a terminal; return None if `stream` is not a terminal."""
     try:
         if stream is None or not stream.isatty():
             return None
         file = stream.fileno()
-    except (OSError, ValueError):  # closed, or no file at all
+    except (OSError, ValueError):  # the stream is closed, or has no file descriptor
         return None
     return WindowsKeyboard() if sys.platform == "win32" else Keyboard(file)
 
 
 class Keyboard:
-    """The keys of a terminal; a context manager.
+    """Keyboard of a terminal; a context manager.
 
-    A process in the background leaves the terminal alone, for the system would stop it (SIGTTIN, SIGTTOU); when it is
-    brought to the foreground it reads keys again.
+    A background process must not touch the terminal, or the system stops the process (SIGTTIN, SIGTTOU). Reading
+    resumes when the process comes to the foreground.
 
     Args:
-        file: the terminal's file descriptor.
+        file: file descriptor of the terminal.
 
     Attributes:
-        is_lost: whether the terminal is gone: no key will come any more.
+        is_lost: True after the terminal has closed; no more keys can arrive.
     """
 
     def __init__(self, file: int) -> None:
         self._file = file
         self._decoder = KeyDecoder()
-        self._original_modes: list[int | list[bytes | int]] | None = None  # the terminal's modes, as they were found
+        self._original_modes: list[int | list[bytes | int]] | None = None  # modes before key mode
         self._is_key_mode = False
         self._handlers: dict[int, Any] = {}
         self.is_lost = False
@@ -119,7 +122,7 @@ class Keyboard:
     def __enter__(self) -> Keyboard:
         if threading.current_thread() is threading.main_thread():
             for number, handler in ((signal.SIGTSTP, self._suspend), (signal.SIGCONT, self._continue)):
-                if signal.getsignal(number) is signal.SIG_DFL:  # somebody ignores them, or has ideas of their own
+                if signal.getsignal(number) is signal.SIG_DFL:  # keep a handler that is already set
                     self._handlers[number] = signal.signal(number, handler)
         self._enter_key_mode()
         return self
@@ -131,7 +134,10 @@ class Keyboard:
         self._restore_modes(drop_keys=True)
 
     def read(self) -> list[str]:
-        """The keys pressed since it was last asked, the oldest first; at once, and of a flood only the first ones."""
+        """Return the keys pressed since the last call, the oldest first, without waiting.
+
+        One call reads at most 1024 bytes.
+        """
         if self.is_lost or not (self._is_key_mode or self._enter_key_mode()):
             return []
         try:
@@ -183,7 +189,7 @@ class Keyboard:
         if not self._is_foreground():
             return
         try:
-            if drop_keys:  # keys that nobody has taken are none of the shell's
+            if drop_keys:  # unread keys must not reach the shell
                 termios.tcflush(self._file, termios.TCIFLUSH)
             termios.tcsetattr(self._file, termios.TCSANOW, self._original_modes)
         except termios.error:
@@ -192,16 +198,16 @@ class Keyboard:
     # ------------------------------------------------------------------ Ctrl-Z and fg
 
     def _suspend(self, number: int, _: FrameType | None) -> None:
-        """Ctrl-Z: leaves the terminal to the shell, with its cursor, and stops as it would have without us."""
+        """Restore the terminal and its cursor for the shell, then stop the process as Ctrl-Z does."""
         self._restore_modes(drop_keys=False)
         if sys.stdout is not None and _is_terminal(sys.stdout.fileno):
             os.write(sys.stdout.fileno(), _SHOW_CURSOR)
         before = signal.signal(number, signal.SIG_DFL)
-        signal.pthread_kill(threading.get_ident(), number)  # of this thread, so that it stops here and not later
+        signal.pthread_kill(threading.get_ident(), number)  # to this thread: stops here, not later
         signal.signal(number, before)
 
     def _continue(self, _: int, __: FrameType | None) -> None:
-        """fg or bg: the terminal's modes are looked at anew."""
+        """Read the terminal's modes again after the shell's `fg` or `bg`."""
         self._is_key_mode = False
 
 
@@ -213,7 +219,7 @@ def _is_terminal(fileno: Callable[[], int]) -> bool:
 
 
 class WindowsKeyboard:
-    """The same of a console on Windows, which has no modes to be changed."""
+    """Keyboard of a Windows console, which has no modes to change."""
 
     is_lost = False
 
@@ -224,7 +230,7 @@ class WindowsKeyboard:
         pass
 
     def read(self) -> list[str]:
-        """The keys pressed since it was last asked, the oldest first."""
+        """Return the keys pressed since the last call, the oldest first."""
         import msvcrt
 
         characters = ""

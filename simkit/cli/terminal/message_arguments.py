@@ -1,4 +1,4 @@
-"""Parse the types, YAML values and patterns that commands for topics and services are given."""
+"""Parsers for types, YAML values and patterns on the command lines for topics, services and actions."""
 
 from __future__ import annotations
 
@@ -11,14 +11,18 @@ from simkit.errors import InputError, MessageError
 from simkit.yaml_reader import NotYaml, read_yaml
 
 _TYPE_FORM: Final = re.compile(r"[A-Za-z]\w*(/\w+){1,2}")
-_SHOWN: Final = 200  # letters of a text that are shown where it is wrong
+_SHOWN: Final = 200  # characters of an invalid text in an error message
 
 
 def parse_fields(text: str, what: str) -> JsonObject:
-    """The mapping that a YAML text on the command line stands for; an empty text for none of its fields.
+    """Parse a YAML mapping of fields on the command line; an empty text is an empty mapping.
+
+    Args:
+        text: YAML text.
+        what: description of the text, for error messages.
 
     Raises:
-        InputError: SK-CLI-031 it is no YAML, or no mapping.
+        InputError: SK-CLI-031 the text is not YAML, or not a mapping.
     """
     shown = repr(text) if len(text) <= _SHOWN else f"{text[:_SHOWN]!r}…"
     try:
@@ -28,40 +32,40 @@ def parse_fields(text: str, what: str) -> JsonObject:
     if found is None:
         return {}
     if not isinstance(found, dict) or any(not isinstance(key, str) for key in found):
-        told = f"{what}: found {shown}, allowed is a mapping of fields such as '{{linear: {{x: 0.2}}}}'"
-        raise InputError(f"SK-CLI-031 {told}", "SK-CLI-031")
+        message = f"{what}: found {shown}, allowed is a mapping of fields such as '{{linear: {{x: 0.2}}}}'"
+        raise InputError(f"SK-CLI-031 {message}", "SK-CLI-031")
     return found
 
 
 def split_type_and_values(type_name: str | None, values: str | None) -> tuple[str | None, str | None]:
-    """The two arguments; values alone stand in the place of the type."""
+    """Return type and values; values given in place of the type become the values."""
     if type_name is not None and values is None and not _TYPE_FORM.fullmatch(type_name):
         return None, type_name
     return type_name, values
 
 
-def is_same_type(said: str, type_name: str) -> bool:
-    """Check whether a type name means a full name: `geometry_msgs/msg/Twist`, or `geometry_msgs/Twist` for it."""
+def is_same_type(short_or_full: str, type_name: str) -> bool:
+    """Check whether a name means a type: `geometry_msgs/msg/Twist`, or `geometry_msgs/Twist` for short."""
     package, _, rest = type_name.partition("/")
-    return said in (type_name, f"{package}/{rest.rpartition('/')[2]}")
+    return short_or_full in (type_name, f"{package}/{rest.rpartition('/')[2]}")
 
 
-def check_type(said: str | None, types: Iterable[str], name: str) -> None:
-    """Sees to it that a topic, service or action is of the type that was said, where one was.
+def check_type(expected: str | None, types: Iterable[str], name: str) -> None:
+    """Check that a topic, service or action has the expected type, if a type was given.
 
     Raises:
-        InputError: SK-CLI-032 it is of another.
+        InputError: SK-CLI-032 the type differs.
     """
     types = list(types)
-    if said is not None and not any(is_same_type(said, one) for one in types):
-        raise InputError(f"SK-CLI-032 {name} is of type {', '.join(types)}, found {said!r}", "SK-CLI-032")
+    if expected is not None and not any(is_same_type(expected, known) for known in types):
+        raise InputError(f"SK-CLI-032 {name} has type {', '.join(types)}, found {expected!r}", "SK-CLI-032")
 
 
 def make_message(type_name: str, fields: JsonObject) -> object:
-    """A message of the fields that were given.
+    """Build a message from its fields.
 
     Raises:
-        InputError: SK-CLI-031 they do not fit the type.
+        InputError: SK-CLI-031 the fields do not match the type.
     """
     from simkit import msgs
 
@@ -72,12 +76,12 @@ def make_message(type_name: str, fields: JsonObject) -> object:
 
 
 def compile_pattern(text: str | None, option: str) -> re.Pattern[str] | None:
-    """The regular expression that was given with an option, where one was.
+    """Compile the regular expression of an option; None if the option is missing.
 
     Raises:
-        InputError: SK-CLI-031 it is none.
+        InputError: SK-CLI-031 the text is not a regular expression.
     """
     try:
         return None if text is None else re.compile(text)
     except re.error as error:
-        raise InputError(f"SK-CLI-031 {option}: {text!r} is no regular expression: {error}", "SK-CLI-031") from None
+        raise InputError(f"SK-CLI-031 {option}: {text!r} is not a regular expression: {error}", "SK-CLI-031") from None

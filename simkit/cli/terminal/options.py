@@ -30,15 +30,16 @@ def option(
     """Declare an option with a value.
 
     Args:
-        help: what it does.
-        metavar: stands for the value.
-        names: the option's names; the parameter's where none is given.
-        min, max: bounds of a number.
-        show_default: whether the help names the default.
-        complete: gives the words that the shell offers.
-        parser: converts the text.
+        help: help text.
+        metavar: placeholder of the value in the help.
+        names: names of the option; default: the parameter's name.
+        min: lowest allowed number.
+        max: highest allowed number.
+        show_default: True to show the default in the help.
+        complete: function for shell completion.
+        parser: conversion of the text.
     """
-    made: OptionInfo = Option(
+    info: OptionInfo = Option(
         *names,
         help=help,
         metavar=metavar,
@@ -48,87 +49,81 @@ def option(
         autocompletion=complete,
         parser=parser,
     )
-    return made
+    return info
 
 
 def argument(help: str, metavar: str | None = None, complete: completion.Completer | None = None) -> ArgumentInfo:
-    """Declare an argument whose default the help does not name.
+    """Declare an argument without a default in its help.
 
     Args:
-        help: what it means.
-        metavar: stands for it; the parameter's name where none is given.
-        complete: gives the words that the shell offers.
+        help: help text.
+        metavar: placeholder in the help; default: the parameter's name.
+        complete: function for shell completion.
     """
-    made: ArgumentInfo = Argument(help=help, metavar=metavar, show_default=False, autocompletion=complete)
-    return made
+    info: ArgumentInfo = Argument(help=help, metavar=metavar, show_default=False, autocompletion=complete)
+    return info
 
 
-World = Annotated[str, argument("A file, or the bare name of a world or model that comes with simkit.")]
-File = Annotated[str, argument("A world or model file, or a bare name.")]
+World = Annotated[str, argument("World or model file, or the bare name of a world or model of simkit.")]
+File = Annotated[str, argument("World or model file, or a bare name.")]
 ResourcePaths = Annotated[
     list[Path],
-    option("One more folder for model://, package:// and relative URIs; repeatable.", "DIR", "--resource-path"),
+    option("Search folder for model://, package:// and relative URIs; repeatable.", "DIR", "--resource-path"),
 ]
-PackagePaths = Annotated[
-    list[str], option("Where the ROS package NAME lies; repeatable.", "NAME=DIR", "--package-path")
-]
-XacroArgs = Annotated[list[str], option("An argument of a xacro file; repeatable.", "NAME=VALUE", "--xacro-arg")]
+PackagePaths = Annotated[list[str], option("Folder of the ROS package NAME; repeatable.", "NAME=DIR", "--package-path")]
+XacroArgs = Annotated[list[str], option("Argument of a xacro file; repeatable.", "NAME=VALUE", "--xacro-arg")]
 Base = Annotated[
     str,
-    option("A bare model stands: fixed, floating, or auto (floating unless joined to the world).", "BASE", "--base"),
+    option("Base of a bare model: fixed, floating, or auto (floating unless joined to the world).", "BASE", "--base"),
 ]
-PluginPaths = Annotated[
-    list[Path], option("Allows the Python plugins in that folder; repeatable.", "DIR", "--plugin-path")
-]
+PluginPaths = Annotated[list[Path], option("Folder of Python plugins to allow; repeatable.", "DIR", "--plugin-path")]
 ParamsFiles = Annotated[
     list[str],
     option(
-        "Controllers and their parameters, for all control plugins or for those of one model; repeatable.",
+        "Controller parameter file, for all control plugins or for those of one model; repeatable.",
         "[MODEL=]FILE.yaml",
         "--params-file",
     ),
 ]
 Overrides = Annotated[
-    list[str], option("Changes one value: scoped::name.element=VALUE; repeatable.", "PATH=VALUE", "--set")
+    list[str], option("Override one value: scoped::name.element=VALUE; repeatable.", "PATH=VALUE", "--set")
 ]
-Spawns = Annotated[
-    list[str], option("Puts a model into the world, by name or file; repeatable.", "MODEL:x,y,yaw[:name]", "--spawn")
-]
-CmdVel = Annotated[str | None, option("Sends one velocity: m/s forward, rad/s to the left.", "V,W", "--cmd-vel")]
-Script = Annotated[Path | None, option("Commands over time.", "FILE.yaml", "--script")]
-Seed = Annotated[int | None, option("Seed of all noise.", "N", "--seed", min=0)]
-Strict = Annotated[bool, Option("--strict", help="Warnings are errors.")]
-Json = Annotated[bool, Option("--json", help="For programs: one JSON value.")]
-Verbose = Annotated[bool, Option("--verbose", "-v", help="Shows every note, not only how many there are.")]
-Force = Annotated[bool, Option("--force", help="Replaces what is there already.")]
+Spawns = Annotated[list[str], option("Spawn a model, by name or file; repeatable.", "MODEL:x,y,yaw[:name]", "--spawn")]
+CmdVel = Annotated[str | None, option("Send a constant velocity: m/s forward, rad/s left.", "V,W", "--cmd-vel")]
+Script = Annotated[Path | None, option("Script of timed commands.", "FILE.yaml", "--script")]
+Seed = Annotated[int | None, option("Seed of all random streams.", "N", "--seed", min=0)]
+Strict = Annotated[bool, Option("--strict", help="Treat warnings as errors.")]
+Json = Annotated[bool, Option("--json", help="Print JSON.")]
+Verbose = Annotated[bool, Option("--verbose", "-v", help="Show every note instead of their number.")]
+Force = Annotated[bool, Option("--force", help="Overwrite existing files.")]
 Sim = Annotated[
     str | None,
     Option(
         "--sim",
         envvar="SIMKIT_SIM",
-        help="The run to talk to, where there are several: its --name, else its world's.",
+        help="Name of the running simulation, if several run: its --name, else its world's name.",
         metavar="NAME",
         show_envvar=True,
         autocompletion=completion.simulations,
     ),
 ]
-Bag = Annotated[Path | None, option("Reads a bag instead: an .mcap file or a folder of rosbag2.", "BAG", "--bag")]
-Recording = Annotated[Path, argument("An .mcap or .db3 file, or a folder of rosbag2.", "BAG")]
-ShowTypes = Annotated[bool, Option("--show-types", "-t", help="Shows the types too.")]
-Topic = Annotated[str, argument("Name of a topic, such as /odom.", "TOPIC", completion.topics)]
-ChartFile = Annotated[Path, option("The file: .svg or .png.", "OUT", "--output", "-o")]
-Against = Annotated[str | None, option("Draws over this field in place of time.", "FIELD", show_default=False)]
-Start = Annotated[float | None, option("Leaves out what was before.", "S", "--start")]
-End = Annotated[float | None, option("Leaves out what was after.", "S", "--end")]
-Title = Annotated[str, option("Above the chart.", "TEXT", show_default=False)]
+Bag = Annotated[Path | None, option("Read a bag instead: an .mcap file or a rosbag2 folder.", "BAG", "--bag")]
+Recording = Annotated[Path, argument("Bag: an .mcap or .db3 file, or a rosbag2 folder.", "BAG")]
+ShowTypes = Annotated[bool, Option("--show-types", "-t", help="Show the types, too.")]
+Topic = Annotated[str, argument("Name of the topic, such as /odom.", "TOPIC", completion.topics)]
+ChartFile = Annotated[Path, option("Chart to write: .svg or .png.", "OUT", "--output", "-o")]
+Against = Annotated[str | None, option("Field for the x axis instead of time.", "FIELD", show_default=False)]
+Start = Annotated[float | None, option("Start time.", "S", "--start")]
+End = Annotated[float | None, option("End time.", "S", "--end")]
+Title = Annotated[str, option("Title of the chart.", "TEXT", show_default=False)]
 _BASES = ("auto", "fixed", "floating")
 
 
 def parse_pairs(texts: Sequence[str], option: str) -> dict[str, str]:
-    """`NAME=VALUE` texts as a mapping.
+    """Parse `NAME=VALUE` texts to a mapping.
 
     Raises:
-        InputError: SK-CLI-018 a text is of another form.
+        InputError: SK-CLI-018 a text has another form.
     """
     found: dict[str, str] = {}
     for text in texts:
@@ -140,10 +135,10 @@ def parse_pairs(texts: Sequence[str], option: str) -> dict[str, str]:
 
 
 def validate_word(name: str, word: str, allowed: Sequence[str]) -> str:
-    """Validate the word that an option was given.
+    """Validate the value of an option with fixed choices.
 
     Raises:
-        InputError: SK-CLI-018 it is none of those that are allowed; names the closest.
+        InputError: SK-CLI-018 the value is not allowed; the message suggests the closest choice.
     """
     if word not in allowed:
         hint = did_you_mean(word, allowed)
@@ -155,7 +150,7 @@ def validate_word(name: str, word: str, allowed: Sequence[str]) -> str:
 def source_arguments(
     resource_paths: Sequence[Path], package_paths: Sequence[str], xacro_args: Sequence[str], base: str = "auto"
 ) -> SourceOptions:
-    """The options that say how a file is read, as keyword arguments."""
+    """Return the options for reading a file as keyword arguments."""
     return {
         "resource_paths": resource_paths,
         "package_paths": parse_pairs(package_paths, "--package-path"),
@@ -170,10 +165,10 @@ _WITH_VALUE = frozenset({"--spin-time", "--node-name", *(f"--qos-{name}" for nam
 
 
 class Ros2Command(TyperCommand):
-    """A command that takes what `ros2` has for its network and daemon, and does without: there is neither here."""
+    """Command that accepts and ignores the network and daemon options of `ros2`: simkit has neither."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Leaves those options out."""
+        """Remove the ignored options and parse the rest."""
         return super().parse_args(ctx, list(_remove_ros2_flags(args)))
 
 
@@ -190,11 +185,13 @@ def _remove_ros2_flags(args: list[str]) -> Iterator[str]:
 
 
 def live_command(group: Typer, name: str | None = None) -> Callable[[Callable[P, int | None]], Callable[P, None]]:
-    """Add a command to a group, as `ros2` has it: it takes and leaves out those options, and Ctrl-C ends it quietly.
+    """Add a command for a running simulation to a group, in the style of `ros2`.
+
+    The command ignores the network and daemon options of `ros2`. Ctrl-C ends it without a message.
 
     Args:
-        group: of the commands.
-        name: the command's; the function's where none is given.
+        group: group of commands.
+        name: name of the command; default: the function's name.
     """
 
     def add(command: Callable[P, int | None]) -> Callable[P, None]:

@@ -1,4 +1,4 @@
-"""Print results on standard output and everything about them on standard error; turn errors into exit codes."""
+"""Output of commands: results on standard output, messages on standard error, and exit codes for errors."""
 
 from __future__ import annotations
 
@@ -24,20 +24,20 @@ if TYPE_CHECKING:
     from simkit.diagnostics import Diagnostic
 
 
-# Value that JSON or YAML can hold.
+# Value of JSON or YAML.
 JsonValue = Any
 JsonObject = dict[str, JsonValue]
-"""Object of JSON, as Python has it."""
+"""JSON object as a Python dict."""
 P = ParamSpec("P")
 INTERRUPTED = 130
-_MOST_LISTED, _MOST_ERRORS_LISTED = 12, 200  # entries of one code that are listed
-_PLACES = 8  # further places of equal ones that are listed
+_MOST_LISTED, _MOST_ERRORS_LISTED = 12, 200  # listed entries of one code
+_PLACES = 8  # listed further places of one entry
 _STYLES = {"error": "bold red", "warning": "yellow", "note": "cyan"}
 
 
 @functools.cache
 def stdout_console() -> Console:
-    """Standard output."""
+    """Console of standard output."""
     from rich.console import Console
 
     return Console(highlight=False, markup=False, emoji=False, soft_wrap=True)
@@ -45,14 +45,17 @@ def stdout_console() -> Console:
 
 @functools.cache
 def stderr_console() -> Console:
-    """Standard error."""
+    """Console of standard error."""
     from rich.console import Console
 
     return Console(stderr=True, highlight=False, markup=False, emoji=False, soft_wrap=True)
 
 
 def print_status(text: str) -> None:
-    """Print a line of status on standard error, above the progress of a run, which listens to `sys.stderr` alone."""
+    """Print a status line on standard error, above the progress of a run.
+
+    The progress display intercepts only `sys.stderr`, so this function does not use the console.
+    """
     if sys.stderr is not None:
         sys.stderr.write(f"{text}\n")
         sys.stderr.flush()
@@ -61,9 +64,10 @@ def print_status(text: str) -> None:
 def print_diagnostics(
     found: Iterable[Diagnostic], *, verbose: bool, console: Console | None = None, every: bool = False
 ) -> None:
-    """Errors and warnings one by one; notes too where `verbose`, else how many there are.
+    """Print errors and warnings one by one; notes as well with `verbose`, else only their number.
 
-    Equal ones are one entry with all its places, and of one code no more than some are listed, unless `every`.
+    Equal diagnostics form one entry with all places. At most 12 entries of one code are listed (200 for errors), unless
+    `every` is set.
     """
     target = console or stderr_console()
     notes: Counter[str] = Counter()
@@ -84,17 +88,17 @@ def print_diagnostics(
         _print_entry(equal, target)
     for (severity, code), count in left_out.items():
         target.print(
-            f"{count} more {severity}{'s' if count > 1 else ''} {code}; simkit check --all lists them", style="dim"
+            f"{count} more {severity}{'s' if count > 1 else ''} {code}; list all with `simkit check --all`", style="dim"
         )
     if notes:
         names = ", ".join(f"{code} × {count}" if count > 1 else code for code, count in sorted(notes.items()))
         total = sum(notes.values())
-        say = f"{total} notes ({names}); --verbose shows them" if total > 1 else f"1 note ({names}); --verbose shows it"
-        target.print(say, style="dim")
+        text = f"{total} note{'s' if total > 1 else ''} ({names}); show with --verbose"
+        target.print(text, style="dim")
 
 
 def _print_entry(equal: list[Diagnostic], target: Console) -> None:
-    """Print one problem with the places where it was found."""
+    """Print one problem with all places where it was found."""
     from rich.text import Text
 
     d = equal[0]
@@ -108,7 +112,7 @@ def _print_entry(equal: list[Diagnostic], target: Console) -> None:
         others = [f":{o.line}" if o.file == d.file and o.line else _location(o) for o in equal[1 : _PLACES + 1]]
         rest = len(equal) - 1 - len(others)
         more = f" and {rest} more" if rest else ""
-        line.append(f"\n    the same at {', '.join(others)}{more}", style="dim")
+        line.append(f"\n    also at {', '.join(others)}{more}", style="dim")
     target.print(line)
 
 
@@ -117,14 +121,14 @@ def _location(d: Diagnostic) -> str:
 
 
 def print_error(error: SimkitError) -> None:
-    """Print an error; with a traceback only for a plugin, of the plugin's own code."""
+    """Print an error. Only a plugin's error has a traceback, limited to the plugin's own code."""
     if isinstance(error, LoadError):
         print_diagnostics(error.diagnostics, verbose=False)
         count = sum(d.severity == "error" for d in error.diagnostics)
         if count:
             stderr_console().print(f"{count} error{'s' if count > 1 else ''}; nothing was run", style="bold")
         else:
-            stderr_console().print("warnings are errors here (--strict); nothing was run", style="bold")
+            stderr_console().print("--strict treats warnings as errors; nothing was run", style="bold")
         return
     if isinstance(error, PluginError) and error.__cause__ is not None:
         sys.stderr.write("".join(traceback.format_exception(error.__cause__)))
@@ -135,7 +139,7 @@ def print_error(error: SimkitError) -> None:
 
 
 def report_errors(command: Callable[P, int | None]) -> Callable[P, None]:
-    """Maps what a command raises to the exit codes: no traceback for what the user can mend."""
+    """Convert the errors of a command to messages and exit codes, without a traceback for errors of the user."""
 
     @functools.wraps(command)
     def run(*args: P.args, **kwargs: P.kwargs) -> None:
@@ -148,17 +152,17 @@ def report_errors(command: Callable[P, int | None]) -> Callable[P, None]:
             print_status(f"interrupted {stopped}".rstrip())
             raise typer.Exit(INTERRUPTED) from None
         except BrokenPipeError:
-            # Whoever read our output has gone; closing standard output again would complain a second time.
+            # The reader of the output has ended. Closing standard output again would raise a second error.
             sys.stdout = None
             raise typer.Exit(0) from None
         except OSError as error:
-            if error.errno == errno.EIO:  # a terminal that is gone, which may be seen before its signal comes
+            if error.errno == errno.EIO:  # the terminal has closed, and its signal may arrive later
                 sys.stdout = sys.stderr = None
                 raise typer.Exit(_hang_up_exit_code()) from None
             if error.errno not in (errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC)):
                 raise
             sys.stdout = None
-            print_status(f"error: what was to be written found no room: {error.strerror}")
+            print_status(f"error: cannot write the output: {error.strerror}")
             raise typer.Exit(1) from None
         if code:
             raise typer.Exit(int(code))
@@ -167,7 +171,7 @@ def report_errors(command: Callable[P, int | None]) -> Callable[P, None]:
 
 
 def _hang_up_exit_code() -> int:
-    """The exit code of who has lost its terminal: none of an error where that is not to matter (`nohup`)."""
+    """Return the exit code after the terminal has closed: 0 if the process ignores that (`nohup`)."""
     hang_up = getattr(signal, "SIGHUP", None)
     return 0 if hang_up is None or signal.getsignal(hang_up) is signal.SIG_IGN else 128 + hang_up
 
@@ -196,7 +200,7 @@ def _json_value(value: object) -> object:
 
 
 def report_errors_quietly(command: Callable[P, int | None]) -> Callable[P, None]:
-    """`report_errors`, and an interrupt is the way to end it: no word about that, exit code 130."""
+    """Wrap a command like `report_errors`; Ctrl-C ends it without a message, with exit code 130."""
 
     @functools.wraps(command)
     def run(*args: P.args, **kwargs: P.kwargs) -> int:
@@ -209,7 +213,7 @@ def report_errors_quietly(command: Callable[P, int | None]) -> Callable[P, None]
 
 
 def print_names(names: Sequence[str], *, count: bool = False, json_: bool) -> None:
-    """Names, one a line, or how many there are."""
+    """Print names, one per line, or their number."""
     if json_:
         print_json(len(names) if count else list(names))
     else:
@@ -218,7 +222,7 @@ def print_names(names: Sequence[str], *, count: bool = False, json_: bool) -> No
 
 
 def print_names_and_types(types: Mapping[str, str], *, show_types: bool, count: bool, json_: bool) -> None:
-    """Names, with their types where asked for, one a line, or how many there are."""
+    """Print names, one per line, optionally with their types, or their number."""
     if json_ and not count:
         print_json([{"name": name, "types": [type_name]} for name, type_name in types.items()])
     else:
@@ -227,20 +231,20 @@ def print_names_and_types(types: Mapping[str, str], *, show_types: bool, count: 
 
 
 def not_found_error(
-    what: str, name: str, there: Sequence[str] | Mapping[str, object], code: str, where: str
+    noun: str, name: str, known: Sequence[str] | Mapping[str, object], code: str, where: str
 ) -> InputError:
     """Make a 'not found' error that suggests the closest name or lists all names."""
-    names = list(there)
+    names = list(known)
     listed = ", ".join(names[:20]) + (f" and {len(names) - 20} more" if len(names) > 20 else "")
-    hint = did_you_mean(name, names) or ("there is " + listed if names else "there is none")
-    return InputError(f"{code} no {what} {name!r} in {where}; {hint}", code)
+    hint = did_you_mean(name, names) or ("known: " + listed if names else f"there are no {noun}s")
+    return InputError(f"{code} no {noun} {name!r} in {where}; {hint}", code)
 
 
 def absolute_name(name: str) -> str:
-    """The name with its leading slash."""
+    """Add a leading slash to a name, unless it has one."""
     return name if name.startswith("/") else f"/{name}"
 
 
 def is_hidden(name: str) -> bool:
-    """Check whether a part of a topic's or service's name begins with `_`, which ROS 2 leaves out of lists."""
+    """Check whether a part of a name begins with `_`. ROS 2 leaves such names out of lists."""
     return any(part.startswith("_") for part in name.split("/"))

@@ -1,4 +1,4 @@
-"""Convert parameter values between text, YAML files and `rcl_interfaces/msg/ParameterValue`."""
+"""Conversion of parameter values between text, YAML files and `rcl_interfaces/msg/ParameterValue`."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ _KIND_BY_TYPE: Final[dict[type, int]] = {bool: 1, int: 2, float: 3, str: 4}
 
 
 def plain_value(parameter: ParameterValue) -> JsonValue:
-    """The value in a ParameterValue, as plain Python."""
+    """Return the value of a ParameterValue as a plain Python value."""
     field = _FIELDS[int(parameter.type)]
     found: JsonValue = getattr(parameter, field, None)
     return found.tolist() if hasattr(found, "tolist") else found
 
 
 def parse_parameter_value(text: str) -> JsonObject:
-    """A text on the command line as a ParameterValue, of the type that YAML reads it as; else it is a text."""
+    """Parse a text on the command line to a ParameterValue; YAML determines the type, and invalid YAML is a string."""
     try:
         found = read_yaml(text)
     except NotYaml:
@@ -46,7 +46,7 @@ def parse_parameter_value(text: str) -> JsonObject:
 
 
 def parameter_value(found: JsonValue) -> JsonObject | None:
-    """Plain Python as a ParameterValue; None where no type of parameter is like it."""
+    """Convert a plain Python value to a ParameterValue; None if no parameter type matches."""
     if isinstance(found, list):
         kinds = {type(item) for item in found}
         if kinds == {int, float}:
@@ -61,10 +61,13 @@ def parameter_value(found: JsonValue) -> JsonObject | None:
 
 
 def read_parameter_file(path: Path, node: str, *, wildcard: bool) -> list[tuple[str, JsonObject]]:
-    """Read the parameters of a node from a file: names and ParameterValues, those for all nodes first.
+    """Read the parameters of a node from a file.
+
+    Returns:
+        Names and ParameterValues; those for all nodes come first.
 
     Raises:
-        InputError: SK-CLI-041 it cannot be read, or says nothing of this node.
+        InputError: SK-CLI-041 the file is invalid, or has no parameters of this node.
     """
     try:
         root = read_yaml(path.read_text(encoding="utf-8"))
@@ -73,7 +76,7 @@ def read_parameter_file(path: Path, node: str, *, wildcard: bool) -> list[tuple[
     except NotYaml as error:
         raise _file_error(path, f"is not YAML: {error}") from None
     if not isinstance(root, dict):
-        raise _file_error(path, "holds no mapping of nodes to their ros__parameters")
+        raise _file_error(path, "is not a mapping of nodes to ros__parameters")
     found: JsonObject = {}
     for key in ("/**", node.rpartition("/")[2], node):
         block = root.get(key) if key != "/**" or wildcard else None
@@ -83,11 +86,11 @@ def read_parameter_file(path: Path, node: str, *, wildcard: bool) -> list[tuple[
             raise _file_error(path, f"{key}: has no ros__parameters")
         found |= _flatten(block["ros__parameters"], "")
     if not found:
-        raise _file_error(path, f"says nothing of {node}; it has {', '.join(map(str, root)) or 'nothing'}")
+        raise _file_error(path, f"has no parameters of {node}; it has {', '.join(map(str, root)) or 'no nodes'}")
     values = {name: parameter_value(value) for name, value in found.items()}
     for name, value in values.items():
         if value is None:
-            raise _file_error(path, f"{name}: found {found[name]!r}, which no parameter can be")
+            raise _file_error(path, f"{name}: found {found[name]!r}, which is not a valid parameter value")
     return [(name, value) for name, value in values.items() if value is not None]
 
 

@@ -1,4 +1,4 @@
-"""Show the progress of a run on a terminal: simulated time, real-time factor, topics with their rates."""
+"""Progress display of a run on a terminal: simulated time, real-time factor, and topics with their rates."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ if TYPE_CHECKING:
     from simkit.recording.topic_counts import TopicCount, TopicCounter
     from simkit.runtime import Simulation
 
-_REFRESH = 0.25  # [s] of wall time between two pictures of the progress
-_REFRESH_LINES = 0.1  # where somebody drives by it
+_REFRESH = 0.25  # [s] of wall time between two updates of the display
+_REFRESH_LINES = 0.1  # [s] of wall time, for keyboard driving
 _FACTOR_WINDOW = 1.0  # [s] of wall time
 
 
 def rate_text(row: TopicCount) -> str:
-    """The true rate of a topic up to `now` [ns], or why there is none."""
+    """Format the measured rate of a topic; a dash if it has too few messages, "not read" if it is not counted."""
     if not row.counted:
         return "not read"
     rate = row.rate()
@@ -27,14 +27,14 @@ def rate_text(row: TopicCount) -> str:
 
 
 class Progress:
-    """Live lines on a terminal; silent anywhere else. A context manager.
+    """Live display on a terminal; shows nothing on other outputs. A context manager.
 
     Args:
-        sim: the simulation.
-        counter: counts its topics.
-        duration: how long it is to run [s]; None where it runs until it is stopped.
-        console: where to draw.
-        lines: gives what is shown instead of the topics.
+        sim: simulation to show.
+        counter: message counts of its topics.
+        duration: simulated length of the run [s]; None for a run without an end.
+        console: output of the display.
+        lines: function that returns lines to show instead of the topics.
     """
 
     def __init__(
@@ -56,7 +56,7 @@ class Progress:
         if self._console.is_terminal:
             from rich.live import Live
 
-            # what a plugin prints stays where it goes, where that is not the terminal
+            # redirect the output of plugins only if it goes to the same terminal
             is_both = not self._console.stderr
             self._live = Live(
                 self._picture(), console=self._console, auto_refresh=False, transient=True, redirect_stdout=is_both
@@ -70,18 +70,18 @@ class Progress:
             self._live = None
 
     def update(self) -> None:
-        """Draws anew when the last picture is old enough."""
+        """Redraw the display if the last update is old enough."""
         now = time.perf_counter()
         if self._live is None or now - self._drawn < self._refresh:
             return
         self._drawn = now
         try:
             self._live.update(self._picture(), refresh=True)
-        except OSError:  # the terminal is gone, and nobody wanted the run to end with it
+        except OSError:  # the terminal has closed; the run continues without the display
             self._live = None
 
     def _factor(self) -> float:
-        """Simulated time by wall time: of the whole run, or where somebody drives of the last seconds."""
+        """Return simulated time divided by wall time: of the whole run, or of the last second for keyboard driving."""
         now, reached = time.perf_counter(), self._sim.time
         if self._lines is not None and now - self._marks[-1][0] > _FACTOR_WINDOW:
             self._marks = [self._marks[-1], (now, reached)]

@@ -1,4 +1,4 @@
-"""Choose the topic that the keyboard drives, and turn keys into velocity commands."""
+"""Keyboard driving: chooses the velocity topic and converts keys to velocity commands."""
 
 from __future__ import annotations
 
@@ -18,26 +18,26 @@ TWISTS: Final = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
 Bounds = tuple[float, float]
 
 _UNLIMITED: Final = (-math.inf, math.inf)
-_BURGER: Final = (0.22, 2.84)  # [m/s, rad/s] which the real ones reach (turtlebot3_teleop); their files hold no limit
+_BURGER: Final = (0.22, 2.84)  # [m/s, rad/s] limits in turtlebot3_teleop; the model files have none
 _WAFFLE: Final = (0.26, 1.82)
-_BURGER_WIDTH: Final = 0.2  # [m] between the wheels: a burger has less, a waffle more
+_BURGER_WIDTH: Final = 0.2  # [m] between the wheels: less for a burger, more for a waffle
 _TURTLEBOT: Final = re.compile("turtlebot|burger|waffle|tb3", re.IGNORECASE)
 _WHEELS: Final = ("wheel_left_joint", "wheel_right_joint")
 _HOLONOMIC_DRIVES: Final = re.compile("mecanum|planar_move|velocity-control|omni", re.IGNORECASE)
-_FINE, _COARSE, _TURN_STEP = 0.01, 0.05, 0.1  # [m/s, m/s, rad/s] that a key adds
-_SLOW: Final = 0.5  # [m/s]: a robot that is no faster is driven in fine steps
+_FINE, _COARSE, _TURN_STEP = 0.01, 0.05, 0.1  # [m/s, m/s, rad/s] change per key
+_SLOW: Final = 0.5  # [m/s]: robots up to this speed are driven in fine steps
 
 
 @dataclass(frozen=True)
 class TeleopTarget:
-    """Topic, model and speed limits of what is driven.
+    """Topic, model and speed limits of the driven robot.
 
     Attributes:
-        topic: takes the commands.
-        model: scoped name of the model that they move; empty where that is not known.
-        linear, angular: least and greatest speed ahead [m/s] and rate of turning [rad/s]; infinite where none is known.
-        linear_step, angular_step: what a key adds to them.
-        sideways: whether it can go sideways; as fast as ahead.
+        topic: velocity topic.
+        model: scoped name of the robot's model; empty if it is unknown.
+        linear, angular: lowest and highest forward speed [m/s] and yaw rate [rad/s]; infinite if unknown.
+        linear_step, angular_step: change of speed [m/s] and yaw rate [rad/s] per key.
+        sideways: True if the robot can drive sideways; the limits are those of the forward speed.
     """
 
     topic: str
@@ -49,50 +49,51 @@ class TeleopTarget:
     sideways: bool = False
 
 
-def find_target(sim: Simulation, wanted: str = "") -> TeleopTarget:
-    """Whom to drive.
+def find_target(sim: Simulation, requested: str = "") -> TeleopTarget:
+    """Find the robot to drive.
 
     Args:
-        sim: the simulation.
-        wanted: the topic; where empty `/cmd_vel`, or else that of the only one who takes velocities.
+        sim: loaded simulation.
+        requested: velocity topic; empty for `/cmd_vel`, else the world's only velocity topic.
 
     Raises:
-        InputError: SK-CLI-051 nobody takes velocities there, or several do.
+        InputError: SK-CLI-051 no subscriber of velocities on the topic, or several topics are possible.
     """
-    takers: dict[str, object] = {}
-    for topic, end, types, does in sim.communication.bus.endpoints():
-        if does == "takes" and end.active and any(one in TWISTS for one in types):
-            takers.setdefault(topic, end.owner)
-    if wanted:
-        topic = wanted if wanted.startswith("/") else "/" + wanted
-        if topic not in takers:
-            hint = did_you_mean(topic, takers) or (f"there is {', '.join(takers)}" if takers else "no topic does")
-            raise InputError(f"SK-CLI-051 --teleop: nothing takes velocities on {topic!r}; {hint}", "SK-CLI-051")
+    owners: dict[str, object] = {}
+    for topic, endpoint, types, role in sim.communication.bus.endpoints():
+        if role == "takes" and endpoint.active and any(type_name in TWISTS for type_name in types):
+            owners.setdefault(topic, endpoint.owner)
+    if requested:
+        topic = requested if requested.startswith("/") else "/" + requested
+        if topic not in owners:
+            known = f"velocity topics: {', '.join(owners)}" if owners else "the world has no velocity topic"
+            hint = did_you_mean(topic, owners) or known
+            raise InputError(f"SK-CLI-051 --teleop: {topic!r} has no subscriber of velocities; {hint}", "SK-CLI-051")
     else:
-        topic = _choose_topic(takers)
-    return _describe_target(sim, topic, takers[topic])
+        topic = _choose_topic(owners)
+    return _describe_target(sim, topic, owners[topic])
 
 
-def _choose_topic(takers: dict[str, object]) -> str:
-    if "/cmd_vel" in takers:
+def _choose_topic(owners: dict[str, object]) -> str:
+    if "/cmd_vel" in owners:
         return "/cmd_vel"
-    if not takers:
+    if not owners:
         raise InputError(
-            "SK-CLI-051 --teleop: nothing here takes velocities (Twist or TwistStamped)\n"
-            "    help: a robot with a drive plugin does, such as --spawn turtlebot3_burger",
+            "SK-CLI-051 --teleop: the world has no velocity topic (Twist or TwistStamped)\n"
+            "    help: add a robot with a drive plugin, such as --spawn turtlebot3_burger",
             "SK-CLI-051",
         )
-    if len({id(owner) for owner in takers.values()}) > 1:
-        text = f"SK-CLI-051 --teleop: several topics take velocities: {', '.join(takers)}"
-        raise InputError(f"{text}\n    help: name one, --teleop {next(iter(takers))}", "SK-CLI-051")
-    return next(iter(takers))  # one drive, whatever its topics
+    if len({id(owner) for owner in owners.values()}) > 1:
+        text = f"SK-CLI-051 --teleop: the world has several velocity topics: {', '.join(owners)}"
+        raise InputError(f"{text}\n    help: choose one with --teleop {next(iter(owners))}", "SK-CLI-051")
+    return next(iter(owners))  # all topics belong to one drive plugin
 
 
 def _describe_target(sim: Simulation, topic: str, owner: object) -> TeleopTarget:
     scoped = getattr(owner, "scoped", "")
     try:
         model = sim.model(scoped) if scoped else None
-    except KeyError:  # a plugin of the world, of a sensor
+    except KeyError:  # the owner is a plugin of the world or of a sensor
         model = None
     names = (*getattr(owner, "filenames", ()), *getattr(owner, "names", ()))
     linear, angular = _speed_limits(model, topic, owner)
@@ -108,9 +109,9 @@ def _describe_target(sim: Simulation, topic: str, owner: object) -> TeleopTarget
 
 
 def _speed_limits(model: Model | None, topic: str, owner: object) -> tuple[Bounds, Bounds]:
-    """Return the speed limits of the drive where it has some, else of the robot where it is known."""
-    asked = getattr(owner, "speed_bounds", None)
-    found: tuple[Bounds, Bounds] | None = None if asked is None else asked(topic)
+    """Return the speed limits of the drive plugin; if it has none, those of a known robot."""
+    speed_bounds = getattr(owner, "speed_bounds", None)
+    found: tuple[Bounds, Bounds] | None = None if speed_bounds is None else speed_bounds(topic)
     if found is not None and any(math.isfinite(bound) for bounds in found for bound in bounds):
         return found
     most = None if model is None else _turtlebot3_limits(model)
@@ -118,7 +119,7 @@ def _speed_limits(model: Model | None, topic: str, owner: object) -> tuple[Bound
 
 
 def _turtlebot3_limits(model: Model) -> tuple[float, float] | None:
-    """Speed [m/s] and rate of turning [rad/s] of a TurtleBot3; None of another robot."""
+    """Return speed [m/s] and yaw rate [rad/s] of a TurtleBot3; None for another robot."""
     joints = model.joints
     if not _TURTLEBOT.search(model.scoped) or not all(name in joints for name in _WHEELS):
         return None
@@ -127,11 +128,11 @@ def _turtlebot3_limits(model: Model) -> tuple[float, float] | None:
 
 
 RATE: Final = 10.0
-"""[Hz] of simulated time, of the commands."""
+"""Rate of the commands [Hz], simulated time."""
 KEY_TIMEOUT: Final = 10.0
-"""[s] of simulated time without a key after which a robot is stopped, where nothing else is said."""
-_FASTER: Final = 1.1  # what q multiplies all speeds with
-_DIGITS: Final = 6  # of a speed: many steps there and back make no crumbs
+"""Default simulated time without a key after which a robot is stopped [s]."""
+_FASTER: Final = 1.1  # factor on all speeds for the key q
+_DIGITS: Final = 6  # decimals of a speed, so that many steps up and down add no rounding error
 _AHEAD: Final = {"w": 1, UP: 1, "x": -1, DOWN: -1}
 _TURN: Final = {"a": 1, LEFT: 1, "d": -1, RIGHT: -1}
 _SIDEWAYS: Final = {"j": 1, "l": -1}
@@ -141,21 +142,21 @@ _EMPTY: Final = (0.0, 0.0, 0.0)
 
 
 class Teleop:
-    """The speeds that were asked for, and their commands.
+    """Speeds requested by keys, and their velocity commands.
 
-    From the first key on what is asked for goes out ten times a simulated second. Once no key has come for
-    `key_timeout` a stop goes out, and then nothing until the next key, so that others may drive.
+    After the first key, commands are sent ten times a simulated second. After `key_timeout` without a key, a stop
+    command is sent, and then nothing until the next key, so that other publishers can drive.
 
     Args:
-        sim: the simulation.
-        target: whom to drive.
-        key_timeout: [s] of simulated time; infinite for never.
+        sim: loaded simulation.
+        target: robot to drive.
+        key_timeout: simulated time without a key after which the robot is stopped [s]; infinite for never.
 
     Attributes:
-        target: whom it drives.
-        speeds: asked for: ahead [m/s], to the left [m/s], turning to the left [rad/s].
-        is_expired: whether it stopped because no key came.
-        fault: why the last command did not go out; empty where it did.
+        target: robot to drive.
+        speeds: requested forward speed [m/s], speed to the left [m/s] and yaw rate to the left [rad/s].
+        is_expired: True if the robot was stopped after the timeout.
+        fault: error of the last command; empty if it was sent.
     """
 
     def __init__(self, sim: Simulation, target: TeleopTarget, key_timeout: float = KEY_TIMEOUT) -> None:
@@ -166,14 +167,14 @@ class Teleop:
         self._scale = 1.0
         self._is_active = False
         self._timeout = key_timeout
-        self._key_time = self._sent_time = 0.0  # simulated [s]
-        self._sent: int | None = None  # the tick of the last command on the grid
-        self._told: tuple[int, tuple[float, float, float]] | None = None  # tick and speeds of the last command
+        self._key_time = self._sent_time = 0.0  # [s] simulated
+        self._sent: int | None = None  # tick of the last periodic command
+        self._last_command: tuple[int, tuple[float, float, float]] | None = None  # tick and speeds
 
     # ------------------------------------------------------------------ keys
 
     def press(self, key: str) -> bool:
-        """Takes a key; whether it is one of those that drive. Capital letters count as small ones."""
+        """Process a key, upper or lower case; return True if it is a driving key."""
         key = key.lower()
         if key == "s":
             self._note_key()
@@ -196,7 +197,7 @@ class Teleop:
         self._send()
 
     def release_keys(self) -> None:
-        """Stop what is driven and send nothing more, since no key will come."""
+        """Stop the robot and send no more commands until the next key."""
         if self._is_active:
             self.stop()
         self._is_active = False
@@ -209,39 +210,39 @@ class Teleop:
 
     def _add(self, ahead: int, left: int, turn: int) -> None:
         step, turn_step = self.target.linear_step * self._scale, self.target.angular_step * self._scale
-        self._ask_for(self.speeds[0] + ahead * step, self.speeds[1] + left * step, self.speeds[2] + turn * turn_step)
+        self._set_speeds(self.speeds[0] + ahead * step, self.speeds[1] + left * step, self.speeds[2] + turn * turn_step)
 
-    def _ask_for(self, ahead: float, left: float, turn: float) -> None:
+    def _set_speeds(self, ahead: float, left: float, turn: float) -> None:
         linear = self.target.linear
         self.speeds = _clamp(ahead, linear), _clamp(left, linear), _clamp(turn, self.target.angular)
 
     def _multiply(self, factor: float) -> None:
-        """Scale all speeds and steps alike, so that a curve stays the same curve; no speed exceeds its limit."""
+        """Scale all speeds and steps by one factor, so that a curve keeps its radius. No speed exceeds its limit."""
         bounds = (self.target.linear, self.target.linear, self.target.angular)
         for speed, (least, most) in zip(self.speeds, bounds, strict=True):
             if speed and factor > 1:
                 factor = max(1.0, min(factor, (most if speed > 0 else least) / speed))
         self._scale *= factor
         ahead, left, turn = self.speeds
-        self._ask_for(ahead * factor, left * factor, turn * factor)
+        self._set_speeds(ahead * factor, left * factor, turn * factor)
 
     # ------------------------------------------------------------------ commands
 
     @property
     def next_tick(self) -> int | None:
-        """The tick at which something is to be sent next; None while it is silent."""
+        """Tick of the next command; None while nothing is sent."""
         if not self._is_active:
             return None
         tick: int = self._sim.tick
-        # where the last one lies ahead, the world went back in time
+        # after a reset of the world, the last command lies in the future
         first = tick + 1 if tick == self._sent else tick
         per_command: float = 1.0 / (RATE * self._sim.timestep)
-        # the k-th command goes out at the first tick at or after k of these; a rounding error is no further step
+        # command k is sent at the first tick at or after k periods; the tolerance absorbs rounding errors
         number = math.floor((first - 1 + _ROUNDING) / per_command) + 1
         return math.ceil(max(0, number) * per_command - _ROUNDING)
 
     def send_due(self) -> None:
-        """Sends what is due at the present tick."""
+        """Send the command that is due at the present tick."""
         due = self.next_tick
         if due is None or due > self._sim.tick:
             return
@@ -256,9 +257,9 @@ class Teleop:
 
     def _send(self) -> None:
         now = (self._sim.tick, self.speeds)
-        if now == self._told:  # however often somebody presses s
+        if now == self._last_command:  # the key s was pressed again in the same tick
             return
-        self._told = now
+        self._last_command = now
         ahead, left, turn = self.speeds
         twist = {"linear": {"x": ahead, "y": left}, "angular": {"z": turn}}
         bus = self._sim.communication.bus
@@ -268,16 +269,16 @@ class Teleop:
                 bus.publish(self.target.topic, {"header": {"stamp": stamp}, "twist": twist})
             else:
                 bus.publish(self.target.topic, twist)
-        except MessageError as error:  # who took them was removed
+        except MessageError as error:  # the subscriber was removed
             self.fault = str(error)
         else:
             self.fault = ""
 
     def _takes_stamped(self) -> bool:
-        """Check whether the first subscriber of velocities takes TwistStamped first or alone."""
+        """Check whether the first subscriber of velocities accepts TwistStamped first or only."""
         ends = self._sim.communication.bus.endpoints(self.target.topic)
-        taken: list[str] = [one for _, end, types, does in ends if does == "takes" and end.active for one in types]
-        return next((one for one in taken if one in TWISTS), "") == TWISTS[1]
+        accepted: list[str] = [t for _, end, types, role in ends if role == "takes" and end.active for t in types]
+        return next((type_name for type_name in accepted if type_name in TWISTS), "") == TWISTS[1]
 
 
 def _clamp(speed: float, bounds: Bounds) -> float:

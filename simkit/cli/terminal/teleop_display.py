@@ -1,4 +1,4 @@
-"""Text lines that a driver sees: speed, pose and the nearest obstacle."""
+"""Text lines for keyboard driving: speed, pose and the nearest obstacle."""
 
 from __future__ import annotations
 
@@ -23,38 +23,39 @@ _SCAN: Final = "sensor_msgs/msg/LaserScan"
 
 
 class DriverLine:
-    """Words about what a `Teleop` drives. Whatever it reads is read at the moment, and changes nothing.
+    """Status lines of the robot that a `Teleop` drives. Reading them changes nothing in the simulation.
 
     Args:
-        sim: the simulation.
-        teleop: the commands.
+        sim: loaded simulation.
+        teleop: keyboard driving.
     """
 
     def __init__(self, sim: Simulation, teleop: Teleop) -> None:
         self._sim, self._teleop = sim, teleop
 
     def lines(self) -> list[str]:
-        """The line, what was asked for, and the keys."""
-        return [self.text(), self.asked(), _HOLONOMIC_HELP if self._teleop.target.sideways else _DRIVE_HELP, _RUN_HELP]
+        """Return the status line, the requested speeds and the keys."""
+        keys = _HOLONOMIC_HELP if self._teleop.target.sideways else _DRIVE_HELP
+        return [self.text(), self.requested(), keys, _RUN_HELP]
 
     def text(self) -> str:
-        """Speed, pose, nearest obstacle; of what is not known nothing."""
+        """Return speed, pose and nearest obstacle, as far as they are known."""
         model = self._model()
         if model is None:
             return f"driving {self._teleop.target.topic}"
         pose = model.pose
         yaw = math.degrees(float(pose.rpy[2]))
-        place = f"x {pose.position[0]:.2f}  y {pose.position[1]:.2f}  {yaw:.0f}°"
-        parts = [self._speed_text(*_velocity(model, pose)), place, self._obstacle_text(model, pose)]
+        position = f"x {pose.position[0]:.2f}  y {pose.position[1]:.2f}  {yaw:.0f}°"
+        parts = [self._speed_text(*_velocity(model, pose)), position, self._obstacle_text(model, pose)]
         return "   ".join(part for part in parts if part)
 
-    def asked(self) -> str:
-        """The speeds that were asked for, or why they do not go out."""
+    def requested(self) -> str:
+        """Return the requested speeds, or the error of the last command."""
         teleop = self._teleop
         if teleop.fault:
             return teleop.fault
-        return f"asked {self._speed_text(*teleop.speeds)}" + (
-            ", stopped since no key came" if teleop.is_expired else ""
+        return f"requested {self._speed_text(*teleop.speeds)}" + (
+            ", stopped after the key timeout" if teleop.is_expired else ""
         )
 
     def _speed_text(self, ahead: float, left: float, turn: float) -> str:
@@ -62,7 +63,7 @@ class DriverLine:
         return f"{ahead:.2f} m/s{sideways}, {turn:.2f} rad/s"
 
     def _model(self) -> Model | None:
-        """Return the model that is driven, while it exists."""
+        """Return the model of the driven robot, while it exists."""
         name = self._teleop.target.model
         if not name:
             return None
@@ -72,7 +73,7 @@ class DriverLine:
             return None
 
     def _obstacle_text(self, model: Model, base: Pose) -> str:
-        """The nearest of what the robot's lidars see, and in which direction from the robot; empty without a lidar."""
+        """Return distance and direction of the nearest obstacle in the robot's lidar scans; empty without a lidar."""
         found = [
             near
             for sensor in self._sim.contents.sensors.values()
@@ -80,22 +81,25 @@ class DriverLine:
         ]
         if not found:
             return ""
-        distance, direction, pose, least = min(found, key=lambda one: one[0])
+        distance, direction, pose, least = min(found, key=lambda reading: reading[0])
         if distance == math.inf:
             return "nothing near"
         reach = least if distance == -math.inf else distance
         point = pose.position + _rotate(pose, reach * np.array([math.cos(direction), math.sin(direction), 0.0]))
-        off = _rotate(base.inverse(), point - base.position)
-        where = _side_text(math.degrees(math.atan2(off[1], off[0])))
+        offset = _rotate(base.inverse(), point - base.position)
+        side = _side_text(math.degrees(math.atan2(offset[1], offset[0])))
         if distance == -math.inf:
-            return f"nearest below {least:.2f} m, {where}"
-        return f"nearest {distance:.2f} m, {where}"
+            return f"nearest below {least:.2f} m, {side}"
+        return f"nearest {distance:.2f} m, {side}"
 
 
 def nearest_reading(sensor: Sensor) -> tuple[float, float, Pose, float] | None:
-    """The shortest reading of a lidar [m] (infinite for nothing in reach, minus infinite for something too near), its
-    angle about the sensor's z [rad], the sensor's pose and its shortest range [m]; None of other sensors, or before
-    the first scan."""
+    """Return the shortest reading of a lidar; None for other sensors and before the first scan.
+
+    Returns:
+        Range [m] (infinite for nothing in reach, minus infinite for something too near), angle about the sensor's
+        z axis [rad], the sensor's pose, and its shortest range [m].
+    """
     scan = sensor.latest
     if scan is None or getattr(scan, "__msgtype__", "") != _SCAN:
         return None
@@ -110,12 +114,12 @@ def nearest_reading(sensor: Sensor) -> tuple[float, float, Pose, float] | None:
 
 
 def _velocity(model: Model, pose: Pose) -> tuple[float, float, float]:
-    """Speed ahead and to the left [m/s] and turning about the vertical [rad/s], in the model's heading."""
+    """Return forward speed, speed to the left [m/s] and yaw rate [rad/s], in the model's heading."""
     link = next(iter(model.links.values()), None)
     canonical = model.scene.canonical_link
-    for one in model.everything():
-        if one.scoped == canonical:
-            link = cast("Link", one)
+    for element in model.everything():
+        if element.scoped == canonical:
+            link = cast("Link", element)
     if link is None:
         return 0.0, 0.0, 0.0
     yaw = float(pose.rpy[2])

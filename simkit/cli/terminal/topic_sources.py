@@ -1,4 +1,4 @@
-"""Read topics from a running simulation or from a bag, and wait for times of its clock."""
+"""Sources of topics: a running simulation or a bag; and its clock."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ if TYPE_CHECKING:
     from simkit.recording.bags.reader import BagReader, BagTopic
 
 LIST_PARAMETERS = "/list_parameters"
-"""What follows the name of a node in that of the service that lists its parameters."""
-LONGEST_WAIT = 1e6  # [s] of wall time for which a command sleeps at most
-_POLL_PERIOD = 0.05  # [s] of wall time between two looks at its clock, at most
-_SLOWEST = 1e-3  # real-time factor below which it counts as standing still
+"""Suffix after the node's name in the name of the service that lists its parameters."""
+LONGEST_WAIT = 1e6  # [s] of wall time, longest sleep of a command
+_POLL_PERIOD = 0.05  # [s] of wall time, longest time between two reads of the simulation's clock
+_SLOWEST = 1e-3  # real-time factor below which the simulation counts as stopped
 
 
 class SimClock:
-    """The clock of a running simulation; a reset takes it back.
+    """Clock of a running simulation. A reset of the simulation sets it back.
 
     Args:
-        client: the connection.
-        by_wall: goes by the clock on the wall instead.
+        client: connection to the simulation.
+        by_wall: True to use wall time instead.
     """
 
     def __init__(self, client: Client, *, by_wall: bool = False) -> None:
@@ -42,7 +42,7 @@ class SimClock:
         self._speed = 1.0
 
     def now_ns(self) -> int:
-        """The time now [ns]."""
+        """Return the present time [ns]."""
         if self._by_wall:
             return time.monotonic_ns()
         now_ns, wall = self.sim_ns(), time.monotonic()
@@ -52,11 +52,11 @@ class SimClock:
         return now_ns
 
     def sim_ns(self) -> int:
-        """The simulated time now [ns]."""
+        """Return the present simulated time [ns]."""
         return int(self._client.state()["time_ns"])
 
     def wait_until(self, due_ns: int, since_ns: int) -> bool:
-        """Waits for a time [ns]; False where the clock was taken back behind `since_ns` before."""
+        """Wait for a time [ns]; return False if the clock was set back before `since_ns`."""
         while True:
             now = self.now_ns()
             if now < since_ns:
@@ -67,11 +67,11 @@ class SimClock:
             time.sleep(min(_POLL_PERIOD, (due_ns - now) * 1e-9 / speed))
 
 
-_DEPTH = 100  # messages that wait for a slow terminal; the oldest go first
+_DEPTH = 100  # queued messages for a slow terminal; the oldest are dropped first
 
 
 class ReceivedMessage(NamedTuple):
-    """A message on its way to the terminal; the time is simulated, of a bag that of recording [ns]."""
+    """Message for the terminal. Its time is simulated time; for a bag, the time of recording [ns]."""
 
     time_ns: int
     topic: str
@@ -90,7 +90,7 @@ class TopicEndpoint:
 
 @dataclass(frozen=True)
 class TopicEntry:
-    """A topic, with those at its ends."""
+    """Topic with its publishers and subscribers."""
 
     name: str
     types: tuple[str, ...]
@@ -99,10 +99,10 @@ class TopicEntry:
 
 
 class LiveSource:
-    """A running simulation.
+    """Topics of a running simulation.
 
     Attributes:
-        client: the connection.
+        client: connection to the simulation.
     """
 
     is_live = True
@@ -115,7 +115,7 @@ class LiveSource:
         return connection_name(self.client)
 
     def topics(self) -> dict[str, TopicEntry]:
-        """Topics by name, sorted."""
+        """Return the topics by name, sorted."""
         found = {}
         for row in sorted(self.client.topics(), key=lambda r: str(r["name"])):
             publishers = tuple(
@@ -130,7 +130,7 @@ class LiveSource:
         return LiveFeed(self.client, topics, depth)
 
     def prepare(self, entry: TopicEntry) -> None:
-        """Reads the definitions of a topic's types, which takes a moment, before the first message waits for that."""
+        """Read the definitions of a topic's types now. This is slow and must not delay the first message."""
         from simkit import msgs
 
         for type_name in entry.types:
@@ -138,21 +138,21 @@ class LiveSource:
                 msgs.type_of(type_name)
 
     def decode(self, received: ReceivedMessage) -> Message:
-        """The message itself."""
+        """Decode a message."""
         from simkit import msgs
 
         return msgs.deserialize(received.data, received.type_name)
 
     def store(self, type_name: str) -> Typestore | None:
-        """The types that messages are of; None for simkit's own."""
+        """Return the type store of a type; None for simkit's own."""
         return None
 
 
 class LiveFeed:
-    """Messages of some topics of a running simulation, in the order in which they come.
+    """Messages of some topics of a running simulation, in the order of arrival.
 
     Attributes:
-        is_over: whether the simulation has ended.
+        is_over: True after the simulation has ended.
     """
 
     is_live = True
@@ -165,11 +165,11 @@ class LiveFeed:
 
     @property
     def lost(self) -> int:
-        """Number of messages dropped because they came faster than they were read."""
+        """Number of messages dropped because they arrived faster than they were read."""
         return sum(s.lost for s in self._subscriptions.values())
 
     def take(self, timeout: float | None = None) -> ReceivedMessage | None:
-        """The next message; None where none comes within so many seconds of wall time, or the simulation has ended."""
+        """Return the next message; None after the timeout [s, wall time] or the end of the simulation."""
         from simkit.live import LiveClosed
 
         end = None if timeout is None else time.monotonic() + timeout
@@ -200,16 +200,16 @@ class LiveFeed:
         self._ready.extend(found)
 
     def close(self) -> None:
-        """Ends the subscriptions."""
+        """Close the subscriptions."""
         for subscription in self._subscriptions.values():
             subscription.close()
 
 
 class BagSource:
-    """A bag.
+    """Topics of a bag.
 
     Attributes:
-        bag: the open bag.
+        bag: open bag.
     """
 
     is_live = False
@@ -222,7 +222,7 @@ class BagSource:
         return f"the bag {self.bag.path}"
 
     def topics(self) -> dict[str, TopicEntry]:
-        """Topics by name, sorted; one that was recorded had a publisher."""
+        """Return the topics by name, sorted. Each recorded topic has a publisher."""
         rows: dict[str, list[BagTopic]] = {}
         for topic in self.bag.topics:
             rows.setdefault(topic.name, []).append(topic)
@@ -240,14 +240,14 @@ class BagSource:
         return BagFeed(self.bag, topics)
 
     def prepare(self, entry: TopicEntry) -> None:
-        """Nothing waits."""
+        """Do nothing: a bag has all definitions."""
 
     def decode(self, received: ReceivedMessage) -> Message:
-        """The message itself."""
+        """Decode a message."""
         return self.bag.decode(received)  # type: ignore[arg-type]
 
     def store(self, type_name: str) -> Typestore | None:
-        """The types that messages are of."""
+        """Return the type store of a type."""
         return self.bag.store_of(type_name)
 
 
@@ -261,13 +261,13 @@ class BagFeed:
         self.is_over = False
 
     def take(self, timeout: float | None = None) -> ReceivedMessage | None:
-        """The next message; None behind the last one."""
+        """Return the next message; None after the last one."""
         found = next(self._messages, None)
         self.is_over = found is None
         return None if found is None else ReceivedMessage(*found)
 
     def close(self) -> None:
-        """Reads no further."""
+        """Stop reading."""
         self._messages.close()  # type: ignore[attr-defined]
 
 
@@ -277,13 +277,13 @@ Feed = LiveFeed | BagFeed
 
 @contextmanager
 def open_source(sim: str | None, bag: Path | None) -> Iterator[Source]:
-    """The bag where one is named, else the running simulation.
+    """Open the bag if one is given, else connect to the running simulation.
 
     Raises:
-        InputError: SK-CLI-018 both are named; SK-CLI-035 the bag cannot be read; SK-LIVE-00x no simulation answers.
+        InputError: SK-CLI-018 both are given; SK-CLI-035 the bag is unreadable; SK-LIVE-00x no simulation answers.
     """
     if bag is not None:
-        if sim is not None and sim != os.environ.get("SIMKIT_SIM"):  # what the environment says is no wish of now
+        if sim is not None and sim != os.environ.get("SIMKIT_SIM"):  # the environment variable is not a conflict
             raise InputError("SK-CLI-018 --sim and --bag: found both, allowed is one of them", "SK-CLI-018")
         from simkit.recording.bags.reader import open_bag_to_read
 
@@ -298,10 +298,10 @@ def open_source(sim: str | None, bag: Path | None) -> Iterator[Source]:
 
 @contextmanager
 def connect_to_simulation(sim: str | None) -> Iterator[Client]:
-    """A connection to a running simulation.
+    """Connect to a running simulation.
 
     Raises:
-        LiveError: SK-LIVE-00x none answers, or there are several and none is named.
+        LiveError: SK-LIVE-00x no simulation answers, or several run and no name is given.
     """
     from simkit.live import connect
 
@@ -310,70 +310,70 @@ def connect_to_simulation(sim: str | None) -> Iterator[Client]:
 
 
 def connection_name(client: Client) -> str:
-    """Name of what a client is connected to, in words."""
+    """Describe the simulation of a client."""
     return f"the simulation {client.info.get('name', '')!r}"
 
 
 def interface_type(client: Client, what: str, types: Mapping[str, str], name: str) -> str:
-    """The type of a service or an action.
+    """Return the type of a service or an action.
 
     Args:
-        client: the connection.
+        client: connection to the simulation.
         what: `service` or `action`.
-        types: of all there are.
-        name: which one; its leading slash may be left out.
+        types: types of all services or actions, by name.
+        name: name, with or without its leading slash.
 
     Raises:
-        InputError: SK-CLI-037 there is none of that name; names the closest.
+        InputError: SK-CLI-037 the name is unknown; the message suggests the closest name.
     """
-    wanted = absolute_name(name)
-    if wanted not in types:
-        raise not_found_error(what, wanted, types, "SK-CLI-037", connection_name(client))
-    return str(types[wanted])
+    full_name = absolute_name(name)
+    if full_name not in types:
+        raise not_found_error(what, full_name, types, "SK-CLI-037", connection_name(client))
+    return str(types[full_name])
 
 
 def wait_for_topic(source: Source, name: str, until: float | None = None) -> TopicEntry:
-    """A topic, waited for where the simulation has none of that name yet.
+    """Return a topic; if the simulation does not have it yet, wait for it.
 
     Args:
-        source: where it is.
-        name: the topic's.
-        until: wall time at which waiting ends [s of `time.monotonic`]; None for never.
+        source: running simulation or bag.
+        name: name of the topic.
+        until: end of the wait [s of `time.monotonic`]; None for never.
 
     Raises:
-        InputError: SK-CLI-030 a bag has none, or none came in time.
+        InputError: SK-CLI-030 a bag has no such topic, or the topic did not appear in time.
     """
-    wanted, told = absolute_name(name), False
+    full_name, was_reported = absolute_name(name), False
     while source.is_live and (until is None or time.monotonic() < until):
-        found = source.topics().get(wanted)
+        found = source.topics().get(full_name)
         if found is not None:
             return found
-        if not told:
+        if not was_reported:
             print_note(f"WARNING: topic [{name}] does not appear to be published yet")
-            told = True
+            was_reported = True
         time.sleep(0.1)
     return find_topic(source, name)
 
 
 def find_topic(source: Source, name: str) -> TopicEntry:
-    """A topic by its name, hidden ones too.
+    """Return a topic by its name, including hidden topics.
 
     Raises:
-        InputError: SK-CLI-030 there is none; names the closest.
+        InputError: SK-CLI-030 the topic does not exist; the message suggests the closest name.
     """
     topics = source.topics()
-    wanted = absolute_name(name)
-    if wanted not in topics:
-        there = [t for t in topics if not is_hidden(t)]
-        raise not_found_error("topic", wanted, there, "SK-CLI-030", source.where)
-    return topics[wanted]
+    full_name = absolute_name(name)
+    if full_name not in topics:
+        visible = [t for t in topics if not is_hidden(t)]
+        raise not_found_error("topic", full_name, visible, "SK-CLI-030", source.where)
+    return topics[full_name]
 
 
 def node_names(client: Client, *, hidden: bool = False) -> list[str]:
-    """Names of the nodes, sorted."""
+    """Return the names of the nodes, sorted."""
     return sorted(name for name in client.ask("nodes") if hidden or not is_hidden(name))
 
 
 def parameter_nodes(client: Client) -> list[str]:
-    """Nodes that have parameters, sorted."""
+    """Return the nodes that have parameters, sorted."""
     return sorted(name.removesuffix(LIST_PARAMETERS) for name in client.services() if name.endswith(LIST_PARAMETERS))
