@@ -206,14 +206,14 @@ bag.command()(export)
 @report_errors
 def recover(
     broken: Annotated[Path, argument("Bag that was cut off: an MCAP file or a rosbag2 folder.")],
-    mended: Annotated[Path | None, argument("Bag to write; default: NAME_recovered in the same folder.")] = None,
-    output: Annotated[Path | None, option("Alias of the argument MENDED.", "MENDED", "--output", "-o")] = None,
+    recovered: Annotated[Path | None, argument("Bag to write; default: NAME_recovered in the same folder.")] = None,
+    output: Annotated[Path | None, option("Alias of the argument RECOVERED.", "RECOVERED", "--output", "-o")] = None,
     force: options.Force = False,
 ) -> None:
     """Copy the readable part of a bag into a new, complete bag. The original is not changed."""
     from simkit.recording.bags.recovery import recover_bag
 
-    target = output or mended or broken.with_name(f"{broken.stem}_recovered{broken.suffix}")
+    target = output or recovered or broken.with_name(f"{broken.stem}_recovered{broken.suffix}")
     found = recover_bag(broken, target, overwrite=force)
     span = (found.end - found.start) * 1e-9
     state = "the bag was complete" if found.complete else "the bag was cut off"

@@ -21,7 +21,7 @@ class RunKeys:
     Args:
         sim: simulation to control.
         keyboard: source of the keys.
-        teleop: receiver of the driving keys; None if nobody drives.
+        teleop: receiver of the driving keys; None without teleop.
     """
 
     def __init__(self, sim: Simulation, keyboard: Keyboard | WindowsKeyboard, teleop: Teleop | None = None) -> None:

@@ -232,7 +232,7 @@ class Session:
         return Teleop(self.sim, find_target(self.sim, display.teleop), display.key_timeout)
 
     def _keyboard(self) -> Keyboard | WindowsKeyboard | None:
-        """Open the terminal's keyboard if somebody drives or the output goes to the terminal.
+        """Open the terminal's keyboard if teleop is on or the output goes to the terminal.
 
         A pager that shows the output reads the keys itself.
         """

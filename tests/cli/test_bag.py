@@ -45,7 +45,7 @@ def test_topics_of_a_bag_are_read_as_those_of_a_simulation(bag: Path, simkit_lin
     assert "SK-CLI-018" in simkit_line("topic", "list", "--sim", "x", *at).stderr
 
 
-def test_info_says_what_is_in_a_bag(bag: Path, simkit_line: Any) -> None:
+def test_info_describes_a_bag(bag: Path, simkit_line: Any) -> None:
     assert simkit_line("bag", "info", str(bag)).stdout.startswith("\nFiles:             drive.mcap\nBag size: ")
     assert "/odom" in simkit_line("bag", "info", str(bag), "--topic-name").stdout.split()
     assert json.loads(simkit_line("bag", "info", str(bag), "--json").stdout)["complete"] is True
@@ -110,7 +110,7 @@ def test_a_bag_of_nothing_ends_however_often_it_is_played(bag: Path, start: Any,
     assert json.loads(simkit_line(*words).stdout)["messages"] == 0
 
 
-def test_a_name_that_no_file_can_have_is_told(bag: Path, start: Any, simkit_line: Any) -> None:
+def test_an_invalid_file_name_is_reported(bag: Path, start: Any, simkit_line: Any) -> None:
     start()
     long = "x" * 300
     told = simkit_line("bag", "record", "/odom", "-o", long)

@@ -86,14 +86,14 @@ def test_a_path_is_drawn_from_above(here: Path, simkit_line: Any) -> None:
         (("run", "yard.sdf", "--play", "drive.mcap", "--play-topic", "/odom"), "SK-CLI-030"),
     ],
 )
-def test_what_cannot_be_done_is_told(words: tuple[str, ...], code: str, here: Path, simkit_line: Any) -> None:
+def test_impossible_requests_are_reported(words: tuple[str, ...], code: str, here: Path, simkit_line: Any) -> None:
     before = sorted(here.iterdir())
     done = simkit_line(*words)
     assert done.exit_code == 2 and code in done.stderr
     assert sorted(here.iterdir()) == before
 
 
-def test_an_export_says_what_it_wrote(here: Path, simkit_line: Any) -> None:
+def test_an_export_prints_the_written_files(here: Path, simkit_line: Any) -> None:
     done = simkit_line("bag", "export", "drive.mcap", "--topic", "/imu", "--topic", "/odom")
     assert done.exit_code == 0 and done.stdout.endswith("drive_export: 101 messages of 2 topics\n")
     assert {p.name for p in (here / "drive_export").iterdir()} == {"imu.csv", "odom.csv", "index.json"}
@@ -107,7 +107,7 @@ def test_a_recording_is_played_to_the_same_hash(here: Path, simkit_line: Any) ->
     assert STATE.search(done.stdout)[1] == (here / "state").read_text(encoding="utf-8")  # type: ignore[index]
 
 
-def test_an_empty_bag_is_told(here: Path, simkit_line: Any) -> None:
+def test_an_empty_bag_is_reported(here: Path, simkit_line: Any) -> None:
     McapBag(here / "empty.mcap").close()
     try:
         for words in (("bag", "plot", "empty.mcap", "/odom.pose.pose.yaw"), ("bag", "export", "empty.mcap")):

@@ -78,7 +78,7 @@ class Waiter(WorldPlugin):
             assert self.told.wait(60)
 
 
-def test_who_waits_too_long_is_told_of_and_nobody_else() -> None:
+def test_only_a_plugin_that_blocks_too_long_is_reported() -> None:
     told, lines = threading.Event(), []
 
     def say(text: str) -> None:
@@ -92,7 +92,7 @@ def test_who_waits_too_long_is_told_of_and_nobody_else() -> None:
     assert lines[0].startswith("waiting for plugin 'Waiter'") and "in after_step, at " in lines[0]
 
 
-def test_after_a_wish_to_stop_it_is_told_sooner_and_what_helps() -> None:
+def test_after_a_requested_stop_a_blocking_plugin_is_reported_sooner() -> None:
     told, lines = threading.Event(), []
 
     def say(text: str) -> None:

@@ -73,7 +73,7 @@ def test_a_scenario_is_packed_and_repeated(folder: Path) -> None:
     assert simkit("replay", "run.zip").exit_code == 0
 
 
-def test_a_run_that_fails_leaves_a_bundle_that_fails_as_it_did(folder: Path) -> None:
+def test_a_failed_run_leaves_a_bundle_that_fails_in_the_same_way(folder: Path) -> None:
     run = simkit(
         *("run", "sled.sdf", "--duration", "1", "--plugin-path", "plugins", "--script", "drive.yaml", "-q"),
         *("--bundle-on-failure", "kept"),
@@ -100,13 +100,13 @@ def test_a_plugin_that_fails_to_load_leaves_a_bundle_too(folder: Path) -> None:
     assert found.exit_code == 0, found.output
 
 
-def test_a_run_that_ends_well_leaves_none(folder: Path) -> None:
+def test_a_successful_run_leaves_no_bundle(folder: Path) -> None:
     run = simkit("run", "sled.sdf", "--duration", "0.2", "-q", "--bundle-on-failure")
     assert run.exit_code == 0, run.output
     assert not (folder / "bundles").exists()
 
 
-def test_bad_input_leaves_none(folder: Path) -> None:
+def test_invalid_input_leaves_no_bundle(folder: Path) -> None:
     run = simkit("run", "none.sdf", "--duration", "0.2", "-q", "--bundle-on-failure")
     assert run.exit_code == 2
     assert not (folder / "bundles").exists()
@@ -132,7 +132,7 @@ def test_a_replay_that_differs_exits_with_5(folder: Path) -> None:
     assert "\x1b" not in found.stdout
 
 
-def test_what_is_extracted_opens(folder: Path) -> None:
+def test_an_extracted_world_can_be_loaded(folder: Path) -> None:
     simkit("bundle", "sled.sdf", "-o", "run.zip", "--duration", "0.1")
     assert simkit("replay", "run.zip", "--extract", "out").exit_code == 0
     assert simkit("run", "out/world/sled.sdf", "--duration", "0.1", "-q").exit_code == 0
@@ -152,7 +152,7 @@ def test_a_run_in_which_something_does_not_hold_leaves_a_bundle(folder: Path) ->
         bundle.unlink()
 
 
-def test_what_a_scenario_misses_is_in_its_bundle(folder: Path) -> None:
+def test_the_bundle_contains_the_failed_check_of_a_scenario(folder: Path) -> None:
     (folder / "slide.yaml").write_text("world: sled.sdf\nduration: 0.2\ngoals: [time > 9]\n")
     made = simkit("bundle", "slide.yaml", "-o", "run.zip")
     assert made.exit_code == 0
@@ -162,7 +162,7 @@ def test_what_a_scenario_misses_is_in_its_bundle(folder: Path) -> None:
     assert "time > 9" in found.stdout
 
 
-def test_a_place_for_bundles_that_is_none_is_told_before_the_run(folder: Path) -> None:
+def test_an_unusable_bundle_folder_is_reported_before_the_run(folder: Path) -> None:
     for place in ("sled.sdf", "sled.sdf/deeper"):
         run = simkit("run", "sled.sdf", "--duration", "0.1", "--assert", "time > 9", "--bundle-on-failure", place)
         assert run.exit_code == 2
@@ -171,7 +171,7 @@ def test_a_place_for_bundles_that_is_none_is_told_before_the_run(folder: Path) -
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="it has no pipes that have names")
-def test_what_is_no_plain_file_is_never_replaced(folder: Path) -> None:
+def test_a_special_file_is_never_replaced(folder: Path) -> None:
     """A device too: for root nothing else would stand in the way."""
     os.mkfifo("pipe.sdf")
     for line in (("bundle", "sled.sdf", "--duration", "0.1"), ("convert", "sled.sdf")):
@@ -233,7 +233,7 @@ with simkit.load("sled.sdf") as sim:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="it has no SIGKILL")
-def test_who_is_killed_while_packing_leaves_no_half_bundle(folder: Path) -> None:
+def test_a_process_killed_while_packing_leaves_no_partial_bundle(folder: Path) -> None:
     """At many moments, counted by what is done with files: there is no bundle, or a whole one; the next tidies up."""
     done = subprocess.run([sys.executable, "-c", KILLED], check=True, capture_output=True, text=True)
     last, wholes, left = done.stdout.split(maxsplit=2)

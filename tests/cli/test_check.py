@@ -55,14 +55,14 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def test_what_plugins_find_comes_with_the_errors_of_the_file(here: Path) -> None:
+def test_diagnostics_of_plugins_are_printed_with_the_errors_of_the_file(here: Path) -> None:
     """A joint that a plugin misses, and a light that it misses when it is loaded, beside two faults of the file."""
     found = [d for d in simkit.check(TWO_FAULTS) if d.severity == "error"]
     said = sorted(f"{d.code} {d.line}" for d in found)
     assert said == ["SK-PLUGIN-003 11", "SK-PLUGIN-003 8", "SK-SDF-008 7", "SK-SDF-025 2"]
 
 
-def test_what_only_follows_from_an_error_is_not_said_again(here: Path) -> None:
+def test_a_consequence_of_an_error_is_not_reported_again(here: Path) -> None:
     messages = [d.message for d in simkit.check(TWO_FAULTS) if d.code == "SK-PLUGIN-003"]
     assert not [m for m in messages if "no joint 'rj'" in m]
     earlier = [Diagnostic("SK-SDF-008", "error", "joint 'rj' has type 'revolut', known are revolute")]
@@ -77,7 +77,7 @@ def test_load_raises_with_the_same_errors(here: Path) -> None:
 
 
 @pytest.mark.parametrize(("strict", "code"), [(False, 0), (True, 2)])
-def test_warnings_are_errors_only_when_asked(here: Path, strict: bool, code: int) -> None:
+def test_warnings_are_errors_only_with_strict(here: Path, strict: bool, code: int) -> None:
     (here / "w.sdf").write_text("<sdf version='1.9'><world name='w'><colour>red</colour></world></sdf>")
     result = run("w.sdf", *(["--strict"] if strict else []))
     assert result.exit_code == code
@@ -118,7 +118,7 @@ def test_new_numbers_are_shown_and_written_and_nothing_else_is_changed(here: Pat
     assert not [d for d in simkit.check("new.urdf") if d.code.startswith("SK-INERTIA")]
 
 
-def test_numbers_that_sdf_leaves_out_are_put_in(here: Path) -> None:
+def test_missing_inertia_values_of_sdf_are_inserted(here: Path) -> None:
     text = (
         "<sdf version='1.9'><model name='m'><link name='a'><inertial><mass>2</mass>"
         "<inertia><ixx>0</ixx><iyy>0</iyy><izz>0.5</izz></inertia></inertial></link></model></sdf>"

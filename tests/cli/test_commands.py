@@ -69,7 +69,7 @@ def simkit_process(*arguments: object, cwd: Path) -> subprocess.Popen[str]:
 # ---------------------------------------------------------------------- run
 
 
-def test_a_run_says_topics_rates_time_and_a_hash_that_repeats(world: Path) -> None:
+def test_a_run_prints_topics_rates_time_and_a_repeatable_hash(world: Path) -> None:
     first, second = simkit("run", world, "--duration", 1), simkit("run", world, "--duration", 1)
     assert first.exit_code == 0
     assert re.search(r"^/imu +101 +100\.00 Hz +sensor_msgs/msg/Imu$", first.stdout, re.MULTILINE)
@@ -78,11 +78,11 @@ def test_a_run_says_topics_rates_time_and_a_hash_that_repeats(world: Path) -> No
     assert first.stdout.splitlines()[-1] == second.stdout.splitlines()[-1]
 
 
-def test_a_quiet_run_says_only_what_came_of_it(world: Path) -> None:
+def test_a_quiet_run_prints_only_the_summary(world: Path) -> None:
     assert len(simkit("run", world, "--duration", 0.1, "--quiet").stdout.splitlines()) == 2
 
 
-def test_a_run_leaves_nothing_behind_that_was_not_asked_for(world: Path) -> None:
+def test_a_run_leaves_no_files_that_were_not_requested(world: Path) -> None:
     simkit("run", world, "--duration", 0.2)
     assert [p.name for p in world.parent.iterdir()] == ["ball.sdf"]
 
@@ -192,7 +192,7 @@ def test_an_interrupt_leaves_everything_readable(world: Path, number: signal.Sig
         assert reader.message_count > 100
 
 
-def test_a_viewer_without_a_display_is_said(world: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_viewer_without_a_display_is_reported(world: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     if not sys.platform.startswith("linux"):
         pytest.skip("displays are told by a variable on Linux only")
     monkeypatch.delenv("DISPLAY", raising=False)
@@ -243,7 +243,7 @@ def test_inspect_prints_one_json_object_or_a_tree(world: Path) -> None:
     assert "1 models" in tree
 
 
-def test_convert_writes_what_mujoco_opens(world: Path) -> None:
+def test_convert_writes_files_that_mujoco_opens(world: Path) -> None:
     result = simkit("convert", world, "-o", "ball.xml")
     assert result.exit_code == 0
     model = mujoco.MjModel.from_xml_path(str(world.parent / "ball.xml"))
@@ -253,7 +253,7 @@ def test_convert_writes_what_mujoco_opens(world: Path) -> None:
     assert simkit("convert", world, "-o", "no/ball.xml").exit_code == 2
 
 
-def test_bag_recover_mends(world: Path) -> None:
+def test_bag_recover_completes_a_bag(world: Path) -> None:
     simkit("run", world, "--duration", 2.5, "--record", "run.mcap")
     whole = (world.parent / "run.mcap").read_bytes()
     (world.parent / "torn.mcap").write_bytes(whole[: len(whole) // 2])

@@ -61,7 +61,7 @@ def test_names_are_completed(line: str, offered: list[str], yard: Any) -> None:
     assert completed(line) == offered
 
 
-def test_without_a_simulation_nothing_is_offered_and_nothing_said(place: Any) -> None:
+def test_without_a_simulation_completion_offers_and_prints_nothing(place: Any) -> None:
     assert completed("simkit topic echo /o") == []
     assert completed("simkit topic echo --bag no_such.mcap /o") == []
 
@@ -77,7 +77,7 @@ def test_a_shell_can_be_taught(place: Any) -> None:
 
 
 @pytest.mark.skipif(os.name == "nt", reason="no such signals there")
-def test_an_interrupt_ends_a_command_without_a_word(yard: Any) -> None:
+def test_an_interrupt_ends_a_command_without_output(yard: Any) -> None:
     with subprocess.Popen(
         [sys.executable, "-c", MAIN, "topic", "echo", "/imu", "--csv", "--sim", "yard"],
         stdout=subprocess.PIPE,
@@ -91,7 +91,7 @@ def test_an_interrupt_ends_a_command_without_a_word(yard: Any) -> None:
     assert told == b""
 
 
-def test_a_reader_that_goes_away_ends_a_command_without_a_word(yard: Any) -> None:
+def test_a_closed_pipe_ends_a_command_without_output(yard: Any) -> None:
     with subprocess.Popen(
         [sys.executable, "-c", MAIN, "topic", "echo", "/imu", "--csv", "--sim", "yard"],
         stdout=subprocess.PIPE,

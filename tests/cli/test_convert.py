@@ -144,7 +144,7 @@ def test_output_is_replaced_only_by_force_and_nothing_is_half_written(here: Path
 # ---------------------------------------------------------------------- SDF
 
 
-def test_a_urdf_becomes_an_sdf_that_says_the_same(here: Path) -> None:
+def test_a_urdf_becomes_an_equivalent_sdf(here: Path) -> None:
     (here / "out").mkdir()
     result = run("convert", "arm_description/urdf/arm.urdf", "-o", "out/arm.sdf")
     assert result.exit_code == 0
@@ -156,14 +156,14 @@ def test_a_urdf_becomes_an_sdf_that_says_the_same(here: Path) -> None:
     assert not [d for d in simkit.check("out/arm.sdf") if d.severity == "error"]
 
 
-def test_uris_are_kept_when_asked(here: Path) -> None:
+def test_keep_uris_keeps_uris(here: Path) -> None:
     run("convert", "arm_description/urdf/arm.urdf", "-o", "arm.sdf", "--keep-uris")
     assert "package://arm_description/meshes/base.obj" in (here / "arm.sdf").read_text()
     assert not (here / "arm_assets").exists()
 
 
 @pytest.mark.parametrize("path", sorted((ROOT / "worlds").glob("*.sdf")), ids=lambda p: p.name)
-def test_a_world_becomes_one_file_that_says_the_same(here: Path, path: Path) -> None:
+def test_a_world_becomes_one_equivalent_file(here: Path, path: Path) -> None:
     assert run("convert", path, "-o", "w.sdf").exit_code == 0
     assert "<include>" not in (here / "w.sdf").read_text()
     assert_means_the_same(simkit.describe("w.sdf"), simkit.describe(path))

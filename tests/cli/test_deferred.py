@@ -56,7 +56,7 @@ def test_a_command_is_the_one_of_its_module(name: str) -> None:
         ("simkit topic list --help", "topic"),
     ],
 )
-def test_only_what_is_asked_for_is_imported(line: str, read: str) -> None:
+def test_only_the_module_of_the_command_is_imported(line: str, read: str) -> None:
     assert loaded(line.split()[1:]) == read
 
 

@@ -32,7 +32,7 @@ def test_a_sequence_may_come_in_pieces() -> None:
     [b"\x1b[3~", b"\x1bOP", b"\x1b[15~", b"\x1b[<0;12;7M", b"\x1b[H", "äé".encode(), b"\xff\xfe", b"\x1b[200~"],
     ids=["delete", "F1", "F5", "mouse", "home", "letters beyond ASCII", "no text", "paste"],
 )
-def test_other_keys_are_none(data: bytes) -> None:
+def test_other_escape_sequences_are_ignored(data: bytes) -> None:
     assert keys(data + b"w") == ["w"]
 
 
@@ -90,7 +90,7 @@ def test_keys_come_one_by_one_unseen_and_the_terminal_is_left_as_it_was(terminal
 
 
 @needs_terminals
-def test_the_terminal_is_left_as_it_was_by_what_is_raised(terminal: tuple[int, int]) -> None:
+def test_an_exception_restores_the_terminal(terminal: tuple[int, int]) -> None:
     import termios
 
     from simkit.cli.terminal.keyboard import Keyboard
@@ -113,7 +113,7 @@ def test_a_terminal_that_goes_away_is_lost_and_no_fault(terminal: tuple[int, int
         assert keyboard.read() == []
 
 
-def test_what_is_no_terminal_has_no_keys() -> None:
+def test_a_stream_without_a_terminal_has_no_keyboard() -> None:
     from simkit.cli.terminal.keyboard import open_keyboard
 
     reading, writing = os.pipe()

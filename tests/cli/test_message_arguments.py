@@ -9,13 +9,13 @@ from simkit.errors import InputError
 
 
 @pytest.mark.parametrize("said", ["std_srvs/srv/Empty", "std_srvs/Empty"])
-def test_a_type_is_said_in_full_or_short(said: str) -> None:
+def test_a_type_can_be_given_in_full_or_short(said: str) -> None:
     assert is_same_type(said, "std_srvs/srv/Empty")
     check_type(said, ["std_msgs/msg/Bool", "std_srvs/srv/Empty"], "/thing")
 
 
 @pytest.mark.parametrize("said", ["std_srvs", "std_srvs/msg/Empty", "std_srvs/srv/Empty/more/words", "Empty", ""])
-def test_what_is_another_type_is_refused(said: str) -> None:
+def test_another_type_is_rejected(said: str) -> None:
     with pytest.raises(InputError, match=r"SK-CLI-032 /thing has type std_srvs/srv/Empty, found '"):
         check_type(said, ["std_srvs/srv/Empty"], "/thing")
 

@@ -27,14 +27,14 @@ def lab(tmp_path: Path) -> Path:
     return tmp_path / "lab.sdf"
 
 
-def test_every_motion_is_a_line_with_its_time_joints_and_words(lab: Path) -> None:
+def test_every_motion_is_a_line_with_its_duration_joints_and_description(lab: Path) -> None:
     lines = motion("list", lab.with_name("motions.yaml")).stdout.splitlines()
     assert [line.split()[0] for line in lines] == ["rest", "bow", "nod", "curl", "too_far", "open", "close"]
     assert lines[1].split("  ")[0] == "bow" and "3 s" in lines[1] and "2 points" in lines[1]
     assert "shoulder, elbow, wrist" in lines[1] and lines[1].endswith("There and elsewhere.")
 
 
-def test_a_robot_lists_what_it_knows_and_what_it_is_given(lab: Path) -> None:
+def test_a_robot_lists_its_own_motions_and_those_of_files(lab: Path) -> None:
     more = lab.with_name("more.yaml")
     more.write_text("play_motion:\n  motions:\n    tilt:\n      joints: [wrist]\n      points:\n"
                     "      - {positions: [0.1], time_from_start: 1.0}\n")  # fmt: skip
@@ -61,7 +61,7 @@ def test_a_robot_without_motions_gets_them_from_a_file(lab: Path) -> None:
     assert played.exit_code == 0 and played.stdout.startswith("nod: done in 1.8")  # 0.4 rad at 0.5 rad/s, and a second
 
 
-def test_an_unknown_motion_is_told_before_anything_moves(lab: Path) -> None:
+def test_an_unknown_motion_is_reported_before_anything_moves(lab: Path) -> None:
     result = motion("play", "rest", "bowl", "--world", lab)
     assert result.exit_code == 2
     assert "SK-MOTION-011 no motion 'bowl'; did you mean 'bow'?" in result.stderr and not result.stdout
@@ -111,13 +111,13 @@ def test_a_broken_file_of_motions_stops_before_anything_is_run(lab: Path) -> Non
     assert gone.exit_code == 2 and "SK-MOTION-001" in gone.stderr
 
 
-def test_a_robot_that_the_world_has_already_is_not_put_there_again() -> None:
+def test_a_robot_that_the_world_already_has_is_not_spawned_again() -> None:
     result = motion("play", "open", "--world", "tiago_table", "--robot", "tiago")
     assert result.exit_code == 2 and "leave out --robot" in result.stderr
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="a device that is always full is Linux's")
-def test_a_full_disk_is_told_in_a_line(lab: Path) -> None:
+def test_a_full_disk_is_reported_in_one_line(lab: Path) -> None:
     words = [sys.executable, "-m", "simkit", "motion", "list", str(lab)]
     with Path("/dev/full").open("w") as full:
         done = subprocess.run(words, stdout=full, stderr=subprocess.PIPE, text=True, check=False, timeout=120)

@@ -43,7 +43,7 @@ def test_it_waits_for_a_service_and_then_comes_to_its_end(capfd: pytest.CaptureF
     assert capfd.readouterr().err.count("paused at t=0 s until a service resumes it") == 1
 
 
-def test_the_newest_pace_counts_and_the_users_is_newer_than_what_the_world_asked_for_while_it_was_loaded() -> None:
+def test_the_newest_pace_counts_and_the_user_overrides_the_world() -> None:
     with simkit.load(BALL) as sim:
         sim.call("/world/w/set_physics", {"max_update_rate": 10_000.0})  # of 1 ms: ten times real time
         RunLoop(sim, Commands(sim, []), Quiet(), [])  # type: ignore[arg-type]

@@ -32,7 +32,7 @@ def simkit(*arguments: object) -> Result:
     return CliRunner().invoke(app, ["plugin", *map(str, arguments)], catch_exceptions=False)
 
 
-def test_each_name_is_a_line_with_what_it_hangs_on() -> None:
+def test_each_name_is_a_line_with_its_parent_elements() -> None:
     lines = simkit("list").stdout.splitlines()
     first = {line.split()[0]: line.split()[1] for line in lines}
     assert first["libgazebo_ros_diff_drive.so"] == "model"
@@ -48,7 +48,7 @@ def test_every_name_that_is_listed_finds_its_plugin() -> None:
             assert find_plugin(as_class) is entry.cls, name
 
 
-def test_words_choose_and_programs_get_one_value() -> None:
+def test_words_filter_the_list_and_json_is_one_value() -> None:
     found = simkit("list", "diff_drive", "diff-drive")
     assert found.exit_code == 0
     assert {line.split()[2] for line in found.stdout.splitlines()} == {"GazeboRosDiffDrive:", "DiffDrive:"}
@@ -76,7 +76,7 @@ def test_info_takes_any_spelling(name: str) -> None:
     assert "gz/diff_drive.py:" in text
 
 
-def test_info_says_parameters_topics_and_their_types() -> None:
+def test_info_prints_parameters_topics_and_their_types() -> None:
     text = simkit("info", "libgazebo_ros_diff_drive.so").stdout
     row = next(line.split() for line in text.splitlines() if line.strip().startswith("wheelSeparation"))
     assert row == ["wheelSeparation", "number", "0.34", "m", "at", "least", "1e-06"]

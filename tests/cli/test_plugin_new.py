@@ -152,7 +152,7 @@ def test_a_file_and_a_class_that_the_world_names_are_called_so(folder: Path) -> 
     assert run.exit_code == 0 and "SK-PLUGIN" not in run.output
 
 
-def test_nothing_is_replaced_without_being_told_to(folder: Path) -> None:
+def test_no_file_is_replaced_without_force(folder: Path) -> None:
     (folder / "test_wheel_brake.py").write_text("mine")
     refused = new("wheel_brake")
     assert refused.exit_code == 2 and "SK-PLUGIN-074" in refused.stderr and "test_wheel_brake.py" in refused.stderr
@@ -171,7 +171,7 @@ def test_nothing_is_replaced_without_being_told_to(folder: Path) -> None:
         (["--from", "none.sdf"], "none.sdf"),
     ],
 )
-def test_what_cannot_be_is_refused_in_words(arguments: list[str], said: str) -> None:
+def test_impossible_plugins_are_rejected_with_a_message(arguments: list[str], said: str) -> None:
     result = new(*arguments)
     assert result.exit_code == 2
     assert said in result.stderr and re.search(r"SK-[A-Z]+-\d{3}", result.stderr)

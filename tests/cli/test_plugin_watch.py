@@ -136,7 +136,7 @@ def test_an_edit_that_changes_nothing_leaves_the_run_as_it_would_be(edited: Edit
         assert (other.mj_data.qpos == edited.sim.mj_data.qpos).all()
 
 
-def test_what_load_sets_is_new_and_what_the_run_changed_goes_over(edited: Edited) -> None:
+def test_a_reload_keeps_the_state_of_the_run_and_renews_the_values_of_load(edited: Edited) -> None:
     edited.sim.run(0.1)
     edited.sim.set_parameter("/turner", "gain", 5.0)
     assert edited.edit(
@@ -191,9 +191,7 @@ def test_a_reset_goes_back_to_what_the_new_load_made(edited: Edited) -> None:
         ("0.0)\n        self.gain", "0.0, minimum=2); self.gain", "SK-PARAM-002"),
     ],
 )
-def test_an_edit_that_does_not_work_is_told_and_the_old_code_goes_on(
-    edited: Edited, old: str, new: str, said: str
-) -> None:
+def test_an_invalid_edit_is_reported_and_the_old_code_continues(edited: Edited, old: str, new: str, said: str) -> None:
     edited.sim.run(0.1)
     before, plugin = edited.state(), edited.plugin
     assert not edited.edit((old, new))
@@ -207,7 +205,7 @@ def test_an_edit_that_does_not_work_is_told_and_the_old_code_goes_on(
     assert edited.told.latest.data in (2, 3)
 
 
-def test_a_parameter_that_the_new_code_does_not_read_is_told(edited: Edited) -> None:
+def test_a_parameter_that_the_new_code_does_not_read_is_reported(edited: Edited) -> None:
     assert edited.edit(('"speed", 0.0', '"spede", 0.0'))
     assert "<speed> is not used" in "\n".join(edited.said) and "spede" in "\n".join(edited.said)
 
@@ -301,7 +299,7 @@ def test_without_the_option_nothing_is_reloaded(tmp_path: Path) -> None:
     assert "count 10 at 1000" in result.stdout and "reloaded" not in result.stderr
 
 
-def test_a_plugin_that_raises_is_waited_for_and_taken_up_before_it_raised(tmp_path: Path) -> None:
+def test_after_an_error_the_run_continues_from_before_it_once_the_plugin_is_corrected(tmp_path: Path) -> None:
     mended = 'HERE.write_text(HERE.read_text().replace("raise ValueError", "ValueError"))'
     result = run(tmp_path, f'if self.count == 5: {mended}; raise ValueError("the wheel fell off")', "--watch")
     assert result.exit_code == 0
@@ -318,12 +316,12 @@ def test_an_interrupt_ends_the_waiting_with_the_error_of_the_plugin(tmp_path: Pa
     assert result.stderr.count("the wheel fell off") >= 1 and "for a correction of the plugin" in result.stderr
 
 
-def test_a_recording_is_not_taken_up_again(tmp_path: Path) -> None:
+def test_a_run_with_a_recording_does_not_wait(tmp_path: Path) -> None:
     options = ("--watch", "--record", str(tmp_path / "run.mcap"))
     result = run(tmp_path, 'raise ValueError("the wheel fell off")', *options)
     assert result.exit_code == 4 and "to be mended" not in result.stderr
 
 
-def test_a_world_without_such_plugins_says_so(tmp_path: Path) -> None:
+def test_a_world_without_watched_plugins_is_reported(tmp_path: Path) -> None:
     result = CliRunner().invoke(app, ["run", "empty", "--duration", "0.1", "--watch"])
     assert result.exit_code == 0 and "no plugin of this world is in a folder of yours" in result.stderr

@@ -154,7 +154,7 @@ def test_without_a_terminal_teleop_is_refused_and_a_run_is_not(folder: Path, mon
         (["--teleop", "FOLDER/sled.sdf"], ""),
     ],
 )
-def test_the_topic_of_teleop_may_be_left_out_wherever_it_stands(words: list[str], topic: str, folder: Path) -> None:
+def test_the_topic_of_teleop_is_optional_at_every_position(words: list[str], topic: str, folder: Path) -> None:
     command: Any = get_command(app)
     words = [word.replace("FOLDER", str(folder)) for word in words]
     given = command.commands["run"].make_context("run", words).params
@@ -162,7 +162,7 @@ def test_the_topic_of_teleop_may_be_left_out_wherever_it_stands(words: list[str]
     assert given["world"].endswith("sled.sdf")
 
 
-def test_who_drives_or_looks_on_has_real_time_unless_they_say_otherwise() -> None:
+def test_teleop_and_viewer_default_to_real_time() -> None:
     assert highest_pace(None, is_watched=False) is None
     assert highest_pace(None, is_watched=True) == 1.0
     assert highest_pace(3.0, is_watched=True) == 3.0
@@ -216,7 +216,7 @@ def test_a_run_in_the_background_leaves_the_terminal_alone_until_it_is_in_front(
         terminal.wait_for("none is left")
 
 
-def test_after_a_kill_that_nobody_can_catch_the_shell_mends_its_terminal(folder: Path) -> None:
+def test_after_sigkill_the_shell_restores_its_terminal(folder: Path) -> None:
     with shell(folder) as terminal:
         terminal.press("run --teleop\n")
         terminal.wait_for("requested 0.00")

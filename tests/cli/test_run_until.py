@@ -53,7 +53,7 @@ def test_a_run_ends_with_0_as_soon_as_it_is_there(yard: Path, tmp_path: Path) ->
     assert cases(file) == {"run": "passed", holds: "passed", count: "passed"}
 
 
-def test_what_is_not_reached_or_does_not_hold_ends_with_5_and_the_numbers_found(yard: Path, tmp_path: Path) -> None:
+def test_a_failed_condition_ends_with_5_and_the_measured_numbers(yard: Path, tmp_path: Path) -> None:
     file = tmp_path / "out.xml"
     words = ("--until", "pose('ball').z > 3", "--timeout", "300ms", "--assert", "pose('ball').z < 0.5", "--junit", file)
     result = run(yard, *words)
@@ -68,7 +68,7 @@ def test_a_duration_ends_the_waiting_too(yard: Path) -> None:
     assert result.exit_code == 5 and "was not reached by t = 0.2 s" in result.stdout
 
 
-def test_an_expression_that_does_not_fit_is_told_before_the_first_step(yard: Path, tmp_path: Path) -> None:
+def test_an_invalid_expression_is_reported_before_the_first_step(yard: Path, tmp_path: Path) -> None:
     file, bag = tmp_path / "out.xml", tmp_path / "run.mcap"
     words = ("--until", "pose('bal').z > 3", "--assert", "tim > 2", "--duration", "9", "--junit", file, "--record", bag)
     result = run(yard, *words)
@@ -82,7 +82,7 @@ def test_a_file_is_written_where_the_world_cannot_be_loaded(tmp_path: Path) -> N
     assert result.exit_code == 2 and cases(tmp_path / "out.xml") == {"run": "error"}
 
 
-def test_a_file_that_cannot_be_written_is_told_before_the_run(yard: Path, tmp_path: Path) -> None:
+def test_an_unwritable_file_is_reported_before_the_run(yard: Path, tmp_path: Path) -> None:
     bag = tmp_path / "run.mcap"
     for place in (tmp_path, yard / "out.xml"):  # a folder, and one that would be in a file
         result = run(yard, "--duration", "0.1", "--junit", place, "--record", bag)
@@ -96,7 +96,7 @@ def test_a_timeout_is_a_time_and_waits_for_something(words: tuple[str, ...], yar
     assert result.exit_code == 2 and "--timeout" in result.stderr
 
 
-def test_the_wall_time_ends_a_run_that_stands_still(yard: Path) -> None:
+def test_the_wall_time_limit_ends_a_paused_run(yard: Path) -> None:
     result = run(yard, "--paused", "--wall-timeout", "500ms", "--assert", "time > 1", "--duration", "2")
     assert result.exit_code == 5
     assert "FAILED  the run was stopped after 0.5 s of wall time (--wall-timeout)" in result.stdout

@@ -81,7 +81,7 @@ def test_parameters_are_set_dumped_and_loaded(start: Any, simkit_line: Any, tmp_
     assert together.exit_code == 2 and live.sim.communication.parameters["/Tuner"]["count"].value == 3
 
 
-def test_actions_are_listed_and_told_of(yard: Any, simkit_line: Any) -> None:
+def test_actions_are_listed_and_described(yard: Any, simkit_line: Any) -> None:
     assert simkit_line("action", "list", "-t").stdout == "/countdown [example_interfaces/action/Fibonacci]\n"
     told = simkit_line("action", "info", "/countdown", "-t").stdout
     assert told.startswith("Action: /countdown\nAction clients: 0\nAction servers: 1\n    /")
@@ -101,7 +101,7 @@ def test_a_goal_gives_feedback_and_a_result(yard: Any, simkit_line: Any) -> None
     assert found == {"status": "SUCCEEDED", "reason": "", "result": {"sequence": [0]}}
 
 
-def test_a_goal_that_is_not_taken_or_called_off_says_so(yard: Any, simkit_line: Any) -> None:
+def test_a_rejected_or_cancelled_goal_is_reported(yard: Any, simkit_line: Any) -> None:
     refused = simkit_line("action", "send_goal", "/countdown", "{order: 0}")
     assert refused.stdout.endswith("Goal was rejected: nothing to count\n")
     off = simkit_line("action", "send_goal", "/countdown", "{order: 1000000}", "--timeout", "0.2").stdout
@@ -125,9 +125,7 @@ def test_a_goal_that_is_not_taken_or_called_off_says_so(yard: Any, simkit_line: 
         (("service", "call", "/lamp", "[" * 5000), "SK-CLI-031", "nested too deep"),
     ],
 )
-def test_a_mistake_is_told_with_what_helps(
-    words: tuple[str, ...], code: str, hint: str, yard: Any, simkit_line: Any
-) -> None:
+def test_an_error_gives_its_remedy(words: tuple[str, ...], code: str, hint: str, yard: Any, simkit_line: Any) -> None:
     result = simkit_line(*words)
     assert result.exit_code == 2
     assert code in result.stderr and hint in result.stderr
@@ -136,7 +134,7 @@ def test_a_mistake_is_told_with_what_helps(
 @pytest.mark.parametrize(
     "text", ["/Tuner: {ros__parameters: {p_gain: 2024-13-45}}", "/Tuner: {ros__parameters: &a {x: *a}}", "[" * 3000]
 )
-def test_a_parameter_file_that_is_no_yaml_is_told(text: str, yard: Any, simkit_line: Any, tmp_path: Path) -> None:
+def test_an_invalid_parameter_file_is_reported(text: str, yard: Any, simkit_line: Any, tmp_path: Path) -> None:
     (tmp_path / "p.yaml").write_text(text)
     told = simkit_line("param", "load", "/Tuner", str(tmp_path / "p.yaml"))
     assert told.exit_code == 2 and "SK-CLI-041" in told.stderr and "is not YAML" in told.stderr
@@ -153,7 +151,7 @@ def test_a_goal_may_be_waited_for_for_ever(yard: Any, simkit_line: Any) -> None:
     assert json.loads(found.stdout)["status"] == "SUCCEEDED"
 
 
-def test_what_is_too_large_to_be_sent_is_told(yard: Any, simkit_line: Any) -> None:
+def test_a_message_that_is_too_large_is_reported(yard: Any, simkit_line: Any) -> None:
     values = '{data: "' + "x" * (17 << 20) + '"}'
     told = simkit_line("topic", "pub", "--once", "-w", "0", "/big", "std_msgs/msg/String", values)
     assert told.exit_code == 2 and "is too large to send; allowed are 16777216" in told.stderr

@@ -162,7 +162,7 @@ def test_q_and_z_change_all_speeds_alike_so_that_a_curve_stays_the_same() -> Non
         assert teleop.speeds[0] == pytest.approx(0.022 / 1.1**8, abs=1e-6)  # a step is as much smaller
 
 
-def test_only_what_can_go_sideways_is_driven_sideways() -> None:
+def test_only_a_holonomic_robot_is_driven_sideways() -> None:
     with simkit.load(world(rover("burger"))) as sim:
         teleop = Teleop(sim, find_target(sim))
         assert not teleop.press("j")
@@ -257,7 +257,7 @@ def test_space_stops_and_pauses_and_again_goes_on_standing() -> None:
         assert sim.model("sled").pose.position[0] == pytest.approx(0.05, abs=1e-3)
 
 
-def test_n_while_it_runs_does_one_step_and_stands() -> None:
+def test_the_key_n_advances_one_step_and_pauses() -> None:
     with simkit.load(world()) as sim:
         RunKeys(sim, Hands(sim, {})).press("n")
         sim.control.pausing.advance(100)
@@ -316,7 +316,7 @@ def test_the_topic_is_the_only_one_or_the_one_that_is_named() -> None:
         find_target(sim)
 
 
-def test_the_two_topics_of_one_drive_are_one_robot_and_its_controller_says_how_fast_it_may_go() -> None:
+def test_two_topics_of_one_drive_are_one_robot_with_the_limits_of_its_controller() -> None:
     with simkit.load("tiago") as sim:
         target = find_target(sim)
         assert target.topic.startswith("/mobile_base_controller/cmd_vel")
@@ -325,7 +325,7 @@ def test_the_two_topics_of_one_drive_are_one_robot_and_its_controller_says_how_f
         assert target.model == "tiago"
 
 
-def test_who_wants_a_stamp_gets_one() -> None:
+def test_a_subscriber_of_twist_stamped_gets_a_stamp() -> None:
     class Stamped(simkit.WorldPlugin):
         def load(self, parent: Any, params: Any) -> None:
             self.got: list[Any] = []
@@ -342,7 +342,7 @@ def test_who_wants_a_stamp_gets_one() -> None:
         assert (line.text(), line.requested()) == ("driving /cmd_vel", "requested 0.05 m/s, 0.00 rad/s")
 
 
-def test_a_robot_that_is_removed_is_told_and_one_that_comes_back_is_driven() -> None:
+def test_a_removed_robot_is_reported_and_driven_again_after_its_return() -> None:
     with simkit.load(world()) as sim:
         robot = f'<sdf version="1.9">{sled()}</sdf>'
         sim.spawn(robot)
@@ -381,7 +381,7 @@ def test_the_nearest_obstacle_is_that_of_the_robots_lidar(wall: str, words: str)
         assert words in line.text()
 
 
-def test_what_is_nearer_than_a_lidar_sees_is_said() -> None:
+def test_an_obstacle_below_the_minimum_range_is_reported() -> None:
     lidar = LIDAR.replace('type="lidar"', 'type="gpu_lidar"').replace("<min>0.12", "<min>0.5")
     wall = WALL.format(pose="0.4 0 1 0 0 0").replace("collision", "visual")
     with simkit.load(world(sled(more=lidar), wall)) as sim:

@@ -53,7 +53,7 @@ def fits(expected: str, printed: str) -> bool:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("world", "steps"), sessions(), ids=[world for world, _ in sessions()])
-def test_the_page_does_what_it_says(
+def test_the_commands_of_the_page_work(
     world: str,
     steps: list[tuple[str, str, str]],
     start: Any,

@@ -77,7 +77,7 @@ def test_echo_shortens_leaves_out_and_counts(yard: Any, simkit_line: Any) -> Non
     )
 
 
-def test_echo_takes_only_what_a_filter_lets_through(yard: Any, simkit_line: Any) -> None:
+def test_echo_prints_only_messages_that_match_the_filter(yard: Any, simkit_line: Any) -> None:
     found = simkit_line("topic", "echo", "/imu", "--once", "--field", "header.stamp.sec", "--filter", "m >= 1").stdout
     assert int(found.split()[0]) >= 1
     wrong = simkit_line("topic", "echo", "/imu", "--once", "--filter", "m.nothing > 1")
@@ -137,21 +137,21 @@ def test_several_go_out_at_a_rate_of_simulated_time(yard: Any, simkit_line: Any)
         (("pub", "-1", "-t", "3", "/cmd_vel", "{}"), "SK-CLI-018", "one of them"),
     ],
 )
-def test_a_mistake_is_told_with_what_helps(
-    words: tuple[str, ...], code: str, hint: str, yard: Any, simkit_line: Any
-) -> None:
+def test_an_error_gives_its_remedy(words: tuple[str, ...], code: str, hint: str, yard: Any, simkit_line: Any) -> None:
     result = simkit_line("topic", *words)
     assert result.exit_code == 2
     assert code in result.stderr and hint in result.stderr
     assert "Traceback" not in result.stderr
 
 
-def test_what_ros_2_says_to_its_network_is_taken_and_left_out(yard: Any, simkit_line: Any) -> None:
+def test_network_options_of_ros_2_are_accepted_and_ignored(yard: Any, simkit_line: Any) -> None:
     words = ("--qos-reliability", "best_effort", "--qos-profile=sensor_data", "--no-daemon", "--spin-time", "2")
     assert simkit_line("topic", "echo", "/imu", "--once", *words, "--field", "header.stamp.sec").exit_code == 0
 
 
-def test_two_simulations_are_told_apart_by_name(start: Any, simkit_line: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_two_simulations_are_distinguished_by_name(
+    start: Any, simkit_line: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
     start("yard", paused=True)
     start("field", paused=True)
     result = simkit_line("topic", "list")
@@ -167,12 +167,12 @@ def test_without_a_simulation_the_command_says_how_to_start_one(place: Any, simk
 
 
 @pytest.mark.parametrize("name", ["", "/", "//", "/a//b", "/a/", "/ä", "~/x", "/{ns}", "/a b"])
-def test_a_topic_that_is_none_is_not_made(name: str, yard: Any, simkit_line: Any) -> None:
+def test_an_invalid_topic_name_is_rejected(name: str, yard: Any, simkit_line: Any) -> None:
     told = simkit_line("topic", "pub", "--once", "-w", "0", "--", name, "std_msgs/msg/Empty", "{}")
     assert told.exit_code == 2 and "is not a topic name" in told.stderr
 
 
-def test_times_without_an_end_are_taken(yard: Any, simkit_line: Any) -> None:
+def test_infinite_times_are_accepted(yard: Any, simkit_line: Any) -> None:
     assert simkit_line("topic", "echo", "--once", "/odom", "--timeout", "1e400").exit_code == 0
     assert simkit_line("topic", "hz", "/odom", "--window", "9" * 20).exit_code == 2
 
@@ -187,6 +187,6 @@ def test_raw_bytes_are_json_too(yard: Any, simkit_line: Any) -> None:
     assert found[:4] == [0, 1, 0, 0]
 
 
-def test_a_frame_that_nobody_knows_has_no_place_in_itself(yard: Any, simkit_line: Any) -> None:
+def test_an_unknown_frame_has_no_pose_in_itself(yard: Any, simkit_line: Any) -> None:
     told = simkit_line("tf", "echo", "nobody", "nobody", "--once")
     assert told.exit_code == 2 and "SK-CLI-038" in told.stderr

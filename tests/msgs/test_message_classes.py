@@ -21,7 +21,7 @@ ROOT = Path(__file__).resolve().parents[2]
 STUBS = ROOT / "simkit" / "msgs" / "message_classes.pyi"
 
 
-def test_the_stubs_are_what_the_definitions_give() -> None:
+def test_the_stubs_match_the_definitions() -> None:
     command = "python -m simkit.msgs.message_class_stubs > simkit/msgs/message_classes.pyi"
     assert STUBS.read_text(encoding="utf-8") == stub_text(), f"write them with: {command}"
 

@@ -47,7 +47,7 @@ def test_csv_is_flat() -> None:
     assert message_to_csv(STATE, TextStyle(no_arr=True)).startswith("0,0,,<sequence type: string, length: 2>,")
 
 
-def test_what_is_long_is_cut() -> None:
+def test_long_arrays_and_strings_are_truncated() -> None:
     scan = msgs.make("sensor_msgs/msg/LaserScan", ranges=[0.5] * 4, header={"frame_id": "base_scan"})
     short = message_to_dict(scan, TextStyle(truncate=2))
     assert short["ranges"] == [0.5, 0.5, "..."] and short["header"]["frame_id"] == "ba..."
@@ -77,7 +77,7 @@ def test_a_part_is_found_by_its_path() -> None:
         ("name[", "is not a field path"),
     ],
 )
-def test_a_path_that_leads_nowhere_says_so(path: str, told: str) -> None:
+def test_an_invalid_path_is_reported(path: str, told: str) -> None:
     if not told:
         assert field_at_path(STATE, path)
         return

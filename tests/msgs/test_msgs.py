@@ -54,7 +54,7 @@ def test_every_definition_file_is_of_a_known_kind_and_has_its_parts() -> None:
         assert definition_text(name).count("---\n") == {"msg": 0, "srv": 1, "action": 2}[kind], name
 
 
-def test_a_definition_is_read_when_its_type_is_first_asked_for() -> None:
+def test_a_definition_is_read_on_first_use_of_its_type() -> None:
     code = """
 import simkit.msgs as m
 assert m.full_name("ros_gz_interfaces/Contacts") not in set(m.type_store().fielddefs)
@@ -89,7 +89,7 @@ def test_dicts_become_messages_and_lists_become_arrays_of_the_fields_type() -> N
     assert path.poses[0].pose.position.x == 2.0
 
 
-def test_a_message_object_is_taken_as_it_is() -> None:
+def test_a_message_object_is_used_unchanged() -> None:
     header = msgs.header(1_500_000_002, "odom")
     assert msgs.make("sensor_msgs/msg/Imu", header=header).header is header
 
@@ -104,7 +104,7 @@ def test_a_message_object_is_taken_as_it_is() -> None:
         ({"linear": {"x": None}}, "found None"),
     ],
 )
-def test_what_does_not_fit_is_said(fields: dict[str, object], reason: str) -> None:
+def test_a_mismatched_value_is_reported(fields: dict[str, object], reason: str) -> None:
     with pytest.raises(MessageError) as error:
         msgs.make("geometry_msgs/msg/Twist", **fields)
     assert reason in str(error.value)

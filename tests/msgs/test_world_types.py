@@ -23,6 +23,6 @@ def test_a_type_has_the_hash_that_its_package_publishes(name: str) -> None:
     assert msgs.rihs(name) == "RIHS01_" + PUBLISHED[name]
 
 
-def test_an_unknown_service_names_the_closest_though_nobody_has_used_it_yet() -> None:
+def test_an_unknown_service_suggests_the_closest_even_before_its_first_use() -> None:
     with pytest.raises(MessageError, match="did you mean 'gazebo_msgs/srv/SpawnEntity_Request'"):
         msgs.full_name("gazebo_msgs/srv/SpawnEntiy_Request")

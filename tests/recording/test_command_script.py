@@ -68,7 +68,7 @@ def test_a_steady_velocity_goes_to_the_only_topic_that_takes_one() -> None:
         ("0.2,0", {"/a": "geometry_msgs/msg/Twist", "/b": "geometry_msgs/msg/Twist"}, "several (/a, /b)"),
     ],
 )
-def test_a_velocity_that_cannot_be_sent_is_said(text: str, topics: dict[str, str], reason: str) -> None:
+def test_an_invalid_velocity_is_reported(text: str, topics: dict[str, str], reason: str) -> None:
     with pytest.raises(InputError) as error:
         steady_velocity(text, topics)
     assert reason in str(error.value)
@@ -97,7 +97,7 @@ def test_a_script_is_read(tmp_path: Path) -> None:
         ("- {at: 0, topic: [\n", 2, "is not YAML"),
     ],
 )
-def test_a_bad_script_is_said_with_its_line(tmp_path: Path, text: str, line: int, reason: str) -> None:
+def test_an_invalid_script_is_reported_with_its_line(tmp_path: Path, text: str, line: int, reason: str) -> None:
     path = tmp_path / "drive.yaml"
     path.write_text(text)
     with pytest.raises(InputError) as error:
@@ -106,12 +106,12 @@ def test_a_bad_script_is_said_with_its_line(tmp_path: Path, text: str, line: int
     assert reason in str(error.value)
 
 
-def test_a_script_that_is_not_there_is_said(tmp_path: Path) -> None:
+def test_a_missing_script_is_reported(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="No such file"):
         read_script(tmp_path / "drive.yaml", TOPICS)
 
 
-def test_a_message_that_does_not_fit_is_said_with_its_line() -> None:
+def test_a_mismatched_message_is_reported_with_its_line() -> None:
     with simkit.load(EMPTY) as sim:
         sim.communication.bus.listen("/level", ["std_msgs/msg/Float64"], lambda m: None)
         queue = Commands(sim, [Command(0.0, "/level", {"dat": 1.0}, where="drive.yaml:7")])

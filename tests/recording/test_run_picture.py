@@ -42,7 +42,7 @@ def test_points_of_a_scan_lie_where_the_rays_hit() -> None:
     np.testing.assert_allclose(points, [[1, 2, 0.5], [0, 0, 0.5]], atol=1e-6)
 
 
-def test_a_path_follows_what_moves_and_leaves_out_what_stands() -> None:
+def test_paths_follow_moving_models_and_leave_out_static_ones() -> None:
     with simkit.load(WORLD) as sim:
         driven = DrivenPath(sim)
         sim.model("rover").set_velocity((1.0, 0.0, 0.0), (0.0, 0.0, 0.0))
@@ -88,6 +88,6 @@ def test_a_picture_shows_path_and_scan(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "reason"), [("out.gif", "allowed is .png or .jpg"), ("no/out.png", "no does not exist")]
 )
-def test_a_picture_that_cannot_be_written_is_said_before_the_run(tmp_path: Path, name: str, reason: str) -> None:
+def test_an_unwritable_picture_is_reported_before_the_run(tmp_path: Path, name: str, reason: str) -> None:
     with pytest.raises(InputError, match=reason):
         check_target(tmp_path / name)

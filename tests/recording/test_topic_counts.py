@@ -52,7 +52,7 @@ def test_a_topic_that_comes_later_is_counted_from_then_on() -> None:
         assert row.rate() == pytest.approx(10.0, rel=1e-3)
 
 
-def test_what_is_recorded_is_counted_whatever_its_type(tmp_path: Path) -> None:
+def test_a_recorded_topic_is_counted_regardless_of_its_type(tmp_path: Path) -> None:
     with simkit.load(WORLD) as sim, Recorder(sim, tmp_path / "r.mcap", topics=["/im*"]) as recording:
         assert recording.records("/imu") and not recording.records("/clock")
         counter = TopicCounter(sim, ["sensor_msgs/msg/Imu", "rosgraph_msgs/msg/Clock"], recording.records)

@@ -12,7 +12,7 @@ from simkit import msgs
 from simkit.live import Client, LiveClosed, LiveError, Server, connect, simulations
 
 
-def test_it_is_found_by_name_and_says_what_it_is(client: Client) -> None:
+def test_a_simulation_is_found_by_name_and_describes_itself(client: Client) -> None:
     found = simulations()
     assert [(s.name, s.world) for s in found] == [("court", "court")]
     assert found[0].pid == client.info["pid"] > 0
@@ -21,7 +21,9 @@ def test_it_is_found_by_name_and_says_what_it_is(client: Client) -> None:
         assert len({client.info["node"], other.info["node"], third.info["node"]}) == 3
 
 
-def test_two_of_one_world_are_told_apart(court: simkit.Simulation, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_two_simulations_of_one_world_have_different_names(
+    court: simkit.Simulation, monkeypatch: pytest.MonkeyPatch
+) -> None:
     with Server(court) as one, Server(court) as two, Server(court, "mine!") as three:
         assert (one.name, two.name, three.name) == ("court", "court_2", "mine_")
         assert [s.name for s in simulations()] == ["court", "court_2", "mine_"]
@@ -74,7 +76,7 @@ def test_a_message_is_given_as_a_dict_or_a_message_or_bytes(
     assert heard.latest == message
 
 
-def test_what_does_not_fit_is_said_before_it_is_sent(client: Client) -> None:
+def test_a_mismatched_message_is_reported_before_it_is_sent(client: Client) -> None:
     publisher = client.advertise("/cmd_vel")
     with pytest.raises(simkit.SimkitError, match="did you mean 'linear'"):
         publisher.publish({"liner": {"x": 1.0}})
@@ -102,7 +104,7 @@ def test_a_topic_of_a_client_is_listed_while_it_is_open(court: simkit.Simulation
     assert "/chat" not in court.topics()
 
 
-def test_who_comes_late_has_the_last_message_of_a_latched_topic(
+def test_a_late_subscriber_gets_the_last_message_of_a_latched_topic(
     court: simkit.Simulation, run: Callable[..., Any]
 ) -> None:
     court.communication.bus.advertise("/map_name", "std_msgs/msg/String", latched=True).publish(
@@ -128,7 +130,7 @@ def test_of_more_messages_than_may_wait_the_newest_are_kept_and_the_others_count
         assert few.lost == 15
 
 
-def test_services_answer_and_say_what_is_wrong(client: Client) -> None:
+def test_services_answer_and_report_errors(client: Client) -> None:
     assert client.services()["/world/court/control"] == "ros_gz_interfaces/srv/ControlWorld"
     assert client.call("/world/court/control", {"world_control": {"pause": True}}).success
     assert client.state()["paused"]
@@ -198,7 +200,7 @@ def test_parameters_are_listed_and_changed(counting: simkit.Simulation, run: Cal
             client.ask("set_parameter", node=node, name="gain", value=3.0)
 
 
-def test_the_end_of_a_simulation_is_told(court: simkit.Simulation, run: Callable[..., Any]) -> None:
+def test_the_end_of_a_simulation_is_reported(court: simkit.Simulation, run: Callable[..., Any]) -> None:
     calls: list[Any] = []
     with run(court, calls=calls) as client:
         client.control("pause")
@@ -209,7 +211,7 @@ def test_the_end_of_a_simulation_is_told(court: simkit.Simulation, run: Callable
             client.state()
 
 
-def test_a_service_of_a_script_that_raises_is_told_and_raised(
+def test_an_error_in_a_service_of_a_script_is_reported_and_raised(
     court: simkit.Simulation, run: Callable[..., Any]
 ) -> None:
     def fail(_: Any) -> None:

@@ -316,7 +316,7 @@ def test_pictures_that_are_still_being_drawn_come_in_their_order(court: simkit.S
         caller.socket.close()
 
 
-def test_a_reset_leaves_clients_what_they_have_open(court: simkit.Simulation) -> None:
+def test_a_reset_keeps_the_open_handles_of_clients(court: simkit.Simulation) -> None:
     heard = court.subscribe("/cmd_vel")
     with Server(court) as server:
         caller = Caller(server)
@@ -383,7 +383,7 @@ def test_json_of_answers_has_infinity_and_arrays() -> None:
     assert json.loads("[Infinity]") == [float("inf")]
 
 
-def test_topics_that_nobody_has_any_more_are_forgotten(court: simkit.Simulation) -> None:
+def test_unused_topics_are_removed(court: simkit.Simulation) -> None:
     bus = court.communication.bus
     before = len(bus._readers), len(bus._publishers), len(bus._listeners)
     with Server(court) as server:

@@ -56,7 +56,7 @@ def test_messages_of_other_sizes_are_read_too(type_name: str) -> None:
 
 
 @pytest.mark.parametrize("type_name", [*FIXED, *OTHERS])
-def test_what_rosbags_refuses_is_refused(type_name: str) -> None:
+def test_bytes_that_rosbags_rejects_are_rejected(type_name: str) -> None:
     store, whole = msgs.type_store(), msgs.serialize(msgs.make(type_name))
     for data in (whole[:-1], whole + bytes(4), b"\0\2" + whole[2:], b"\1\1" + whole[2:], whole[:3], b""):
         with pytest.raises(Exception) as usual:

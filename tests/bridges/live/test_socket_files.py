@@ -46,7 +46,7 @@ def test_a_link_instead_of_the_folder_is_not_followed(sockets: Path, tmp_path: P
     assert path.parent != sockets
 
 
-def test_the_socket_of_one_who_died_is_replaced(court: simkit.Simulation, sockets: Path) -> None:
+def test_the_socket_of_a_dead_process_is_replaced(court: simkit.Simulation, sockets: Path) -> None:
     sockets.mkdir(mode=0o700)
     for name in ("court", "other"):
         with socket.socket(socket.AF_UNIX) as dead:
@@ -90,7 +90,7 @@ def test_where_there_are_no_local_sockets_the_run_goes_on_without(
     assert simulations() == []
 
 
-def test_what_is_no_socket_is_taken_away_or_keeps_its_name(court: simkit.Simulation, sockets: Path) -> None:
+def test_a_file_that_is_not_a_socket_is_deleted_or_keeps_its_name(court: simkit.Simulation, sockets: Path) -> None:
     sockets.mkdir(mode=0o700)
     (sockets / "court.sock").mkdir()
     (sockets / "text.sock").write_text("no socket")
@@ -101,7 +101,7 @@ def test_what_is_no_socket_is_taken_away_or_keeps_its_name(court: simkit.Simulat
         assert sorted(path.name for path in sockets.glob("*.sock")) == ["court.sock", "court_2.sock"]
 
 
-def test_one_who_holds_the_lock_for_ever_keeps_no_run_from_beginning(
+def test_a_lock_that_is_never_released_does_not_prevent_a_run(
     court: simkit.Simulation, sockets: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     import fcntl

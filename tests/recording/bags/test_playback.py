@@ -42,7 +42,7 @@ def driven(sim: Any, sender: Any, steps: int = 400) -> str:
     return state_hash(sim)
 
 
-def test_what_was_recorded_comes_back_bit_by_bit(tmp_path: Path) -> None:
+def test_a_recorded_run_is_repeated_bit_by_bit(tmp_path: Path) -> None:
     with simkit.load(CART) as sim, Recorder(sim, tmp_path / "a.mcap"):
         wanted = driven(sim, Commands(sim, DRIVE))
     with simkit.load(CART) as sim, Playback(sim, tmp_path / "a.mcap") as played, Recorder(sim, tmp_path / "b.mcap"):
@@ -107,7 +107,7 @@ def test_a_velocity_loses_the_header_that_the_world_has_no_use_for(tmp_path: Pat
     assert [m.angular.z for m in heard] == [0.25] * 3
 
 
-def test_topics_are_played_on_others_where_asked(tmp_path: Path) -> None:
+def test_topics_can_be_renamed_for_playback(tmp_path: Path) -> None:
     with simkit.load(CART) as sim, Recorder(sim, tmp_path / "a.mcap"):
         driven(sim, Commands(sim, DRIVE), 50)
     other = CART.replace("/cmd_vel", "/robot/go")
@@ -127,7 +127,7 @@ def test_topics_are_played_on_others_where_asked(tmp_path: Path) -> None:
                 Playback(sim, tmp_path / "a.mcap", [text])
 
 
-def test_readings_of_the_world_itself_are_not_said_to_it_again(tmp_path: Path) -> None:
+def test_sensor_readings_of_the_world_are_not_played_back(tmp_path: Path) -> None:
     class Echo(simkit.WorldPlugin):
         def load(self, parent: Any, params: Any) -> None:
             self.heard = 0

@@ -44,7 +44,7 @@ def _foreign(path: Path, storage: Any) -> None:
 
 
 @pytest.mark.parametrize("name", ["run.mcap", "run"])
-def test_what_simkit_wrote_comes_back(name: str, tmp_path: Path) -> None:
+def test_a_bag_of_simkit_is_read_back(name: str, tmp_path: Path) -> None:
     bag = McapBag(tmp_path / name) if name.endswith(".mcap") else Rosbag2Folder(tmp_path / name)
     _numbers(bag)
     bag.close()
@@ -88,7 +88,7 @@ def test_one_that_was_cut_off_is_read_as_far_as_it_goes(tmp_path: Path) -> None:
         assert values == [float(i) for i in range(len(values))] and 0 < len(values) < 20
 
 
-def test_what_is_no_bag_is_said_to_be_none(tmp_path: Path) -> None:
+def test_a_path_that_is_not_a_bag_is_reported(tmp_path: Path) -> None:
     (tmp_path / "text.mcap").write_text("no bag", encoding="utf-8")
     (tmp_path / "notes.txt").write_text("no bag", encoding="utf-8")
     (tmp_path / "empty").mkdir()
@@ -133,7 +133,7 @@ def test_a_folder_that_lacks_its_end_is_read_by_its_files(tmp_path: Path, metada
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names there")
-def test_what_is_no_file_is_not_waited_for(tmp_path: Path) -> None:
+def test_a_special_file_is_not_opened(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe.mcap")
     with pytest.raises(InputError, match="neither a file nor a folder"):
         open_bag_to_read(tmp_path / "pipe.mcap")

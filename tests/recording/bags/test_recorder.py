@@ -70,7 +70,7 @@ def test_mcap_opens_a_recording_without_help_of_rosbags(tmp_path: Path) -> None:
     assert all(s.encoding == "ros2msg" for s in summary.schemas.values())
 
 
-def test_a_recording_holds_what_subscribers_got(tmp_path: Path) -> None:
+def test_a_recording_holds_the_messages_of_subscribers(tmp_path: Path) -> None:
     with simkit.load(WORLD) as sim, Recorder(sim, tmp_path / "run.mcap"):
         live = sim.subscribe("/imu")
         sim.run(0.5)
@@ -125,7 +125,7 @@ def test_recording_changes_nothing_of_the_run(tmp_path: Path) -> None:
         assert recorded.model("ball").pose.position[2] == height
 
 
-def test_only_the_topics_asked_for_are_recorded(tmp_path: Path) -> None:
+def test_only_selected_topics_are_recorded(tmp_path: Path) -> None:
     path = record(tmp_path / "run.mcap", topics=["/im*"])
     with AnyReader([path]) as reader:
         assert {c.topic for c in reader.connections} == {"/imu"}
@@ -151,7 +151,7 @@ def test_a_folder_that_is_no_bag_is_not_replaced_even_by_force(tmp_path: Path) -
     record(tmp_path / "bag", seconds=0.1, overwrite=True)
 
 
-def test_a_place_that_cannot_be_written_is_said_before_the_run(tmp_path: Path) -> None:
+def test_an_unwritable_path_is_reported_before_the_run(tmp_path: Path) -> None:
     with simkit.load(WORLD) as sim, pytest.raises(InputError, match="missing does not exist") as error:
         Recorder(sim, tmp_path / "missing" / "run.mcap")
     assert error.value.code == "SK-BAG-002"
@@ -267,7 +267,7 @@ def test_mending_a_whole_recording_gives_the_same_messages(tmp_path: Path) -> No
 
 
 @pytest.mark.parametrize("content", [b"", b"not a bag at all", b"\x89MCAP0\r\n"])
-def test_what_is_no_recording_cannot_be_mended(tmp_path: Path, content: bytes) -> None:
+def test_a_file_that_is_not_a_bag_cannot_be_recovered(tmp_path: Path, content: bytes) -> None:
     (tmp_path / "bad.mcap").write_bytes(content)
     with pytest.raises(InputError) as error:
         recover_bag(tmp_path / "bad.mcap", tmp_path / "whole.mcap")

@@ -45,7 +45,7 @@ def test_a_field_is_found_with_dots_or_slashes_and_without_the_first_slash() -> 
     assert labels("/odom/raw.pose.pose.position.x") == ["/odom/raw.pose.pose.position.x"]
 
 
-def test_a_small_vector_stands_for_its_parts() -> None:
+def test_a_small_vector_expands_to_its_components() -> None:
     assert labels("/odom.pose.pose.position") == [f"/odom.pose.pose.position.{a}" for a in "xyz"]
     assert labels("/imu.linear_acceleration_covariance[0:2]") == [
         "/imu.linear_acceleration_covariance[0]",
@@ -88,7 +88,7 @@ def test_items_have_numbers_or_names() -> None:
     assert math.isnan(number("/tf.transforms[arm].transform.translation.x", frames))
 
 
-def test_arrays_have_a_least_a_greatest_and_a_mean_of_what_is_finite() -> None:
+def test_arrays_have_minimum_maximum_and_mean_of_their_finite_items() -> None:
     scan = msgs.make("sensor_msgs/msg/LaserScan", ranges=[2.0, math.inf, 1.0])
     found = {name: number(f"/scan.ranges.{name}", scan) for name in ("min", "max", "mean", "length")}
     assert found == {"min": 1.0, "max": 2.0, "mean": 1.5, "length": 3.0}
@@ -125,7 +125,7 @@ def test_times_are_seconds_and_vectors_have_a_length() -> None:
         ("", "SK-CLI-030", "no topic '/'"),
     ],
 )
-def test_what_is_no_number_is_said_to_be_none(text: str, code: str, words: str) -> None:
+def test_a_field_that_is_not_a_number_is_reported(text: str, code: str, words: str) -> None:
     with pytest.raises(InputError, match=code) as told:
         curves(text)
     assert words in str(told.value)

@@ -182,7 +182,7 @@ def test_a_film_goes_by_the_times_of_the_bag(tmp_path: Path) -> None:
     assert levels[7] == pytest.approx(100, abs=4) and levels[-1] == pytest.approx(220, abs=4)
 
 
-def test_pictures_that_cannot_be_read_are_told_and_the_rest_is_there(tmp_path: Path) -> None:
+def test_invalid_images_are_reported_and_the_others_are_written(tmp_path: Path) -> None:
     odd = msgs.make("sensor_msgs/msg/Image", height=9, width=9, encoding="rgb8", step=27, data=np.zeros(5, np.uint8))
     strange = msgs.make("sensor_msgs/msg/Image", height=1, width=1, encoding="yuv9", step=1, data=np.zeros(1, np.uint8))
     bag = written(tmp_path / "a.mcap", (0.0, "/a", odd), (0.0, "/b", strange), (1.0, "/a", image(COLOURS, "rgb8")))
@@ -239,7 +239,7 @@ def test_topics_whose_names_would_be_one_file_have_two(tmp_path: Path) -> None:
     assert table(tmp_path / "out" / found[0].file)[0]["data"] == 'a,\n"b"'
 
 
-def test_only_what_is_wanted_is_taken(tmp_path: Path) -> None:
+def test_only_selected_topics_are_exported(tmp_path: Path) -> None:
     bag = written(tmp_path / "a.mcap", *SCANS, *FRAMES)
     assert [f.topic for f in export_bag(bag, tmp_path / "1", ExportOptions(skip=("/t*",)))] == ["/scan"]
     assert export_bag(bag, tmp_path / "2", ExportOptions(topics=("/tf",), start=1.0))[0].count == 1
@@ -251,7 +251,7 @@ def test_only_what_is_wanted_is_taken(tmp_path: Path) -> None:
     assert not (tmp_path / "4").exists()
 
 
-def test_lists_that_no_spreadsheet_opens_are_left_out_and_told(tmp_path: Path) -> None:
+def test_lists_too_wide_for_a_spreadsheet_are_left_out_and_reported(tmp_path: Path) -> None:
     grid = msgs.make("nav_msgs/msg/OccupancyGrid", data=np.zeros(20_000, np.int8))
     bag = written(tmp_path / "a.mcap", (0.0, "/map", grid))
     (found,) = export_bag(bag, tmp_path / "out", ExportOptions())
@@ -260,7 +260,7 @@ def test_lists_that_no_spreadsheet_opens_are_left_out_and_told(tmp_path: Path) -
     assert np.load(tmp_path / "all" / "map.npz")["data"].shape == (1, 20_000)
 
 
-def test_an_export_replaces_an_export_only_and_only_where_asked(tmp_path: Path) -> None:
+def test_an_export_replaces_only_an_export_and_only_with_overwrite(tmp_path: Path) -> None:
     bag = written(tmp_path / "a.mcap", *SCANS)
     export_bag(bag, tmp_path / "out", ExportOptions())
     with pytest.raises(InputError, match="SK-BAG-013"):
@@ -296,7 +296,7 @@ def test_an_export_that_is_killed_leaves_nothing_half_and_the_next_one_tidies_up
 
 
 @pytest.mark.skipif(os.name == "nt", reason="who is over cannot be asked there")
-def test_who_is_killed_between_the_old_export_and_the_new_one_has_not_lost_the_old(tmp_path: Path) -> None:
+def test_a_kill_between_the_old_and_the_new_export_keeps_the_old_one(tmp_path: Path) -> None:
     bag = written(tmp_path / "a.mcap", *SCANS)
     export_bag(bag, tmp_path / "out", ExportOptions())
     over = subprocess.Popen([sys.executable, "-c", ""])
