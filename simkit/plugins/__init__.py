@@ -1,10 +1,10 @@
-"""Plugins: Python that hangs on a world, a model, a visual or a sensor and is called as the run goes.
+"""Plugins: Python classes attached to a world, a model, a visual or a sensor and called while the simulation runs.
 
-A plugin of a file enters as a `ScenePlugin` with its parameters and leaves as an instance of its class, which
-`discovery` finds by name and attaches. One kind is one file: `gz` and `classic` hold Gazebo's two generations,
-`world` what every world brings, `ros2_control`, `play_motion` and `gz_python` whole subsystems; `drives`, `joints`,
-`fluids` and `actors` hold what several kinds share, and the files beside them what all share. A plugin never touches
-the MuJoCo spec itself: what it needs before the compile it asks of the builder in `prepare`.
+A file describes a plugin as a `ScenePlugin` with parameters. `discovery` finds its class by name and creates the
+instance. Each kind of plugin has its own file. `gz` and `classic` hold the plugins of Gazebo's two generations; `world`
+holds what every world has. `ros2_control`, `play_motion` and `gz_python` are whole subsystems. `drives`, `joints`,
+`fluids` and `actors` hold code that several kinds share; the files next to them hold code that all kinds share. A
+plugin never changes the MuJoCo spec itself: `prepare` requests actuators and sites from the builder before the compile.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What a plugin is: Python that hangs on a world, a model, a visual or a sensor and is called as the run goes.
+"""Base classes of plugins: Python attached to a world, a model, a visual or a sensor and called while it runs.
 
 Write a class with a `load` method; everything else is optional:
 
@@ -44,32 +44,33 @@ Hook = Literal["prepare", "reset", "before_step", "after_step", "close"]
 ParentKind = Literal["world", "model", "visual", "sensor", "any"]
 
 NEVER: Final = 1e-9
-"""[Hz]; the rate of a hook that is not called for now: once in thirty years."""
+"""Rate of a hook that is paused [Hz]: once in thirty years."""
 
 
 class Plugin(abc.ABC):
     """Base of all plugins; derive from `WorldPlugin`, `ModelPlugin`, `VisualPlugin` or `SensorPlugin`.
 
-    A hook that a class does not override costs nothing. Hooks run on the grid of simulated time: with a rate of
-    r Hz at the first step at or after k/r, k = 1, 2, …; with None or 0 at every step.
+    A hook that a class does not override costs nothing. Hooks run on the grid of simulated time: with a rate of r Hz at
+    the first step at or after k/r, k = 1, 2, …; with None or 0 at every step.
 
     Attributes:
-        filenames: library names in files that stand for this class (`libgazebo_ros_diff_drive.so`).
-        names: gz class names that do (`gz::sim::systems::DiffDrive`).
-        parent_kind: what it may hang on; the base classes set it. Several kinds where the file may choose.
-        lets_sleep: whether a model that it hangs on may sleep while it rests: nobody could tell by this plugin.
-        option_types: classes of options that it reads, besides that of its `options`; see `simkit.plugins.options`.
-        endpoints: its topics, services and actions where `load` does not name them literally.
+        filenames: library names in files that select this class (`libgazebo_ros_diff_drive.so`).
+        names: gz class names that select this class (`gz::sim::systems::DiffDrive`).
+        parent_kind: kind of entity that the plugin attaches to, or several kinds; the base classes set it.
+        lets_sleep: whether its model may sleep at rest, because sleeping changes nothing that the plugin reads or does.
+        option_types: further classes of options, besides that of `options`; see `simkit.plugins.options`.
+        endpoints: topics, services and actions whose names are not literals in `load`.
         before_step_rate, after_step_rate: [Hz]; set in the class, or on the instance in `load`.
-        on_error: "stop": what it raises stops the run; "disable": the run goes on without it. `<simkit:on_error>` in
-            the file goes over it, and what `simkit.load` is told over both. None is "stop".
-        sim: the simulation.
-        name: the plugin's name in the file.
-        scoped: the entity it hangs on (empty for the world).
-        params: its parameters.
+        on_error: "stop" ends the run when the plugin raises; "disable" continues without the plugin.
+            `<simkit:on_error>` in the file overrides this attribute, and the argument of `simkit.load` overrides both.
+            None is "stop".
+        sim: simulation.
+        name: name of the plugin in the file.
+        scoped: scoped name of the entity that the plugin is attached to (empty for the world).
+        params: parameters of the plugin.
         where: file and line.
         ros: topic names after `<namespace>` and `<remapping>`.
-        log: a logger below `simkit`.
+        log: logger below `simkit`.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ()
@@ -78,16 +79,16 @@ class Plugin(abc.ABC):
     lets_sleep: ClassVar[bool] = False
     option_types: ClassVar[tuple[type[Options], ...]] = ()
     endpoints: ClassVar[tuple[Endpoint, ...]] = ()
-    drives: ClassVar[bool] = False  # whether it moves joints of its model; on a static one it is left out
-    reads_parameter_files: ClassVar[bool] = False  # whether it reads those of `params_files`
+    drives: ClassVar[bool] = False  # whether it moves joints; a static model ignores such a plugin
+    reads_parameter_files: ClassVar[bool] = False  # whether it reads the files in `params_files`
 
     before_step_rate: float | None = None
     after_step_rate: float | None = None
     on_error: PluginErrorPolicy | None = None
 
-    _failed: tuple[str, Exception] | None = None  # what it raised before there was a simulation, and where
+    _failed: tuple[str, Exception] | None = None  # hook and exception from before the simulation existed
     _actuators: tuple[ActuatorRef, ...] = ()  # servos and motors that its `prepare` added
-    _order: tuple[object, ...] = ()  # where it stands among all plugins
+    _order: tuple[object, ...] = ()  # sort key among all plugins
     plugin_paths: tuple[Path, ...] = ()  # folders whose Python the user allows
     _source: ScenePlugin | None = None
     sim: Simulation
@@ -99,55 +100,55 @@ class Plugin(abc.ABC):
     log: logging.Logger
 
     def __init__(self, **values: Any) -> None:
-        """A plugin made in Python.
+        """Create a plugin in Python instead of in a file.
 
         Args:
-            values: its parameters, as a file would give them: `MyPlugin(gain=2.0, topic="out")`. Dicts are blocks,
-                lists repeated elements, tuples the numbers of one.
+            values: parameters as in a file: `MyPlugin(gain=2.0, topic="out")`. Dicts are blocks, lists are repeated
+                elements, tuples are the numbers of one element.
         """
         self._values = values
 
-    # ------------------------------------------------------------------ what a user writes
+    # ------------------------------------------------------------------ hooks that a plugin's author writes
 
     def prepare(self, scene: Any, params: Params, builder: SpecBuilder) -> None:
-        """Before the model is compiled: check names, add actuators and sites through `builder`.
+        """Check names and add actuators and sites through `builder`, before the model is compiled.
 
         Args:
-            scene: the resolved entity: `SceneWorld`, `SceneModel`, `SceneVisual` or `SceneSensor`.
-            params: the plugin's parameters; problems recorded here stop the load like any other.
-            builder: the door to the MuJoCo spec.
+            scene: resolved entity: `SceneWorld`, `SceneModel`, `SceneVisual` or `SceneSensor`.
+            params: parameters of the plugin; errors recorded here stop the load.
+            builder: access to the MuJoCo spec.
         """
 
     @abc.abstractmethod
     def load(self, parent: Any, params: Params) -> None:
-        """Once, when everything is built: read parameters, open topics, find links and joints.
+        """Read parameters, open topics and find links and joints; called once, after everything is built.
 
         Args:
-            parent: the `Simulation`, `Model`, `Visual` or `Sensor` it hangs on.
-            params: the plugin's parameters, to be read by type and default.
+            parent: `Simulation`, `Model`, `Visual` or `Sensor` that the plugin is attached to.
+            params: parameters of the plugin, read by type and default.
         """
 
     def reset(self) -> None:
-        """Back at t = 0; the plugin's attributes are already what they were after `load`."""
+        """Return to t = 0; the plugin's attributes already have their values from after `load`."""
 
     def before_step(self) -> None:
-        """Before a physics step: commands."""
+        """Write commands before a physics step."""
 
     def after_step(self) -> None:
-        """After a physics step: readings."""
+        """Read the state after a physics step."""
 
     def close(self) -> None:
-        """When the simulation closes."""
+        """Release resources when the simulation closes."""
 
-    # ------------------------------------------------------------------ what a user calls
+    # ------------------------------------------------------------------ methods that a plugin's author calls
 
     def advertise(self, topic: str, type_name: str, *, latched: bool = False) -> Publisher:
-        """A publisher on `topic` (expanded and remapped as in ROS), of a type such as `nav_msgs/msg/Odometry`."""
+        """Open a publisher on `topic` (expanded and remapped as in ROS), of a type such as `nav_msgs/msg/Odometry`."""
         with self.sim.communication.bus.owned_by(self):
             return self.sim.communication.bus.advertise(self.ros.topic(topic), type_name, latched=latched)
 
     def listen(self, topic: str, types: str | Sequence[str], callback: Callable[[Any], object]) -> Listener:
-        """Calls `callback(message)` between two steps for each message on `topic`; the first type is the listed one."""
+        """Call `callback(message)` between two steps for each message on `topic`; the first of `types` is listed."""
         name = self.ros.topic(topic)
         guarded = self.sim.engine.faults.guard(self, f"its callback for {name!r}", callback)
         with self.sim.communication.bus.owned_by(self):
@@ -157,14 +158,14 @@ class Plugin(abc.ABC):
     def subscribe(
         self, topic: str, callback: Callable[[Any], None] | None = None, keep: int | None = None
     ) -> Subscription:
-        """Receives what others publish on `topic` (expanded and remapped as in ROS), at the moment they do.
+        """Receive messages on `topic` (expanded and remapped as in ROS) at the moment of publication.
 
-        To be used for readings; what comes in as a command is for `listen`, which takes it between two steps.
+        Use it for readings. Use `listen` for commands: its callbacks run between two steps.
 
         Args:
-            topic: its name.
-            callback: called with each message.
-            keep: how many of the newest messages `.messages` has.
+            topic: name of the topic.
+            callback: function called with each message.
+            keep: number of newest messages in `.messages`.
         """
         name = self.ros.topic(topic)
         guarded = callback and self.sim.engine.faults.guard(self, f"its callback for {name!r}", callback)
@@ -172,12 +173,12 @@ class Plugin(abc.ABC):
             return self.sim.subscribe(name, guarded, keep)
 
     def offer(self, service: str, type_name: str, handler: Callable[[Any], Any]) -> Service:
-        """Opens a service (its name expanded and remapped as in ROS), of a type such as `std_srvs/srv/Trigger`.
+        """Open a service (its name expanded and remapped as in ROS), of a type such as `std_srvs/srv/Trigger`.
 
         Args:
-            service: its name.
-            type_name: its type.
-            handler: given the request, gives the response: a message, a dict of its fields, or None for all zero.
+            service: name of the service.
+            type_name: type of the service.
+            handler: function from the request to the response: a message, a dict of its fields, or None for all zeros.
         """
         with self.sim.communication.bus.owned_by(self):
             return self.sim.offer(self.ros.topic(service), type_name, handler)
@@ -189,14 +190,15 @@ class Plugin(abc.ABC):
         on_goal: Callable[[GoalHandle], None],
         on_cancel: Callable[[GoalHandle], bool | None] | None = None,
     ) -> Action:
-        """Opens an action of a type such as `control_msgs/action/FollowJointTrajectory`.
+        """Open an action of a type such as `control_msgs/action/FollowJointTrajectory`.
 
         Args:
-            action: its name, expanded and remapped as in ROS.
-            type_name: its type.
-            on_goal: called with each goal between two steps. It may `reject` it; else it is being worked on, until
-                a hook ends it with `succeed`, `abort` or `canceled`; `publish_feedback` tells how far it is.
-            on_cancel: called with a goal that is to be cancelled; gives False to go on. Without it, nothing is.
+            action: name of the action, expanded and remapped as in ROS.
+            type_name: type of the action.
+            on_goal: function called with each goal between two steps. It may `reject` the goal. An accepted goal stays
+                active until a hook calls `succeed`, `abort` or `canceled` on it; `publish_feedback` reports its
+                progress.
+            on_cancel: function called with a goal that a client cancels; False keeps the goal. None keeps every goal.
         """
         with self.sim.communication.bus.owned_by(self):
             return self.sim.communication.actions.act(self.ros.topic(action), type_name, on_goal, on_cancel)
@@ -213,27 +215,28 @@ class Plugin(abc.ABC):
         element: str | None = None,
         on_change: Callable[[T], None] | None = None,
     ) -> Parameter[T]:
-        """A live parameter, which may be changed while the simulation runs; to be called in `load`.
+        """Declare a live parameter, which may change while the simulation runs; to be called in `load`.
 
         Args:
-            name: its name, such as `p_gain`.
-            default: its value where the file says nothing; its type is the parameter's: bool, int, float, str, or a
-                tuple of numbers.
-            minimum, maximum: bounds of a number (of each of several).
-            choices: what is allowed, where that is a list.
-            description: what it is, with its unit.
-            element: the element of the file that holds its first value; of the same name unless given.
-            on_change: called with a new value, between two steps.
+            name: name of the parameter, such as `p_gain`.
+            default: value if the file has none. Its type is the parameter's: bool, int, float, str, or a tuple of
+                numbers.
+            minimum: lower bound of the number, or of each number of a tuple.
+            maximum: upper bound of the number, or of each number of a tuple.
+            choices: allowed values, if they are a list.
+            description: meaning of the parameter, with its unit.
+            element: element of the file that holds the first value; `name` by default.
+            on_change: function called with a new value, between two steps.
 
         Returns:
-            The parameter, whose `value` is always the present one.
+            The parameter; its `value` is always current.
         """
         from simkit.plugins.live_parameters import declare_at
         from simkit.runtime.communication.parameter_server import Parameter
 
         own = f"{self.ros.namespace}/{self.name}"
         otherwise = "/" + "/".join(filter(None, (*self.scoped.split("::"), self.name)))
-        # a model has several of one class under one name: then the plugin itself says what tells them apart
+        # several plugins of a model may share class and name; then their attribute `node` distinguishes them
         otherwise = getattr(self, "node", otherwise)
         node = self.sim.communication.live_parameters.node_of(self, otherwise if "::" in self.name else own, otherwise)
         if on_change is not None:
@@ -252,27 +255,27 @@ class Plugin(abc.ABC):
         return declare_at(self, parameter, self.params, element or name)
 
     def random(self, channel: str, width: int = 1) -> RandomStream:
-        """This plugin's own random stream: `.normal(index)` has `width` numbers that depend on seed, name and index."""
+        """Return a random stream of this plugin: `.normal(index)` has `width` numbers, set by seed, name and index."""
         owner = f"{self.scoped}::{self.name}" if self.scoped else self.name
         return self.sim.engine.streams.stream(owner, channel, width)
 
     @property
     def period(self) -> float:
-        """Step of the physics [s]."""
+        """Physics step [s]."""
         return float(self.sim.timestep)
 
-    # ------------------------------------------------------------------ what the simulation calls
+    # ------------------------------------------------------------------ methods that the simulation calls
 
     @property
     def source(self) -> ScenePlugin | None:
-        """The plugin as the file has it; None for one made in Python."""
+        """Plugin as described by the file; None for a plugin created in Python."""
         return self._source
 
     @source.setter
     def source(self, plugin: ScenePlugin | None) -> None:
-        """Gives the instance its name, place and parameters; done before `prepare`."""
+        """Set the instance's name, location and parameters; done before `prepare`."""
         if plugin is not None and not hasattr(plugin, "params"):
-            raise AttributeError("`source` is the plugin as the file has it; give an attribute of yours another name")
+            raise AttributeError("`source` holds the plugin's description in the file; rename your own attribute")
         self._source = plugin
         if plugin is None:
             self.hand_over(Diagnostics())
@@ -280,11 +283,11 @@ class Plugin(abc.ABC):
         self._describe(plugin.name, plugin.scoped, plugin.params, plugin.where)
 
     def hand_over(self, diagnostics: Diagnostics, scoped: str = "") -> None:
-        """Gives an instance made in Python its name, place and parameters; done before `prepare`.
+        """Set the name, location and parameters of an instance created in Python; done before `prepare`.
 
         Args:
-            diagnostics: where problems of its parameters go.
-            scoped: what it hangs on; empty for the world.
+            diagnostics: collector of problems with the parameters.
+            scoped: scoped name of the entity that the plugin is attached to; empty for the world.
         """
         self._source = None
         params = Params.from_dict(vars(self).get("_values", {}), "plugin", diagnostics)
@@ -300,26 +303,25 @@ class Plugin(abc.ABC):
         self.log = logging.getLogger(f"simkit.plugins.{self.name}")
 
     def report_unread(self) -> None:
-        """Warns about what the file says and the plugin did not read; done after `load`."""
-
+        """Warn about elements of the file that the plugin did not read; done after `load`."""
         report_unread(self.params, f"plugin {self.name!r}", getattr(self, "system", self) or self)
 
     def _setup(self, sim: Simulation, source: ScenePlugin | None = None) -> None:
-        """Ties the instance to its simulation; done before `load`."""
+        """Connect the instance to its simulation; done before `load`."""
         self.sim = sim
         if source is not None or not hasattr(self, "params"):
             self.source = source
 
     @classmethod
     def has_hook(cls, hook: Hook) -> bool:
-        """Whether the class overrides an optional hook."""
+        """Check whether the class overrides an optional hook."""
         return getattr(cls, hook) is not getattr(Plugin, hook)
 
     def get_state(self) -> dict[str, Any]:
-        """A copy of every attribute the plugin gave itself; handles and publishers stand for themselves.
+        """Return a copy of every attribute that the plugin set itself; handles and publishers are not copied.
 
-        An attribute that cannot be copied is left out and reported once (SK-PLUGIN-006); override this method and
-        `set_state` to keep it.
+        An attribute that cannot be copied is skipped and reported once (SK-PLUGIN-006). Override this method and
+        `set_state` to keep such an attribute.
         """
         own = {k: v for k, v in vars(self).items() if k not in _OWNED}
         memo: dict[int, object] = {id(self): self}
@@ -329,7 +331,7 @@ class Plugin(abc.ABC):
             return self._state_by_attribute(own)
 
     def set_state(self, state: Mapping[str, Any]) -> None:
-        """Back to a state from `get_state`; attributes made since are dropped, uncopied ones stay as they are."""
+        """Restore a state from `get_state`; delete newer attributes and keep those that cannot be copied."""
         uncopied = vars(self).get("_uncopied", set())
         for key in [k for k in vars(self) if k not in _OWNED and k not in state and k not in uncopied]:
             delattr(self, key)
@@ -345,7 +347,7 @@ class Plugin(abc.ABC):
                 uncopied.add(key)
                 if key not in vars(self).get("_uncopied", set()):
                     uncopyable = f"plugin {self.name!r}: attribute {key!r} cannot be copied"
-                    message = f"{uncopyable}, snapshots and reset leave it as it is: {error}"
+                    message = f"{uncopyable}; snapshots and reset do not change it: {error}"
                     self.sim.engine.reports.warning(
                         "SK-PLUGIN-006", message, self.where, "override get_state and set_state"
                     )
@@ -353,7 +355,7 @@ class Plugin(abc.ABC):
         return state
 
     def _remember_loaded(self) -> None:
-        """After `load`: an attribute that cannot be copied is reported now and not at the first snapshot."""
+        """Report attributes that cannot be copied right after `load` instead of at the first snapshot."""
         self.get_state()
 
     def __deepcopy__(self, memo: dict[int, object]) -> Plugin:
@@ -367,29 +369,29 @@ _OWNED = frozenset(
 
 
 class WorldPlugin(Plugin):
-    """Hangs on the world; `load` gets the `Simulation`, `prepare` the `SceneWorld`."""
+    """Plugin of the world; `load` gets the `Simulation`, `prepare` the `SceneWorld`."""
 
     parent_kind = "world"
 
 
 class ModelPlugin(Plugin):
-    """Hangs on a model; `load` gets the `Model`, `prepare` the `SceneModel`."""
+    """Plugin of a model; `load` gets the `Model`, `prepare` the `SceneModel`."""
 
     parent_kind = "model"
 
 
 class VisualPlugin(Plugin):
-    """Hangs on a visual; `load` gets the `Visual`, `prepare` the `SceneVisual`."""
+    """Plugin of a visual; `load` gets the `Visual`, `prepare` the `SceneVisual`."""
 
     parent_kind = "visual"
 
 
 class SensorPlugin(Plugin):
-    """Hangs on a sensor; `load` gets the `Sensor`, `prepare` the `SceneSensor`."""
+    """Plugin of a sensor; `load` gets the `Sensor`, `prepare` the `SceneSensor`."""
 
     parent_kind = "sensor"
 
-    def refuse(self, sensor: Sensor, wanted: str) -> None:
-        """Reports that it hangs on a sensor of another type than the one it is for."""
-        message = f"plugin {self.name!r} is for a sensor of type {wanted}, this is {sensor.kind!r}"
+    def refuse(self, sensor: Sensor, required_kind: str) -> None:
+        """Report that the plugin is attached to a sensor of the wrong type."""
+        message = f"plugin {self.name!r} needs a sensor of type {required_kind}; this sensor is {sensor.kind!r}"
         self.params.error("SK-PLUGIN-003", message)

@@ -1,4 +1,4 @@
-"""Battery model of Gazebo, old and new: open-circuit voltage, inner resistance, smoothed current, published state."""
+"""Battery model of both Gazebo generations: open-circuit voltage, inner resistance, smoothed current, state topic."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ from simkit.plugins.publish_on_demand import publish_while_subscribed
 _HOUR: Final = 3600.0  # [s]
 _WINDOW: Final = 100  # steps
 FULL: Final = 0.9
-"""State of charge from which on a charger gives nothing, and a battery at rest is called full."""
+"""State of charge above which a charger supplies no current and an idle battery counts as full."""
 
 
 @dataclass(slots=True)
 class Cell:
-    """One battery.
+    """State and constants of a battery.
 
     Attributes:
         constant, linear: e0 and e1 of the open-circuit voltage e0 + e1 (1 - q/c) [V].
         capacity: c [A·h].
         resistance: r [Ω].
         tau: time constant of the smoothed current [s].
-        voltage: at the terminals [V].
+        voltage: voltage at the terminals [V].
         charge: q [A·h].
-        current: the smoothed one, out of the battery [A].
+        current: smoothed current out of the battery [A].
         soc: state of charge, from 0 to 1.
-        recent: the last currents [A] where Gazebo's old sum of them is wanted; else None.
+        recent: last 100 currents [A], if the state of charge is Gazebo's old sum of them; None otherwise.
     """
 
     constant: float
@@ -50,20 +50,20 @@ class Cell:
         self.soc = self.charge / self.capacity
 
     def remember(self) -> None:
-        """Counts the state of charge as gz does without `<fix_issue_225>`: by the last 100 currents, at each step."""
+        """Compute the state of charge as gz does without `<fix_issue_225>`: from the last 100 currents, each step."""
         self.recent = deque(maxlen=_WINDOW)
 
     def step(self, step: float, power: float, charger: float | None) -> None:
-        """One step of gz's arithmetic (LinearBatteryPlugin.cc, OnUpdateVoltage).
+        """Advance the cell by a step of gz's arithmetic (LinearBatteryPlugin.cc, OnUpdateVoltage).
 
         Args:
-            step: [s]
-            power: what is drawn [W].
-            charger: current of a charger that is at work [A]; None without one.
+            step: length of the step [s].
+            power: power drawn from the battery [W].
+            charger: current of an active charger [A]; None without one.
         """
         if charger is None and (abs(self.voltage) < 1e-3 or self.soc < 0.0):
             return
-        # gz divides by what may be nothing
+        # gz divides by the voltage, which may be 0
         drawn = power / self.voltage if abs(self.voltage) >= 1e-3 else 0.0
         if charger is not None and self.soc < FULL:
             drawn -= charger
@@ -84,17 +84,17 @@ _CHARGING, _DISCHARGING, _NOT_CHARGING, _IS_FULL = 1, 2, 3, 4  # of BatteryState
 
 
 class BatteryConsumer(ModelPlugin):
-    """Base of plugins that draw from a battery of their model.
+    """Base of plugins that draw power from a battery of their model.
 
     Attributes:
-        battery: its name.
+        battery: name of the battery.
     """
 
     battery: str = ""
 
     @property
     def power(self) -> float:
-        """What it draws [W]."""
+        """Power drawn from the battery [W]."""
         return 0.0
 
 
@@ -102,12 +102,12 @@ class Battery(ModelPlugin):
     """Base of batteries.
 
     Attributes:
-        battery: its name.
-        cell: how it is.
-        is_drained: whether something draws from it.
-        charger: current of the charger that is at work [A]; None while none is.
-        sign: -1 where the current is told as one into the battery.
-        percent: what a full battery tells as its percentage.
+        battery: name of the battery.
+        cell: state and constants of the battery.
+        is_drained: whether a consumer draws from the battery.
+        charger: current of the active charger [A]; None without one.
+        sign: -1 if the published current is positive into the battery.
+        percent: published percentage of a full battery.
     """
 
     endpoints: ClassVar[tuple[Endpoint, ...]] = (publishes("/model/{model}/battery/{battery_name}/state", STATE),)
@@ -120,17 +120,17 @@ class Battery(ModelPlugin):
 
     @property
     def node(self) -> str:
-        """Name of its node, for its parameters."""
+        """Name of the ROS node of the battery's parameters."""
         return valid_topic(f"/model/{self.scoped}/battery/{self.battery}".replace("::", "/"))
 
     def open_state(self, model: str) -> str:
-        """Opens the topic of its state; gives what the names of its topics begin with."""
+        """Open the topic of the battery's state and return the common prefix of the battery's topics."""
         base = f"/model/{model}/battery/{self.battery}"
         for other in self.sim.engine.structure.all_plugins():
             if other is self:
                 break
             if isinstance(other, Battery) and (other.scoped, other.battery) == (self.scoped, self.battery):
-                message = f"plugin {self.name!r}: the model has a battery {self.battery!r} already"
+                message = f"plugin {self.name!r}: the model already has a battery {self.battery!r}"
                 self.params.error("SK-PARAM-002", f"{message}, allowed is another <battery_name>")
                 return ""
         self._state = self.advertise(valid_topic(f"{base}/state"), STATE)
@@ -138,7 +138,7 @@ class Battery(ModelPlugin):
         return base
 
     def demand(self) -> float:
-        """What is drawn [W]."""
+        """Return the power that all consumers draw [W]."""
         return sum(consumer.power for consumer in self._consumers())
 
     def _consumers(self) -> list[BatteryConsumer]:
@@ -149,12 +149,12 @@ class Battery(ModelPlugin):
         return [p for p in consumers if p.battery == self.battery and p.scoped == self.scoped]
 
     def after_step(self) -> None:
-        """Takes one step of draining and charging."""
+        """Drain and charge the battery for a step."""
         if self.is_drained or self.charger is not None:
             self.cell.step(self.period, self.demand() if self.is_drained else 0.0, self.charger)
 
     def tell(self) -> None:
-        """Publishes its state."""
+        """Publish the battery's state."""
         cell = self.cell
         if self.charger is not None:
             status = _CHARGING

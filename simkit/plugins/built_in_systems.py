@@ -1,4 +1,4 @@
-"""Plugins that a file lists so that Gazebo does what simkit does by itself."""
+"""Gazebo systems listed in a file whose work simkit always does itself."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ _SYSTEMS = {
     "dvl": "DopplerVelocityLogSystem",
 }
 _OF_SENSORS = ("Ray", "GpuRay", "Camera", "DepthCamera", "MultiCamera", "Contact", "ImuSensor", "Sonar")
-"""Plugins of Gazebo Classic that listen to their sensor and do nothing, or print: what others are derived from."""
+"""Plugins of Gazebo Classic that subscribe to their sensor and do nothing, or print: base classes for other plugins."""
 
 
 class BuiltInSystem(Plugin):
-    """Stands for a system whose work simkit does whether it is named or not; says so in a note.
+    """Reports that a listed system is not needed, because simkit always does its work.
 
-    A sensor of a kind that simkit does not have is reported at the sensor itself.
+    A sensor of a kind that simkit does not support is reported at the sensor itself.
     """
 
     parent_kind = "any"
@@ -52,8 +52,8 @@ class BuiltInSystem(Plugin):
         params.mark_all_read()
         library = self.source.filename if self.source is not None else self.name
         label = self.name.rsplit("::", 1)[-1] if "::" in self.name else library
-        message = f"plugin {label!r} is not needed: simkit does what it stands for by itself"
+        message = f"plugin {label!r} is not needed: simkit always does its work itself"
         params.diagnostics.note("SK-PLUGIN-005", message + (f"; not used: {unused}" if unused else ""), self.where)
 
     def load(self, parent: object, params: Params) -> None:
-        """Nothing to do."""
+        """Do nothing: simkit does the work of this system."""

@@ -1,7 +1,7 @@
-"""Topics, services and actions of a plugin, as its class declares them for `simkit plugin info`.
+"""Topics, services and actions that a plugin class declares for `simkit plugin info`.
 
-A class declares them where the names that it opens cannot be read literally in its `load`. `{model}`, `{world}` and
-the like stand for names that a run fills in, `~` for the plugin's own name.
+A class declares an endpoint if its name is not a literal in `load`. A run replaces `{model}`, `{world}` and similar
+placeholders; `~` is the plugin's own name.
 """
 
 from __future__ import annotations
@@ -13,12 +13,12 @@ from typing import Literal
 
 @dataclass(frozen=True, slots=True)
 class Endpoint:
-    """A topic, service or action.
+    """Topic, service or action of a plugin.
 
     Attributes:
-        role: what the plugin does with it.
-        name: its name where the file gives no other.
-        types: ROS types; the first is the listed one.
+        role: use that the plugin makes of the endpoint.
+        name: default name.
+        types: ROS types; the first is the type that is listed.
         named_by: elements that change the name.
     """
 
@@ -29,26 +29,26 @@ class Endpoint:
 
 
 def publishes(name: str, *types: str, named_by: tuple[str, ...] = ()) -> Endpoint:
-    """A topic that goes out."""
+    """Declare a topic that the plugin publishes."""
     return Endpoint("publishes", name, types, named_by)
 
 
 def listens(name: str, *types: str, named_by: tuple[str, ...] = ()) -> Endpoint:
-    """A topic that is listened to."""
+    """Declare a topic that the plugin subscribes to."""
     return Endpoint("listens", name, types, named_by)
 
 
 def offers(name: str, type_name: str, *, named_by: tuple[str, ...] = ()) -> Endpoint:
-    """A service."""
+    """Declare a service."""
     return Endpoint("offers", name, (type_name,), named_by)
 
 
 def offers_all(package: str, *types: str, below: str = "") -> tuple[Endpoint, ...]:
-    """Services named after their types: `GetModelProperties` is `get_model_properties`."""
+    """Declare services named after their types: `GetModelProperties` is `get_model_properties`."""
     names = {kind: re.sub(r"(?<=[a-z])(?=[A-Z])", "_", kind).lower() for kind in types}
     return tuple(offers(f"{below}{name}", f"{package}/srv/{kind}") for kind, name in names.items())
 
 
 def acts(name: str, type_name: str, *, named_by: tuple[str, ...] = ()) -> Endpoint:
-    """An action."""
+    """Declare an action."""
     return Endpoint("acts", name, (type_name,), named_by)

@@ -1,4 +1,4 @@
-"""Finding what a plugin's parameters name, with a report that says what there is."""
+"""Lookup of joints, links, lights and files that a plugin's parameters name; an error lists the existing names."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def find_joint(scene: SceneModel, name: str, params: Params) -> SceneJoint | None:
-    """A joint of the model by its name (scoped from the world or the model down, or plain), or None after an error."""
+    """Return a joint of the model by name, or None after an error; the name is plain or scoped from world or model."""
     joints = scene.all_joints()
     found = _find_by_suffix(scene.scoped, name, {j.scoped: j for j in joints})
     if found is None:
@@ -30,7 +30,7 @@ def find_joint(scene: SceneModel, name: str, params: Params) -> SceneJoint | Non
 
 
 def find_link(scene: SceneModel, name: str, params: Params) -> SceneLink | None:
-    """A link of the model by its name (scoped from the world or the model down, or plain), or None after an error."""
+    """Return a link of the model by name, or None after an error; the name is plain or scoped from world or model."""
     links = scene.all_links()
     found = _find_by_suffix(scene.scoped, name, {link.scoped: link for link in links})
     if found is None:
@@ -39,7 +39,7 @@ def find_link(scene: SceneModel, name: str, params: Params) -> SceneLink | None:
 
 
 def find_named_link(scene: SceneModel, element: str, params: Params) -> str:
-    """Scoped name of the link that an element names; empty after an error, also where there is no such element."""
+    """Return the scoped name of the link that an element names; empty after an error or without the element."""
     params.text(element, required=True)
     named = params.child(element)
     link = None if named is None else find_link(scene, named.value, named)
@@ -47,7 +47,7 @@ def find_named_link(scene: SceneModel, element: str, params: Params) -> str:
 
 
 def read_required_name(params: Params, element: str) -> str:
-    """A name that has to be given; empty after an error, for an element with nothing in it too."""
+    """Return the text of a required element; empty after an error, also for an empty element."""
     name = params.text(element, required=True)
     named = params.child(element)
     if named is not None and not name:
@@ -56,7 +56,7 @@ def read_required_name(params: Params, element: str) -> str:
 
 
 def read_topic(params: Params, element: str, default: str) -> str:
-    """The topic that an element names, as gz-transport makes it; the default where it is empty or not there."""
+    """Return the topic that an element names, as gz-transport forms it; the default for an empty element."""
     written = params.text(element, "")
     topic = valid_topic(written or default)
     named = params.child(element)
@@ -67,7 +67,7 @@ def read_topic(params: Params, element: str, default: str) -> str:
 
 
 def find_light(sim: Simulation, name: str, params: Params) -> Light | None:
-    """A light of the world by its scoped name, or None after an error that lists the lights."""
+    """Return a light of the world by its scoped name, or None after an error that lists the lights."""
     lights = sim.contents.lights
     if name in lights:
         return lights[name]
@@ -91,23 +91,23 @@ def _report_unknown(what: str, name: str, scene: SceneModel, names: Iterable[str
 
 
 def find_axis_joint(scene: SceneModel, name: str, params: Params) -> SceneJoint | None:
-    """A joint of one degree of freedom, or None after an error."""
+    """Return a joint with one degree of freedom, or None after an error."""
     joint = find_joint(scene, name, params)
     if joint is not None and len(joint.axes) != 1:
-        message = f"joint {name!r} is {joint.type}; a joint with one axis is needed"
+        message = f"joint {name!r} is {joint.type}; the plugin needs a joint with one axis"
         params.error("SK-PLUGIN-003", message)
         return None
     return joint
 
 
 def find_plugin_file(plugin: Plugin, uri: str, builder: SpecBuilder, places: Sequence[str] = ()) -> Path | None:
-    """A file that a plugin names, by its URI, else one of that name beside the file that the plugin is in.
+    """Return the file behind a URI, else a file of that name next to the file that describes the plugin.
 
     Args:
-        plugin: whose it is.
-        uri: as written.
-        builder: what finds files.
-        places: further folders that are looked into, from the one of the plugin's file.
+        plugin: plugin that names the file.
+        uri: URI as in the file.
+        builder: file finder.
+        places: further folders to search, relative to the folder of the plugin's file.
     """
     folder = Path(plugin.where.file).resolve().parent if plugin.where.file else None
     try:
@@ -121,17 +121,17 @@ def find_plugin_file(plugin: Plugin, uri: str, builder: SpecBuilder, places: Seq
         found = next((file for place in (".", *places) if (file := folder / place / name).is_file()), None)
         builder.files_read += [found] if found is not None else []
         return found
-    except (OSError, ValueError):  # a name that no file can have
+    except (OSError, ValueError):  # the operating system rejects the name
         return None
 
 
 def read_frame(sensor: Sensor, params: Params) -> str:
-    """`<frame_name>` (`<frameName>` in ROS 1), else the plain name of the sensor's link."""
+    """Return `<frame_name>` (`<frameName>` in ROS 1), else the plain name of the sensor's link."""
     name = params.text("frame_name", "") or params.text("frameName", "")
     return name or link_name(sensor)
 
 
 def link_name(sensor: Sensor) -> str:
-    """The plain name of a sensor's link."""
+    """Return the plain name of a sensor's link."""
     scoped: str = sensor.scene.parent
     return scoped.rsplit("::", 1)[-1]

@@ -1,4 +1,4 @@
-"""Joint states: `libgazebo_ros_joint_state_publisher.so` and gz's JointStatePublisher."""
+"""Joint state publishers: `libgazebo_ros_joint_state_publisher.so` and gz's JointStatePublisher."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ JointReading = tuple[str, "float | Vector", "float | Vector", "float | Vector"]
 
 
 def joint_readings(joints: Sequence[Joint]) -> list[JointReading]:
-    """Name, position, velocity and applied effort of each joint, now."""
+    """Return the current name, position, velocity and applied effort of each joint."""
     return [(joint.name, joint.position, joint.velocity, joint.effort) for joint in joints]
 
 
 def joint_state_message(time_ns: int, joints: list[JointReading]) -> msgs.JointState:
-    """A `sensor_msgs/msg/JointState` of `joint_readings`, in their order; efforts are those applied [N·m or N].
+    """Return a `sensor_msgs/msg/JointState` of `joint_readings`, in their order, with applied efforts [N·m or N].
 
-    A joint of several degrees of freedom gives `name[0]`, `name[1]`, …; one of none gives one zero.
+    A joint with several degrees of freedom becomes `name[0]`, `name[1]`, …; a fixed joint becomes one zero.
     """
     names: list[str] = []
     columns: tuple[list[float], list[float], list[float]] = ([], [], [])
@@ -52,7 +52,7 @@ def joint_state_message(time_ns: int, joints: list[JointReading]) -> msgs.JointS
 
 
 class _JointStates(ModelPlugin):
-    """Publishes the chosen joints after a step; a kind says which they are and where they go."""
+    """Base of plugins that publish the states of joints after a step; a subclass chooses joints and topic."""
 
     _joints: list[str]
     _topic: str
@@ -76,9 +76,9 @@ class GazeboRosJointStatePublisherOptions(Options):
 
 
 class GazeboRosJointStatePublisher(_JointStates):
-    """Gazebo Classic's publisher: the listed joints, in that order, on `joint_states`.
+    """Publishes the states of the listed joints, in that order, on `joint_states` (Gazebo Classic).
 
-    ROS 1 lists them in `<jointName>`, separated by commas.
+    ROS 1 lists the joints in `<jointName>`, separated by commas.
     """
 
     options = OptionsOf(GazeboRosJointStatePublisherOptions)
@@ -105,7 +105,10 @@ class JointStatePublisherOptions(Options):
 
 
 class JointStatePublisher(_JointStates):
-    """gz's publisher: the listed joints, or all of the model, on `/world/<world>/model/<model>/joint_state`."""
+    """Publishes the states of the listed joints, or of all joints of the model (gz).
+
+    The topic is `/world/<world>/model/<model>/joint_state`.
+    """
 
     endpoints = (publishes("/world/{world}/model/{model}/joint_state", JOINT_STATE, named_by=("topic",)),)
     options = OptionsOf(JointStatePublisherOptions)
@@ -120,12 +123,12 @@ class JointStatePublisher(_JointStates):
         for scoped in self._joints if len(self._joints) < len(joints) else ():
             again = [element for element, joint in zip(named, found, strict=True) if joint and joint.scoped == scoped]
             for element in again[1:]:
-                message = f"joint {element.value!r} is named twice; it is told once"
+                message = f"joint {element.value!r} is listed twice; its state is published once"
                 params.diagnostics.warning("SK-PLUGIN-063", message, element.where)
-        self._given = self.options.topic
+        self._topic_in_file = self.options.topic
         self._path = "".join(f"/model/{name}" for name in scene.scoped.split("::"))
         self.after_step_rate = self.options.update_rate
 
     def load(self, parent: Model, params: Params) -> None:
-        self._topic = valid_topic(self._given or f"/world/{self.sim.world.name}{self._path}/joint_state")
+        self._topic = valid_topic(self._topic_in_file or f"/world/{self.sim.world.name}{self._path}/joint_state")
         super().load(parent, params)

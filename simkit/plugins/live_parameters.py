@@ -1,4 +1,4 @@
-"""Declare parameters of a plugin that can be changed while it runs; the first value comes from the file."""
+"""Live parameters of plugins: they may change while the simulation runs, and their first value comes from the file."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ T = TypeVar("T", bound="bool | int | float | str | tuple[float, ...]")
 
 
 class ParameterOwner(Protocol):
-    """A plugin, as a live parameter needs it."""
+    """Plugin that declares a live parameter."""
 
     sim: Simulation
 
@@ -23,10 +23,10 @@ def declare_at(plugin: ParameterOwner, parameter: Parameter[T], params: Params, 
     """Read the first value from an element in `params`, add the parameter to its node, and open the node's services.
 
     Args:
-        plugin: whose it is.
-        parameter: with its default as its value.
-        params: where the element is.
-        element: its name.
+        plugin: owner of the parameter.
+        parameter: parameter with its default as its value.
+        params: block that contains the element.
+        element: name of the element.
     """
     communication = plugin.sim.communication
     parameter.value = value = _first_value(params, element, parameter)

@@ -1,4 +1,4 @@
-"""Report each warning of a running plugin once, however often its cause occurs."""
+"""Warnings that a running plugin reports only once, however often their cause occurs."""
 
 from __future__ import annotations
 
@@ -9,26 +9,26 @@ if TYPE_CHECKING:
 
 
 class OneTimeWarnings:
-    """Reports of a plugin that are made once each, in spite of resets; a handle, without state that a reset forgets."""
+    """Warnings of a plugin, each reported once, even after resets; a handle without state that a reset clears."""
 
     def __init__(self, plugin: Plugin) -> None:
         self._plugin = plugin
-        self._said: set[str] = set()
+        self._reported: set[str] = set()
 
-    def warn(self, code: str, what: str, message: str, hint: str = "") -> None:
-        """A warning at the plugin's line, once for each `what`."""
-        if what not in self._said:
-            self._said.add(what)
+    def warn(self, code: str, cause: str, message: str, hint: str = "") -> None:
+        """Report a warning at the plugin's line, once for each `cause`."""
+        if cause not in self._reported:
+            self._reported.add(cause)
             plugin = self._plugin
             plugin.sim.engine.reports.warning(code, f"plugin {plugin.name!r}: {message}", plugin.where, hint)
 
-    def left_out(self, what: str, message: str, hint: str = "") -> None:
-        """Says that a command cannot be used."""
-        self.warn("SK-PLUGIN-041", what, message, hint)
+    def left_out(self, cause: str, message: str, hint: str = "") -> None:
+        """Warn that a command is ignored."""
+        self.warn("SK-PLUGIN-041", cause, message, hint)
 
     def not_finite(self, command: str = "a command") -> None:
-        """Says that a command with a number that is none cannot be used."""
-        self.left_out("finite", f"{command} with a number that is not finite is left out")
+        """Warn that a command with a NaN or infinite number is ignored."""
+        self.left_out("finite", f"{command} with a NaN or infinite number is ignored")
 
     def __deepcopy__(self, memo: dict[int, object]) -> OneTimeWarnings:
         return self

@@ -1,4 +1,4 @@
-"""Options of a plugin: a class whose fields say which element each is read from, its default, unit and bounds.
+"""Options of a plugin: a class whose fields name the elements to read, with default, unit and bounds.
 
     class BeltOptions(Options):
         speed: float = number(0.5, "m/s", minimum=0.0)
@@ -10,8 +10,8 @@
         def load(self, parent, params):
             self._speed = self.options.speed
 
-A field is read from the file when it is first used, and once: an element that a plugin does not need stays unread and
-is reported. `simkit plugin info` shows the fields, and the report of an element that nobody read suggests their names.
+A field is read from the file at its first use, and only once. An element whose field is never used counts as unread and
+is reported. `simkit plugin info` lists the fields; the report of an unread element suggests their names.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class Options:
     """Options in one block of a file.
 
     Args:
-        params: the block.
+        params: block that the options are read from.
 
     Attributes:
         is_given: whether the file has the block.
@@ -45,11 +45,11 @@ class Options:
 
     @classmethod
     def fields(cls) -> dict[str, Option]:
-        """The options by the names of their fields, those of base classes first."""
+        """Return the options by field name, those of base classes first."""
         return {name: v for c in reversed(cls.__mro__) for name, v in vars(c).items() if isinstance(v, Option)}
 
     def read_all(self) -> Self:
-        """Read every option except live parameters, those of base classes last, so that all faults come together."""
+        """Read every option except live parameters, those of base classes last, to report all errors together."""
         for kind in type(self).__mro__:
             for name, value in vars(kind).items():
                 if isinstance(value, Option) and not value.is_live:
@@ -58,7 +58,7 @@ class Options:
 
     @classmethod
     def element_names(cls) -> Iterator[str]:
-        """Names of all elements that are read, those within blocks too."""
+        """Yield the names of all elements that the options read, including those within blocks."""
         for option in cls.fields().values():
             yield option.element
             if option.options is not None:
@@ -70,23 +70,23 @@ class Options:
 
 @dataclass(eq=False)
 class Option:
-    """One element that a plugin reads; a field of a class of options.
+    """Element that a plugin reads; a field of a class of options.
 
     Attributes:
-        kind: type of its value; empty where the element is known and has no effect.
-        element: its name in the file, `@name` for an attribute; that of the field unless given.
-        default: value where the file says nothing; of one that the code computes, how it is shown.
-        unit: SI unit; empty where it has none.
+        kind: type of the value; empty if the element is known and has no effect.
+        element: name in the file, `@name` for an attribute; the name of the field by default.
+        default: value if the file has none; for a computed default, the text that is shown.
+        unit: SI unit; empty for a value without unit.
         minimum, maximum: bounds of a number.
         finite: whether a number must be finite.
-        choices: the words allowed.
-        size: how many numbers a vector has.
-        required: whether the file must have it.
-        repeated: whether every element of that name counts.
+        choices: allowed words.
+        size: number of values in a vector.
+        required: whether the file must have the element.
+        repeated: whether the element may occur several times.
         instead: field whose value is the default.
         options: class of the options in a block.
         is_live: whether it is a live parameter, which `Plugin.declare` reads.
-        description: what it is, where its name does not tell.
+        description: meaning of the option, if its name does not say it.
     """
 
     kind: OptionKind
@@ -112,7 +112,7 @@ class Option:
         if options is None:
             return self
         default = getattr(options, self.instead) if self.instead else self.default
-        # from now on the attribute of the instance comes before this descriptor of its class
+        # this attribute of the instance hides the descriptor of the class, so the file is read once
         found = vars(options)[self.name] = self._read(options.params, default)
         return found
 
@@ -128,7 +128,8 @@ class Option:
             return params.attribute(name[1:], default)
         if self.repeated:
             if self.kind == "number":
-                return tuple(one.number(name, minimum=self.minimum, maximum=self.maximum) for one in params.each(name))
+                items = params.each(name)
+                return tuple(item.number(name, minimum=self.minimum, maximum=self.maximum) for item in items)
             found = params.all(name)
             if required and not found:
                 params.text(name, required=True)
@@ -153,16 +154,16 @@ class Option:
 
 
 class HasParams(Protocol):
-    """A plugin, as far as options know it."""
+    """Plugin with parameters."""
 
     params: Params
 
 
 class OptionsOf(Generic[OptionsKind_co]):
-    """The options of a plugin, read from its parameters; an attribute of its class.
+    """Options of a plugin, read from its parameters; an attribute of its class.
 
     Args:
-        kind: their class.
+        kind: class of the options.
     """
 
     def __init__(self, kind: type[OptionsKind_co]) -> None:
@@ -186,14 +187,14 @@ class OptionsOf(Generic[OptionsKind_co]):
 
 
 def option_types_of(cls: type[object]) -> list[type[Options]]:
-    """The classes of options that a plugin class declares, those of its bases first."""
+    """Return the classes of options that a plugin class declares, those of its bases first."""
     attributes = {name: v for c in reversed(cls.__mro__) for name, v in vars(c).items()}
     declared = (v.kind for v in attributes.values() if isinstance(v, OptionsOf))
     return list(dict.fromkeys((*declared, *getattr(cls, "option_types", ()))))
 
 
 def _declare(kind: type[Value], option: Option) -> Value:  # noqa: ARG001 - for type checkers
-    """Return an option that a type checker takes for the value of its field, which has the type `kind`."""
+    """Return the option, typed as `kind`: a type checker sees the value that the field will have."""
     declared: Any = option
     value: Value = declared
     return value
@@ -212,7 +213,7 @@ def number(
     is_live: bool = False,
     description: str = "",
 ) -> float:
-    """A number."""
+    """Declare a number."""
     option = Option(
         "number",
         element,
@@ -232,7 +233,7 @@ def number(
 def numbers(
     unit: str = "", *, element: str = "", minimum: float | None = None, maximum: float | None = None
 ) -> tuple[float, ...]:
-    """The number in each element of that name."""
+    """Declare a repeated element with a number each."""
     option = Option("number", element, None, unit, minimum=minimum, maximum=maximum, repeated=True)
     return _declare(tuple[float, ...], option)
 
@@ -245,34 +246,34 @@ def integer(
     maximum: int | None = None,
     required: bool = False,
 ) -> int:
-    """A whole number."""
+    """Declare a whole number."""
     return _declare(int, Option("integer", element, default, minimum=minimum, maximum=maximum, required=required))
 
 
 def boolean(default: bool = False, *, element: str = "", instead: str = "") -> bool:
-    """True or false."""
+    """Declare a boolean."""
     return _declare(bool, Option("boolean", element, default, instead=instead))
 
 
 def text(default: str | None = "", *, element: str = "", required: bool = False, instead: str = "") -> str:
-    """A text."""
+    """Declare a text."""
     return _declare(str, Option("text", element, default, required=required, instead=instead))
 
 
 def texts(*, element: str = "", required: bool = False) -> tuple[str, ...]:
-    """The text of each element of that name."""
+    """Declare a repeated element with a text each."""
     return _declare(tuple[str, ...], Option("text", element, required=required, repeated=True))
 
 
 def choice(allowed: Sequence[str], default: str | None = None, *, element: str = "", required: bool = False) -> str:
-    """One of a few words."""
+    """Declare a choice between a few words."""
     return _declare(str, Option("choice", element, default, choices=tuple(allowed), required=required))
 
 
 def vector(
     default: Sequence[float] | None, unit: str = "", *, element: str = "", size: int = 0, required: bool = False
 ) -> tuple[float, ...]:
-    """Several numbers."""
+    """Declare several numbers."""
     count = size or len(default or ())
     start = None if default is None else tuple(float(value) for value in default)
     return _declare(tuple[float, ...], Option("vector", element, start, unit, size=count, required=required))
@@ -286,27 +287,27 @@ def vector3(
     required: bool = False,
     instead: str = "",
 ) -> tuple[float, float, float]:
-    """Three numbers."""
+    """Declare three numbers."""
     x, y, z = map(float, default)
     option = Option("vector", element, (x, y, z), unit, size=3, required=required, instead=instead)
     return _declare(tuple[float, float, float], option)
 
 
 def pose(default: Pose = IDENTITY, *, element: str = "") -> Pose:
-    """A pose: `x y z roll pitch yaw` [m, rad]."""
+    """Declare a pose: `x y z roll pitch yaw` [m, rad]."""
     return _declare(Pose, Option("pose", element, default, "m, rad"))
 
 
 def block(options: type[OptionsKind], *, element: str = "") -> OptionsKind:
-    """The options within an element, at their defaults where it is absent."""
+    """Declare an element that contains options; an absent element has their defaults."""
     return _declare(options, Option("block", element, options=options))
 
 
 def blocks(options: type[OptionsKind], *, element: str = "") -> tuple[OptionsKind, ...]:
-    """The options within each element of that name."""
+    """Declare a repeated element that contains options."""
     return _declare(tuple[OptionsKind, ...], Option("block", element, options=options, repeated=True))
 
 
 def without_effect(*, element: str = "") -> bool:
-    """An element that is known and changes nothing; true where the file has it."""
+    """Declare an element that is known and changes nothing; its value is true if the file has the element."""
     return _declare(bool, Option("", element))

@@ -1,4 +1,4 @@
-"""One spelling for the many names that files give to one plugin."""
+"""Normalised names of plugins: files name the same plugin in many ways."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from typing import Final
 from simkit.scene import ScenePlugin
 
 ENTRY_POINT_GROUP: Final = "simkit.plugins"
-"""Group of the entry points by which installed packages offer plugins."""
+"""Entry point group in which installed packages offer plugins."""
 
 
 def normalise(name: str) -> str:
-    """One spelling for the many of one plugin: `libignition-gazebo6-imu-system.so` is `gz-sim-imu-system`.
+    """Return the common spelling of a plugin's name: `libignition-gazebo6-imu-system.so` is `gz-sim-imu-system`.
 
-    Folder, `lib` and the library's ending go; Ignition's names and version numbers become gz-sim's.
+    Folder, `lib` and the library's suffix are removed; Ignition's names and version numbers become gz-sim's.
     """
     stem = name.strip().replace("\\", "/").rsplit("/", 1)[-1]
     stem = re.sub(r"\.(so|dylib|dll)(\.\d+)*$", "", stem)
@@ -24,9 +24,9 @@ def normalise(name: str) -> str:
 
 
 def aliases(plugin: ScenePlugin) -> list[str]:
-    """The normalised names a plugin of a file may be known by: its library, then its gz class.
+    """Return the normalised names under which a plugin of a file may be known: its library, then its gz class.
 
-    A name without `::` is only what the file's author called it.
+    A name without `::` is only a label chosen by the author of the file.
     """
     names = [plugin.filename, plugin.name if "::" in plugin.name else ""]
     return [normalise(name) for name in names if name]

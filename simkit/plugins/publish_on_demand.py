@@ -1,4 +1,4 @@
-"""Call a method of a plugin after steps only while somebody subscribes to what it publishes."""
+"""Callbacks after steps that run only while the plugin's topics have subscribers."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ _NS = 1_000_000_000
 def publish_while_subscribed(
     plugin: Plugin, publisher: Publisher, rate: float, method: str, also: Callable[[], bool] = lambda: False
 ) -> None:
-    """Calls a method of a plugin after steps, as `after_step` would be, while somebody hears its publisher.
+    """Call a method of a plugin after steps, as `after_step` would be, while its publisher has subscribers.
 
     Args:
-        plugin: whose method it is; what it raises is met as from a hook.
-        publisher: by whom it publishes.
+        plugin: owner of the method; its exceptions are handled as in a hook.
+        publisher: publisher that the method uses.
         rate: [Hz] on the grid of simulated time; 0 is every step.
-        method: its name; without arguments.
-        also: another reason to call it; say `sim.communication.on_demand.look()` where that changes.
+        method: name of the method, which takes no arguments.
+        also: further condition for calling the method; call `sim.communication.on_demand.look()` when it changes.
     """
     sim = plugin.sim
     sim.communication.bus.on_readers_change(publisher.topic, sim.communication.on_demand.look)
@@ -33,56 +33,56 @@ def publish_while_subscribed(
 
 
 def set_before_step_rate(plugin: Plugin, rate: float | None) -> None:
-    """Has `before_step` of a plugin called at this rate [Hz] from now on."""
+    """Change the rate of a plugin's `before_step` [Hz] from now on."""
     if rate != plugin.before_step_rate:
         plugin.before_step_rate = rate
         plugin.sim.engine.reschedule()
 
 
 def set_after_step_rate(plugin: Plugin, rate: float | None) -> None:
-    """Has `after_step` of a plugin called at this rate [Hz] from now on."""
+    """Change the rate of a plugin's `after_step` [Hz] from now on."""
     if rate != plugin.after_step_rate:
         plugin.after_step_rate = rate
         plugin.sim.engine.reschedule()
 
 
 def count_instants(plugin: Plugin, rate: float) -> int:
-    """How many instants of a rate [Hz] (0: steps) have come since t = 0, whether anybody was there or not."""
+    """Count the instants of a rate [Hz] (0: every step) since t = 0, independently of subscribers."""
     if rate <= 0:
         return int(plugin.sim.tick)
     return math.floor(plugin.sim.time_ns * rate / _NS + 1e-6)
 
 
 class Watcher(Protocol):
-    """A plugin that compares each step with the one before.
+    """Plugin that compares each step with the previous one.
 
     Attributes:
-        sim: its simulation.
-        _was_heard: whether somebody heard it when that was last asked; False after `load`.
+        sim: simulation of the plugin.
+        _was_heard: whether a publisher had subscribers at the last check; False after `load`.
     """
 
     sim: Simulation
     _was_heard: bool
 
     def begin(self) -> None:
-        """Takes the present state for that of the step before."""
+        """Store the present state as that of the previous step."""
 
 
 def watch_while_subscribed(plugin: Watcher, publishers: Sequence[Publisher], method: str) -> None:
-    """Calls a method of a plugin after every step while somebody hears one of its publishers.
+    """Call a method of a plugin after every step while one of its publishers has subscribers.
 
-    When that begins, `plugin.begin()` is called first, so that an event in the very next step is told too, and the
-    events are the same whoever listens from when on.
+    `plugin.begin()` is called first at the start of a subscription. An event in the very next step is therefore
+    published, and a later subscriber gets the same events.
     """
     sim = plugin.sim
 
-    def is_heard() -> bool:
-        heard = any(publisher.active and publisher.wanted for publisher in publishers)
-        if heard and not plugin._was_heard:
+    def has_subscribers() -> bool:
+        subscribed = any(publisher.active and publisher.wanted for publisher in publishers)
+        if subscribed and not plugin._was_heard:
             plugin.begin()
-        plugin._was_heard = heard
-        return heard
+        plugin._was_heard = subscribed
+        return subscribed
 
     for publisher in publishers:
         sim.communication.bus.on_readers_change(publisher.topic, sim.communication.on_demand.look)
-    sim.communication.on_demand.add(is_heard, None, sim.engine.faults.task(plugin, method))
+    sim.communication.on_demand.add(has_subscribers, None, sim.engine.faults.task(plugin, method))

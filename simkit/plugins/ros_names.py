@@ -1,4 +1,4 @@
-"""Topic names as a ROS node sees them: namespace, remapping, `~/private` names."""
+"""Topic names as in a ROS node: namespace, remapping, `~/private` names."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ _RULE = re.compile(r"^(?P<from>[^=]+?):=(?P<to>.+)$")
 
 
 def is_ros_1(params: Params, names: Iterable[str]) -> bool:
-    """Whether a plugin's parameters are in ROS 1's spelling: one of its names occurs, and there is no `<ros>` block."""
+    """Check whether a plugin's parameters use ROS 1 spelling: one of `names` occurs, and no `<ros>` block."""
     return not params.has("ros") and any(params.has(name) for name in names)
 
 
 class RosNames:
-    """Names of one node.
+    """Names of a ROS node.
 
     Args:
-        node: node name; `~/x` is `<namespace>/<node>/x`.
+        node: name of the node; `~/x` is `<namespace>/<node>/x`.
         namespace: `tb3`, `/tb3` or empty.
-        remappings: from -> to; both sides are expanded before they are compared.
-        params: of whom; names that none may have are reported there.
+        remappings: source name -> target name; both are expanded before the comparison.
+        params: parameters at whose line invalid names are reported.
     """
 
     def __init__(
@@ -41,7 +41,7 @@ class RosNames:
 
     @classmethod
     def from_params(cls, params: Params, node: str) -> RosNames:
-        """Reads the `<ros>` block of ROS 2 plugins, or `<robotNamespace>` of ROS 1 plugins."""
+        """Read the `<ros>` block of ROS 2 plugins, or `<robotNamespace>` of ROS 1 plugins."""
         remappings: dict[str, str] = {}
         namespace = params.text("robotNamespace", "")
         ros = params.child("ros")
@@ -66,7 +66,7 @@ class RosNames:
         return cls(node, namespace, remappings, params)
 
     def topic(self, name: str) -> str:
-        """The absolute topic behind `name` (`odom`, `/odom` or `~/odom`), remapped, without what no name may have."""
+        """Return the absolute, remapped topic of `name` (`odom`, `/odom` or `~/odom`) without invalid characters."""
         full = self._expand(name)
         full = self._rules.get(full, full)
         clean = valid_topic(full)
@@ -74,7 +74,7 @@ class RosNames:
             return full
         if self._params is not None:
             allowed = "allowed are letters, digits and _ / . : -"
-            message = f"plugin {self.node!r}: found a topic {full!r}, {allowed}; it is {clean!r}"
+            message = f"plugin {self.node!r}: found a topic {full!r}, {allowed}; {clean!r} is used instead"
             self._params.diagnostics.warning("SK-PLUGIN-012", message, self._params.where)
         return clean
 

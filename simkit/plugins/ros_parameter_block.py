@@ -1,4 +1,4 @@
-"""Parameters of a ROS node as its YAML has them: values, lists of names or numbers, and blocks."""
+"""Parameters of a ROS node as written in YAML: values, lists of names or numbers, and blocks."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ _FORM_NAMES: Mapping[Form, str] = {"value": "a value", "nothing": "nothing", "li
 
 
 class ParameterBlock(Params):
-    """One element of a parameter file, which knows in what form each of its names is written.
+    """Element of a parameter file that knows the form of each name: value, list or block.
 
-    A name in another form than its reader wants is an error at its line, and the default is taken: in XML an element
-    can be both text and block, in YAML `gains: 5` is a mistake that nobody would see.
+    A name in an unexpected form is an error at its line, and the default is used. In XML an element can be both text
+    and block; in YAML `gains: 5` is a mistake that would stay unnoticed.
 
     Attributes:
-        forms: in which form a name is written, and where.
-        is_block: whether it is one itself.
+        forms: form and location of each name.
+        is_block: whether the element itself is a block.
     """
 
     __slots__ = ("forms", "is_block")
@@ -42,22 +42,22 @@ class ParameterBlock(Params):
         self.forms, self.is_block = forms, is_block
 
     def block(self, name: str) -> Params:
-        if self._is_in("block", name, "a block of names with values", ("nothing", "block")):
+        if self._has_form(name, "a block of names with values", ("nothing", "block")):
             return super().block(name)
         self.child(name)
         return Params(name, where=self.where, diagnostics=self.diagnostics)
 
     def all(self, name: str) -> list[Params]:
         found = super().all(name)
-        if not self._is_in("list", name, "a list", ("value", "nothing", "list")):
-            for one in found:
-                one.mark_all_read()
+        if not self._has_form(name, "a list", ("value", "nothing", "list")):
+            for item in found:
+                item.mark_all_read()
             return []
-        for one in found:
-            if isinstance(one, ParameterBlock) and one.is_block:
-                self._bad(f"a block in the list {name!r}", "a value", one.where)
-                one.mark_all_read()
-        return [one for one in found if not (isinstance(one, ParameterBlock) and one.is_block)]
+        for item in found:
+            if isinstance(item, ParameterBlock) and item.is_block:
+                self._bad(f"a block in the list {name!r}", "a value", item.where)
+                item.mark_all_read()
+        return [item for item in found if not (isinstance(item, ParameterBlock) and item.is_block)]
 
     def number(
         self,
@@ -77,7 +77,7 @@ class ParameterBlock(Params):
     ) -> tuple[float, ...]:
         if self.forms.get(name, ("", None))[0] != "list":
             return super().vector(name, size, default, required)
-        joined = " ".join(one.value for one in self.all(name))
+        joined = " ".join(item.value for item in self.all(name))
         whole = Params(name, joined, where=self.forms[name][1], diagnostics=self.diagnostics)
         alone = Params(self.name, children=[whole], where=self.where, diagnostics=self.diagnostics)
         return alone.vector(name, size, default, required)
@@ -93,54 +93,54 @@ class ParameterBlock(Params):
         return super()._value(name, default, fallback, required, parse, allowed)
 
     def _is_single(self, name: str, allowed: str) -> bool:
-        if self._is_in("value", name, allowed, ("value", "nothing")):
+        if self._has_form(name, allowed, ("value", "nothing")):
             return True
-        for one in self.children:
-            if one.name == name:
-                one.mark_all_read()
+        for item in self.children:
+            if item.name == name:
+                item.mark_all_read()
         return False
 
-    def _is_in(self, wanted: str, name: str, allowed: str, fitting: tuple[Form, ...]) -> bool:
-        """Check whether a name is written in a form that fits (or not at all); what does not is reported."""
-        form, where = self.forms.get(name, (fitting[0], self.where))
-        if form in fitting:
+    def _has_form(self, name: str, allowed: str, expected: tuple[Form, ...]) -> bool:
+        """Check whether a name has one of the expected forms, or is absent; report any other form."""
+        form, where = self.forms.get(name, (expected[0], self.where))
+        if form in expected:
             return True
-        told = _FORM_NAMES[form]
+        description = _FORM_NAMES[form]
         if form == "value":
-            told = repr(next(one.value for one in self.children if one.name == name))
-        self._bad(f"{told} for {name!r}", allowed, where)
+            description = repr(next(child.value for child in self.children if child.name == name))
+        self._bad(f"{description} for {name!r}", allowed, where)
         return False
 
 
 def read_numbers(params: Params, name: str, default: Sequence[float], minimum: float | None = None) -> list[float]:
-    """The numbers of a list; one of another length than the default's is an error, and the default is taken."""
-    given = params.each(name)
-    if not any(child.value for one in given for child in one.children):
+    """Return the numbers of a list; a length different from the default's is an error, and the default is used."""
+    items = params.each(name)
+    if not any(child.value for item in items for child in item.children):
         return list(default)
-    found = [one.number(name, minimum=minimum) for one in given]
+    found = [item.number(name, minimum=minimum) for item in items]
     if len(found) == len(default):
         return found
     message = f"found {len(found)} numbers in {name!r}, allowed are {len(default)}"
-    params.diagnostics.error("SK-PARAM-002", message, given[0].where)
+    params.diagnostics.error("SK-PARAM-002", message, items[0].where)
     return list(default)
 
 
 def read_names(params: Params, name: str, *, required: bool = False, code: str = "SK-PARAM-002") -> list[str]:
-    """The texts of a list; one that comes twice is an error, as two claims of one interface are.
+    """Return the texts of a list without duplicates; a duplicate is an error, as are two claims of one interface.
 
     Args:
-        params: where it stands.
-        name: of the list.
-        required: whether it is an error that there is none, or nothing in it.
-        code: of the error about a name that comes twice.
+        params: block that contains the list.
+        name: name of the list.
+        required: whether a missing or empty list is an error.
+        code: code of the error about a duplicate.
     """
     before = params.diagnostics.error_count
-    found = [one for one in params.all(name) if one.value or one.children]
-    for k, one in enumerate(found):
-        if one.value in [other.value for other in found[:k]]:
-            message = f"{one.value!r} comes twice in {name!r}, allowed is each name once"
-            params.diagnostics.error(code, message, one.where)
+    found = [item for item in params.all(name) if item.value or item.children]
+    for k, item in enumerate(found):
+        if item.value in [other.value for other in found[:k]]:
+            message = f"{item.value!r} comes twice in {name!r}, allowed is each name once"
+            params.diagnostics.error(code, message, item.where)
     if required and not found and params.diagnostics.error_count == before:
-        near = did_you_mean(name, [one.name for one in params.children if one.name != name])
+        near = did_you_mean(name, [item.name for item in params.children if item.name != name])
         params.error("SK-PARAM-001", f"<{params.name}> needs <{name}>: a list of names", near)
-    return list(dict.fromkeys(one.value for one in found))
+    return list(dict.fromkeys(item.value for item in found))

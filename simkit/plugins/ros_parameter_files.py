@@ -1,7 +1,8 @@
-"""Parameter files of ROS: YAML in, one block of typed parameters for each node out, every value with its line.
+"""Parameter files of ROS: convert YAML to a block of typed parameters for each node, every value with its line.
 
-ROS 2's layout has `ros__parameters` below the name of a node, which may be a pattern (`/**`, `/robot/*`); ROS 1's has
-the parameters themselves below the names of namespaces. Which of the two a file is in shows by that word.
+In ROS 2's layout, `ros__parameters` follows the name of a node, which may be a pattern (`/**`, `/robot/*`). In ROS 1's
+layout, the parameters themselves follow the names of namespaces. The word `ros__parameters` distinguishes the two
+layouts.
 """
 
 from __future__ import annotations
@@ -20,20 +21,20 @@ from simkit.params import Params
 from simkit.plugins.ros_parameter_block import Form, ParameterBlock
 
 PARAMETERS: Final = "ros__parameters"
-_MOST_NODES: Final = 100_000  # of one file: anchors that are used again and again make much out of little
+_MOST_NODES: Final = 100_000  # limit per file: repeated anchors can expand a short file enormously
 _DEEPEST: Final = 100
 _MERGE: Final = "tag:yaml.org,2002:merge"
 
 
 @dataclass(slots=True)
 class Entry:
-    """A key of a parameter file: a value, a list of values, or a block.
+    """Key of a parameter file: a value, a list of values, or a block.
 
     Attributes:
-        text: of a value, normalised (`true`, `inf`).
-        items: of a list; None where it is none.
-        below: of a block; None where it is none.
-        is_text: whether it stands for text, so that no number is meant.
+        text: normalised text of a value (`true`, `inf`).
+        items: entries of a list; None for a value or block.
+        below: entries of a block; None for a value or list.
+        is_text: whether the value is a YAML string and not a number.
     """
 
     where: Where
@@ -43,29 +44,29 @@ class Entry:
     is_text: bool = False
 
     def params(self, name: str, diagnostics: Diagnostics) -> list[Params]:
-        """It as elements of that name: one, or one for each item of a list."""
+        """Return the entry as elements of that name: a single one, or one for each item of a list."""
         if self.items is not None:
-            return [one for item in self.items for one in item.item(name, diagnostics)]
+            return [params for item in self.items for params in item.item(name, diagnostics)]
         return [self.block(name, diagnostics)]
 
     def item(self, name: str, diagnostics: Diagnostics) -> list[Params]:
-        """It as an item of the list of that name; a list is none."""
+        """Return the entry as an item of the list of that name; a nested list is an error."""
         if self.items is None:
             return [self.block(name, diagnostics)]
         diagnostics.error("SK-CONTROL-002", f"found a list in the list {name!r}, allowed are values", self.where)
         return []
 
     def block(self, name: str, diagnostics: Diagnostics) -> ParameterBlock:
-        """It as one element of that name."""
+        """Return the entry as a single element of that name."""
         below = self.below or {}
-        children = [one for key, entry in below.items() for one in entry.params(key, diagnostics)]
+        children = [params for key, entry in below.items() for params in entry.params(key, diagnostics)]
         forms = {key: (entry.form, entry.where) for key, entry in below.items()}
         is_block = self.below is not None
         return ParameterBlock(name, self.text, children, self.where, diagnostics, forms, is_block=is_block)
 
     @property
     def form(self) -> Form:
-        """Form in which the file has it."""
+        """Form of the entry in the file."""
         if self.items is not None:
             return "list"
         if self.below is not None:
@@ -73,7 +74,7 @@ class Entry:
         return "value" if self.text or self.is_text else "nothing"
 
     def merged(self, over: Entry) -> Entry:
-        """It with what another says about the same key, which goes over it."""
+        """Return this entry merged with `over`, whose values take precedence."""
         if self.below is None or over.below is None:
             return over
         below = dict(self.below)
@@ -82,19 +83,19 @@ class Entry:
         return Entry(self.where, below=below)
 
     def leaves(self) -> int:
-        """Count the values in it."""
+        """Count the values in the entry."""
         inside = [*(self.items or ()), *(self.below or {}).values()]
-        return sum(one.leaves() for one in inside) if inside else 1
+        return sum(item.leaves() for item in inside) if inside else 1
 
 
 @dataclass(slots=True)
 class ParameterFile:
-    """One file as read.
+    """Contents of a parameter file.
 
     Attributes:
-        path: of the file.
+        path: path of the file.
         nodes: ROS 2: (pattern of the node's full name, its parameters), in the order of the file.
-        root: ROS 1: everything; None for ROS 2.
+        root: ROS 1: all parameters; None for ROS 2.
     """
 
     path: Path
@@ -103,16 +104,16 @@ class ParameterFile:
 
 
 class ParameterFiles:
-    """All parameter files of one plugin; what a later one says goes over what an earlier one says."""
+    """Parameter files of one plugin; values of a later file replace those of an earlier one."""
 
     def __init__(self, files: Sequence[ParameterFile] = ()) -> None:
         self.files = list(files)
 
     def __deepcopy__(self, memo: dict[int, object]) -> ParameterFiles:
-        return self  # nothing in it changes
+        return self  # immutable
 
     def of_node(self, name: str) -> Entry | None:
-        """The parameters of the node with that full name (`/robot/arm_controller`); None where no file has any."""
+        """Return the parameters of the node with that full name (`/robot/arm_controller`); None if no file has any."""
         found: Entry | None = None
         for entry in self._of_node(name):
             found = entry if found is None else found.merged(entry)
@@ -131,12 +132,12 @@ class ParameterFiles:
                     yield inner
 
     def node_names(self) -> list[str]:
-        """Last parts of the names that the files have parameters for, to say which is near a misspelt one."""
+        """Return the last parts of the node names in the files, as suggestions for a misspelt name."""
         return [pattern.rpartition("/")[2] for file in self.files for pattern, _ in file.nodes]
 
 
 def node_matches(pattern: str, name: str) -> bool:
-    """Check whether a node's full name matches a key of a parameter file: `*` is one part, `**` any number of parts."""
+    """Check whether a node's full name matches a key of a parameter file: `*` is one part, `**` is any number."""
     return _node_pattern(pattern).fullmatch(name.strip("/")) is not None
 
 
@@ -147,13 +148,13 @@ def _node_pattern(pattern: str) -> re.Pattern[str]:
 
 
 def read_parameter_file(path: Path, diagnostics: Diagnostics) -> ParameterFile | None:
-    """Reads a file; None after an error that says where it is broken."""
+    """Read a parameter file; return None after an error that names the faulty line."""
     root = _parse_file(path, diagnostics)
     if root is None:
         return None
     if root.below is None:
         if root.text or root.items:
-            message = f"{path.name} is no parameter file: names of nodes are needed at its top"
+            message = f"{path.name} is not a parameter file: its top level needs names of nodes"
             diagnostics.error("SK-CONTROL-002", message, root.where)
             return None
         diagnostics.warning("SK-CONTROL-003", f"{path.name} is empty: no controller is loaded", root.where)
@@ -164,7 +165,7 @@ def read_parameter_file(path: Path, diagnostics: Diagnostics) -> ParameterFile |
     near = next((near for key in _all_keys(root) if (near := did_you_mean(key, [PARAMETERS]))), "")
     if near:
         misspelt = next(key for key in _all_keys(root) if did_you_mean(key, [PARAMETERS]))
-        message = f"{path.name}: no node has {PARAMETERS!r}, but there is {misspelt!r}; it is read as a file of ROS 1"
+        message = f"{path.name}: no node has {PARAMETERS!r}, but {misspelt!r} occurs; the file is read as a ROS 1 file"
         diagnostics.warning("SK-CONTROL-003", message, root.where, near)
     return ParameterFile(path, root=root)
 
@@ -176,7 +177,7 @@ def _all_keys(entry: Entry) -> Iterator[str]:
 
 
 def _nodes(entry: Entry, path: str, diagnostics: Diagnostics) -> Iterator[tuple[str, Entry]]:
-    """Every node of a file in ROS 2's layout, with the pattern of its full name."""
+    """Yield every node of a file in ROS 2's layout, with the pattern of its full name."""
     for key, below in (entry.below or {}).items():
         if key == PARAMETERS:
             if below.below is not None:
@@ -190,7 +191,7 @@ def _nodes(entry: Entry, path: str, diagnostics: Diagnostics) -> Iterator[tuple[
 
 
 def _expand_dotted_keys(entry: Entry) -> Entry:
-    """A block with its dotted keys as the blocks that they stand for: `a.b: 1` is `a: {b: 1}`."""
+    """Return a block with its dotted keys expanded to blocks: `a.b: 1` is `a: {b: 1}`."""
     if entry.below is None:
         return entry
     whole = Entry(entry.where, below={})
@@ -223,19 +224,20 @@ def _parse_file(path: Path, diagnostics: Diagnostics) -> Entry | None:
         mark = getattr(error, "problem_mark", None)
         line = mark.line + 1 if mark is not None else None
         what = getattr(error, "problem", None) or str(error) or "it is nested too deeply"
-        if isinstance(error, yaml.reader.ReaderError):  # it knows the character's place alone
-            line, what = text.count("\n", 0, error.position) + 1, f"the character {chr(error.character)!r} is not text"
+        if isinstance(error, yaml.reader.ReaderError):  # this error has the character's position but no line
+            line = text.count("\n", 0, error.position) + 1
+            what = f"the character {chr(error.character)!r} is not allowed"
         context = f" {error.context}" if getattr(error, "context", None) else ""  # type: ignore[union-attr]
-        message = f"{path.name} is not YAML that can be read: {what}{context}"
+        message = f"{path.name} is not valid YAML: {what}{context}"
         diagnostics.error("SK-CONTROL-002", message, Where(str(path), line), "check indentation, quotes and brackets")
         return None
 
 
 def _compose_yaml(text: str) -> yaml.Node | None:
-    """The tree of a document; by libyaml where it is there, which takes a tenth of the time."""
+    """Return the tree of a document; libyaml, if available, needs a tenth of the time."""
     loader: type[yaml.SafeLoader] = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
     depth = 0
-    for event in yaml.parse(text, Loader=loader):  # libyaml's own composer has no end to its recursion
+    for event in yaml.parse(text, Loader=loader):  # libyaml's own composer has no recursion limit
         depth += isinstance(event, yaml.CollectionStartEvent) - isinstance(event, yaml.CollectionEndEvent)
         if depth > _DEEPEST:
             raise _FileTooLarge("it is nested too deeply")
@@ -243,11 +245,11 @@ def _compose_yaml(text: str) -> yaml.Node | None:
 
 
 class _FileTooLarge(Exception):
-    """A file is larger than anybody means."""
+    """Parameter file with too many values or too deep nesting."""
 
 
 class _EntryReader:
-    """Turns YAML's nodes into entries."""
+    """Converter from YAML nodes to entries."""
 
     def __init__(self, file: str, diagnostics: Diagnostics) -> None:
         self._file, self._diagnostics, self._count = file, diagnostics, 0
@@ -260,7 +262,7 @@ class _EntryReader:
         if isinstance(node, yaml.MappingNode):
             return Entry(where, below=self._block(node, depth))
         if isinstance(node, yaml.SequenceNode):
-            return Entry(where, items=[self.entry(one, depth + 1) for one in node.value])
+            return Entry(where, items=[self.entry(item, depth + 1) for item in node.value])
         return Entry(where, _value_text(node), is_text=node.tag == "tag:yaml.org,2002:str")
 
     def _block(self, node: yaml.MappingNode, depth: int) -> dict[str, Entry]:
@@ -280,24 +282,24 @@ class _EntryReader:
             entry.where = Where(self._file, key.start_mark.line + 1, entry.where.serial)
             if name in below:
                 first = below[name].where.line
-                message = f"{name!r} comes twice, in line {first} too; the later one counts"
+                message = f"{name!r} occurs twice, first in line {first}; the later value is used"
                 self._diagnostics.warning("SK-CONTROL-004", message, entry.where)
             below[name] = entry
         return {**merged, **below}
 
     def _merged(self, entry: Entry, key: yaml.Node) -> dict[str, Entry]:
-        """Return what `<<` merges: the names of a block, or of several, the first of which counts."""
+        """Return the entries that `<<` merges: those of a block, or of several, the first of which takes precedence."""
         found: dict[str, Entry] = {}
-        for one in [entry] if entry.items is None else entry.items:
-            if one.below is None:
+        for item in [entry] if entry.items is None else entry.items:
+            if item.below is None:
                 where = Where(self._file, key.start_mark.line + 1)
                 self._diagnostics.error("SK-CONTROL-002", "found a value after '<<', allowed is a block", where)
-            found = {**(one.below or {}), **found}
+            found = {**(item.below or {}), **found}
         return found
 
 
 def _value_text(node: yaml.Node) -> str:
-    """A value as parameters have it."""
+    """Return the text of a YAML value in the form that `Params` parses."""
     kind, text = node.tag.rpartition(":")[2], str(node.value)
     if kind == "null":
         return ""

@@ -1,4 +1,4 @@
-"""Parameter files that a run is given, for robots whose controllers a launch file of ROS fills in: `--params-file`."""
+"""Parameter files of a run (`--params-file`), for robots whose controllers are configured by a ROS launch file."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ if TYPE_CHECKING:
     from simkit.scene import SceneModel, SceneWorld
 
 ParameterFileArgument = str | os.PathLike[str] | tuple[str, str | os.PathLike[str]]
-"""A file, the text `MODEL=FILE`, or the pair of both."""
+"""File, text `MODEL=FILE`, or a pair of model and file."""
 
 
 @dataclass(frozen=True, slots=True)
 class RunParameterFile:
-    """One file as read.
+    """Parameter file of a run.
 
     Attributes:
-        model: whose control plugins read it; empty for those of every model.
-        file: what it says.
+        model: name of the model whose control plugins read the file; empty for all models.
+        file: contents of the file.
     """
 
     model: str
     file: ParameterFile
 
     def is_for(self, model: SceneModel) -> bool:
-        """Check whether the plugins of that model read it: it has the name, or is inside the one that has."""
+        """Check whether plugins of `model` read the file: its name is that of the model or of an outer model."""
         scoped = f"{model.scoped}::"
         return not self.model or self.model == model.name or scoped.startswith(f"{self.model}::")
 
@@ -42,22 +42,22 @@ def read_run_parameter_files(
     find: Callable[[str], Path | None],
     diagnostics: Diagnostics,
 ) -> tuple[RunParameterFile, ...]:
-    """Reads files; each that is missing or broken is an error, and left out.
+    """Read parameter files; a missing or invalid file is an error and is skipped.
 
     Args:
-        named: what `params_files` or `--params-file` say.
-        find: the file of a `package://` URI or a path; None where there is none.
-        diagnostics: gets the problems.
+        named: value of `params_files` or `--params-file`.
+        find: function from a `package://` URI or a path to a file, or None.
+        diagnostics: collector of the problems.
     """
     if isinstance(named, (str, os.PathLike)):
         named = [named]
     read: dict[Path, ParameterFile | None] = {}
     found = []
-    for one in named:
-        model, text = _model_and_file(one)
+    for argument in named:
+        model, text = _model_and_file(argument)
         path = _find_file(text, find)
         if path is None:
-            message = f"the parameter file {text[:200]} is not found"
+            message = f"cannot find the parameter file {text[:200]}"
             diagnostics.error(
                 "SK-CONTROL-015", message, hint=_closest_file_name(text) or "--params-file takes FILE or MODEL=FILE"
             )
@@ -71,7 +71,7 @@ def read_run_parameter_files(
 
 
 def _model_and_file(named: ParameterFileArgument) -> tuple[str, str]:
-    """The model, empty for all of them, and the file."""
+    """Return the model, empty for all models, and the file."""
     if isinstance(named, tuple):
         return str(named[0]), os.fspath(named[1])
     text = os.fspath(named)
@@ -87,7 +87,7 @@ def _find_file(text: str, find: Callable[[str], Path | None]) -> Path | None:
     try:
         found = find(text) if text else None
         return found if found is not None and found.is_file() else None
-    except (OSError, ValueError):  # a name that no file can have
+    except (OSError, ValueError):  # the operating system rejects the name
         return None
 
 
@@ -99,7 +99,7 @@ def _exists(path: Path) -> bool:
 
 
 def _closest_file_name(text: str) -> str:
-    """A file of nearly that name in its folder."""
+    """Suggest the file in the same folder with the most similar name."""
     try:
         folder = Path(text).parent
         return did_you_mean(Path(text).name, [p.name for p in folder.iterdir() if p.suffix in (".yaml", ".yml")])
@@ -113,23 +113,23 @@ def report_unused_parameter_files(
     """Warn about parameter files of a run that no plugin reads.
 
     Args:
-        given: the files.
+        given: parameter files of the run.
         plugins: all plugins of the world.
-        world: the world with its models.
-        diagnostics: gets the warnings.
+        world: world with its models.
+        diagnostics: collector of the warnings.
     """
     models = [model for top in world.models for model in top.all_models()]
     with_hosts = {plugin.scoped for plugin in plugins if plugin.reads_parameter_files}
     hosts = [model for model in models if model.scoped in with_hosts]
-    for one in given:
-        if any(one.is_for(model) for model in hosts):
+    for file in given:
+        if any(file.is_for(model) for model in hosts):
             continue
-        name, where = one.file.path.name, Where(str(one.file.path), 1)
-        if one.model and not any(one.is_for(model) for model in models):
-            message = f"{name} is for the model {one.model!r}, which is not there; a model spawned later reads it"
-            hint = did_you_mean(one.model, [m.name for m in models])
+        name, where = file.file.path.name, Where(str(file.file.path), 1)
+        if file.model and not any(file.is_for(model) for model in models):
+            message = f"{name} is for the model {file.model!r}, which does not exist; a model spawned later reads it"
+            hint = did_you_mean(file.model, [m.name for m in models])
         else:
-            owner = f"model {one.model!r}" if one.model else "no model"
-            message = f"{name} has nobody who reads it: {owner} has {'no' if one.model else 'a'} control plugin"
-            hint = "a robot needs libgazebo_ros_control.so, libgazebo_ros2_control.so or gz_ros2_control"
+            owner = f"model {file.model!r}" if file.model else "no model"
+            message = f"no plugin reads {name}: {owner} has {'no' if file.model else 'a'} control plugin"
+            hint = "add libgazebo_ros_control.so, libgazebo_ros2_control.so or gz_ros2_control to the robot"
         diagnostics.warning("SK-CONTROL-060", message, where, hint)

@@ -1,4 +1,4 @@
-"""Objects that a deep copy, such as a snapshot's, shares instead of copying."""
+"""Objects that a deep copy, such as that of a snapshot, shares instead of copying."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ T = TypeVar("T")
 
 
 class SharedByCopies:
-    """Base of handles of a simulation and of values that never change: a deep copy keeps the object itself."""
+    """Base of handles of a simulation and of immutable values: a deep copy keeps the object itself."""
 
     __slots__ = ()
 

@@ -1,4 +1,4 @@
-"""Report the elements and attributes of a plugin that it did not read."""
+"""Warnings about elements and attributes that a plugin did not read."""
 
 from __future__ import annotations
 
@@ -21,7 +21,10 @@ _READERS = frozenset(
 
 
 def names_read(cls: type[object]) -> frozenset[str]:
-    """Names of elements and attributes that the modules of a class and its bases ask for; the source is only parsed."""
+    """Return names of elements and attributes that the modules of a class and its bases read.
+
+    The source is parsed and does not run.
+    """
     own = (c for c in cls.__mro__ if c.__module__ != "simkit.plugins.base")
     modules = dict.fromkeys(c.__module__ for c in own if c is not object)
     declared = (name for options in option_types_of(cls) for name in options.element_names())
@@ -32,7 +35,7 @@ def _names_in_module(module: str) -> frozenset[str]:
     try:
         return _names_in_source(inspect.getsource(sys.modules[module]))
     except (KeyError, OSError, TypeError, SyntaxError, ValueError):
-        return frozenset()  # made without a source: then nothing is known
+        return frozenset()  # the module has no source, so its names are unknown
 
 
 @functools.lru_cache(maxsize=256)
@@ -54,23 +57,23 @@ def report_unread(params: Params, owner: str, reader: object) -> None:
     """Warn about each element and attribute that was not read.
 
     Args:
-        params: the parameters.
-        owner: whose they are, for messages.
-        reader: the plugin, system or module whose source tells which names it could read.
+        params: parameters of the plugin.
+        owner: owner of the parameters, for messages.
+        reader: plugin, system or module whose source contains the names that it can read.
     """
     for element, suggestion in params.unread():
         text = f"{owner}: <{element.name}> is not used"
-        if suggestion.endswith(" is"):  # it comes twice
+        if suggestion.endswith(" is"):  # the element is a duplicate
             hint = suggestion
         elif element.name in _known_names(reader):
-            hint = "the plugin reads it only under a condition that does not hold here, or later"
+            hint = f"the plugin reads <{element.name}> only with other options, or later"
         else:
             hint = did_you_mean(element.name, _known_names(reader)) or suggestion
         params.diagnostics.warning("SK-PARAM-003", text, element.where, hint)
     for element, attribute in params.unread_attributes():
         text = f"{owner}: attribute {attribute!r} of <{element.name}> is not used"
-        asked = element.attributes_asked
-        hint = did_you_mean(attribute, (*asked, *_known_names(reader))) if asked else ""
+        attributes_read = element.attributes_asked
+        hint = did_you_mean(attribute, (*attributes_read, *_known_names(reader))) if attributes_read else ""
         params.diagnostics.warning("SK-PARAM-007", text, element.where, hint)
 
 

@@ -1,4 +1,4 @@
-"""Lets the tests here share their small worlds, and know whether there is a renderer."""
+"""Fixtures of the plugin tests: shared small worlds, and whether a renderer is available."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a file lists for Gazebo's server, and which names of the catalogue are known."""
+"""Systems that a file lists for Gazebo's server, and the known names of the catalogue."""
 
 from __future__ import annotations
 
@@ -78,19 +78,19 @@ def test_a_system_is_known_by_every_spelling_of_its_library_and_of_its_class(par
 @pytest.mark.parametrize(
     ("parent", "name"), [(parent, name) for parent, names in CLASSIC.items() for name in names.split()]
 )
-def test_a_plugin_of_gazebo_classic_is_known_and_may_hang_where_it_does_there(parent: str, name: str) -> None:
+def test_a_plugin_of_gazebo_classic_is_known_on_the_same_parent_as_in_classic(parent: str, name: str) -> None:
     assert found(f"libgazebo_ros_{name}.so", parent=parent)
     assert found(f"gazebo_ros_{name}", parent=parent)
 
 
-def test_systems_of_the_server_may_stand_in_the_world_and_in_a_model() -> None:
+def test_systems_of_the_server_may_be_in_the_world_and_in_a_model() -> None:
     parts = list(SYSTEMS)[:7]
     for part, parent in itertools.product(parts, ("world", "model")):
         assert found(f"gz-sim-{part}-system", parent=parent), (part, parent)
 
 
-def test_no_two_kinds_claim_one_name() -> None:
-    """The registry itself refuses that; here so that the message is of a test."""
+def test_no_two_kinds_have_the_same_name() -> None:
+    """Check that the registry rejects duplicates; the registry does so too, but without a test's message."""
     assert len({normalise(name) for name in plugin_kinds()}) == len(plugin_kinds())
 
 
@@ -105,14 +105,14 @@ def notes(source: str) -> list[str]:
         return [d.message for d in sim.diagnostics if d.code == "SK-PLUGIN-005"]
 
 
-def test_one_that_is_not_needed_says_so_and_changes_nothing() -> None:
+def test_an_unneeded_system_is_a_note_and_changes_nothing() -> None:
     parts = list(SYSTEMS)[:7]
     told = notes(world(*(plugin(part) for part in parts), GROUND, rover()))
     assert [m.split("'")[1] for m in told] == [SYSTEMS[part] for part in parts]
     assert all("is not needed" in m and "not used" not in m for m in told)
 
 
-def test_what_it_was_told_is_named_as_not_used() -> None:
+def test_the_note_lists_unused_parameters() -> None:
     engine = "<engine><filename>gz-physics-bullet-plugin</filename></engine><contacts/>"
     (told,) = notes(world(plugin("physics", engine), GROUND))
     assert told.endswith("; not used: <contacts>, <engine>")
@@ -153,7 +153,7 @@ STRANGERS = {
 
 
 def plugins_of(path: pathlib.Path) -> Iterator[tuple[str, str]]:
-    """Library and name of each plugin of a file, but for those of Gazebo's windows."""
+    """Return library and name of each plugin of a file, except those of Gazebo's GUI."""
     try:
         root = etree.parse(path, etree.XMLParser(recover=True, resolve_entities=False, no_network=True)).getroot()
     except (etree.XMLSyntaxError, OSError):
@@ -164,7 +164,7 @@ def plugins_of(path: pathlib.Path) -> Iterator[tuple[str, str]]:
 
 
 @pytest.mark.skipif(not CORPUS.is_dir(), reason="needs the files in ../shared")
-def test_every_plugin_that_real_files_name_is_there_or_is_known_to_be_gazebos() -> None:
+def test_every_plugin_in_real_files_is_supported_or_listed_as_gazebos() -> None:
     files = [p for part in ("corpus", "course", "conformance") for p in (CORPUS / part).rglob("*") if p.is_file()]
     named = {
         one

@@ -1,4 +1,4 @@
-"""Joint states: which joints, in which order, on which topic, at which rate."""
+"""Joint state publishers: joints, their order, topic and rate."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def test_gz_publishes_every_joint_at_every_step_on_the_worlds_topic() -> None:
     assert messages[0].position[2] == 0.0
 
 
-def test_gz_can_be_told_joints_topic_and_rate() -> None:
+def test_gz_reads_joints_topic_and_rate_from_the_file() -> None:
     with opened(GZ, "<joint_name>left_wheel</joint_name><topic>joints</topic><update_rate>10</update_rate>") as sim:
         messages = received(sim, "/joints", 1.0)
     assert len(messages) == 10
@@ -75,7 +75,7 @@ def test_a_ball_joint_gives_three_numbered_entries() -> None:
     assert len(message.position) == len(message.velocity) == len(message.effort) == len(message.name)
 
 
-def test_gz_tells_a_joint_once_that_is_named_twice() -> None:
+def test_gz_publishes_a_joint_listed_twice_only_once() -> None:
     twice = "<joint_name>left_wheel</joint_name><joint_name>right_wheel</joint_name><joint_name>left_wheel</joint_name>"
     with opened(GZ, twice) as sim:
         (message,) = received(sim, "/world/lab/model/rover/joint_state", 0.001)
@@ -85,7 +85,7 @@ def test_gz_tells_a_joint_once_that_is_named_twice() -> None:
 
 
 def test_gz_on_a_nested_model_has_both_names_in_its_topic() -> None:
-    """Of the outer model only its own joints are told, as in gz."""
+    """Check that an outer model publishes only its own joints, as in gz."""
     nested = (
         f"<model name='arm'>{GZ.format('')}<link name='upper'/><link name='lower'/><joint name='elbow' type='revolute'>"
         "<parent>upper</parent><child>lower</child><axis><xyz>0 0 1</xyz></axis></joint></model>"
@@ -109,7 +109,7 @@ def test_classic_on_ros_1_lists_its_joints_with_commas() -> None:
     assert list(messages[0].name) == ["left_wheel", "right_wheel"]
 
 
-def test_classic_publishes_a_hundred_times_a_second_unless_told() -> None:
+def test_classic_publishes_at_100_hz_by_default() -> None:
     with opened(CLASSIC, "<joint_name>left_wheel</joint_name>") as sim:
         assert len(received(sim, "/joint_states", 0.5)) == 50
 

@@ -1,4 +1,4 @@
-"""When a plugin's hooks are called, and what becomes of its state."""
+"""Times at which the hooks of a plugin are called, and the state of a plugin."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from simkit import Params, WorldPlugin
 
 
 class Diary(WorldPlugin):
-    """Writes down when it is called."""
+    """Records the times of its calls."""
 
     def __init__(self, before: float | None = None, after: float | None = None) -> None:
         self.before_step_rate, self.after_step_rate = before, after
@@ -59,7 +59,7 @@ def test_with_a_rate_they_run_at_the_first_step_at_or_after_each_period() -> Non
     assert diary.times("before")[-2:] == [0.067, 0.1]
 
 
-def test_a_rate_that_a_hook_changes_holds_once_that_is_said_and_comes_back() -> None:
+def test_a_rate_changed_in_a_hook_applies_after_a_reschedule_and_is_restored() -> None:
     class Slower(Diary):
         def after_step(self) -> None:
             super().after_step()
@@ -112,7 +112,7 @@ def test_handles_publishers_and_methods_in_attributes_survive_a_restore() -> Non
         assert holder.call.__self__ is holder
 
 
-def test_an_attribute_that_cannot_be_copied_is_reported_once_and_left_alone() -> None:
+def test_an_attribute_that_cannot_be_copied_is_reported_once_and_not_changed() -> None:
     class Locked(Diary):
         def load(self, parent: Any, params: Params) -> None:
             super().load(parent, params)
@@ -142,7 +142,7 @@ def test_a_hook_that_raises_stops_the_run_with_its_name_and_time() -> None:
     assert isinstance(caught.value.__cause__, ZeroDivisionError)
 
 
-def test_a_hook_cannot_step_the_simulation_that_it_is_called_by() -> None:
+def test_a_hook_cannot_step_its_own_simulation() -> None:
     class Hasty(Diary):
         def after_step(self) -> None:
             self.sim.step()
@@ -153,7 +153,7 @@ def test_a_hook_cannot_step_the_simulation_that_it_is_called_by() -> None:
         assert sim.tick == 1
 
 
-def test_a_parameter_nobody_reads_is_a_warning_with_the_closest_that_was_asked_for() -> None:
+def test_an_unread_parameter_is_a_warning_with_the_closest_name_that_was_read() -> None:
     body = "<light_name>sun</light_name><update_rte>3</update_rte>"
     plugin = f"<plugin name='solar' filename='libsolar_sensor.so'>{body}</plugin>"
     light = "<light name='sun' type='point'><pose>0 0 9 0 0 0</pose></light>"
@@ -178,7 +178,7 @@ def test_an_unknown_plugin_does_not_stop_the_run() -> None:
 
 
 @pytest.mark.parametrize("outer", [False, True])
-def test_a_plugin_that_drives_is_left_out_of_a_static_model(outer: bool) -> None:
+def test_a_driving_plugin_on_a_static_model_is_ignored(outer: bool) -> None:
     plugins = {
         "gz-sim-diff-drive-system": "<left_joint>j</left_joint><right_joint>j</right_joint>",
         "libgazebo_ros_diff_drive.so": "<left_joint>j</left_joint><right_joint>j</right_joint>",

@@ -1,4 +1,4 @@
-"""Options that a plugin declares are read from the file once they are used, and once."""
+"""Declared options of a plugin: each is read from the file at its first use, and only once."""
 
 from __future__ import annotations
 
@@ -77,12 +77,12 @@ def test_a_value_out_of_bounds_is_reported_once() -> None:
     assert fault.code == "SK-PARAM-002" and "from 0 to 10" in fault.message
 
 
-def test_what_is_not_used_stays_unread() -> None:
+def test_an_unused_option_stays_unread() -> None:
     options = ArmOptions(Params.from_dict({"gain": 1.0, "frame": "tip"}))
     assert options.gain == 1.0
     assert [element.name for element, _ in options.params.unread()] == ["frame"]
 
 
-def test_a_class_tells_its_elements() -> None:
+def test_a_class_lists_its_element_names() -> None:
     assert {"gain", "enabled", "joint", "tool", "stddev", "@type"} <= set(ArmOptions.element_names())
     assert ArmOptions.fields()["gain"].unit == "1/s"

@@ -1,4 +1,4 @@
-"""A plugin that raises: the run stops with its name, or goes on without it as if it were not there any more."""
+"""Plugins that raise: the run stops with the name of the plugin, or continues without the plugin."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def warnings(sim: Simulation) -> list[str]:
     return [d.message for d in sim.diagnostics if d.code == "SK-PLUGIN-020"]
 
 
-def test_a_plugin_that_is_left_out_pushes_no_more_and_the_run_goes_on() -> None:
+def test_a_disabled_plugin_pushes_no_more_and_the_run_continues() -> None:
     with simkit.load(world(FLOATING), plugins=[Pusher()]) as sim:
         sim.run(2.0)
         assert sim.time == pytest.approx(2.0)
@@ -79,7 +79,7 @@ def test_the_warning_names_plugin_hook_time_and_the_last_line_of_the_traceback()
     assert "test_plugin_api_faults.py" in found[0].hint and found[0].hint.endswith("in before_step")
 
 
-def test_its_topics_services_actions_and_parameters_are_gone() -> None:
+def test_a_disabled_plugin_loses_its_topics_services_actions_and_parameters() -> None:
     with simkit.load(world(FLOATING), plugins=[Pusher(0.1)]) as sim:
         assert (
             "/pushes" in sim.topics()
@@ -97,7 +97,7 @@ def test_its_topics_services_actions_and_parameters_are_gone() -> None:
         assert not any("gain" in names for names in sim.communication.parameters.values())
 
 
-def test_the_bits_are_those_of_a_run_in_which_it_is_silent_from_then_on() -> None:
+def test_the_state_equals_that_of_a_run_whose_plugin_does_nothing_from_then_on() -> None:
     class Silent(Pusher):
         def before_step(self) -> None:
             if self.sim.time < self.last - 1e-9:
@@ -111,7 +111,7 @@ def test_the_bits_are_those_of_a_run_in_which_it_is_silent_from_then_on() -> Non
     assert ends[0] == ends[1]
 
 
-def test_without_it_the_run_stops_there() -> None:
+def test_without_on_error_the_run_stops() -> None:
     with simkit.load(world(FLOATING), plugins=[Pusher(0.1, None)]) as sim:
         with pytest.raises(simkit.PluginError, match="out of breath") as caught:
             sim.run(1.0)
@@ -119,7 +119,7 @@ def test_without_it_the_run_stops_there() -> None:
         assert caught.value.time == pytest.approx(0.1)
 
 
-def test_reset_and_restore_bring_it_back() -> None:
+def test_reset_and_restore_enable_the_plugin_again() -> None:
     with simkit.load(world(FLOATING), plugins=[Pusher(0.1)]) as sim:
         sim.run(0.05)
         before = sim.snapshot()
@@ -141,7 +141,7 @@ def test_reset_and_restore_bring_it_back() -> None:
 
 
 @pytest.mark.parametrize("what", ["topic", "service", "parameter"])
-def test_callbacks_are_met_as_hooks_are(what: str) -> None:
+def test_exceptions_in_callbacks_are_handled_like_those_in_hooks(what: str) -> None:
     class Touchy(Pusher):
         def load(self, parent: Simulation, params: Params) -> None:
             super().load(parent, params)
@@ -165,7 +165,7 @@ def test_callbacks_are_met_as_hooks_are(what: str) -> None:
         assert velocity(sim) < 0.01
 
 
-def test_the_argument_goes_over_the_file_and_the_file_over_the_class(tmp_path: Path) -> None:
+def test_the_argument_overrides_the_file_and_the_file_the_class(tmp_path: Path) -> None:
     source = (
         "from simkit import ModelPlugin\n"
         "class Weak(ModelPlugin):\n"
@@ -196,7 +196,7 @@ def test_the_argument_goes_over_the_file_and_the_file_over_the_class(tmp_path: P
     assert not left_out(says("disable"), on_error="stop")
 
 
-def test_another_word_is_an_error_with_what_is_allowed(tmp_path: Path) -> None:
+def test_an_unknown_policy_is_an_error_with_the_allowed_words(tmp_path: Path) -> None:
     plugin = (
         "<plugin name='d' filename='libgazebo_ros_diff_drive.so'><simkit:on_error>ignore</simkit:on_error></plugin>"
     )
@@ -206,7 +206,7 @@ def test_another_word_is_an_error_with_what_is_allowed(tmp_path: Path) -> None:
         simkit.load(world(GROUND), on_error="ignore")  # type: ignore[arg-type]
 
 
-def test_one_that_raises_in_load_is_left_out_too_and_the_others_load() -> None:
+def test_a_plugin_that_raises_in_load_is_disabled_and_the_others_load() -> None:
     class Broken(WorldPlugin):
         on_error = "disable"
 
@@ -222,7 +222,7 @@ def test_one_that_raises_in_load_is_left_out_too_and_the_others_load() -> None:
         assert "/broken" not in sim.topics()
 
 
-def test_a_servo_of_a_plugin_that_is_left_out_lets_go_of_its_joint() -> None:
+def test_a_servo_of_a_disabled_plugin_releases_its_joint() -> None:
     class Motor(WorldPlugin):
         on_error = "disable"
 
@@ -255,7 +255,7 @@ def test_a_servo_of_a_plugin_that_is_left_out_lets_go_of_its_joint() -> None:
         assert sim.joint("arm::j").velocity == pytest.approx(2.0, rel=0.1)
 
 
-def test_closing_closes_every_plugin_and_then_tells_what_one_raised() -> None:
+def test_closing_closes_every_plugin_and_then_reports_an_exception() -> None:
     closed: list[str] = []
 
     class Stubborn(WorldPlugin):
@@ -278,7 +278,7 @@ def test_closing_closes_every_plugin_and_then_tells_what_one_raised() -> None:
     assert closed == ["stubborn", "meek"]
 
 
-def test_what_the_user_gave_wrongly_in_a_hook_is_the_plugins_fault() -> None:
+def test_an_invalid_argument_in_a_hook_is_a_plugin_error() -> None:
     class Wrong(WorldPlugin):
         def load(self, parent: Simulation, params: Params) -> None:
             pass
@@ -292,7 +292,7 @@ def test_what_the_user_gave_wrongly_in_a_hook_is_the_plugins_fault() -> None:
 
 
 class Holder(WorldPlugin):
-    """Holds what cannot be copied."""
+    """Holds objects that cannot be copied."""
 
     def load(self, parent: Simulation, params: Params) -> None:
         self.counted = 0
@@ -311,7 +311,7 @@ class Holder(WorldPlugin):
         self.file.close()
 
 
-def test_open_files_threads_and_generators_are_each_reported_by_attribute_and_left_alone() -> None:
+def test_open_files_threads_and_generators_are_reported_by_attribute_and_not_changed() -> None:
     holder = Holder()
     with simkit.load(world(GROUND), plugins=[holder]) as sim:
         sim.step(2)
@@ -329,7 +329,7 @@ def test_open_files_threads_and_generators_are_each_reported_by_attribute_and_le
 
 
 class Forgetful(WorldPlugin):
-    """Raises over its own state."""
+    """Raises in the methods for its own state."""
 
     def __init__(self, hook: str, on_error: Any) -> None:
         self.hook, self.on_error, self.steps, self.is_loaded = hook, on_error, 0, False
@@ -352,7 +352,7 @@ class Forgetful(WorldPlugin):
 
 
 @pytest.mark.parametrize("hook", ["get_state", "set_state"])
-def test_a_plugin_that_raises_over_its_state_is_met_as_in_any_hook(hook: str) -> None:
+def test_an_exception_in_get_state_is_handled_like_one_in_a_hook(hook: str) -> None:
     with simkit.load(world(FLOATING), plugins=[Forgetful(hook, "stop")]) as sim:
         sim.step(2)
         with pytest.raises(simkit.PluginError, match=f"'Forgetful'.*raised in {hook} .*cannot remember"):
@@ -365,7 +365,7 @@ def test_a_plugin_that_raises_over_its_state_is_met_as_in_any_hook(hook: str) ->
         assert sim.contents.plugins["Forgetful"].steps == 2
 
 
-def test_what_is_refused_in_load_names_the_plugin() -> None:
+def test_an_error_in_load_names_the_plugin() -> None:
     class Server(WorldPlugin):
         def load(self, parent: Simulation, params: Params) -> None:
             self.offer("home", "std_srvs/srv/Trigger", lambda request: None)
@@ -381,7 +381,7 @@ def test_what_is_refused_in_load_names_the_plugin() -> None:
         assert "/home" in sim.communication.services.names() and "plugin 'Second' raised in load" in warnings(sim)[0]
 
 
-def test_load_cannot_go_back_to_what_is_not_there_yet() -> None:
+def test_load_cannot_reset_the_simulation() -> None:
     class Hasty(WorldPlugin):
         def load(self, parent: Simulation, params: Params) -> None:
             parent.reset()
@@ -391,7 +391,7 @@ def test_load_cannot_go_back_to_what_is_not_there_yet() -> None:
 
 
 @pytest.mark.parametrize("what", ["topic", "service", "parameter"])
-def test_one_that_calls_itself_for_ever_is_left_out_with_a_word(what: str) -> None:
+def test_an_endless_recursion_disables_the_plugin_with_a_message(what: str) -> None:
     class Echo(WorldPlugin):
         on_error = "disable"
 

@@ -1,4 +1,4 @@
-"""What may be a plugin, and by which ways it comes into a world: classes, objects, modules; from files and Python."""
+"""Kinds of plugins and their sources: classes, objects and modules, from files and from Python."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def told(sim: Simulation) -> list[Any]:
 
 
 @pytest.mark.parametrize("way", ["file", "named", "class", "giver", "functions", "alias"])
-def test_classes_and_modules_with_the_hooks_of_gz_are_found_as_any_plugin_is(tmp_path: Path, way: str) -> None:
+def test_classes_and_modules_with_the_hooks_of_gz_are_found_like_other_plugins(tmp_path: Path, way: str) -> None:
     names = {
         "file": ("counter.py", HOOKS),
         "named": ("counter.py", HOOKS + "class Other(Counter): pass\n"),
@@ -107,7 +107,7 @@ def test_classes_and_modules_with_the_hooks_of_gz_are_found_as_any_plugin_is(tmp
         assert sim.contents.plugins["Counter"].where.line
 
 
-def test_a_file_alone_runs_none_of_it(tmp_path: Path) -> None:
+def test_a_file_alone_runs_no_code(tmp_path: Path) -> None:
     (tmp_path / "counter.py").write_text("raise SystemError\n")
     file = tmp_path / "w.sdf"
     file.write_text(world(GROUND, "<plugin name='c' filename='counter.py'/>"))
@@ -138,7 +138,7 @@ def test_an_entry_point_is_found_by_its_name_and_by_its_value(
         simkit.load(world(GROUND, f"<plugin name='c' filename='{filename}'/>"))
 
 
-def test_what_python_hands_over_may_be_a_class_an_object_or_a_module(tmp_path: Path) -> None:
+def test_a_plugin_from_python_may_be_a_class_an_object_or_a_module(tmp_path: Path) -> None:
     module = module_of(tmp_path, GIVER, "api_giver")
     functions = module_of(tmp_path, FUNCTIONS, "api_functions")
     for made in (module.Counter, module.Counter(), module, functions):
@@ -147,7 +147,7 @@ def test_what_python_hands_over_may_be_a_class_an_object_or_a_module(tmp_path: P
             assert told(sim)[:2] == [("configure", ""), ("pre_update", 1)]
 
 
-def test_its_attributes_are_its_state(tmp_path: Path) -> None:
+def test_the_attributes_of_a_gz_object_are_its_state(tmp_path: Path) -> None:
     module = module_of(tmp_path, HOOKS, "api_state")
     with simkit.load(world(GROUND), plugins=[module.Counter()]) as sim:
         sim.step(3)
@@ -160,7 +160,7 @@ def test_its_attributes_are_its_state(tmp_path: Path) -> None:
         assert system(sim).steps == 0 and told(sim)[-1][0] == "reset"
 
 
-def test_one_that_raises_may_be_left_out(tmp_path: Path) -> None:
+def test_a_gz_plugin_that_raises_may_be_disabled(tmp_path: Path) -> None:
     text = HOOKS.replace("        self.steps += 1", "        self.steps += 1\n        assert self.steps < 3, 'enough'")
     module = module_of(tmp_path, text, "api_raiser")
     with simkit.load(world(GROUND), plugins=[module.Counter()], on_error="disable") as sim:
@@ -175,7 +175,7 @@ def test_one_that_raises_may_be_left_out(tmp_path: Path) -> None:
         sim.step(5)
 
 
-def test_what_is_no_plugin_is_an_error_that_says_what_may_be() -> None:
+def test_an_object_that_is_not_a_plugin_is_an_error_that_lists_the_allowed_objects() -> None:
     with pytest.raises(simkit.LoadError, match="SK-PLUGIN-022.*pre_update"):
         simkit.load(world(GROUND), plugins=["counter", 3])
     with pytest.raises(simkit.LoadError, match="SK-PLUGIN-022"):
@@ -194,7 +194,7 @@ class Gain(WorldPlugin):
         self.called = [one.value for one in params.all("name")]
 
 
-def test_parameters_are_given_as_keywords_and_read_as_those_of_a_file() -> None:
+def test_keyword_arguments_are_read_like_parameters_of_a_file() -> None:
     plugin = Gain(gain=2, topic="there", limits={"xyz": (1, 2.5, 3)}, on=True, name=["a", "b"])
     with simkit.load(world(GROUND), plugins=[plugin]) as sim:
         assert (plugin.gain, plugin.topic, plugin.limits, plugin.on) == (2.0, "there", (1.0, 2.5, 3.0), True)
@@ -204,7 +204,7 @@ def test_parameters_are_given_as_keywords_and_read_as_those_of_a_file() -> None:
         assert plugin.gain == 2.0
 
 
-def test_wrong_ones_are_reported_as_those_of_a_file() -> None:
+def test_invalid_keyword_arguments_are_reported_like_parameters_of_a_file() -> None:
     with pytest.raises(simkit.LoadError, match="at least 0"):
         simkit.load(world(GROUND), plugins=[Gain(gain=-1)])
     with simkit.load(world(GROUND), plugins=[Gain(gian=1)]) as sim:
@@ -233,7 +233,7 @@ SEEN = "<visual name='v'><geometry><sphere><radius>0.1</radius></sphere></geomet
 FELT = "<sensor name='s' type='imu'/>"
 
 
-def test_one_for_a_model_hangs_on_the_one_it_is_given_with_or_on_the_only_one() -> None:
+def test_a_model_plugin_is_attached_to_the_named_or_to_the_only_model() -> None:
     only, first, second = OnModel(), OnModel(), OnModel()
     with simkit.load(world(GROUND, BALL.format("")), plugins=[only]):
         assert only.parent.name == "ball" and only.scoped == "ball"
@@ -247,7 +247,7 @@ def test_one_for_a_model_hangs_on_the_one_it_is_given_with_or_on_the_only_one() 
         simkit.load(world(GROUND, rover()), plugins=[("rovre", OnModel())])
 
 
-def test_one_for_a_sensor_or_a_visual_does_too() -> None:
+def test_sensor_and_visual_plugins_are_attached_to_the_named_or_to_the_only_entity() -> None:
     sensor, visual = OnSensor(), OnVisual()
     with simkit.load(world(GROUND, BALL.format(SEEN + FELT)), plugins=[sensor, ("ball::l::v", visual)]):
         assert sensor.parent.scoped == "ball::l::s"
@@ -255,7 +255,7 @@ def test_one_for_a_sensor_or_a_visual_does_too() -> None:
 
 
 @pytest.mark.parametrize("rate", [-1.0, float("nan"), float("inf")])
-def test_a_rate_that_is_none_is_an_error(rate: float) -> None:
+def test_an_invalid_rate_is_an_error(rate: float) -> None:
     class Odd(WorldPlugin):
         after_step_rate = rate
 

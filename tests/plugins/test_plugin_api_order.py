@@ -1,4 +1,4 @@
-"""Plugins are loaded and called in the order in which the document has them, wherever they hang."""
+"""Order of plugins: they are loaded and called in document order, whatever their parent."""
 
 from __future__ import annotations
 
@@ -90,15 +90,15 @@ WRITTEN = [
 
 
 @pytest.mark.parametrize("hook", ["load", "before", "after"])
-def test_world_model_nested_sensor_and_visual_plugins_come_as_they_are_written(tmp_path: Path, hook: str) -> None:
+def test_world_model_nested_sensor_and_visual_plugins_run_in_document_order(tmp_path: Path, hook: str) -> None:
     assert order(tmp_path, WORLD, hook) == WRITTEN
 
 
-def test_lines_make_no_difference(tmp_path: Path) -> None:
+def test_line_breaks_do_not_change_the_order(tmp_path: Path) -> None:
     assert order(tmp_path, WORLD.replace("><", ">\n<")) == WRITTEN
 
 
-def test_an_included_model_stands_where_its_include_does(tmp_path: Path) -> None:
+def test_plugins_of_an_included_model_have_the_position_of_the_include(tmp_path: Path) -> None:
     folder = tmp_path / "thing"
     folder.mkdir()
     model = f"<sdf version='1.9'><model name='thing'>{plugin('own')}{link('l', sensor('s'))}"
@@ -115,7 +115,7 @@ def test_an_included_model_stands_where_its_include_does(tmp_path: Path) -> None
     ]  # fmt: skip
 
 
-def test_plugins_made_in_python_come_after_the_file_and_spawned_ones_last(tmp_path: Path) -> None:
+def test_plugins_from_python_run_after_the_file_and_spawned_ones_last(tmp_path: Path) -> None:
     calls: list[str] = []
 
     class Made(WorldPlugin):
@@ -139,7 +139,7 @@ def test_plugins_made_in_python_come_after_the_file_and_spawned_ones_last(tmp_pa
     assert calls == ["x", "y"]
 
 
-def test_the_order_is_that_of_the_file_after_a_reset_and_a_restore_too(tmp_path: Path) -> None:
+def test_reset_and_restore_keep_the_order(tmp_path: Path) -> None:
     (tmp_path / "tell.py").write_text(LOG)
     with simkit.load(WORLD, plugin_paths=[tmp_path]) as sim:
 
@@ -156,7 +156,7 @@ def test_the_order_is_that_of_the_file_after_a_reset_and_a_restore_too(tmp_path:
         assert told() == WRITTEN
 
 
-def test_the_plugins_of_a_urdf_come_as_they_are_written(tmp_path: Path) -> None:
+def test_the_plugins_of_a_urdf_run_in_document_order(tmp_path: Path) -> None:
     urdf = (
         "<robot name='r'>"
         f"<gazebo>{plugin('one')}</gazebo>"

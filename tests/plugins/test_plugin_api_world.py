@@ -1,4 +1,4 @@
-"""What a plugin may do to the world from its hooks: move, push, light, pull, fit sensors, spawn and remove."""
+"""Changes of the world in hooks: motion, forces, lights, gravity, added sensors, spawning and removal."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ IMU = "<sensor name='imu' type='imu'><update_rate>100</update_rate><topic>added<
 
 
 class Once(WorldPlugin):
-    """Does something in a hook at a time, once."""
+    """Calls a function once, in a hook at a given time."""
 
     def __init__(self, what: Callable[[Simulation], Any], at: float = 0.1, hook: str = "after_step") -> None:
         self.what, self.at, self.hook = what, at, hook
@@ -58,7 +58,7 @@ class Once(WorldPlugin):
 
 
 def bits(sim: Simulation, model: str = "rover") -> bytes:
-    """Pose and velocities of a model."""
+    """Return pose and velocities of a model."""
     found = sim.model(model)
     parts = [np.asarray(v) for v in (found.pose.position, found.pose.quaternion)]
     parts += [np.asarray(j.velocity) for j in found.joints.values()]
@@ -87,7 +87,7 @@ def test_poses_velocities_joints_and_efforts_can_be_set_from_a_hook(hook: str) -
         assert sim.joint("arm::j").position == pytest.approx(0.5 + 3.0 * passed, abs=2e-3)
 
 
-def test_gravity_is_read_and_set_while_it_runs_and_comes_back() -> None:
+def test_gravity_is_read_and_set_in_a_hook_and_restored() -> None:
     def turn(sim: Simulation) -> None:
         assert sim.gravity == pytest.approx([0, 0, -9.8])
         sim.gravity = (0, 0, 2.0)
@@ -107,7 +107,7 @@ def test_gravity_is_read_and_set_while_it_runs_and_comes_back() -> None:
             sim.gravity = (0, 0)
 
 
-def test_what_rests_falls_when_gravity_turns() -> None:
+def test_a_resting_body_falls_when_gravity_turns() -> None:
     with simkit.load(world(GROUND, ball(pose="0 0 0.1 0 0 0"))) as sim:
         sim.run(5.0)
         sim.gravity = (0, 0, 9.8)
@@ -133,7 +133,7 @@ def test_lights_move_and_change_from_a_hook() -> None:
 
 
 @pytest.mark.parametrize("hook", ["before_step", "after_step"])
-def test_a_sensor_is_fitted_from_a_hook_and_reads_from_then_on(hook: str) -> None:
+def test_a_sensor_added_in_a_hook_measures_from_then_on(hook: str) -> None:
     with simkit.load(
         world(GROUND, ball(), rover()), plugins=[Once(lambda sim: sim.contents.add_sensor("ball::l", IMU), 0.05, hook)]
     ) as sim:
@@ -148,7 +148,7 @@ def test_a_sensor_is_fitted_from_a_hook_and_reads_from_then_on(hook: str) -> Non
         assert abs(sensor.latest.linear_acceleration.z) < 1e-6
 
 
-def test_nobody_elses_bits_change() -> None:
+def test_adding_a_sensor_does_not_change_other_readings() -> None:
     ends = []
     for what in (lambda sim: None, lambda sim: sim.contents.add_sensor("ball::l", IMU)):
         with run(Once(what, 0.1), GROUND, ball(), rover(), until=0.5) as sim:
@@ -156,7 +156,7 @@ def test_nobody_elses_bits_change() -> None:
     assert ends[0] == ends[1]
 
 
-def test_snapshot_restore_reset_and_remove_cover_a_fitted_sensor() -> None:
+def test_snapshot_restore_reset_and_remove_include_an_added_sensor() -> None:
     with simkit.load(world(GROUND, ball())) as sim:
         sim.run(0.05)
         before = sim.snapshot()
@@ -177,7 +177,7 @@ def test_snapshot_restore_reset_and_remove_cover_a_fitted_sensor() -> None:
         assert not sim.contents.has_sensor("ball::l::imu") and "ball" in sim.models
 
 
-def test_a_dict_is_the_same_as_xml() -> None:
+def test_a_sensor_from_a_dict_equals_one_from_xml() -> None:
     noise = {"@type": "gaussian", "mean": 0.5, "stddev": 0.0}
     lidar = {
         "name": "scan",
@@ -198,14 +198,14 @@ def test_a_dict_is_the_same_as_xml() -> None:
         assert len(sensor.latest.ranges) == 5 and sensor.latest.range_max == pytest.approx(7)
 
 
-def test_a_sensor_on_a_joint() -> None:
+def test_a_sensor_can_be_added_to_a_joint() -> None:
     with simkit.load(world("<gravity>0 0 -10</gravity>", ARM)) as sim:
         sensor = sim.contents.add_sensor("arm::j", "<sensor name='ft' type='force_torque'/>")
         sim.run(0.1)
         assert abs(sensor.latest.wrench.force.z) == pytest.approx(10.0, rel=1e-3)
 
 
-def test_what_is_wrong_with_a_sensor_is_said_and_nothing_changes() -> None:
+def test_an_invalid_sensor_is_reported_and_nothing_changes() -> None:
     with simkit.load(world(GROUND, ball())) as sim:
         for name, sensor, error, text in (
             ("ball::x", IMU, KeyError, "ball::l"),
@@ -303,7 +303,7 @@ def closed(sim: Simulation) -> list[str]:
     return found
 
 
-def test_a_plugin_of_a_spawned_model_is_closed_and_let_go_once_nothing_brings_it_back(closer: Path) -> None:
+def test_a_plugin_of_a_removed_model_is_closed_and_freed_once_no_snapshot_has_it(closer: Path) -> None:
     with simkit.load(world(GROUND), plugin_paths=[closer]) as sim:
         sim.spawn(with_closer("a"))
         told = closed(sim)
@@ -326,7 +326,7 @@ def test_a_plugin_of_a_spawned_model_is_closed_and_let_go_once_nothing_brings_it
     assert told == ["a", "b"]
 
 
-def test_one_of_the_file_is_closed_at_the_end_once(closer: Path) -> None:
+def test_a_plugin_of_the_file_is_closed_once_at_the_end(closer: Path) -> None:
     sim = simkit.load(world(with_closer("m")[len("<sdf version='1.9'>") : -len("</sdf>")]), plugin_paths=[closer])
     told = closed(sim)
     sim.remove("m")
@@ -338,7 +338,7 @@ def test_one_of_the_file_is_closed_at_the_end_once(closer: Path) -> None:
     assert told == ["m"]
 
 
-def test_a_thousand_spawned_and_removed_leave_nothing_behind(closer: Path) -> None:
+def test_a_thousand_spawned_and_removed_models_leave_no_memory_behind(closer: Path) -> None:
     with simkit.load(world(GROUND), plugin_paths=[closer]) as sim:
         for i in range(20):
             sim.spawn(with_closer(f"n{i}"))
@@ -373,10 +373,10 @@ def reader(tmp_path: Path, body: str) -> Simulation:
     return simkit.load(world(f"<plugin name='r' filename='reader.py'>\n{body}</plugin>"), plugin_paths=[tmp_path])
 
 
-def test_an_element_that_is_only_read_under_a_condition_is_told_so(tmp_path: Path) -> None:
+def test_an_element_read_only_under_a_condition_is_reported_with_that_hint(tmp_path: Path) -> None:
     with reader(tmp_path, "<p_gain>3</p_gain>") as sim:
         ((message, hint, line),) = unread(sim)
-        assert "<p_gain> is not used" in message and "only under a condition" in hint and line
+        assert "<p_gain> is not used" in message and "reads <p_gain> only with other options" in hint and line
     with reader(tmp_path, "<mode>pid</mode><p_gain>3</p_gain>") as sim:
         assert not unread(sim)
     with reader(tmp_path, "<p_gian>3</p_gian>") as sim:
@@ -384,7 +384,7 @@ def test_an_element_that_is_only_read_under_a_condition_is_told_so(tmp_path: Pat
         assert hint == "did you mean 'p_gain'?"
 
 
-def test_what_a_spawned_model_says_too_much_is_told_as_well(tmp_path: Path) -> None:
+def test_unread_elements_of_a_spawned_model_are_reported(tmp_path: Path) -> None:
     text = READER.replace("WorldPlugin", "ModelPlugin")
     (tmp_path / "reader.py").write_text(text)
     extra = "<plugin name='r' filename='reader.py'><gian>1</gian></plugin></model>"
@@ -394,7 +394,7 @@ def test_what_a_spawned_model_says_too_much_is_told_as_well(tmp_path: Path) -> N
     assert "<gian>" in message and "'gain'" in hint
 
 
-def test_attributes_that_nobody_read_are_told_with_the_closest(tmp_path: Path) -> None:
+def test_unread_attributes_are_reported_with_the_closest_name(tmp_path: Path) -> None:
     with reader(tmp_path, "<gain unti='rad' x:y='1'><limits lower='2'><upper>1</upper></limits></gain>") as sim:
         found = unread(sim, "SK-PARAM-007")
         assert ["'unti' of <gain>" in found[0][0], "'unit'" in found[0][1]] == [True, True]

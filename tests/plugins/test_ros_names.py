@@ -1,4 +1,4 @@
-"""Topic names after namespace and remapping are those a ROS node would use."""
+"""Topic names after namespace and remapping, as in a ROS node."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ def names(node: str = "driver", **ros: object) -> RosNames:
     return RosNames.from_params(Params.from_dict({"ros": ros}), node)
 
 
-def test_without_a_block_names_lie_at_the_root() -> None:
+def test_without_a_ros_block_names_are_in_the_root_namespace() -> None:
     bare = RosNames.from_params(Params("plugin"), "driver")
     assert bare.topic("odom") == "/odom"
     assert bare.topic("/odom") == "/odom"
@@ -49,7 +49,7 @@ def test_a_remapping_without_an_arrow_is_an_error() -> None:
     assert [d.code for d in params.diagnostics] == ["SK-PARAM-002"]
 
 
-def test_ros_1_plugins_give_their_namespace_alone() -> None:
+def test_ros_1_plugins_have_only_a_namespace() -> None:
     ros = RosNames.from_params(Params.from_dict({"robotNamespace": "/r1"}), "driver")
     assert ros.topic("cmd_vel") == "/r1/cmd_vel"
 
@@ -60,7 +60,7 @@ def test_gz_topics_become_absolute_and_lose_bad_characters() -> None:
     assert valid_topic("/a@b~c") == "/abc"
 
 
-def test_what_no_topic_may_have_is_left_out_and_said() -> None:
+def test_invalid_characters_of_a_topic_are_removed_and_reported() -> None:
     params = Params.from_dict({"ros": {"namespace": "/my robot"}})
     ros = RosNames.from_params(params, "driver")
     assert ros.topic("c/\u0661 raw") == "/my_robot/c/_raw"

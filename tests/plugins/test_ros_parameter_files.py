@@ -1,4 +1,4 @@
-"""Parameter files of ROS: layouts, patterns of names, values, lines, and what is wrong with a file."""
+"""Parameter files of ROS: layouts, name patterns, values, lines, and invalid files."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def test_ros_2_layout_gives_each_node_its_parameters_with_their_lines(tmp_path: 
         ("/a+b", "/aab", False),
     ],
 )
-def test_patterns_of_node_names(pattern: str, name: str, fits: bool) -> None:
+def test_node_names_match_patterns(pattern: str, name: str, fits: bool) -> None:
     assert node_matches(pattern, name) is fits
 
 
@@ -86,7 +86,7 @@ def test_namespaces_are_written_in_many_ways(tmp_path: Path, text: str) -> None:
     assert node(tmp_path, text, "/robot/arm").number("rate") == 5.0
 
 
-def test_what_comes_later_goes_over_what_came_before_key_by_key(tmp_path: Path) -> None:
+def test_later_values_replace_earlier_ones_key_by_key(tmp_path: Path) -> None:
     text = """\
     /**:
       ros__parameters:
@@ -117,8 +117,8 @@ def test_ros_1_layout_is_the_tree_of_names_itself(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "code", "line", "words"),
     [
-        ("arm:\n  ros__parameters:\n    joints: [a, b\n    rate: 1\n", "SK-CONTROL-002", 4, "not YAML"),
-        ("arm:\n\tros__parameters: 1\n", "SK-CONTROL-002", 2, "not YAML"),
+        ("arm:\n  ros__parameters:\n    joints: [a, b\n    rate: 1\n", "SK-CONTROL-002", 4, "not valid YAML"),
+        ("arm:\n\tros__parameters: 1\n", "SK-CONTROL-002", 2, "not valid YAML"),
         ("just text\n", "SK-CONTROL-002", 1, "names of nodes"),
         ("- a\n- b\n", "SK-CONTROL-002", 1, "names of nodes"),
         ("arm:\n  ros__parameters: 7\n", "SK-CONTROL-002", 2, "names with values"),
@@ -135,7 +135,7 @@ def test_a_broken_file_is_an_error_at_its_line(
     assert words in problem.message
 
 
-def test_a_file_that_repeats_itself_without_end_is_refused_and_not_eaten(tmp_path: Path) -> None:
+def test_a_file_with_endlessly_repeated_anchors_is_refused(tmp_path: Path) -> None:
     lines = ["a0: &a0 [x, x, x, x, x, x, x, x, x, x]"]
     lines += [f"a{i}: &a{i} [{', '.join([f'*a{i - 1}'] * 10)}]" for i in range(1, 10)]
     _, found = read(tmp_path, "\n".join(lines))
@@ -143,27 +143,27 @@ def test_a_file_that_repeats_itself_without_end_is_refused_and_not_eaten(tmp_pat
 
 
 @pytest.mark.parametrize("text", ["", "# nothing\n", "---\n"])
-def test_an_empty_file_is_told(tmp_path: Path, text: str) -> None:
+def test_an_empty_file_is_reported(tmp_path: Path, text: str) -> None:
     file, found = read(tmp_path, text)
     assert file is not None
     assert [(d.code, d.severity) for d in found] == [("SK-CONTROL-003", "warning")]
 
 
-def test_a_misspelt_ros_parameters_is_told(tmp_path: Path) -> None:
+def test_a_misspelt_ros_parameters_key_is_reported(tmp_path: Path) -> None:
     _, found = read(tmp_path, "arm:\n  ros_parameters: {rate: 5}\n")
     problem = next(iter(found))
     assert problem.code == "SK-CONTROL-003"
     assert "ros__parameters" in problem.hint
 
 
-def test_a_key_that_comes_twice_is_told_with_both_lines(tmp_path: Path) -> None:
+def test_a_duplicate_key_is_reported_with_both_lines(tmp_path: Path) -> None:
     _, found = read(tmp_path, "arm:\n  ros__parameters:\n    rate: 1\n    rate: 2\n")
     problem = next(iter(found))
     assert (problem.code, problem.line) == ("SK-CONTROL-004", 4)
     assert "line 3" in problem.message
 
 
-def test_a_file_that_is_no_text_is_an_error(tmp_path: Path) -> None:
+def test_a_binary_file_is_an_error(tmp_path: Path) -> None:
     path, found = tmp_path / "params.yaml", Diagnostics()
     path.write_bytes(b"arm: \xff\xfe")
     assert read_parameter_file(path, found) is None

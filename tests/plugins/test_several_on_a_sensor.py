@@ -1,4 +1,4 @@
-"""Several Classic plugins on one sensor: each publishes, none takes the place of another."""
+"""Several Classic plugins on one sensor: each publishes, and none replaces another."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def test_each_output_is_published() -> None:
         assert {sub.latest.header.frame_id for sub in subs.values()} == {"eye"}
 
 
-def test_the_same_output_on_two_topics() -> None:
+def test_the_same_output_is_published_on_two_topics() -> None:
     twice = "".join(
         f"""<plugin name="{name}" filename="libgazebo_ros_ray_sensor.so">
         <output_type>sensor_msgs/LaserScan</output_type><ros><remapping>~/out:={name}</remapping></ros></plugin>"""

@@ -1,4 +1,4 @@
-"""Plugins inside a `<visual>`: how the file reaches the class, and what the class gets."""
+"""Plugins inside a `<visual>`: their parameters and their handles."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def plugin_of(sim: simkit.Simulation) -> object:
     return found
 
 
-def test_it_is_prepared_with_the_scene_and_loaded_with_a_handle(folder: Path) -> None:
+def test_a_visual_plugin_gets_the_scene_in_prepare_and_a_handle_in_load(folder: Path) -> None:
     with simkit.load(world(thing(PLUGIN)), plugin_paths=[folder]) as sim:
         plugin = plugin_of(sim)
         assert plugin.told == ["m::l::v", "m::l::v", "m::l", 1, "blue"]  # type: ignore[attr-defined]
@@ -58,7 +58,7 @@ def test_it_is_prepared_with_the_scene_and_loaded_with_a_handle(folder: Path) ->
         assert plugin.visual is sim.visual("m::l::v") is sim.link("m::l").visuals["v"]  # type: ignore[attr-defined]
 
 
-def test_a_visual_says_where_it_is_also_after_its_model_was_moved(folder: Path) -> None:
+def test_the_pose_of_a_visual_follows_its_moved_model(folder: Path) -> None:
     with simkit.load(world(thing(PLUGIN)), plugin_paths=[folder]) as sim:
         visual = sim.visual("m::l::v")
         np.testing.assert_allclose(visual.pose.position, (1, 3, 4), atol=1e-12)
@@ -75,31 +75,31 @@ def test_an_unknown_visual_is_a_key_error_with_the_closest_name() -> None:
         sim.visual("m::l::vv")
 
 
-def test_it_comes_with_a_spawned_model(folder: Path) -> None:
+def test_a_spawned_model_brings_its_visual_plugin(folder: Path) -> None:
     with simkit.load(world(), plugin_paths=[folder]) as sim:
         sim.spawn(f'<sdf version="1.9">{thing(PLUGIN, name="late")}</sdf>')
         assert plugin_of(sim).told[0] == "late::l::v"  # type: ignore[attr-defined]
 
 
-def test_on_anything_else_it_is_left_out_with_a_warning(folder: Path) -> None:
+def test_a_visual_plugin_on_another_entity_is_ignored_with_a_warning(folder: Path) -> None:
     found = simkit.check(world(thing("", on_model=PLUGIN)), plugin_paths=[folder])
     (warning,) = [d for d in found if d.code == "SK-PLUGIN-007"]
-    assert "belongs on a visual, the file puts it on a model" in warning.message
+    assert "belongs on a visual, but is on a model" in warning.message
 
 
-def test_what_it_does_not_read_is_reported(folder: Path) -> None:
+def test_unread_elements_of_a_visual_plugin_are_reported(folder: Path) -> None:
     text = thing(PLUGIN.replace("colour>", "color>"))
     found = [d for d in simkit.check(world(text), plugin_paths=[folder]) if d.code == "SK-PARAM-003"]
     assert len(found) == 1
     assert "colour" in found[0].hint
 
 
-def test_set_reaches_its_parameters(folder: Path) -> None:
+def test_set_changes_the_parameters_of_a_visual_plugin(folder: Path) -> None:
     with simkit.load(world(thing(PLUGIN)), plugin_paths=[folder], overrides=["m::l::v::p.colour=green"]) as sim:
         assert plugin_of(sim).told[-1] == "green"  # type: ignore[attr-defined]
 
 
-def test_a_converted_file_still_has_it(folder: Path, tmp_path: Path) -> None:
+def test_a_converted_file_keeps_the_visual_plugin(folder: Path, tmp_path: Path) -> None:
     (tmp_path / "in.sdf").write_text(world(thing(PLUGIN)))
     done = CliRunner().invoke(app, ["convert", str(tmp_path / "in.sdf"), "-o", str(tmp_path / "out.sdf")])
     assert done.exit_code == 0, done.output
