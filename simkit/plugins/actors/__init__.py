@@ -1,7 +1,7 @@
-"""Actors: people and animals that follow a script, or a plugin, and are seen by sensors and touched by nothing.
+"""Actors: people and animals moved by a script or a plugin, visible to sensors and without contact.
 
-A `SceneActor` enters; a static model of links leaves, which `ActorMover` puts where the script says. Nothing here
-pushes or is pushed.
+`with_actors` converts each `SceneActor` to a static model of links, which `ActorMover` moves along the script. Actors
+exert no forces and receive none.
 """
 
 from __future__ import annotations

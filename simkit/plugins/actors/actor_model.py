@@ -1,4 +1,4 @@
-"""Models of actors: bodies without contact that cameras and lidars see."""
+"""Models of actors: links without collisions that cameras and lidars see."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from simkit.scene import Material, SceneActor, SceneLink, SceneModel, SceneVisua
 
 @dataclass(frozen=True, slots=True)
 class WalkingPerson:
-    """The person of our own making, who walks where the way goes on and stands where it does not."""
+    """Built-in person, who walks while the track moves and stands while it does not."""
 
     scale: float
     drop: float
@@ -37,15 +37,15 @@ class WalkingPerson:
 
 
 def with_actors(world: SceneWorld, find_file: FindFile, diagnostics: Diagnostics) -> SceneWorld:
-    """The world with a model for every actor in it; what is wrong with an actor is reported."""
+    """Return the world with a model for every actor; problems with an actor are reported."""
     if not world.actors:
         return world
-    taken = {model.name for model in world.models}
+    model_names = {model.name for model in world.models}
     models = []
     for actor in world.actors:
         _check(actor, diagnostics)
-        if actor.name in taken:
-            text = f"the world has an actor and a model named {actor.name!r}; the actor is left out"
+        if actor.name in model_names:
+            text = f"the world has an actor and a model named {actor.name!r}; the actor is ignored"
             diagnostics.warning("SK-ACTOR-002", text, actor.where, "give the actor another name")
             continue
         models.append(actor_model(actor, find_file, diagnostics))
@@ -53,20 +53,20 @@ def with_actors(world: SceneWorld, find_file: FindFile, diagnostics: Diagnostics
 
 
 def actor_model(actor: SceneActor, find_file: FindFile, diagnostics: Diagnostics) -> SceneModel:
-    """An actor's model as it stands at the start; `moved_by` is its `AnimatedActor`."""
-    if is_led_by_plugin(actor):  # its script does not move it, as in gz
+    """Return an actor's model at its start pose; `moved_by` is its `AnimatedActor`."""
+    if is_led_by_plugin(actor):  # as in gz, the script does not move an actor that a plugin moves
         actor = replace(actor, trajectories=())
-    worn = skinned_actor_model(actor, find_file, diagnostics)
-    return worn if worn is not None else _person(actor, Script(actor))
+    skinned = skinned_actor_model(actor, find_file, diagnostics)
+    return skinned if skinned is not None else _person(actor, Script(actor))
 
 
 def _check(actor: SceneActor, diagnostics: Diagnostics) -> None:
     known = [a.name for a in actor.animations]
     for way in actor.trajectories:
         if known and way.type and way.type not in known:
-            text = f"actor {actor.name!r}: its trajectory {way.id} asks for the animation {way.type!r}"
+            text = f"actor {actor.name!r} has no animation {way.type!r}, which its trajectory {way.id} names"
             hint = did_you_mean(way.type, known) or f"animations: {', '.join(known)}"
-            diagnostics.warning("SK-ACTOR-003", f"{text}, which it does not have", actor.where, hint)
+            diagnostics.warning("SK-ACTOR-003", text, actor.where, hint)
     if not actor.auto_start:
         text = f"actor {actor.name!r} waits for its start (<auto_start> is false)"
         hint = f"call the service /{actor.name}/play (std_srvs/srv/SetBool)"
@@ -94,7 +94,7 @@ def _person(actor: SceneActor, script: Script) -> SceneModel:
 
 
 def _is_sitting(actor: SceneActor) -> bool:
-    """Whether its first animation is one of sitting, by name."""
+    """Check whether the name of the actor's first animation is one of sitting."""
     types = [way.type for way in actor.trajectories[:1]] or [a.name for a in actor.animations[:1]]
     return any("sit" in name.lower() for name in types)
 
@@ -124,5 +124,6 @@ def _scaled(pose: Pose, scale: float, drop: float) -> Pose:
 
 
 def coloured_material(colour: tuple[float, float, float]) -> Material:
+    """Return an opaque, slightly glossy material of one colour."""
     whole = (*colour, 1.0)
     return Material(ambient=whole, diffuse=whole, specular=(0.05, 0.05, 0.05, 1.0))

@@ -1,4 +1,4 @@
-"""Move every actor of a world along its script."""
+"""World plugin that moves every actor along its script."""
 
 from __future__ import annotations
 
@@ -24,10 +24,11 @@ _Moving = tuple[AnimatedActor, slice | npt.NDArray[np.intp]]
 
 
 class ActorMover(WorldPlugin):
-    """Puts actors where their scripts say: 50 times a second of simulated time, and whenever a sensor looks.
+    """Moves actors along their scripts 50 times per simulated second, and whenever a sensor takes a sample.
 
-    Comes with every world that has actors. Where an actor is follows from the time alone, so nothing piles up over
-    resets and restores. The service `/<actor>/play` (std_srvs/srv/SetBool) starts one anew, or stops it where it is.
+    Every world with actors has this plugin. The pose of an actor depends on time alone, so no error accumulates over
+    resets and restores. The service `/<actor>/play` (std_srvs/srv/SetBool) restarts the script of an actor, or stops
+    it.
     """
 
     scenery_rate = 50.0
@@ -50,18 +51,18 @@ class ActorMover(WorldPlugin):
         self.move_scenery()
 
     def move_scenery(self) -> None:
-        """Puts every moving actor where it is at the time of the simulation."""
+        """Set the pose of every moving actor at the current simulation time."""
         sim = self.sim
         data, moving = sim.mj_data, self._moving()
         positions, quaternions, now = data.mocap_pos, data.mocap_quat, float(sim.time)
-        for cast, places in moving:
+        for cast, rows in moving:
             poses = cast.poses(self._time_of(cast.name, now))
-            positions[places], quaternions[places] = poses[:, :3], poses[:, 3:]
+            positions[rows], quaternions[rows] = poses[:, :3], poses[:, 3:]
         if moving:
             sim.engine.physics.changed(STALE)
 
     def _moving(self) -> tuple[_Moving, ...]:
-        """The actors that go anywhere, with the indices of their bodies in the engine."""
+        """Return the actors that move, with the indices of their mocap bodies in the engine."""
         structure = self.sim.engine.structure
         if self._known[0] is not structure:
             found = []
@@ -76,7 +77,7 @@ class ActorMover(WorldPlugin):
         return self._known[1]
 
     def _time_of(self, name: str, now: float) -> float:
-        """How long a script has been going at a time [s]; 0 where it waits for its start."""
+        """Return the elapsed time of a script [s]; 0 before its start."""
         if name in self._stopped:
             return self._stopped[name]
         return now - self._began[name] if name in self._began else 0.0

@@ -1,4 +1,4 @@
-"""Actors that move along their scripts: the poses of their links over time, and the model that follows them."""
+"""Actors that move along their scripts: the poses of their links over time, and the models that represent them."""
 
 from __future__ import annotations
 
@@ -18,33 +18,33 @@ FindFile = Callable[[str, Path | None], Path | None]
 ROOT_LINK: Final = "link"
 _LEADERS: Final = frozenset(("gz-sim-follow-actor-system", "gz::sim::systems::FollowActor"))
 AT_THE_HIPS: Final = (0.5, 1.5)
-"""[m] over the ground: where a script's way lies if it is that of the hips, as with Gazebo's own skins."""
+"""Heights above the ground [m] of a trajectory that is that of the hips, as with Gazebo's own skins."""
 
 
 class Rig(Protocol):
-    """How the parts of an actor lie about its origin."""
+    """Poses of an actor's links relative to its origin."""
 
     def lie(self, track: Track, rests: bool) -> tuple[Floats, Floats]:
-        """Positions (rows, n, 3) [m] and quaternions (rows, n, 4) of the parts in the actor's frame, along a track.
+        """Return positions (rows, n, 3) [m] and quaternions (rows, n, 4) of the links in the actor's frame.
 
         Args:
-            track: where it is, and how fast.
-            rests: whether it stands, at the end of its way or before its beginning.
+            track: poses and speed of the actor.
+            rests: whether the actor stands, before its start or after its end.
         """
         ...
 
 
 class AnimatedActor:
-    """One actor at work.
+    """Actor with its script and the poses of its links over time.
 
     Args:
-        name: its name.
-        script: its ways.
-        rig: how its parts lie; None where it has none that move against its origin.
-        is_led: whether a plugin of its own takes it where it goes.
+        name: name of the actor.
+        script: trajectories of the actor.
+        rig: poses of the links relative to the origin; None if the actor is rigid.
+        is_led: whether a plugin moves the actor.
 
     Attributes:
-        moves: whether anything of it ever moves by its script.
+        moves: whether the script ever moves the actor or one of its links.
     """
 
     def __init__(self, name: str, script: Script, rig: Rig | None, is_led: bool = False) -> None:
@@ -57,7 +57,7 @@ class AnimatedActor:
         return self
 
     def poses(self, time: float) -> Floats:
-        """Where its links are in the world: the origin, then the parts; position and quaternion, shape (n, 7)."""
+        """Return the world poses of the links: the origin, then the parts; position and quaternion, shape (n, 7)."""
         number, inside, rests = self.script.at(time)
         if rests:
             return np.asarray(self._resting[number][0 if inside <= 0.0 else 1])
@@ -69,7 +69,7 @@ class AnimatedActor:
 
 
 def link_poses_in_world(track: Track, rig: Rig | None, rests: bool) -> Floats:
-    """Poses of all links in the world, shape (rows, n, 7)."""
+    """Return the poses of all links in the world, shape (rows, n, 7)."""
     origin = track.poses[:, None, :]
     if rig is None:
         return origin
@@ -87,12 +87,12 @@ def link_poses_in_world(track: Track, rig: Rig | None, rests: bool) -> Floats:
 
 
 def is_led_by_plugin(actor: SceneActor) -> bool:
-    """Whether a plugin of its own takes the actor where it goes."""
+    """Check whether the actor has a plugin that moves it."""
     return any(alias in _LEADERS for plugin in actor.plugins for alias in aliases(plugin))
 
 
 def scripted_model(actor: SceneActor, pose: Pose, links: Sequence[SceneLink], cast: AnimatedActor) -> SceneModel:
-    """A model that only its script moves."""
+    """Return a static model that only its script moves."""
     return SceneModel(
         name=actor.name,
         scoped=actor.name,

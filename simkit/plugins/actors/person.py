@@ -1,6 +1,6 @@
-"""A person of our own making, drawn where an actor's skin cannot be: the shapes, and how they walk, stand and sit.
+"""Built-in person, drawn if the skin of an actor cannot be used: shapes, walking, standing and sitting.
 
-All is measured for a height of 1.75 m and scaled from there; x forward, z up, feet on z = 0.
+All dimensions are for a height of 1.75 m and are scaled for other heights; x forward, z up, feet on z = 0.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ Rgb = tuple[float, float, float]
 
 HEIGHT: Final = 1.75
 STRIDE: Final = 1.40
-"""[m] that two steps take at a height of 1.75 m."""
+"""Length of two steps at a height of 1.75 m [m]."""
 
 HIP: Final = (0.0, 0.09, 0.93)
 KNEE: Final = 0.43
@@ -29,7 +29,7 @@ SOLE: Final = 0.50
 SHOULDER: Final = (0.0, 0.205, 1.42)
 ELBOW: Final = 0.29
 
-_BRISK = 0.6  # [m/s] from which legs and arms swing in full
+_BRISK = 0.6  # [m/s] above which legs and arms swing fully
 
 LIMBS: Final = (
     "thigh_left", "thigh_right", "shin_left", "shin_right",
@@ -40,7 +40,7 @@ PARTS: Final = ("torso", *LIMBS)
 
 @dataclass(frozen=True, slots=True)
 class Piece:
-    """A shape of one part."""
+    """Shape of one part of a person."""
 
     part: str
     name: str
@@ -63,8 +63,8 @@ _SKINS: Final = ((0.89, 0.72, 0.60), (0.76, 0.57, 0.44), (0.55, 0.38, 0.28), (0.
 _HAIRS: Final = ((0.15, 0.11, 0.09), (0.35, 0.22, 0.13), (0.62, 0.50, 0.30), (0.45, 0.45, 0.46))
 
 
-def appearance_of(name: str, given: PersonLook | None = None) -> Appearance:
-    """Height and colours that go with a name, the same in every run, where the file does not give them."""
+def appearance_of(name: str, look_in_file: PersonLook | None = None) -> Appearance:
+    """Return height and colours derived from the name, the same in every run; values of the file override them."""
     number = zlib.crc32(name.encode())
     colours = {}
     for look, choice in (("shirt", _SHIRTS), ("trousers", _TROUSERS), ("skin", _SKINS), ("hair", _HAIRS)):
@@ -72,9 +72,9 @@ def appearance_of(name: str, given: PersonLook | None = None) -> Appearance:
         colours[look] = choice[index]
     colours |= {"shoes": (0.10, 0.09, 0.09), "eyes": (0.06, 0.05, 0.05)}
     height = round(1.62 + 0.02 * (number % 13), 2)
-    if given is not None:
-        colours |= given.colours
-        height = given.height or height
+    if look_in_file is not None:
+        colours |= look_in_file.colours
+        height = look_in_file.height or height
     return Appearance(height, colours)
 
 
@@ -119,7 +119,7 @@ FIGURE: Final = _figure()
 
 
 def scale_shape(shape: Geometry, scale: float) -> Geometry:
-    """A shape of the figure in another size."""
+    """Return a shape of the figure in another size."""
     if isinstance(shape, Ellipsoid):
         x, y, z = shape.radii
         return Ellipsoid((x * scale, y * scale, z * scale))
@@ -130,46 +130,46 @@ def scale_shape(shape: Geometry, scale: float) -> Geometry:
 
 
 def walking_angles(distance: Floats, speed: Floats) -> Floats:
-    """Angles of the limbs while walking; the stride follows the way, so that feet do not slide.
+    """Return the angles of the limbs during a walk; the stride follows the distance, so that feet do not slide.
 
     Args:
-        distance: way behind, in heights of 1.75 m [m], shape (n,).
+        distance: distance walked, scaled to a height of 1.75 m [m], shape (n,).
         speed: [m/s], shape (n,); below 0.6 m/s the limbs swing less, at rest they hang.
 
     Returns:
-        Angles in the order of `LIMBS` [rad], forward positive, shape (n, 8). A shin's and a forearm's is that between
-        it and the limb above.
+        Angles in the order of `LIMBS` [rad], forward positive, shape (n, 8). The angle of a shin or forearm is relative
+        to the limb above it.
     """
-    much = np.clip(speed / _BRISK, 0.0, 1.0)
+    amplitude = np.clip(speed / _BRISK, 0.0, 1.0)
     angles = np.empty((len(distance), 8))
     for side, ahead in ((0, 0.0), (1, 0.5)):
         part = np.mod(distance / STRIDE + 0.25 + ahead, 1.0)
         stands = part < 0.5
-        since = 2.0 * (part - 0.5)  # of the half in which the foot is in the air
-        # on the ground a foot stays where it is: it goes back under the hips as they go on
+        since = 2.0 * (part - 0.5)  # progress of the half cycle in which the foot is in the air
+        # a foot on the ground does not slide: relative to the hips it moves back at walking speed
         foot = STRIDE * np.where(stands, 0.25 - part, -0.25 * np.cos(math.pi * since))
         bend = np.where(stands, 0.0, 0.95 * np.abs(np.sin(math.pi * since)) ** 1.5)
         thigh = np.arcsin(np.clip(foot / (KNEE + SOLE), -1.0, 1.0)) + 0.5 * bend
-        angles[:, side] = much * thigh
-        angles[:, 2 + side] = -0.02 - much * bend
+        angles[:, side] = amplitude * thigh
+        angles[:, 2 + side] = -0.02 - amplitude * bend
         swing = np.cos(2.0 * math.pi * part)
-        angles[:, 4 + side] = -0.40 * much * swing
-        angles[:, 6 + side] = 0.14 + much * (0.22 - 0.14 * swing)
+        angles[:, 4 + side] = -0.40 * amplitude * swing
+        angles[:, 6 + side] = 0.14 + amplitude * (0.22 - 0.14 * swing)
     return angles
 
 
 SITTING: Final = (1.45, 1.45, -1.45, -1.45, 0.55, 0.55, 1.05, 1.05)
-"""Angles of the limbs of somebody who sits at a desk, in the order of `LIMBS` [rad]."""
+"""Angles of the limbs of a person sitting at a desk, in the order of `LIMBS` [rad]."""
 
 
 def figure_poses(angles: Floats) -> tuple[Floats, Floats]:
-    """Where the parts are, for a height of 1.75 m, the lower sole on the ground.
+    """Return the poses of the parts for a height of 1.75 m, the lower sole on the ground.
 
     Args:
-        angles: as `walking_angles` gives them, shape (n, 8).
+        angles: angles as from `walking_angles` [rad], shape (n, 8).
 
     Returns:
-        Positions (n, 9, 3) and quaternions (n, 9, 4) of `PARTS`, in the person's frame.
+        Positions (n, 9, 3) [m] and quaternions (n, 9, 4) of `PARTS`, in the person's frame.
     """
     count = len(angles)
     places, turns = np.zeros((count, 9, 3)), np.zeros((count, 9, 4))
@@ -192,7 +192,7 @@ def figure_poses(angles: Floats) -> tuple[Floats, Floats]:
 
 
 def resting_poses(sits: bool) -> dict[str, Pose]:
-    """Where the parts of somebody are who does not walk, for a height of 1.75 m."""
+    """Return the poses of the parts of a standing or sitting person, for a height of 1.75 m."""
     angles = np.array([SITTING]) if sits else walking_angles(np.zeros(1), np.zeros(1))
     places, turns = figure_poses(angles)
     return {part: Pose(places[0, i], turns[0, i]) for i, part in enumerate(PARTS)} | {"": IDENTITY}

@@ -1,9 +1,9 @@
-"""Where an actor is at a time of its script: Gazebo's splines through the waypoints.
+"""Poses of an actor over the time of its script: Gazebo's splines through the waypoints.
 
-Positions follow cubic Hermite splines whose tangent at a waypoint is half the way between its neighbours, times one
-minus the tension; each stretch has its own even pace, so an actor that is to walk steadily needs evenly spaced times.
-Orientations follow the spherical spline (squad) through the quaternions. The rules are those of `gz::common`'s
-`PoseAnimation` and `gz::math`'s `Spline` and `RotationSpline`, which Gazebo Classic has as well.
+Positions follow cubic Hermite splines. The tangent at a waypoint is half the distance between its neighbours, times one
+minus the tension. Each segment has its own constant pace, so an actor with a steady speed needs evenly spaced times.
+Orientations follow the spherical spline (squad) through the quaternions. The rules are those of `PoseAnimation` in
+`gz::common` and of `Spline` and `RotationSpline` in `gz::math`, and also of Gazebo Classic.
 """
 
 from __future__ import annotations
@@ -21,26 +21,26 @@ from simkit.scene import SceneActor, Trajectory
 Floats = npt.NDArray[np.float64]
 
 _GRID: Final = 0.02
-"""[s] between two rows of the table that a script is worked out to; straight lines in between, within a millimetre."""
+"""Time between two rows of the table of a script [s]; linear interpolation between rows is exact to a millimetre."""
 
 _MOST_ROWS: Final = 20_000
 _TINY: Final = 1e-12
 
 
 class Track:
-    """One trajectory, worked out on a grid of times.
+    """Trajectory sampled on a grid of times.
 
     Args:
-        way: the trajectory; None for an actor that keeps its place.
-        base: what its waypoints count from.
-        length: of an actor that keeps its place [s].
+        way: trajectory; None for an actor that does not move.
+        base: reference pose of the waypoints.
+        length: duration of an actor that does not move [s].
 
     Attributes:
-        type: the animation that plays meanwhile.
-        length: [s].
-        times: of the rows [s], shape (n,).
+        type: name of the animation that plays meanwhile.
+        length: duration [s].
+        times: times of the rows [s], shape (n,).
         poses: x, y, z [m] and quaternion w, x, y, z in the world, shape (n, 7).
-        speed, distance: [m/s], and the way behind it [m]; shape (n,).
+        speed, distance: speed [m/s] and distance travelled [m]; shape (n,).
     """
 
     def __init__(self, way: Trajectory | None, base: Pose, length: float = 0.0) -> None:
@@ -62,20 +62,20 @@ class Track:
         self.moves = bool(self.distance[-1] > 0.0 or np.ptp(self.poses[:, 3:], axis=0).max() > _TINY)
 
     def row(self, time: float) -> tuple[int, float]:
-        """The row before a time [s] since its beginning, and how far it is to the next, 0 to 1."""
+        """Return the row before a time [s] since the track's beginning, and the fraction up to the next row, 0 to 1."""
         row = min(max(time, 0.0), self.length) * self._per_second
         before = min(int(row), len(self.times) - 2)
         return before, row - before
 
 
 class Stride(Track):
-    """A walk on the spot that no script tells, for the parts of who walks.
+    """Walk on the spot without a trajectory, for the links of a walking actor.
 
     Args:
-        kind: the animation that plays.
-        distance: the way behind, shape (n,) [m].
-        speed: [m/s]
-        seconds: of the animation for each metre.
+        kind: name of the animation that plays.
+        distance: distance travelled [m], shape (n,).
+        speed: walking speed [m/s].
+        seconds: duration of the animation per metre [s/m].
     """
 
     def __init__(self, kind: str, distance: Floats, speed: float, seconds: float) -> None:
@@ -86,16 +86,16 @@ class Stride(Track):
 
 
 class Script:
-    """The ways of one actor, one after the other.
+    """Trajectories of an actor, one after another.
 
     Args:
-        actor: whose. Its waypoints count from its `<pose>`, as in gz.
-        in_place: how long an animation is that plays where the actor stands, if it has no way [s].
+        actor: actor with its trajectories. The waypoints are relative to its `<pose>`, as in gz.
+        in_place: duration of the animation of an actor without trajectory [s].
 
     Attributes:
-        tracks: its trajectories.
-        length: of all of them [s].
-        starts_by_itself: whether it begins with the simulation.
+        tracks: trajectories of the actor.
+        length: duration of all tracks [s].
+        starts_by_itself: whether the script starts with the simulation.
     """
 
     def __init__(self, actor: SceneActor, in_place: float = 0.0) -> None:
@@ -108,11 +108,11 @@ class Script:
 
     @property
     def moves(self) -> bool:
-        """Whether it is ever anywhere else than at its start."""
+        """True if the script ever changes the actor's pose."""
         return any(track.moves for track in self.tracks)
 
     def at(self, time: float) -> tuple[int, float, bool]:
-        """Which track it is on `time` [s] after its start, for how long, and whether it rests at an end of its way."""
+        """Return the track at `time` [s] after the start, the time within it [s], and whether the actor rests."""
         since, total = max(0.0, time - self._delay), self.length
         is_over = since >= total
         if is_over:
@@ -122,7 +122,7 @@ class Script:
         return number, inside, time < self._delay or (is_over and not self._loop)
 
     def pose(self, time: float) -> Pose:
-        """Where it is in the world, `time` [s] after its start."""
+        """Return the actor's pose in the world, `time` [s] after the start."""
         number, inside, _ = self.at(time)
         track = self.tracks[number]
         row, part = track.row(inside)
@@ -131,7 +131,7 @@ class Script:
 
 
 def _poses(points: Sequence[Pose], times: Floats, grid: Floats, tension: float) -> Floats:
-    """Poses at the times of the grid, their quaternions in one hemisphere, so that rows may be blended."""
+    """Return the poses at the times of the grid, with quaternions in one hemisphere, which allows interpolation."""
     places = np.array([p.position for p in points], dtype=np.float64)
     turns = np.array([p.quaternion for p in points], dtype=np.float64)
     stretch = np.clip(np.searchsorted(times, grid, side="right") - 1, 0, len(points) - 2)
@@ -191,7 +191,7 @@ def _times(a: Floats, b: Floats) -> Floats:
 
 
 def _log(q: Floats) -> Floats:
-    """The vectors v with q = exp(v), of the shorter way round; shape (n, 3)."""
+    """Return the vectors v with q = exp(v), for the shorter rotation; shape (n, 3)."""
     q = np.where(q[:, :1] < 0.0, -q, q)
     size = np.linalg.norm(q[:, 1:], axis=1, keepdims=True)
     angle = np.arctan2(size, q[:, :1])

@@ -1,4 +1,4 @@
-"""An actor's own skin, where its file can be read: rigid pieces, each going with its bone."""
+"""Skins of actors from mesh files, drawn as rigid pieces that each follow a bone."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ from simkit.scene import Animation, Mesh, SceneActor, SceneLink, SceneModel, Sce
 
 @dataclass(frozen=True)
 class Clip:
-    """An animation: where the bones are in the actor's frame at its times.
+    """Animation: poses of the bones in the actor's frame over time.
 
     Attributes:
         times: [s], shape (f,); the first is 0.
-        places, turns: shape (f, n, 3) [m] and (f, n, 4).
-        root: way of the outermost bone [m], shape (f, 3).
-        follows_x: whether its time follows the way that is behind, not the clock.
+        places, turns: positions [m] of shape (f, n, 3) and quaternions of shape (f, n, 4).
+        root: position of the outermost bone [m], shape (f, 3).
+        follows_x: whether the animation follows the distance travelled instead of the clock.
     """
 
     times: Floats
@@ -42,12 +42,13 @@ class Clip:
 
     @property
     def length(self) -> float:
+        """Duration [s]."""
         return float(self.times[-1])
 
 
 @dataclass(frozen=True)
 class SkinRig:
-    """Bones that follow animations: the one that a trajectory names, else the first."""
+    """Bones that follow animations: the animation that a trajectory names, else the first."""
 
     clips: dict[str, Clip]
     at_the_hips: bool
@@ -68,13 +69,13 @@ class SkinRig:
         turns = clip.turns[before] * (1.0 - part) + clip.turns[after] * part
         root = clip.root[before] * (1.0 - part[:, 0]) + clip.root[after] * part[:, 0]
         if track.moves or self.at_the_hips:
-            # gz leaves the root's own way out and has waypoints at the height of the hips; Classic leaves out its x
+            # gz omits the root's own motion and has waypoints at the height of the hips; Classic omits only its x
             places = places - (root if self.at_the_hips else root * (1.0, 0.0, 0.0))[:, None, :]
         return places, turns / np.linalg.norm(turns, axis=-1, keepdims=True)
 
 
 def _times(clip: Clip, track: Track) -> Floats:
-    """Time in the animation at each row of a track."""
+    """Return the time in the animation at each row of a track [s]."""
     length = clip.length
     x = clip.root[:, 0]
     by_way = clip.follows_x and track.moves and not isinstance(track, Stride)
@@ -84,13 +85,13 @@ def _times(clip: Clip, track: Track) -> Floats:
 
 
 def skinned_actor_model(actor: SceneActor, find_file: FindFile, diagnostics: Diagnostics) -> SceneModel | None:
-    """The actor in its own skin; None where there is none that can be read, which is reported."""
+    """Return the actor's model with its own skin; None after a warning if no skin can be read."""
     if not actor.skin:
         return None
     skin = _read_file(actor, actor.skin, "skin", find_file, diagnostics)
     if skin is None or not skin.pieces:
         if skin is not None:
-            _report(actor, f"its skin {actor.skin} carries no mesh", diagnostics)
+            _report(actor, f"its skin {actor.skin} has no mesh", diagnostics)
         return None
     file = _find_file(actor, actor.skin, find_file)
     assert file is not None
@@ -122,7 +123,7 @@ def _model(actor: SceneActor, skin: Skin, file: Path, carrying: list[int], scrip
 def _clips(
     actor: SceneActor, skin: Skin, carrying: list[int], find_file: FindFile, diagnostics: Diagnostics
 ) -> dict[str, Clip]:
-    """The animations by name; the skin's own where none of them can be read."""
+    """Return the animations by name; the skin's own animation if none of them can be read."""
     found = {}
     for animation in actor.animations:
         moved = _read_file(actor, animation.uri, f"animation {animation.name!r}", find_file, diagnostics)
@@ -130,7 +131,7 @@ def _clips(
         if clip is not None:
             found[animation.name] = clip
         elif moved is not None:
-            _report(actor, f"animation {animation.name!r} moves another skeleton than that of its skin", diagnostics)
+            _report(actor, f"the skeleton of animation {animation.name!r} differs from that of its skin", diagnostics)
     if not found:
         own = _clip(skin, skin, carrying, Animation("", actor.skin, actor.skin_scale), actor.skin_scale)
         assert own is not None
@@ -139,7 +140,7 @@ def _clips(
 
 
 def _clip(skin: Skin, moved: Skin, carrying: list[int], animation: Animation, scale: float) -> Clip | None:
-    """An animation of one file on the skeleton of another; None where the two do not fit."""
+    """Return an animation of one file for the skeleton of another; None if the skeletons do not match."""
     place_of = _same_bones(skin, moved)
     if place_of is None:
         return None
@@ -161,7 +162,7 @@ def _clip(skin: Skin, moved: Skin, carrying: list[int], animation: Animation, sc
 
 
 def _same_bones(skin: Skin, moved: Skin) -> dict[int, int] | None:
-    """For each bone of a skin the one of the other file: by name, else by order where both have as many."""
+    """Map each bone of a skin to a bone of the other file: by name, else by order if both have the same number."""
     by_word = {word: i for i, bone in enumerate(moved.bones) for word in bone.words}
     named = {i: by_word[w] for i, bone in enumerate(skin.bones) for w in bone.words if w in by_word}
     if 2 * len(named) >= len(skin.bones):
@@ -172,7 +173,7 @@ def _same_bones(skin: Skin, moved: Skin) -> dict[int, int] | None:
 
 
 def _worlds(skin: Skin, frames: dict[int, Floats], count: int) -> list[Floats]:
-    """Transforms of all bones in the skeleton's frame, each of shape (count, 4, 4)."""
+    """Return the transforms of all bones in the skeleton's frame, each of shape (count, 4, 4)."""
     found: list[Floats] = []
     for i, bone in enumerate(skin.bones):
         own = np.broadcast_to(frames[i], (count, 4, 4))
@@ -181,18 +182,18 @@ def _worlds(skin: Skin, frames: dict[int, Floats], count: int) -> list[Floats]:
 
 
 def _size(matrices: Floats) -> float:
-    """How much a transform stretches."""
+    """Return the scale factor of a transform."""
     return float(np.cbrt(abs(np.linalg.det(matrices[0, :3, :3])))) or 1.0
 
 
 def _quaternions(matrices: Floats) -> Floats:
-    """Quaternions w, x, y, z of the turns nearest to matrices (f, 3, 3), in one hemisphere from frame to frame."""
+    """Return quaternions w, x, y, z of the rotations nearest to matrices (f, 3, 3), in the same hemisphere."""
     left, _, right = np.linalg.svd(matrices)
     turn = left @ right
     turn *= np.sign(np.linalg.det(turn))[:, None, None]
     found = np.empty((len(turn), 4))
     for k, m in enumerate(turn):
-        # Shepperd's method: from the largest of the four
+        # Shepperd's method: start with the largest of the four components
         trace = m[0, 0] + m[1, 1] + m[2, 2]
         size = np.array([trace, m[0, 0], m[1, 1], m[2, 2]])
         i = int(size.argmax())
@@ -219,22 +220,22 @@ def _find_file(actor: SceneActor, uri: str, find_file: FindFile) -> Path | None:
 def _read_file(actor: SceneActor, uri: str, what: str, find_file: FindFile, diagnostics: Diagnostics) -> Skin | None:
     file = _find_file(actor, uri, find_file)
     if file is None:
-        _report(actor, f"its {what} {uri} is not found", diagnostics)
+        _report(actor, f"cannot find its {what} {uri}", diagnostics)
         return None
     try:
         skin = read_skin(file)
     except MeshFileError as problem:
         _report(actor, f"its {what} {uri} {problem}", diagnostics)
         return None
-    told = {d.message for d in diagnostics}  # skin and animation are often one file
+    reported = {d.message for d in diagnostics}  # skin and animation are often the same file
     for note in skin.notes:
         message = f"actor {actor.name!r}: {uri} {note}"
-        if message not in told:
+        if message not in reported:
             diagnostics.warning("SK-ACTOR-001", message, actor.where)
     return skin
 
 
 def _report(actor: SceneActor, what: str, diagnostics: Diagnostics) -> None:
-    rest = "a person of our own stands in for it" if "skin" in what else "another plays in its place"
-    hint = "name the folder that holds it with --resource-path or SIMKIT_RESOURCE_PATH" if "not found" in what else ""
-    diagnostics.warning("SK-ACTOR-001", f"actor {actor.name!r}: {what}; {rest}", actor.where, hint)
+    consequence = "a built-in person is drawn instead" if "skin" in what else "another animation plays instead"
+    hint = "add its folder with --resource-path or SIMKIT_RESOURCE_PATH" if "cannot find" in what else ""
+    diagnostics.warning("SK-ACTOR-001", f"actor {actor.name!r}: {what}; {consequence}", actor.where, hint)

@@ -1,4 +1,4 @@
-"""Poses of an actor's links over one cycle of its walk, while a plugin leads it."""
+"""Poses of an actor's links over one cycle of its walk, for an actor moved by a plugin."""
 
 from __future__ import annotations
 
@@ -14,36 +14,36 @@ from simkit.plugins.actors.script import Floats, Stride
 from simkit.plugins.actors.skin import SkinRig
 
 _ROWS: Final = 256
-"""Of the table of a cycle; straight lines in between, within a millimetre."""
+"""Rows in the table of a cycle; linear interpolation between rows is exact to a millimetre."""
 
 
 class Gait:
-    """A cycle of the walk of an actor; it never changes.
+    """Cycle of an actor's walk; immutable.
 
     Args:
-        cast: who walks.
-        animation: the one that plays, of a skin that has several.
+        cast: walking actor.
+        animation: name of the animation that plays, for a skin with several.
         speed: [m/s]
-        seconds: by which a skin's animation goes on for each metre.
+        seconds: duration of a skin's animation per metre [s/m].
     """
 
     def __init__(self, cast: AnimatedActor, animation: str, speed: float, seconds: float) -> None:
         self._cycle = _cycle(cast, animation, seconds)
         self._going = _table(cast, animation, self._cycle, speed, seconds)
-        # who has a skin stands in the middle of a step, as in gz; a person of our own puts the feet together
+        # an actor with a skin stops in the middle of a step, as in gz; a built-in person puts the feet together
         self._standing = None if isinstance(cast.rig, SkinRig) else _table(cast, animation, 0.0, 0.0, seconds)[0]
 
     def __deepcopy__(self, memo: dict[int, object]) -> Gait:
         return self
 
     def poses(self, place: tuple[float, float, float], yaw: float, distance: float, goes: bool) -> Floats:
-        """Where its links are in the world: the origin, then the parts; position and quaternion, shape (n, 7).
+        """Return the world poses of the links: the origin, then the parts; position and quaternion, shape (n, 7).
 
         Args:
-            place: of its origin [m].
-            yaw: that it looks at [rad].
-            distance: the way behind it [m].
-            goes: whether it walks now, or stands.
+            place: position of the origin [m].
+            yaw: heading [rad].
+            distance: distance walked [m].
+            goes: whether the actor walks; otherwise it stands.
         """
         if self._standing is not None and not goes:
             own: Floats = self._standing
@@ -62,7 +62,7 @@ class Gait:
 
 
 def _cycle(cast: AnimatedActor, animation: str, seconds: float) -> float:
-    """Metres after which the parts lie as before; 0 where they never move."""
+    """Return the distance after which the poses of the links repeat [m]; 0 if the links do not move."""
     rig = cast.rig
     if isinstance(rig, WalkingPerson):
         return person.STRIDE * rig.scale

@@ -1,4 +1,4 @@
-"""What every world brings: its clock, its services, its statistics; and the sun by date and place.
+"""World plugins of every simulation: clock, services and statistics; also the sun by date and place.
 
-Requests of ROS and gz enter, answers and the world's state leave. No model's own plugin lies here.
+Requests of ROS and gz come in, responses and the state of the world go out. This package has no plugins of models.
 """

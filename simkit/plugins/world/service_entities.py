@@ -1,4 +1,4 @@
-"""What the services of a world have in common: entities by their messages, poses, answers that say what is wrong."""
+"""Helpers of the world's services: find entities named in messages, convert poses, format refusals."""
 
 from __future__ import annotations
 
@@ -18,25 +18,25 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 KINDS: Final = ("none", "light", "model", "link", "visual", "collision", "sensor", "joint")
-"""Kinds of entities at their numbers in `ros_gz_interfaces/msg/Entity`."""
+"""Kinds of entities, indexed by their number in `ros_gz_interfaces/msg/Entity`."""
 
 _WORLD: Final = ("", "world", "map", "/map")
 
 
 class RequestRefused(Exception):
-    """What was asked for cannot be done; the text says why."""
+    """A service cannot do what a request demands; the text is the reason."""
 
 
 def answer_handler(
     sim: Simulation, name: str, does: Callable[[Any], dict[str, object] | str | None], says_why: bool = True
 ) -> Callable[[object], dict[str, object]]:
-    """A handler that answers `success` and says why not, where something cannot be done.
+    """Return a service handler that answers `success`, or the reason for a failure.
 
     Args:
-        sim: the simulation.
-        name: of the service, for the log.
-        does: does it; gives the fields of the response, or a status message, or None.
-        says_why: whether the response has a `status_message`; without one it is logged, as Gazebo does.
+        sim: simulation.
+        name: name of the service, for the log.
+        does: function from the request to the fields of the response, a status message, or None.
+        says_why: whether the response has a `status_message`. Without this field, the reason is logged, as in Gazebo.
     """
 
     def handle(request: object) -> dict[str, object]:
@@ -60,7 +60,7 @@ def answer_handler(
 
 
 def command_handler(sim: Simulation, name: str, does: Callable[[Any], str | None]) -> Callable[[object], None]:
-    """The same for what has no answer, a command by topic or an empty response: what cannot be done is logged."""
+    """Return a handler for a command without a response, such as a topic; a failure is logged."""
     answer = answer_handler(sim, name, does, says_why=False)
 
     def handle(message: object) -> None:
@@ -70,10 +70,10 @@ def command_handler(sim: Simulation, name: str, does: Callable[[Any], str | None
 
 
 def spawn_entities(make: Callable[..., T], *values: object) -> T:
-    """What `sim.spawn`, `sim.contents.spawn_all` or `sim.contents.clone` adds.
+    """Call `sim.spawn`, `sim.contents.spawn_all` or `sim.contents.clone` and return its result.
 
     Raises:
-        Refused: a plugin of the model raised when it was loaded; the world is as before.
+        RequestRefused: a plugin of the model raised in its `load`; the world is unchanged.
     """
     try:
         return make(*values)
@@ -85,7 +85,7 @@ def spawn_entities(make: Callable[..., T], *values: object) -> T:
 
 
 def scoped_names(sim: Simulation, kind: str) -> Iterable[str]:
-    """Scoped names of all entities of a kind (one of `KINDS`), in document order."""
+    """Return the scoped names of all entities of a kind (one of `KINDS`), in document order."""
     if kind == "visual":
         return sim.contents.handles.visuals()
     if kind == "collision":
@@ -95,18 +95,18 @@ def scoped_names(sim: Simulation, kind: str) -> Iterable[str]:
 
 
 def entity_id(kind: str, scoped: str) -> int:
-    """The number by which an entity goes in messages; the same in every run."""
+    """Return the id of an entity in messages; the id is the same in every run."""
     return int.from_bytes(hashlib.blake2b(f"{kind} {scoped}".encode(), digest_size=8).digest(), "big") >> 1
 
 
 def find_entity(sim: Simulation, name: str, kinds: Sequence[str], what: str = "") -> tuple[str, str]:
-    """Kind and scoped name of the entity that a name means.
+    """Return kind and scoped name of the entity that a name refers to.
 
-    It is looked for as a scoped name, with or without the world's before it, then as a plain name, the first in
-    document order, in each kind in turn.
+    The search tries scoped names first, with or without the world's name in front. It then tries plain names, the first
+    in document order. Each step searches the kinds in the given order.
 
     Raises:
-        Refused: there is none; names the closest.
+        RequestRefused: no entity has the name; the text suggests the closest name.
     """
     own = name.removeprefix(f"{sim.world.name}::")
     for kind in kinds:
@@ -124,32 +124,33 @@ def find_entity(sim: Simulation, name: str, kinds: Sequence[str], what: str = ""
 
 
 def entity_of(sim: Simulation, message: msgs.Entity, kinds: Sequence[str]) -> tuple[str, str]:
-    """Kind and scoped name of what an `Entity` message means, by its name, or else by its id.
+    """Return kind and scoped name of the entity in an `Entity` message, by its name, or else by its id.
 
     Raises:
-        Refused: there is none, or it is of a kind that the service is not for.
+        RequestRefused: the entity does not exist, or the service does not support its kind.
     """
     number = int(message.type)
     kind = KINDS[number] if 0 <= number < len(KINDS) else "none"
     if kind != "none" and kind not in kinds:
         raise RequestRefused(f"found an entity of type {kind}, allowed is {' or '.join(kinds)}")
-    wanted = (kind,) if kind != "none" else tuple(kinds)
+    allowed_kinds = (kind,) if kind != "none" else tuple(kinds)
     if message.name:
-        return find_entity(sim, message.name, wanted)
+        return find_entity(sim, message.name, allowed_kinds)
     if not message.id:
         raise RequestRefused("the entity has neither a name nor an id")
-    for one in wanted:
-        for scoped in scoped_names(sim, one):
-            if entity_id(one, scoped) == int(message.id):
-                return one, scoped
-    raise RequestRefused(f"there is no {' or '.join(wanted)} with the id {int(message.id)}; scene/info lists them")
+    for candidate in allowed_kinds:
+        for scoped in scoped_names(sim, candidate):
+            if entity_id(candidate, scoped) == int(message.id):
+                return candidate, scoped
+    described = " or ".join(allowed_kinds)
+    raise RequestRefused(f"there is no {described} with the id {int(message.id)}; scene/info lists the ids")
 
 
 def frame_of(sim: Simulation, name: str) -> Pose:
-    """The pose of a reference frame in the world: of the world itself, or of an entity.
+    """Return the pose of a reference frame in the world: of the world itself, or of an entity.
 
     Raises:
-        Refused: there is no such entity; names the closest.
+        RequestRefused: the entity does not exist; the text suggests the closest name.
     """
     if name in _WORLD or name == sim.world.name:
         return IDENTITY
@@ -158,7 +159,7 @@ def frame_of(sim: Simulation, name: str) -> Pose:
 
 
 def handle_of(sim: Simulation, kind: str, scoped: str) -> Any:
-    """The handle of an entity that has one."""
+    """Return the handle of an entity."""
     return sim.visual(scoped) if kind == "visual" else sim.contents.handles.find(kind, scoped)
 
 
@@ -166,10 +167,10 @@ def handle_of(sim: Simulation, kind: str, scoped: str) -> Any:
 
 
 def require_finite(value: float, what: str, minimum: float | None = None) -> float:
-    """A number that can be used.
+    """Return the value as a finite number.
 
     Raises:
-        Refused: it is none.
+        RequestRefused: the value is NaN, infinite or below `minimum`.
     """
     number = float(value)
     if not math.isfinite(number) or (minimum is not None and number < minimum):
@@ -179,19 +180,19 @@ def require_finite(value: float, what: str, minimum: float | None = None) -> flo
 
 
 def vector_of(message: msgs.Vector3 | msgs.Point, what: str) -> tuple[float, float, float]:
-    """The numbers of a Vector3 or a Point message; raises Refused."""
+    """Return the numbers of a Vector3 or a Point message; raises `RequestRefused`."""
     x, y, z = (require_finite(getattr(message, axis), f"{what}.{axis}") for axis in "xyz")
     return x, y, z
 
 
 def pose_of(message: msgs.Pose, what: str = "pose") -> Pose:
-    """The pose of a `Pose` message; a rotation of only zeros is none, any other is brought to unit length.
+    """Return the pose of a `Pose` message; a rotation of zeros is the identity, any other is normalised.
 
     Raises:
-        Refused: it has numbers that are none.
+        RequestRefused: a number is NaN or infinite.
     """
     q = [require_finite(getattr(message.orientation, axis), f"{what}.orientation.{axis}") for axis in "wxyz"]
-    most = max(map(abs, q)) or 1.0  # divided by that first: the squares of numbers that are huge or tiny are none
+    most = max(map(abs, q)) or 1.0  # scaled first: squares of huge or tiny numbers overflow or vanish
     q = [part / most for part in q]
     size = math.hypot(*q)
     quaternion = [part / size for part in q] if size > 0.0 else [1.0, 0.0, 0.0, 0.0]
@@ -199,19 +200,19 @@ def pose_of(message: msgs.Pose, what: str = "pose") -> Pose:
 
 
 def pose_fields(pose: Pose) -> dict[str, object]:
-    """The fields of a `Pose` message."""
+    """Return the fields of a `Pose` message."""
     x, y, z = pose.position.tolist()
     qw, qx, qy, qz = pose.quaternion.tolist()
     return {"position": {"x": x, "y": y, "z": z}, "orientation": {"x": qx, "y": qy, "z": qz, "w": qw}}
 
 
 def vector_fields(vector: Sequence[float] | Vector) -> dict[str, float]:
-    """The fields of a Vector3 or a Point message."""
+    """Return the fields of a Vector3 or a Point message."""
     x, y, z = (float(part) for part in vector)
     return {"x": x, "y": y, "z": z}
 
 
 def colour_of(message: msgs.ColorRGBA, what: str) -> tuple[float, float, float, float] | None:
-    """A colour RGBA from 0 to 1; None where all four are zero, which says nothing. Raises Refused."""
+    """Return a colour RGBA from 0 to 1; None if all four are zero, which means "unchanged". Raises `RequestRefused`."""
     r, g, b, a = (require_finite(getattr(message, part), f"{what}.{part}", 0.0) for part in "rgba")
     return None if r == g == b == a == 0.0 else (r, g, b, a)

@@ -1,4 +1,4 @@
-"""The sun by date, time and place: a world plugin that moves a directional light."""
+"""World plugin that moves a directional light like the sun, by date, time and place."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ if TYPE_CHECKING:
 
 _DISTANCE = 149_597_870_700.0  # [m], one astronomical unit
 _MOST_KELVIN = 1000.0
-_FASTEST = 1e6  # times the true course of the sun: a year in half a minute
+_FASTEST = 1e6  # seconds of the sun's time per simulated second: a year in half a minute
 _LOWEST, _HIGHEST = -500.0, 11_000.0  # [m]
 _INSTALL = "pip install 'simkit-robotics[sun]'"
-_DATE = "a date and time such as 2024-06-21T10:30:00Z (UTC where no offset is given)"
+_DATE = "a date and time such as 2024-06-21T10:30:00Z (UTC without an offset)"
 
 
 class SunOptions(Options):
@@ -46,15 +46,15 @@ class SunOptions(Options):
 
 
 class Sun(WorldPlugin):
-    """Moves a directional light as the sun moves: its pose, its direction, whether it shines, and its irradiance.
+    """Moves a directional light like the sun: its pose, direction, on/off state and irradiance.
 
-    `<start>` (required): the date and time at t = 0, ISO 8601, UTC where no offset is given; never the machine's clock.
-    `<light_name>`: default the world's first directional light. `<time_scale>`: seconds of the sun's time in one of the
-    simulation, default 1. The place is the world's `<spherical_coordinates>`; `<latitude_deg>`, `<longitude_deg>`,
-    `<elevation>` [m] and `<heading_deg>` here come before it. `<irradiance>`: `clear_sky` (default), or a number
+    `<start>` (required): date and time at t = 0, ISO 8601, UTC without an offset; never the machine's clock.
+    `<light_name>`: default the world's first directional light. `<time_scale>`: seconds of the sun's time per simulated
+    second, default 1. The location is the world's `<spherical_coordinates>`; `<latitude_deg>`, `<longitude_deg>`,
+    `<elevation>` [m] and `<heading_deg>` of the plugin override it. `<irradiance>`: `clear_sky` (default), or a number
     [W/m²]. `<pressure>` [Pa] and `<temperature>` [K] of the air, for refraction and for the clear sky; defaults are the
-    standard atmosphere's pressure at the elevation and 285.15 K. `<update_rate>` [Hz], default 10: how often the drawn
-    light moves; whatever measures the light has the sun of its own time, exactly.
+    standard atmosphere's pressure at the elevation and 285.15 K. `<update_rate>` [Hz], default 10: rate at which the
+    drawn light moves. Sensors that measure the light use the sun's exact position at their own time.
     """
 
     options = OptionsOf(SunOptions)
@@ -86,26 +86,26 @@ class Sun(WorldPlugin):
             self._light.draw()
 
     def state(self, time_ns: int) -> LightState:
-        """How the light stands and shines at a simulated time [ns]."""
+        """Return pose, on/off state and irradiance of the light at a simulated time [ns]."""
         from simkit.runtime.handles.light import LightState
 
         if self._known is None or self._known[0] != time_ns:
             assert self._path is not None and self._light is not None
-            place = self._path.at(self._start + self._scale * time_ns * 1e-9)
-            shines = place.elevation > 0.0
+            sun = self._path.at(self._start + self._scale * time_ns * 1e-9)
+            shines = sun.elevation > 0.0
             irradiance = self._irradiance
             if irradiance is None:
-                irradiance = clear_sky(place.elevation, self._site.pressure)
-            x, y, z = place.direction.tolist()
+                irradiance = clear_sky(sun.elevation, self._site.pressure)
+            x, y, z = sun.direction.tolist()
             turn = _shortest_rotation(self._light.scene.direction, (-x, -y, -z))
-            pose = Pose(_DISTANCE * place.direction, turn)
+            pose = Pose(_DISTANCE * sun.direction, turn)
             on = shines and self._outshone.on
             self._known = time_ns, LightState(pose, on, irradiance if shines else 0.0)
         return self._known[1]
 
 
 def _start(options: SunOptions) -> float:
-    """`<start>` in seconds since 1970-01-01 UTC."""
+    """Return `<start>` in seconds since 1970-01-01 UTC."""
     text, params = options.start, options.params
     if not text:
         params.error("SK-PARAM-001", f"<{params.name}> needs <start>: {_DATE}")
@@ -119,14 +119,14 @@ def _start(options: SunOptions) -> float:
 
 
 def _site(options: SunOptions, world: SphericalCoordinates | None) -> Site:
-    """The plugin's own place, or the world's."""
+    """Return the plugin's own location, or the world's."""
     params = options.params
     own = params.has("latitude_deg"), params.has("longitude_deg")
     if world is None and not all(own):
-        hint = "or give the world <spherical_coordinates>"
+        hint = "or add <spherical_coordinates> to the world"
         params.error("SK-PARAM-001", f"<{params.name}> needs <latitude_deg> and <longitude_deg> [degrees]", hint)
     elif world is not None and world.surface != "EARTH_WGS84":
-        message = f"the sun is that of the Earth, whatever <surface_model> says: {world.surface}"
+        message = f"the sun of the Earth is used; <surface_model> {world.surface} is ignored"
         params.diagnostics.warning("SK-SENSOR-085", message, world.where)
 
     def angle(name: str, default: float, most: float) -> float:
@@ -135,7 +135,7 @@ def _site(options: SunOptions, world: SphericalCoordinates | None) -> Site:
     elevation = params.number("elevation", world.elevation if world else 0.0, minimum=_LOWEST, maximum=_HIGHEST)
     if not params.has("elevation") and not _LOWEST <= elevation <= _HIGHEST:
         message = f"the world's <elevation> is {elevation:g} m, allowed for a sun is {_LOWEST:g} to {_HIGHEST:g} m"
-        params.error("SK-PARAM-002", message, "or give the plugin an <elevation> of its own")
+        params.error("SK-PARAM-002", message, "or add <elevation> to the plugin")
         elevation = 0.0
     return Site(
         latitude=angle("latitude_deg", world.latitude if world else 0.0, 90),
@@ -148,7 +148,7 @@ def _site(options: SunOptions, world: SphericalCoordinates | None) -> Site:
 
 
 def _irradiance(options: SunOptions) -> float | None:
-    """`<irradiance>` [W/m²], or None for a clear sky's."""
+    """Return `<irradiance>` [W/m²], or None for that of a clear sky."""
     text = options.irradiance
     if text == "clear_sky":
         return None
@@ -165,28 +165,28 @@ def _irradiance(options: SunOptions) -> float | None:
 
 
 def _find_sun(sim: Simulation, options: SunOptions) -> Light | None:
-    """The light to move, or None after an error."""
+    """Return the light to move, or None after an error."""
     name, params = options.light_name, options.params
     suns = [
         light for light in sim.contents.lights.values() if light.scene.type == "directional" and not light.scene.link
     ]
     if not name:
         if not suns:
-            params.error("SK-PLUGIN-003", "the world has no directional light to be the sun", "add model://sun")
+            params.error("SK-PLUGIN-003", "the world has no directional light for the sun", "add model://sun")
         return suns[0] if suns else None
     light = find_light(sim, name, params)
     if light is None or light in suns:
         return light
     what = f"on the link {light.scene.link!r}" if light.scene.link else f"a {light.scene.type} light"
-    params.error("SK-PLUGIN-003", f"light {name!r} is {what}; the sun is a directional light of the world")
+    params.error("SK-PLUGIN-003", f"light {name!r} is {what}; the sun needs a directional light of the world")
     return None
 
 
 def _shortest_rotation(start: Vec3, end: Vec3) -> tuple[float, float, float, float]:
-    """The shortest turn (w, x, y, z), of any length, of one unit vector to another."""
+    """Return the shortest rotation (w, x, y, z), of any length, from one unit vector to another."""
     (ax, ay, az), (bx, by, bz) = start, end
     w = 1.0 + ax * bx + ay * by + az * bz
     if w < 1e-12:
-        # half a turn, about any axis at right angles
+        # a half turn about any perpendicular axis
         return (0.0, 0.0, az, -ay) if abs(ax) < 0.9 else (0.0, -az, 0.0, ax)
     return (w, ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx)

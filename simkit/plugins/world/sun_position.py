@@ -1,4 +1,4 @@
-"""Where the sun stands over a place on Earth, by NREL's Solar Position Algorithm, and what light it gives."""
+"""Position of the sun over a place on Earth, by NREL's Solar Position Algorithm, and its light under a clear sky."""
 
 from __future__ import annotations
 
@@ -16,24 +16,24 @@ import numpy as np
 
 from simkit.pose import Vector
 
-_STEP: Final = 60.0  # [s] between the times at which the algorithm is asked
+_STEP: Final = 60.0  # [s] between the times at which the algorithm runs
 _BLOCK: Final = 64
 _TERRESTRIAL_LAG: Final = 67.0  # [s], terrestrial time minus universal time; 10 s more turn the sun by 1e-7 rad
-_AT_SUNRISE: Final = 0.5667  # [degrees] of refraction, where the sun sets
+_AT_SUNRISE: Final = 0.5667  # [degrees], refraction at sunrise and sunset
 _SEA_LEVEL: Final = 101325.0  # [Pa]
 _BEYOND_AIR: Final = 1353.0  # [W/m²]
 
 
 @dataclass(frozen=True, slots=True)
 class Site:
-    """A place on Earth.
+    """Location on Earth.
 
     Attributes:
         latitude, longitude: [rad], north and east positive.
-        elevation: [m].
-        heading: from east to the world's x axis, counter-clockwise [rad].
-        pressure: of the air there [Pa].
-        temperature: of the air there [K].
+        elevation: height above the ellipsoid [m].
+        heading: angle from east to the world's x axis, counter-clockwise [rad].
+        pressure: local air pressure [Pa].
+        temperature: local air temperature [K].
     """
 
     latitude: float
@@ -46,12 +46,12 @@ class Site:
 
 @dataclass(frozen=True, slots=True)
 class SunDirection:
-    """Where the sun is seen.
+    """Apparent direction of the sun.
 
     Attributes:
-        direction: unit vector to it, world axes, shape (3,).
-        elevation: of its middle above the horizon, lifted by the air's refraction [rad].
-        azimuth: from north over east [rad], from 0 to 2π.
+        direction: unit vector towards the sun, world axes, shape (3,).
+        elevation: angle of the sun's centre above the horizon, including the air's refraction [rad].
+        azimuth: angle from north towards east [rad], from 0 to 2π.
     """
 
     direction: Vector
@@ -60,11 +60,11 @@ class SunDirection:
 
 
 class SunPath:
-    """The sun over a site, as a function of time and of nothing else.
+    """Direction of the sun over a site, as a function of time alone.
 
     The algorithm (I. Reda, A. Andreas, Solar Position Algorithm for Solar Radiation Applications, NREL/TP-560-34302)
-    takes 2 ms for one time or for a hundred, so it is asked for blocks of times 60 s apart; between them a cubic
-    through the four nearest directions errs by less than 1e-8 rad.
+    takes 2 ms for one time or for a hundred. It therefore computes blocks of times 60 s apart. A cubic through the four
+    nearest directions interpolates between them with an error below 1e-8 rad.
 
     Raises:
         ImportError: pvlib is not installed.
@@ -77,24 +77,24 @@ class SunPath:
         self._directions: Vector = np.empty((0, 3))
 
     def at(self, time: float) -> SunDirection:
-        """The sun at a time [s since 1970-01-01 UTC]."""
+        """Return the sun's direction at a time [s since 1970-01-01 UTC]."""
         east, north, up = self._geometric(time).tolist()
         azimuth, elevation = math.atan2(east, north), math.atan2(up, math.hypot(east, north))
         elevation += refraction(elevation, self.site.pressure, self.site.temperature)
         level, heading = math.cos(elevation), self.site.heading
-        # in the world, whose x axis stands `heading` to the left of east
+        # in the world frame, whose x axis points `heading` to the left of east
         along = math.pi / 2 - azimuth - heading
         direction = np.array((level * math.cos(along), level * math.sin(along), math.sin(elevation)))
         return SunDirection(direction, elevation, azimuth % (2 * math.pi))
 
     def _geometric(self, time: float) -> Vector:
-        """East, north, up of the sun as if there were no air, shape (3,)."""
+        """Return the sun's direction (east, north, up) without refraction, shape (3,)."""
         step = math.floor(time / _STEP)
         block, row = divmod(step, _BLOCK)
         if block != self._block:
-            # one more before, and two after, for the cubic
+            # the cubic needs one more row before the block and two after it
             times = _STEP * np.arange(block * _BLOCK - 1, (block + 1) * _BLOCK + 2, dtype=np.float64)
-            self._directions, self._block = self._asked(times), block
+            self._directions, self._block = self._computed_directions(times), block
         t = time / _STEP - step
         weights = (
             -t * (t - 1) * (t - 2) / 6,
@@ -105,7 +105,7 @@ class SunPath:
         found: Vector = np.array(weights) @ self._directions[row : row + 4]
         return found / math.sqrt(found @ found)
 
-    def _asked(self, times: Vector) -> Vector:
+    def _computed_directions(self, times: Vector) -> Vector:
         site = self.site
         place = math.degrees(site.latitude), math.degrees(site.longitude), site.elevation
         air = site.pressure / 100.0, site.temperature - 273.15
@@ -119,9 +119,14 @@ class SunPath:
 
 
 def refraction(elevation: float, pressure: float, temperature: float) -> float:
-    """How much the air lifts the sun [rad], given its elevation without air [rad] and the air's state [Pa, K].
+    """Return the refraction of sunlight [rad] at a geometric elevation [rad].
 
-    Saemundsson's formula as NREL's algorithm has it; 0 where the whole sun is below the horizon.
+    Saemundsson's formula as in NREL's algorithm; 0 if the whole sun is below the horizon.
+
+    Args:
+        elevation: elevation of the sun without air [rad].
+        pressure: air pressure [Pa].
+        temperature: air temperature [K].
     """
     degrees = math.degrees(elevation)
     if degrees < -(0.26667 + _AT_SUNRISE):
@@ -131,24 +136,26 @@ def refraction(elevation: float, pressure: float, temperature: float) -> float:
 
 
 def air_mass(elevation: float) -> float:
-    """Path of sunlight through the air, in units of the vertical one at sea level (F. Kasten, A. T. Young, 1989).
+    """Return the path of sunlight through the air, in units of the vertical path at sea level.
+
+    The formula is that of F. Kasten and A. T. Young (1989).
 
     Args:
-        elevation: apparent, of the sun [rad], not below the horizon.
+        elevation: apparent elevation of the sun [rad], not below the horizon.
     """
     degrees = math.degrees(max(0.0, elevation))
     return float(1.0 / (math.sin(math.radians(degrees)) + 0.50572 * (degrees + 6.07995) ** -1.6364))
 
 
 def clear_sky(elevation: float, pressure: float) -> float:
-    """Irradiance [W/m²] of a surface that faces the sun under a clear sky, without the sky's own light.
+    """Return the irradiance [W/m²] of a surface that faces the sun under a clear sky, without diffuse light.
 
-    A. B. Meinel, M. P. Meinel, Applied Solar Energy (1976): 1353 W/m² · 0.7^(AM^0.678), with the air mass by Kasten
-    and Young, times the pressure over that at sea level.
+    A. B. Meinel, M. P. Meinel, Applied Solar Energy (1976): 1353 W/m² · 0.7^(AM^0.678), with the air mass by Kasten and
+    Young, times the pressure over that at sea level.
 
     Args:
-        elevation: apparent, of the sun [rad]; below the horizon there is none.
-        pressure: of the air [Pa].
+        elevation: apparent elevation of the sun [rad]; the result is 0 below the horizon.
+        pressure: air pressure [Pa].
     """
     if elevation <= 0.0:
         return 0.0
@@ -157,9 +164,9 @@ def clear_sky(elevation: float, pressure: float) -> float:
 
 @cache
 def _algorithm() -> Callable[..., Any]:
-    """pvlib's `spa.solar_position`.
+    """Return the function `spa.solar_position` of pvlib.
 
-    Its file is loaded by itself: it needs NumPy alone, while the whole package takes more than a second to import.
+    Its file is loaded alone: it needs only NumPy, while the whole package takes more than a second to import.
     """
     package = importlib.util.find_spec("pvlib")
     if package is None or not package.submodule_search_locations:

@@ -46,10 +46,10 @@ _Does = Callable[..., dict[str, object] | str | None]
 
 
 class WorldServices(WorldPlugin):
-    """Offers `/world/<world>/control`, `create`, `remove`, `set_pose` and the rest; part of every world.
+    """Offers `/world/<world>/control`, `create`, `remove`, `set_pose` and the other services; part of every world.
 
-    What is asked for is done when the answer comes, so each but `control` is also there under `<name>/blocking`, as in
-    gz. `docs/services.md` says what each takes and does.
+    A response arrives after the request is done. Each service except `control` is therefore also available as
+    `<name>/blocking`, as in gz. `docs/services.md` describes the requests and effects of all services.
     """
 
     on_error = "stop"
@@ -78,7 +78,7 @@ class WorldServices(WorldPlugin):
             self.sim.communication.bus.listen(topic, (type_name,), command_handler(self.sim, topic, configure))
 
     def _services(self) -> dict[str, tuple[str, _Does]]:
-        """Type of each service, and what it does with a request."""
+        """Return type and handler of each service."""
         return {
             "control": ("ros_gz_interfaces/srv/ControlWorld", self._control),
             "create": ("ros_gz_interfaces/srv/SpawnEntity", lambda request: self._spawn(request.entity_factory)),
@@ -101,9 +101,9 @@ class WorldServices(WorldPlugin):
     # ------------------------------------------------------------------ running
 
     def _control(self, request: msgs.ControlWorld_Request) -> None:
-        asked, sim = request.world_control, self.sim
-        pausing, reset, seed = sim.control.pausing, asked.reset, int(asked.seed)
-        time_ns = msgs.stamp_ns(asked.run_to_sim_time)
+        control, sim = request.world_control, self.sim
+        pausing, reset, seed = sim.control.pausing, control.reset, int(control.seed)
+        time_ns = msgs.stamp_ns(control.run_to_sim_time)
         starts_over = bool(reset.all or reset.time_only)
         if time_ns and time_ns <= (0 if starts_over else sim.time_ns):
             raise RequestRefused(f"run_to_sim_time {time_ns / 1e9:g} s lies in the past, it is {sim.time:g} s")
@@ -113,17 +113,17 @@ class WorldServices(WorldPlugin):
             sim.control.reseed(seed)
         if reset.model_only and not starts_over:
             sim.control.reset_models()
-        count = int(asked.multi_step) or int(bool(asked.step))
+        count = int(control.multi_step) or int(bool(control.step))
         if time_ns:
             pausing.run_to(time_ns)
         elif count:
             pausing.step(count)
         else:
-            sim.paused = bool(asked.pause)
+            sim.paused = bool(control.pause)
         pausing.catch_up()
 
     def _set_physics(self, request: msgs.SetPhysicsProperties_Request) -> str:
-        # gz's own message says nothing of gravity: none is no wish for weightlessness here
+        # gz's own message has no gravity, so a zero vector here means "unchanged", not weightlessness
         gravity = request.gravity
         return set_physics(self.sim, request, keeps_gravity=not (gravity.x or gravity.y or gravity.z))
 
@@ -133,18 +133,18 @@ class WorldServices(WorldPlugin):
         with self.sim.contents.all_or_none():
             waiting: dict[str, tuple[str, Pose | None]] = {}
             for factory in request.entity_factories:
-                if factory.clone_name or factory.relative_to not in ("", "world"):  # may be of one that waits
+                if factory.clone_name or factory.relative_to not in ("", "world"):  # may refer to a model in `waiting`
                     self._spawn_waiting(waiting)
                     self._spawn(factory)
                 else:
-                    source, name, pose = self._wanted(factory, waiting)
+                    source, name, pose = self._spawn_arguments(factory, waiting)
                     if name is None:
                         name = self._free_name(self.sim.contents.name_in_file(source), False, waiting)
                     waiting[name] = source, pose
             self._spawn_waiting(waiting)
 
     def _spawn_waiting(self, waiting: dict[str, tuple[str, Pose | None]]) -> None:
-        """Spawns models by name, compiled once for all of them."""
+        """Spawn models by name with a single compile for all of them."""
         if waiting:
             spawn_entities(
                 self.sim.contents.spawn_all, [(source, name, pose) for name, (source, pose) in waiting.items()]
@@ -153,15 +153,17 @@ class WorldServices(WorldPlugin):
 
     def _spawn(self, factory: msgs.EntityFactory) -> None:
         if factory.clone_name:
-            pose = self._asked_pose(factory)
+            pose = self._requested_pose(factory)
             _, old = find_entity(self.sim, factory.clone_name, ("model",))
             spawn_entities(self.sim.contents.clone, old, self._free_name(factory.name or old, True), pose)
         else:
-            spawn_entities(self.sim.spawn, *self._wanted(factory))
+            spawn_entities(self.sim.spawn, *self._spawn_arguments(factory))
 
-    def _wanted(self, factory: msgs.EntityFactory, waiting: Container[str] = ()) -> tuple[str, str | None, Pose | None]:
+    def _spawn_arguments(
+        self, factory: msgs.EntityFactory, waiting: Container[str] = ()
+    ) -> tuple[str, str | None, Pose | None]:
         """The source, name and pose of a model to be spawned, as `sim.spawn` takes them."""
-        pose = self._asked_pose(factory)
+        pose = self._requested_pose(factory)
         source, name = factory.sdf or factory.sdf_filename, factory.name or None
         if factory.allow_renaming:
             name = self._free_name(name or self.sim.contents.name_in_file(source), True, waiting)
@@ -169,28 +171,28 @@ class WorldServices(WorldPlugin):
             self._free_name(name, False, waiting)
         return source, name, pose
 
-    def _asked_pose(self, factory: msgs.EntityFactory) -> Pose | None:
-        """Where a model is to be spawned; None for the file's own."""
-        ways = {"sdf": factory.sdf, "sdf_filename": factory.sdf_filename, "clone_name": factory.clone_name}
-        given = [way for way, value in ways.items() if value]
+    def _requested_pose(self, factory: msgs.EntityFactory) -> Pose | None:
+        """Return the requested pose of a model; None for the pose in its file."""
+        sources = {"sdf": factory.sdf, "sdf_filename": factory.sdf_filename, "clone_name": factory.clone_name}
+        given = [field for field, value in sources.items() if value]
         if len(given) != 1:
             raise RequestRefused(
                 f"found {' and '.join(given) or 'none'} of sdf, sdf_filename and clone_name, allowed is one"
             )
-        asked = pose_of(factory.pose)
-        # the message cannot leave its pose out: where there is nothing in it, the file's own is meant
-        if asked == IDENTITY and not factory.relative_to:
+        requested = pose_of(factory.pose)
+        # a ROS message always has a pose, so the identity without a frame means the pose in the file
+        if requested == IDENTITY and not factory.relative_to:
             return None
-        return frame_of(self.sim, factory.relative_to) @ asked
+        return frame_of(self.sim, factory.relative_to) @ requested
 
     def _free_name(self, name: str, may_rename: bool, waiting: Container[str] = ()) -> str:
-        """The name, or with a number behind it where it is taken, as gz does; raises Refused."""
+        """Return the name, or the name with a number appended as in gz if it is in use; raises `RequestRefused`."""
         models = self.sim.models
         if (name in models or name in waiting) and not may_rename:
-            raise RequestRefused(f"there is a model {name!r} already, and allow_renaming is false")
-        wanted, number = name, 0
+            raise RequestRefused(f"a model {name!r} already exists, and allow_renaming is false")
+        base, number = name, 0
         while name in models or name in waiting:
-            name, number = f"{wanted}_{number}", number + 1
+            name, number = f"{base}_{number}", number + 1
         return name
 
     def _remove(self, request: msgs.ros_gz_interfaces__srv__DeleteEntity_Request) -> None:
@@ -207,7 +209,7 @@ class WorldServices(WorldPlugin):
                 f"found {len(request.entities)} entities and {len(request.poses)} poses, allowed are as many"
             )
         poses = [pose_of(pose) for pose in request.poses]
-        for entity in request.entities:  # all of them or none
+        for entity in request.entities:  # check all entities before the first one moves
             entity_of(self.sim, entity, ("model", "light"))
         for entity, pose in zip(request.entities, poses, strict=True):
             self._place(entity, pose)
@@ -234,59 +236,59 @@ class WorldServices(WorldPlugin):
 
     # ------------------------------------------------------------------ looks
 
-    def _configure_light(self, asked: msgs.Light) -> None:
-        """What is zero in the message stays as it is: ROS cannot leave a field out."""
+    def _configure_light(self, request: msgs.Light) -> None:
+        """Change a light; zeros in the message mean "unchanged", because ROS cannot omit a field."""
         sim = self.sim
-        name = asked.name
-        if not name and asked.id:
-            raise RequestRefused("a light is told by its name, not by a number of 32 bits")
+        name = request.name
+        if not name and request.id:
+            raise RequestRefused("a light is identified by its name, not by a number of 32 bits")
         light = sim.light(find_entity(sim, name, ("light",))[1])
         scene = light.scene
-        kind = _LIGHTS[int(asked.type)] if 0 <= int(asked.type) < len(_LIGHTS) else ""
-        if int(asked.type) and kind != scene.type:
-            other = f"a {kind} one" if kind else f"one of type {int(asked.type)}"
+        kind = _LIGHTS[int(request.type)] if 0 <= int(request.type) < len(_LIGHTS) else ""
+        if int(request.type) and kind != scene.type:
+            other = f"a {kind} light" if kind else f"a light of type {int(request.type)}"
             raise RequestRefused(f"light {light.scoped!r} is a {scene.type} light, and cannot become {other}")
-        change: dict[str, Any] = {"cast_shadows": bool(asked.cast_shadows)}
+        change: dict[str, Any] = {"cast_shadows": bool(request.cast_shadows)}
         for part in ("diffuse", "specular"):
-            colour = colour_of(getattr(asked, part), part)
+            colour = colour_of(getattr(request, part), part)
             if colour is not None:
                 change[part] = colour
         fading = ("range", "attenuation_constant", "attenuation_linear", "attenuation_quadratic")
-        values = [require_finite(getattr(asked, field), field, 0.0) for field in fading]
+        values = [require_finite(getattr(request, field), field, 0.0) for field in fading]
         if any(values):
             change["attenuation"] = (values[0] or scene.attenuation[0], *values[1:])
-        spot = [require_finite(getattr(asked, f"spot_{field}"), f"spot_{field}", 0.0) for field in _SPOT]
+        spot = [require_finite(getattr(request, f"spot_{field}"), f"spot_{field}", 0.0) for field in _SPOT]
         if any(spot):
             change["spot"] = tuple(spot)
-        if asked.intensity:
-            change["intensity"] = require_finite(asked.intensity, "intensity", 0.0)
-        direction = vector_of(asked.direction, "direction")
+        if request.intensity:
+            change["intensity"] = require_finite(request.intensity, "intensity", 0.0)
+        direction = vector_of(request.direction, "direction")
         size = math.hypot(*direction)
         if size > 0.0:
             change["direction"] = tuple(part / size for part in direction)
-        pose = pose_of(asked.pose)
+        pose = pose_of(request.pose)
         light.change(replace(scene, **change))
         if pose != IDENTITY:
             light.set_pose(pose)
 
-    def _paint(self, asked: msgs.MaterialColor) -> str | None:
-        sim, entity = self.sim, asked.entity
+    def _paint(self, request: msgs.MaterialColor) -> str | None:
+        sim, entity = self.sim, request.entity
         kind, name = entity_of(sim, entity, ("visual", "link", "model"))
-        diffuse = colour_of(asked.diffuse, "diffuse")
+        diffuse = colour_of(request.diffuse, "diffuse")
         if diffuse is None:
-            raise RequestRefused("the diffuse colour is all zero, which says nothing; it is what is painted")
+            raise RequestRefused("the diffuse colour is all zero, which means unchanged; set it to the new colour")
         if kind == "visual":
             painted = [name]
-            if int(asked.entity_match) == 1:
+            if int(request.entity_match) == 1:
                 plain = name.rpartition("::")[2]
-                painted = [one for one in scoped_names(sim, "visual") if one.rpartition("::")[2] == plain]
+                painted = [visual for visual in scoped_names(sim, "visual") if visual.rpartition("::")[2] == plain]
         else:
-            painted = [one for one in scoped_names(sim, "visual") if one.startswith(f"{name}::")]
-        for one in painted:
-            sim.visual(one).set_colour(*diffuse)
-        others = [part for part in ("specular", "emissive") if any(getattr(getattr(asked, part), c) for c in "rgb")]
-        if others or asked.shininess:
-            unused = " and ".join([*others, *(["shininess"] if asked.shininess else [])])
+            painted = [visual for visual in scoped_names(sim, "visual") if visual.startswith(f"{name}::")]
+        for visual in painted:
+            sim.visual(visual).set_colour(*diffuse)
+        others = [part for part in ("specular", "emissive") if any(getattr(getattr(request, part), c) for c in "rgb")]
+        if others or request.shininess:
+            unused = " and ".join([*others, *(["shininess"] if request.shininess else [])])
             return f"painted; {unused} stay as they are"
         return None
 
@@ -306,7 +308,7 @@ class WorldServices(WorldPlugin):
             "sky": around.sky,
         }
 
-    # ------------------------------------------------------------------ the place on Earth
+    # ------------------------------------------------------------------ location on Earth
 
     def _set_spherical_coordinates(self, request: msgs.SetSphericalCoordinates_Request) -> None:
         entity = request.entity
@@ -321,7 +323,7 @@ _SPOT: Final = ("inner_angle", "outer_angle", "falloff")
 
 
 def _entity_description(sim: Simulation, kind: str, scoped: str) -> dict[str, object]:
-    """A `SceneEntity`: what it is, what it is part of, where it is in the world."""
+    """Return a `SceneEntity`: the entity, its parent and its pose in the world."""
     outer = scoped.rpartition("::")[0]
     if kind == "collision":
         link = sim.link(outer)
@@ -341,7 +343,7 @@ def _entity_description(sim: Simulation, kind: str, scoped: str) -> dict[str, ob
 
 
 def _joint_pose(sim: Simulation, scene: SceneJoint) -> Pose:
-    """Where a joint's frame is now: it goes with its child link."""
+    """Return the current pose of a joint's frame, which moves with the child link."""
     if scene.child_link not in sim.contents.handles.tables["link"]:
         return scene.pose_world
     link = sim.link(scene.child_link)

@@ -1,4 +1,4 @@
-"""Read and change settings of a world for services: physics, and the place on Earth of the world or of an entity."""
+"""Settings of a world for services: physics, and the location on Earth of the world or of an entity."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from simkit.msgs import SetPhysicsProperties_Request, SetSphericalCoordinates_Request
     from simkit.runtime import Light, Model, Simulation
 
-_SAME: Final = 1e-9  # of two step sizes, relative
+_SAME: Final = 1e-9  # relative tolerance of step sizes
 _OF_ODE: Final = (
     "auto_disable_bodies",
     "sor_pgs_precon_iters",
@@ -31,18 +31,18 @@ _OF_ODE: Final = (
 
 
 def set_physics(sim: Simulation, request: SetPhysicsProperties_Request, *, keeps_gravity: bool = False) -> str:
-    """Changes gravity and the pace; a step of another length is refused, and then nothing is changed.
+    """Change gravity and the real-time pace; a different step length is refused without any change.
 
     Args:
-        sim: the simulation.
+        sim: simulation.
         request: a `gazebo_msgs/srv/SetPhysicsProperties_Request`.
-        keeps_gravity: leaves gravity as it is.
+        keeps_gravity: leaves gravity unchanged.
 
     Returns:
-        What of the request has no meaning here; empty where all has.
+        Message that lists the unsupported settings of the request; empty if all are supported.
 
     Raises:
-        Refused: the step is another than that of the world, or a number cannot be used.
+        RequestRefused: the step differs from the world's, or a number is NaN, infinite or out of range.
     """
     step, rate = (
         require_finite(request.time_step, "time_step", 0.0),
@@ -59,13 +59,13 @@ def set_physics(sim: Simulation, request: SetPhysicsProperties_Request, *, keeps
         sim.gravity = gravity
     sim.control.pausing.pace = rate * sim.timestep if rate > 0.0 else None
     own = _config_fields(sim)
-    asked = {name: getattr(request.ode_config, name) for name in own}
-    given = [name for name, value in asked.items() if value and value != own[name]]
-    return f"not used, for the engine is another: {', '.join(given)}" if given else ""
+    requested = {name: getattr(request.ode_config, name) for name in own}
+    changed = [name for name, value in requested.items() if value and value != own[name]]
+    return f"not supported by this physics engine: {', '.join(changed)}" if changed else ""
 
 
 def _config_fields(sim: Simulation) -> dict[str, float]:
-    """The fields of an `ODEPhysics` message: what has a counterpart here, the rest zero."""
+    """Return the fields of an `ODEPhysics` message; settings without a counterpart are zero."""
     return {
         **dict.fromkeys(_OF_ODE, 0),
         "auto_disable_bodies": bool(sim.engine.physics.sleep.enabled),
@@ -76,8 +76,8 @@ def _config_fields(sim: Simulation) -> dict[str, float]:
 
 
 def physics_fields(sim: Simulation) -> dict[str, object]:
-    """The fields of a `gazebo_msgs/srv/GetPhysicsProperties_Response`; of ODE's settings those with a counterpart."""
-    pace = sim.control.pausing.pace or 0.0  # none: as fast as it goes, which is a rate of 0 in Gazebo
+    """Return the fields of a `gazebo_msgs/srv/GetPhysicsProperties_Response`."""
+    pace = sim.control.pausing.pace or 0.0  # no pace: as fast as possible, which is a rate of 0 in Gazebo
     return {
         "time_step": sim.timestep,
         "pause": sim.paused,
@@ -93,7 +93,7 @@ _EARTH: Final = 6378137.0, 6356752.314245  # of WGS 84
 
 
 def set_world_location(sim: Simulation, request: SetSphericalCoordinates_Request) -> None:
-    """Lays the world's origin somewhere else; sensors of position and field go by it from now on. Raises Refused."""
+    """Move the world's origin; sensors of position and magnetic field use it from now on. Raises `RequestRefused`."""
     latitude, longitude, elevation, heading = _numbers(request)
     surface = int(request.surface_model)
     if surface not in (0, 1):
@@ -115,10 +115,13 @@ def set_world_location(sim: Simulation, request: SetSphericalCoordinates_Request
 
 
 def set_entity_location(sim: Simulation, handle: Model | Light, request: SetSphericalCoordinates_Request) -> None:
-    """Puts a model or a light at a place on the planet, upright, turned by the heading about z. Raises Refused."""
+    """Move a model or a light to a geographic location, upright and rotated by the heading about z.
 
+    Raises:
+        RequestRefused: the world has no spherical coordinates, or a number is invalid.
+    """
     if sim.control.origin.place is None:
-        raise RequestRefused("the world has no spherical coordinates, by which an entity could be placed")
+        raise RequestRefused("the world has no <spherical_coordinates>, which are needed to place an entity")
     latitude, longitude, elevation, heading = _numbers(request)
     planet = WorldOnPlanet(sim.control.origin.place)
     position = planet.axes.T @ (planet.ellipsoid.cartesian(latitude, longitude, elevation) - planet.origin)
@@ -126,7 +129,7 @@ def set_entity_location(sim: Simulation, handle: Model | Light, request: SetSphe
 
 
 def _numbers(request: SetSphericalCoordinates_Request) -> tuple[float, float, float, float]:
-    """Latitude, longitude [rad], elevation [m], heading [rad]."""
+    """Return latitude, longitude [rad], elevation [m] and heading [rad]."""
     latitude = require_finite(request.latitude_deg, "latitude_deg")
     longitude = require_finite(request.longitude_deg, "longitude_deg")
     if not -90.0 <= latitude <= 90.0:

@@ -1,4 +1,4 @@
-"""Publish `/clock`, and what gz tells of a world as a whole: statistics, clock, and all poses."""
+"""World plugins that publish `/clock` and gz's data about a whole world: statistics, clock, and all poses."""
 
 from __future__ import annotations
 
@@ -22,21 +22,21 @@ if TYPE_CHECKING:
 CLOCK: Final = "rosgraph_msgs/msg/Clock"
 STATISTICS: Final = "ros_gz_interfaces/msg/WorldStatistics"
 STATISTICS_RATE: Final = 5.0
-"""[Hz], of simulated time; gz's server has it of real time."""
+"""Rate of the statistics [Hz of simulated time]; gz's server uses real time."""
 CLOCK_RATE: Final = 100.0
 POSE_RATE: Final = 60.0
-"""[Hz], of simulated time, as gz's `dynamic_pose_hertz`."""
-_WINDOW: Final = 20  # statistics over which the real-time factor is taken, as gz's server takes it
+"""Rate of the poses [Hz of simulated time], as gz's `dynamic_pose_hertz`."""
+_WINDOW: Final = 20  # number of statistics in the average real-time factor, as in gz's server
 
 
 class WallClock:
-    """How long a run took, as the clock on the wall has it; nothing in a world may depend on it.
+    """Wall-clock duration of a run; nothing in a world may depend on it.
 
-    It is no part of a world's state: snapshots leave it alone, and a run that is restored does not give back the time.
+    The duration is not part of a world's state: snapshots exclude it, and restoring a run does not reset it.
 
     Attributes:
-        real: time spent [s] while the world was not paused.
-        paused: time spent [s] while it was.
+        real: wall-clock time [s] while the world was running.
+        paused: wall-clock time [s] while the world was paused.
     """
 
     def __init__(self, sim: Simulation) -> None:
@@ -46,7 +46,7 @@ class WallClock:
         self._recent: deque[tuple[float, float]] = deque(maxlen=_WINDOW)
 
     def look(self) -> None:
-        """Counts the time since the last look."""
+        """Add the time since the last call to `real` or `paused`."""
         now = time.perf_counter()
         if self._was_paused:
             self.paused += now - self._last
@@ -55,10 +55,10 @@ class WallClock:
         self._last, self._was_paused = now, self._sim.paused
 
     def factor(self) -> float:
-        """Simulated time by real time over the last statistics; 0 before there are two."""
+        """Return simulated time over real time in the last statistics; 0 before the second statistics."""
         simulated, recent = self._sim.time, self._recent
         if recent and simulated < recent[-1][0]:
-            recent.clear()  # the run went back
+            recent.clear()  # the run was reset or restored
         recent.append((simulated, self.real))
         elapsed = recent[-1][1] - recent[0][1]
         return (recent[-1][0] - recent[0][0]) / elapsed if elapsed > 0.0 else 0.0
@@ -68,15 +68,15 @@ class WallClock:
 
 
 class WorldStats(WorldPlugin):
-    """Publishes statistics, the clock and all poses of a world; part of every world, and free while nobody listens.
+    """Publishes statistics, the clock and all poses of a world; part of every world, without cost if nobody subscribes.
 
-    `/stats` and `/world/<world>/stats` (`ros_gz_interfaces/msg/WorldStatistics`) at 5 Hz of simulated time, and at
-    once when the world is paused or goes on. `real_time`, `pause_time` and `real_time_factor` are the clock on the
-    wall's and differ from run to run; all else is the same in every run. `/world/<world>/clock` at 100 Hz.
+    `/stats` and `/world/<world>/stats` (`ros_gz_interfaces/msg/WorldStatistics`) at 5 Hz of simulated time, and at once
+    when the world is paused or resumed. `real_time`, `pause_time` and `real_time_factor` come from the wall clock and
+    differ between runs; all other fields are the same in every run. `/world/<world>/clock` at 100 Hz.
     `/world/<world>/pose/info` has every model, link, visual and light, `/world/<world>/dynamic_pose/info` the models
-    and links that are not static, at 60 Hz, each in the frame of what it is part of (`tf2_msgs/msg/TFMessage`).
-    Recorders leave these topics out unless they are named; all but the statistics are listed only while somebody reads
-    them.
+    and links that are not static. Both are published at 60 Hz, each pose in the frame of the parent
+    (`tf2_msgs/msg/TFMessage`). Recorders skip these topics unless a user names them. All topics except the statistics
+    are listed only while they have subscribers.
     """
 
     def load(self, parent: Simulation, params: Params) -> None:
@@ -127,7 +127,7 @@ class WorldStats(WorldPlugin):
         return partial(transforms_message, self.sim.time_ns, self._take("moving poses", with_all=False))
 
     def _take(self, name: str, *, with_all: bool) -> PoseSample:
-        """Where things are now: all models with their visuals, or those that may move without."""
+        """Return the current poses: all models with their visuals, or only models that may move, without visuals."""
         poses: EntityPoses = self.sim.engine.names.shared(name, lambda: EntityPoses(self.sim, self._parts(with_all)))
         return poses.take()
 

@@ -1,4 +1,4 @@
-"""Actors in a running world: they walk by the clock, are seen, and neither push nor are pushed."""
+"""Actors in a running world: they follow the clock, are visible, and exchange no forces."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def codes(sim: simkit.Simulation) -> list[str]:
     return [d.code for d in sim.diagnostics if d.code.startswith("SK-ACTOR")]
 
 
-def test_an_actor_is_where_its_script_says() -> None:
+def test_an_actor_has_the_poses_of_its_script() -> None:
     with simkit.load(world(ANNA)) as sim:
         assert not codes(sim)
         np.testing.assert_allclose(sim.model("anna").pose.position, (-2, 0, 0), atol=1e-12)
@@ -46,7 +46,7 @@ def test_an_actor_is_where_its_script_says() -> None:
         np.testing.assert_allclose(sim.model("anna").pose.position, (-2, 0, 0), atol=1e-9)  # and anew
 
 
-def test_one_foot_of_somebody_who_walks_is_on_the_ground_and_does_not_slide() -> None:
+def test_one_foot_of_a_walking_person_is_on_the_ground_and_does_not_slide() -> None:
     with simkit.load(world(ANNA)) as sim:
         scale = None
         lowest, rests = [], []
@@ -80,7 +80,7 @@ def test_an_actor_pushes_nothing_and_nothing_pushes_it() -> None:
 
 
 @pytest.mark.parametrize("kind", ["lidar", "gpu_lidar"])
-def test_lidars_see_who_walks_past(kind: str) -> None:
+def test_lidars_detect_a_walking_actor(kind: str) -> None:
     with simkit.load(world(ANNA, lidar(kind))) as sim:
         scan = sim.subscribe("/scan")
         sim.run(0.5)
@@ -90,7 +90,7 @@ def test_lidars_see_who_walks_past(kind: str) -> None:
 
 
 def test_a_reading_shows_the_actor_of_its_own_time() -> None:
-    """However often the actor is put on: a sensor that is due asks for it."""
+    """A due sensor moves the actor first, independently of the actor's own rate."""
     with simkit.load(world(ANNA, lidar("lidar").replace("<update_rate>10", "<update_rate>7"))) as sim:
         sim.subscribe("/scan", keep=1)
         script = sim.engine.structure.models["anna"].moved_by.script
@@ -115,7 +115,7 @@ def test_reset_and_restore_bring_actors_back() -> None:
         np.testing.assert_allclose(sim.model("anna").pose.position, (-2, 0, 0), atol=1e-9)
 
 
-def test_an_actor_that_does_not_start_by_itself_is_started_by_a_service() -> None:
+def test_an_actor_without_auto_start_is_started_by_its_service() -> None:
     waits = ANNA.replace("<script>", "<script><auto_start>false</auto_start>")
     with simkit.load(world(waits)) as sim:
         assert codes(sim) == ["SK-ACTOR-004"]
@@ -129,7 +129,7 @@ def test_an_actor_that_does_not_start_by_itself_is_started_by_a_service() -> Non
         np.testing.assert_allclose(sim.model("anna").pose.position, (0, 0, 0), atol=1e-9)
 
 
-def test_a_person_looks_as_the_file_says() -> None:
+def test_a_person_has_the_colours_and_the_height_of_the_file() -> None:
     look = "<simkit:person><height>1.9</height><shirt>1 0 0</shirt></simkit:person>"
     with simkit.load(world(f'<actor name="bob">{look}</actor>')) as sim:
         (link,) = sim.engine.structure.models["bob"].links
@@ -140,14 +140,14 @@ def test_a_person_looks_as_the_file_says() -> None:
         assert not [d for d in sim.diagnostics if d.severity != "note"]
 
 
-def test_feet_stand_on_the_ground_where_the_way_is_that_of_the_hips() -> None:
+def test_feet_touch_the_ground_for_a_trajectory_at_hip_height() -> None:
     with simkit.load(world('<actor name="bob"><pose>0 0 1 0 0 0</pose></actor>')) as sim:
         (link,) = sim.engine.structure.models["bob"].links
         shoe = next(v for v in link.visuals if v.name.endswith("left_shoe"))
         assert -1.0 < shoe.pose_link.position[2] < -0.9
 
 
-def test_somebody_who_sits_is_lower() -> None:
+def test_a_sitting_person_is_lower() -> None:
     sitting = '<script><trajectory id="0" type="sitting"/></script>'
     with simkit.load(world(f'<actor name="bob">{sitting}</actor><actor name="cai"/>')) as sim:
         heads = [
@@ -174,7 +174,7 @@ SWING = '<skin><filename>leg.dae</filename></skin><animation name="swing"><filen
 
 
 @pytest.mark.parametrize("unit", [1.0, 0.01])
-def test_an_actor_wears_its_skin_and_plays_its_animation(tmp_path: Path, unit: float) -> None:
+def test_an_actor_has_its_skin_and_plays_its_animation(tmp_path: Path, unit: float) -> None:
     path = skinned(tmp_path, f'<actor name="a">{SWING}</actor>', leg=skinned_dae(unit=unit))
     with simkit.load(path) as sim:
         assert not codes(sim)
@@ -187,7 +187,7 @@ def test_an_actor_wears_its_skin_and_plays_its_animation(tmp_path: Path, unit: f
         assert sim.model("a").link("leg").pose.rpy[1] == pytest.approx(np.pi / 4, abs=1e-3)
 
 
-def test_with_interpolate_x_the_animation_follows_the_way_behind(tmp_path: Path) -> None:
+def test_with_interpolate_x_the_animation_follows_the_distance(tmp_path: Path) -> None:
     follows = SWING.replace("</animation>", "<interpolate_x>true</interpolate_x></animation>")
     text = f'<actor name="a">{follows}{WAYS.replace("walk", "swing")}</actor>'
     with simkit.load(skinned(tmp_path, text, leg=skinned_dae(way=1.0))) as sim:
@@ -198,7 +198,7 @@ def test_with_interpolate_x_the_animation_follows_the_way_behind(tmp_path: Path)
         assert leg.rpy[1] == pytest.approx(behind % 1.0 * np.pi / 2, abs=2e-3)
 
 
-def test_a_way_at_the_height_of_the_hips_leaves_out_the_roots_own_height(tmp_path: Path) -> None:
+def test_a_trajectory_at_hip_height_ignores_the_roots_own_height(tmp_path: Path) -> None:
     high = WAYS.replace(" 0 0 0 0 0</pose>", " 0 1 0 0 0</pose>").replace("walk", "swing")
     with simkit.load(skinned(tmp_path, f'<actor name="a">{SWING}{high}</actor>', leg=skinned_dae())) as sim:
         sim.run(0.1)
@@ -215,14 +215,14 @@ def test_an_animation_of_another_file_moves_the_skin(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("content", [None, "not XML", "<COLLADA/>", skinned_dae().replace("hip leg<", "hip arm<")])
-def test_a_person_stands_in_for_a_skin_that_cannot_be_read(tmp_path: Path, content: str | None) -> None:
+def test_a_built_in_person_replaces_an_unreadable_skin(tmp_path: Path, content: str | None) -> None:
     files = {} if content is None else {"leg": content}
     with simkit.load(skinned(tmp_path, f'<actor name="a">{SWING}</actor>', **files)) as sim:
         assert "SK-ACTOR-001" in codes(sim)
         assert list(sim.model("a").links) == ["link"]
 
 
-def test_an_animation_that_cannot_be_read_leaves_the_skins_own(tmp_path: Path) -> None:
+def test_the_skins_own_animation_replaces_an_unreadable_one(tmp_path: Path) -> None:
     text = SWING.replace('swing"><filename>leg.dae', 'swing"><filename>swing.bvh')
     with simkit.load(skinned(tmp_path, f'<actor name="a">{text}</actor>', leg=skinned_dae())) as sim:
         assert codes(sim) == ["SK-ACTOR-001"]
@@ -230,7 +230,7 @@ def test_an_animation_that_cannot_be_read_leaves_the_skins_own(tmp_path: Path) -
         assert sim.model("a").link("leg").pose.rpy[1] == pytest.approx(np.pi / 4, abs=1e-3)
 
 
-def test_a_bone_that_is_not_moved_by_matrices_is_told_of_once(tmp_path: Path) -> None:
+def test_a_bone_without_matrices_is_reported_once(tmp_path: Path) -> None:
     turns = skinned_dae().replace('#leg-out-array" count="11" stride="16"', '#leg-out-array" count="44" stride="4"')
     with simkit.load(skinned(tmp_path, f'<actor name="a">{SWING}</actor>', leg=turns)) as sim:
         (found,) = [d for d in sim.diagnostics if d.code == "SK-ACTOR-001"]
@@ -240,14 +240,14 @@ def test_a_bone_that_is_not_moved_by_matrices_is_told_of_once(tmp_path: Path) ->
 # ------------------------------------------------------------------ bad input
 
 
-def test_an_actor_of_a_models_name_is_left_out() -> None:
+def test_an_actor_with_the_name_of_a_model_is_ignored() -> None:
     taken = '<model name="anna"><static>true</static><link name="l"/></model>'
     with simkit.load(world(taken, ANNA)) as sim:
         assert codes(sim) == ["SK-ACTOR-002"]
         sim.run(0.1)
 
 
-def test_a_misspelt_animation_is_told_of() -> None:
+def test_a_misspelt_animation_is_reported() -> None:
     text = '<animation name="walking"><filename>x.dae</filename></animation>' + WAYS.replace("walk", "wlaking")
     with simkit.load(world(f'<actor name="a">{text}</actor>')) as sim:
         (found,) = [d for d in sim.diagnostics if d.code == "SK-ACTOR-003"]

@@ -1,4 +1,4 @@
-"""Where an actor is at a time: Gazebo's splines through waypoints, delay, loop, several trajectories."""
+"""Poses of an actor over time: Gazebo's splines through waypoints, delay, loop, several trajectories."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from simkit.scene import SceneActor, Trajectory, Waypoint
 
 
 def way(*points: tuple[float, float, float, float], tension: float = 0.0, number: int = 0) -> Trajectory:
-    """Waypoints as (time, x, y, yaw)."""
+    """Return a trajectory with waypoints (time, x, y, yaw)."""
     found = tuple(Waypoint(t, Pose.from_rpy(x, y, 0, 0, 0, yaw)) for t, x, y, yaw in points)
     return Trajectory(number, "walk", found, tension)
 
@@ -28,12 +28,12 @@ def place(found: Script, time: float) -> tuple[float, float, float]:
 STRAIGHT = way((0, 0, 0, 0), (2, 2, 0, 0), (4, 4, 0, 0))
 
 
-def test_it_is_at_its_waypoints_at_their_times() -> None:
+def test_the_actor_is_at_its_waypoints_at_their_times() -> None:
     bent = script(way((0, 0, 0, 0), (1, 1, 1, 0.5), (3, 2, 0, 1.0)))
     assert [place(bent, t) for t in (0, 1, 2.9999999)] == [(0, 0, 0), (1, 1, 0.5), (2, 0, 1.0)]
 
 
-def test_between_two_waypoints_it_follows_the_cubic_spline_of_gazebo() -> None:
+def test_the_actor_follows_the_cubic_spline_of_gazebo_between_waypoints() -> None:
     # tangents: half the way between the neighbours, at the ends half the way to the next
     t = 0.5
     expected = (t**3 - 2 * t**2 + t) * 1.0 + (3 * t**2 - 2 * t**3) * 2.0 + (t**3 - t**2) * 2.0
@@ -48,19 +48,19 @@ def test_a_tension_of_one_stops_at_every_waypoint_and_never_overshoots() -> None
     assert place(there_and_back, 1.0)[0] == pytest.approx(1.0)
 
 
-def test_a_turn_takes_the_shorter_way_round() -> None:
+def test_a_rotation_takes_the_shorter_direction() -> None:
     turning = script(way((0, 0, 0, 3.0), (1, 0, 0, -3.0)))
     assert abs(place(turning, 0.5)[2]) == pytest.approx(np.pi, abs=1e-5)
 
 
-def test_it_begins_after_its_delay_and_anew_after_its_end() -> None:
+def test_the_script_starts_after_its_delay_and_loops() -> None:
     late = script(STRAIGHT, delay=3.0)
     assert place(late, 2.9) == (0, 0, 0)
     assert place(late, 5.0) == (2, 0, 0)
     assert place(late, 3.0 + 4.0 + 2.0) == (2, 0, 0)
 
 
-def test_without_a_loop_it_stays_at_the_end() -> None:
+def test_without_a_loop_the_actor_stays_at_the_end() -> None:
     once = script(STRAIGHT, loop=False)
     assert place(once, 4.0) == place(once, 99.0) == (4, 0, 0)
     assert once.at(99.0)[2]  # it rests
@@ -73,7 +73,7 @@ def test_trajectories_play_one_after_the_other() -> None:
     assert place(two, 6.0) == place(two, 1.0)
 
 
-def test_waypoints_count_from_the_pose_of_the_actor() -> None:
+def test_waypoints_are_relative_to_the_pose_of_the_actor() -> None:
     moved = script(STRAIGHT, base=Pose.from_rpy(1, 2, 0, 0, 0, np.pi / 2))
     assert place(moved, 2.0) == pytest.approx((1, 4, np.pi / 2))
 
@@ -81,7 +81,7 @@ def test_waypoints_count_from_the_pose_of_the_actor() -> None:
 @pytest.mark.parametrize(
     "points", [[(0, 1, 0, 0)], [(0, 1, 0, 0), (0, 2, 0, 0)], [(2, 1, 0, 0), (2, 1, 0, 0), (3, 1, 0, 0)]]
 )
-def test_a_poor_script_is_followed_as_far_as_it_goes(points: list[tuple[float, float, float, float]]) -> None:
+def test_an_incomplete_script_is_followed_as_far_as_possible(points: list[tuple[float, float, float, float]]) -> None:
     found = script(way(*points))
     for time in (0.0, 1.0, 2.0, 5.0):
         assert np.isfinite(found.pose(time).position).all()

@@ -1,4 +1,4 @@
-"""What every world publishes: /clock and /tf_static."""
+"""Topics that every world publishes: /clock and /tf_static."""
 
 from __future__ import annotations
 
@@ -28,21 +28,21 @@ def test_fixed_joints_of_a_moving_model_are_static_transforms() -> None:
     np.testing.assert_allclose(xyz(found["base", "front"].translation), [0.18, 0, -0.09], atol=1e-12)  # type: ignore[attr-defined]
 
 
-def test_who_comes_late_gets_them_too() -> None:
+def test_a_late_subscriber_gets_static_transforms_too() -> None:
     with simkit.load(world(GROUND, rover())) as sim:
         sim.run(0.5)
         static = sim.subscribe("/tf_static")
         assert len(static.messages) == 1
 
 
-def test_of_two_alike_the_second_has_frames_of_its_own() -> None:
+def test_the_second_of_two_equal_models_has_its_own_frames() -> None:
     with simkit.load(world(GROUND, rover(), rover(name="second", pose="2 0 0 0 0 0"))) as sim:
         static = sim.subscribe("/tf_static")
         sim.step()
         assert ("second/base", "second/front") in frames(static.latest)
 
 
-def test_a_spawned_model_joins_them() -> None:
+def test_static_transforms_include_a_spawned_model() -> None:
     with simkit.load(world(GROUND)) as sim:
         static = sim.subscribe("/tf_static")
         sim.run(0.5)
@@ -52,7 +52,7 @@ def test_a_spawned_model_joins_them() -> None:
         assert ("base", "front") in frames(static.latest)
 
 
-def test_a_sensor_with_a_frame_of_its_own_is_tied_to_its_link() -> None:
+def test_the_frame_of_a_sensor_is_connected_to_its_link() -> None:
     sensor = "<sensor name='imu' type='imu'><pose>0.1 0 0.2 0 0 0</pose><update_rate>10</update_rate></sensor>"
     robot = rover().replace("<link name='base'>", f"<link name='base'>{sensor}")
     with simkit.load(world(GROUND, robot)) as sim:
@@ -62,7 +62,7 @@ def test_a_sensor_with_a_frame_of_its_own_is_tied_to_its_link() -> None:
     np.testing.assert_allclose(xyz(found["base", "rover::base::imu"].translation), [0.1, 0, 0.2], atol=1e-12)  # type: ignore[attr-defined]
 
 
-def test_base_frame_and_wheels_hang_together_on_tf() -> None:
+def test_base_frame_and_wheels_are_connected_on_tf() -> None:
     with simkit.load(world(GROUND, rover(classic_drive(publish_odom_tf="true", robot_base_frame="base")))) as sim:
         tf = sim.subscribe("/tf")
         sim.run(0.1)

@@ -50,7 +50,7 @@ def place(*, heading: float = 0.0, latitude: float = 50.08, longitude: float = 1
 
 
 def zenith_and_azimuth(direction: Any) -> tuple[float, float]:
-    """[degrees] of a direction in east, north, up."""
+    """Return the angles of a direction in east, north, up [degrees]."""
     x, y, z = direction
     return math.degrees(math.acos(z)), math.degrees(math.atan2(x, y)) % 360
 
@@ -62,7 +62,7 @@ def to_the_sun(sim: simkit.Simulation) -> np.ndarray:
 # ------------------------------------------------------------------ where it stands
 
 
-def test_it_stands_where_nrels_report_computes_it() -> None:
+def test_the_sun_has_the_position_in_nrels_report() -> None:
     """Table A5.1 of NREL/TP-560-34302: zenith 50.11162 degrees, azimuth 194.34024 degrees, to all digits."""
     with simkit.load(world(**NREL)) as sim:
         zenith, azimuth = zenith_and_azimuth(to_the_sun(sim))
@@ -80,14 +80,14 @@ def test_it_stands_where_nrels_report_computes_it() -> None:
         ("2024-06-20T20:51:00Z", 90.0, 0.0, 90 - 23.437),
     ],
 )
-def test_it_stands_where_the_seasons_put_it(time: str, latitude: float, longitude: float, zenith: float) -> None:
+def test_the_sun_has_the_positions_of_the_seasons(time: str, latitude: float, longitude: float, zenith: float) -> None:
     values = {"start": time, "latitude_deg": latitude, "longitude_deg": longitude, "pressure": 0}
     with simkit.load(world(**values)) as sim:
         found, _ = zenith_and_azimuth(to_the_sun(sim))
     assert found == pytest.approx(zenith, abs=0.2)
 
 
-def test_between_the_tabulated_times_it_is_what_the_algorithm_says() -> None:
+def test_interpolation_between_tabulated_times_matches_the_algorithm() -> None:
     site = Site(math.radians(50.08), math.radians(14.44), 200.0, 0.0, 99000.0, 285.15)
     path, algorithm = SunPath(site), sun_position._algorithm()
     start = datetime(2024, 6, 21, tzinfo=UTC).timestamp()
@@ -100,8 +100,8 @@ def test_between_the_tabulated_times_it_is_what_the_algorithm_says() -> None:
 
 
 @pytest.mark.parametrize("heading", [0.0, 30.0, -90.0])
-def test_the_worlds_heading_turns_it(heading: float) -> None:
-    """At noon in June the sun of Prague stands in the south; the world's x axis stands `heading` north of east."""
+def test_the_worlds_heading_rotates_the_sun(heading: float) -> None:
+    """At noon in June the sun of Prague is in the south; the world's x axis points `heading` north of east."""
     values = {"start": "2024-06-21T11:04:00Z"}
     with simkit.load(world(place(heading=heading), **values)) as sim:
         x, y, z = to_the_sun(sim)
@@ -110,7 +110,7 @@ def test_the_worlds_heading_turns_it(heading: float) -> None:
     assert (south - 270 + 180) % 360 - 180 == pytest.approx(0, abs=0.5)
 
 
-def test_its_own_place_comes_before_the_worlds() -> None:
+def test_the_plugins_location_overrides_the_worlds() -> None:
     values = {**NREL, "heading_deg": 0}
     with simkit.load(world(place(heading=77), **values)) as sim:
         zenith, azimuth = zenith_and_azimuth(to_the_sun(sim))
@@ -128,7 +128,7 @@ def test_a_time_without_an_offset_is_utc() -> None:
 # ------------------------------------------------------------------ the light
 
 
-def test_the_light_stands_in_the_suns_direction_and_shines_from_there() -> None:
+def test_the_light_is_in_the_suns_direction_and_shines_from_there() -> None:
     with simkit.load(world(**NREL)) as sim:
         light = sim.light("sun")
         position = light.pose.position
@@ -136,7 +136,7 @@ def test_the_light_stands_in_the_suns_direction_and_shines_from_there() -> None:
         np.testing.assert_allclose(light.direction, -position / np.linalg.norm(position), atol=1e-12)
 
 
-def test_it_goes_its_way_at_the_time_scale() -> None:
+def test_the_sun_moves_at_the_time_scale() -> None:
     with simkit.load(world(**PRAGUE)) as sim:
         path = SunPath(Site(math.radians(50.08), math.radians(14.44), 0.0, 0.0, 101325.0, 285.15))
         start = datetime(2024, 6, 21, tzinfo=UTC).timestamp()
@@ -187,7 +187,7 @@ def test_a_light_that_is_off_stays_off() -> None:
         assert not sim.light("sun").on
 
 
-def test_the_courses_sensor_follows_the_sun() -> None:
+def test_the_courses_solar_sensor_follows_the_sun() -> None:
     station = (
         "<model name='st'><static>true</static><link name='head'/><plugin name='solar' filename='libsolar_sensor.so'>"
         "<light_name>sun</light_name><update_rate>10</update_rate></plugin></model>"
@@ -199,7 +199,7 @@ def test_the_courses_sensor_follows_the_sun() -> None:
         np.testing.assert_allclose(quat_rotate((q.w, q.x, q.y, q.z), (1, 0, 0)), to_the_sun(sim), atol=1e-9)
 
 
-def test_a_sensor_has_the_sun_of_its_own_time_whoever_reads_it_and_when() -> None:
+def test_a_sensor_uses_the_sun_at_its_own_time_for_every_reader() -> None:
     found = {}
     for way in ("read", "unread"):
         with simkit.load(world(SENSOR, **{**PRAGUE, "start": "2024-06-21T06:00:00Z"})) as sim:
@@ -212,7 +212,7 @@ def test_a_sensor_has_the_sun_of_its_own_time_whoever_reads_it_and_when() -> Non
     np.testing.assert_array_equal(found["read"], found["unread"])
 
 
-def test_reset_and_restore_bring_the_sun_back_and_a_set_pose_takes_it_off_its_course() -> None:
+def test_reset_and_restore_bring_the_sun_back_and_a_set_pose_stops_it() -> None:
     with simkit.load(world(**PRAGUE)) as sim:
         sim.run(10)
         before, there = sim.snapshot(), to_the_sun(sim)
@@ -244,7 +244,7 @@ def test_air_mass_is_kasten_and_youngs() -> None:
     assert air_mass(0) == pytest.approx(38, abs=0.1)
 
 
-def test_a_clear_sky_lets_through_what_meinel_says() -> None:
+def test_clear_sky_irradiance_is_meinels() -> None:
     assert clear_sky(math.pi / 2, 101325) == pytest.approx(1353 * 0.7, rel=1e-3)
     assert clear_sky(math.radians(30), 101325) == pytest.approx(1353 * 0.7 ** (1.9943**0.678), rel=1e-3)
     assert clear_sky(math.radians(30), 80000) > clear_sky(math.radians(30), 101325)
@@ -270,20 +270,20 @@ def errors(text: str) -> list[tuple[str, str]]:
     return [(d.code, f"{d.message} {d.hint}") for d in caught.value.diagnostics if d.severity == "error"]
 
 
-def test_without_a_start_or_a_place_the_load_stops_and_says_both() -> None:
+def test_a_missing_start_and_a_missing_location_are_both_errors() -> None:
     start, site = errors(world())
     assert start[0] == site[0] == "SK-PARAM-001"
     assert "<start>" in start[1] and "2024-06-21T10:30:00Z" in start[1]
     assert "latitude_deg" in site[1] and "spherical_coordinates" in site[1]
 
 
-def test_bad_values_are_said() -> None:
+def test_invalid_values_are_errors() -> None:
     bad = {"start": "yesterday", "latitude_deg": 91, "longitude_deg": 0, "irradiance": "cloudy", "time_scale": -1}
     assert [code for code, _ in errors(world(**bad))] == ["SK-PARAM-002"] * 4
 
 
 @pytest.mark.parametrize("elevation", [-1e9, 1e9])
-def test_a_world_that_is_not_on_the_ground_needs_a_place_for_its_sun(elevation: float) -> None:
+def test_a_world_with_an_extreme_elevation_needs_an_elevation_of_the_plugin(elevation: float) -> None:
     high, start = place().replace("<elevation>200", f"<elevation>{elevation}"), "2024-06-21"
     assert [code for code, _ in errors(world(high, start=start))] == ["SK-PARAM-002"]
     with simkit.load(world(high, start=start, elevation=0)) as sim:
@@ -301,21 +301,21 @@ def test_only_a_directional_light_can_be_the_sun() -> None:
     assert code == "SK-PLUGIN-003" and "did you mean 'sun'" in message
 
 
-def test_without_pvlib_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_pvlib_the_hint_is_the_install_command(monkeypatch: pytest.MonkeyPatch) -> None:
     sun_position._algorithm.cache_clear()
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
     ((code, message),) = errors(world(**NREL))
     assert code == "SK-SENSOR-084" and "pip install 'simkit-robotics[sun]'" in message
 
 
-def test_on_another_planet_it_is_still_the_earths() -> None:
+def test_another_surface_model_still_has_the_sun_of_the_earth() -> None:
     text = world(place().replace("EARTH_WGS84", "MOON_SCS"), start="2024-06-21T10:00:00Z")
     with simkit.load(text) as sim:
         assert [d.code for d in sim.diagnostics if d.severity == "warning"] == ["SK-SENSOR-085"]
 
 
 @pytest.mark.parametrize("direction", ["0 0 -1", "0 0 1", "1 0 0", "-0.2 0.7 0.1"])
-def test_whatever_way_the_light_shone_it_shines_from_the_sun(direction: str) -> None:
+def test_any_initial_direction_of_the_light_is_replaced_by_the_suns(direction: str) -> None:
     text = world(SENSOR, **NREL).replace("0.3 0.2 -0.9", direction)
     with simkit.load(text) as sim:
         position = sim.light("sun").pose.position
@@ -325,7 +325,7 @@ def test_whatever_way_the_light_shone_it_shines_from_the_sun(direction: str) -> 
 @pytest.mark.parametrize(
     "start", [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, -1.0), (0.6, 0.0, -0.8), (-0.96, 0.28, 0.0)]
 )
-def test_half_a_turn_has_an_axis_too(start: tuple[float, float, float]) -> None:
+def test_a_rotation_by_half_a_turn_has_an_axis(start: tuple[float, float, float]) -> None:
     opposite = (-start[0], -start[1], -start[2])
     turned = Pose((0, 0, 0), sun._shortest_rotation(start, opposite)).rotate(start)
     np.testing.assert_allclose(turned, opposite, atol=1e-12)

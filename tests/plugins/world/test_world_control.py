@@ -1,4 +1,4 @@
-"""`/world/<world>/control`: pause, step, reset, seed, run to a time, as gz's server does them."""
+"""Service `/world/<world>/control`: pause, step, reset, seed, run to a time, as in gz's server."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ IMU = """<model name="rover"><pose>3 3 1 0 0 0</pose><link name="l"><sensor name
 
 
 def control(sim: simkit.Simulation, **fields: Any) -> bool:
-    """Asks for it; whether it was done."""
+    """Call the control service and return its success."""
     return bool(sim.call("/world/w/control", {"world_control": fields}).success)
 
 
-def test_it_pauses_and_resumes() -> None:
+def test_the_world_pauses_and_resumes() -> None:
     with load() as sim:
         assert control(sim, pause=True)
         assert sim.paused
@@ -30,7 +30,7 @@ def test_it_pauses_and_resumes() -> None:
 
 
 @pytest.mark.parametrize(("fields", "steps"), [({"step": True}, 1), ({"multi_step": 7}, 7)])
-def test_steps_are_done_when_the_answer_comes_and_the_world_is_paused(fields: dict[str, Any], steps: int) -> None:
+def test_steps_are_done_before_the_response_and_the_world_stays_paused(fields: dict[str, Any], steps: int) -> None:
     with load() as sim:
         assert control(sim, pause=True, **fields)
         assert (sim.tick, sim.paused) == (steps, True)
@@ -38,7 +38,7 @@ def test_steps_are_done_when_the_answer_comes_and_the_world_is_paused(fields: di
         assert (sim.tick, sim.paused) == (2 * steps, True)
 
 
-def test_it_runs_to_a_time_and_pauses_there() -> None:
+def test_the_world_runs_to_a_time_and_pauses() -> None:
     with load() as sim:
         assert control(sim, run_to_sim_time={"sec": 0, "nanosec": 250_000_000})
         assert (sim.time, sim.paused) == (0.25, True)
@@ -52,7 +52,7 @@ def test_a_time_in_the_past_is_refused_and_nothing_changes(caplog: pytest.LogCap
         assert "run_to_sim_time 0.1 s lies in the past, it is 0.5 s" in caplog.text
 
 
-def test_in_a_world_that_is_served_who_serves_it_does_the_steps() -> None:
+def test_in_a_served_world_the_server_does_the_steps() -> None:
     with load() as sim, sim.control.pausing.served():
         assert control(sim, pause=True, multi_step=7)
         assert sim.tick == 0
@@ -61,7 +61,7 @@ def test_in_a_world_that_is_served_who_serves_it_does_the_steps() -> None:
 
 
 @pytest.mark.parametrize("how", ["all", "time_only"])
-def test_a_reset_goes_back_to_the_start_as_gz_does_for_both(how: str) -> None:
+def test_both_kinds_of_reset_return_to_the_start_as_in_gz(how: str) -> None:
     with load() as sim:
         sim.spawn(model("more", "9 9 9 0 0 0"))
         sim.model("box").set_pose(simkit.Pose((4, 0, 2)))
@@ -71,7 +71,7 @@ def test_a_reset_goes_back_to_the_start_as_gz_does_for_both(how: str) -> None:
         assert sim.model("box").pose.position == pytest.approx((0, 0, 0.5))
 
 
-def test_a_reset_of_models_puts_them_back_while_time_goes_on() -> None:
+def test_a_reset_of_models_keeps_the_time() -> None:
     with load() as sim:
         sim.spawn(model("more", "9 9 9 0 0 0"))
         sim.remove("arm")
@@ -88,7 +88,7 @@ def test_a_reset_of_models_puts_them_back_while_time_goes_on() -> None:
         assert "arm" not in sim.models  # removed: stays away
 
 
-def test_models_that_were_put_back_do_as_they_did_at_first() -> None:
+def test_reset_models_repeat_their_first_motion() -> None:
     with load() as sim:
         sim.joint("arm::hinge").set_velocity(1.0)
         sim.run(0.3)
@@ -107,7 +107,7 @@ def noise(sim: simkit.Simulation) -> list[float]:
     return [m.linear_acceleration.x for m in sub.messages]
 
 
-def test_a_seed_is_that_of_all_that_follows() -> None:
+def test_a_seed_applies_to_all_later_samples() -> None:
     with load(IMU, seed=1) as sim, load(IMU, seed=2) as other:
         one, two = noise(sim), noise(other)
         assert not np.array_equal(one, two)
@@ -118,7 +118,7 @@ def test_a_seed_is_that_of_all_that_follows() -> None:
         assert noise(sim) == two
 
 
-def test_a_hook_may_ask_for_it() -> None:
+def test_a_hook_may_call_the_control_service() -> None:
     class Stops(simkit.WorldPlugin):
         def load(self, parent: Any, params: simkit.Params) -> None:
             self.after_step_rate = 100.0
@@ -132,7 +132,7 @@ def test_a_hook_may_ask_for_it() -> None:
         assert (sim.tick, sim.paused) == (25, True)
 
 
-def test_it_is_there_under_the_name_that_a_topic_may_have() -> None:
+def test_the_service_name_has_only_valid_characters() -> None:
     with simkit.load('<sdf version="1.9"><world name="my world"/></sdf>') as sim:
         assert sim.call("/world/my_world/control", {"world_control": {"multi_step": 2}}).success
         assert sim.tick == 2

@@ -1,4 +1,4 @@
-"""What every world offers for its entities, as gz's UserCommands does."""
+"""Services that every world offers for its entities, as gz's UserCommands does."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def create(sim: simkit.Simulation, **fields: Any) -> bool:
 # ---------------------------------------------------------------------- create
 
 
-def test_a_model_is_spawned_where_the_request_says_else_where_its_file_does() -> None:
+def test_a_model_is_spawned_at_the_pose_of_the_request_or_else_of_its_file() -> None:
     with load() as sim:
         assert create(sim, sdf=model("one", "1 2 3 0 0 0"))
         assert create(sim, sdf=model("one"), name="two", pose={"position": {"x": 7}, "orientation": HALF})
@@ -49,17 +49,17 @@ def test_a_pose_may_be_relative_to_an_entity() -> None:
         assert sim.model("one").pose.rpy == pytest.approx((0, 0, math.pi / 2))
 
 
-def test_a_name_that_is_taken_is_refused_unless_it_may_be_changed(caplog: pytest.LogCaptureFixture) -> None:
+def test_a_name_in_use_is_refused_unless_allow_renaming_is_set(caplog: pytest.LogCaptureFixture) -> None:
     with load() as sim:
         assert not create(sim, sdf=model("box"))
         assert not create(sim, sdf=model("one"), name="box")
-        assert "there is a model 'box' already, and allow_renaming is false" in caplog.text
+        assert "a model 'box' already exists, and allow_renaming is false" in caplog.text
         assert create(sim, sdf=model("box", "5 0 0 0 0 0"), allow_renaming=True)
         assert create(sim, sdf=model("box", "8 0 0 0 0 0"), allow_renaming=True)
         assert list(sim.models)[-2:] == ["box_0", "box_1"]  # gz's numbers
 
 
-def test_a_file_is_spawned_by_its_name(tmp_path: Any) -> None:
+def test_a_file_is_spawned_by_its_file_name(tmp_path: Any) -> None:
     (tmp_path / "one.sdf").write_text(model("one", "0 0 4 0 0 0"))
     with load() as sim:
         assert create(sim, sdf_filename=str(tmp_path / "one.sdf"))
@@ -67,7 +67,7 @@ def test_a_file_is_spawned_by_its_name(tmp_path: Any) -> None:
         assert not create(sim, sdf_filename=str(tmp_path / "none.sdf"))
 
 
-def test_a_copy_has_all_that_the_original_has_and_does_the_same() -> None:
+def test_a_clone_has_the_entities_and_the_motion_of_the_original() -> None:
     with load() as sim:
         assert create(sim, clone_name="arm", name="other", pose={"position": {"x": 9, "z": 1}, "orientation": HALF})
         other, arm = sim.model("other"), sim.model("arm")
@@ -85,13 +85,13 @@ def test_a_copy_has_all_that_the_original_has_and_does_the_same() -> None:
         assert "other" not in sim.models
 
 
-def test_a_copy_of_nothing_names_the_closest(caplog: pytest.LogCaptureFixture) -> None:
+def test_a_clone_of_an_unknown_model_suggests_the_closest_name(caplog: pytest.LogCaptureFixture) -> None:
     with load() as sim:
         assert not create(sim, clone_name="bux")
         assert "there is no model 'bux'; did you mean 'box'?" in caplog.text
 
 
-def test_a_request_says_in_one_way_what_is_to_be_made(caplog: pytest.LogCaptureFixture) -> None:
+def test_a_request_must_have_exactly_one_source(caplog: pytest.LogCaptureFixture) -> None:
     with load() as sim:
         assert not create(sim, name="one")
         assert not create(sim, sdf=model("one"), clone_name="box")
@@ -99,7 +99,7 @@ def test_a_request_says_in_one_way_what_is_to_be_made(caplog: pytest.LogCaptureF
         assert "found sdf and clone_name of" in caplog.text
 
 
-def test_several_are_made_or_none() -> None:
+def test_several_models_are_spawned_or_none() -> None:
     with load() as sim:
         both = [{"sdf": model("one", "4 0 0 0 0 0")}, {"sdf": model("two", "8 0 0 0 0 0")}]
         assert ask(sim, "create_multiple", entity_factories=both).success
@@ -132,13 +132,15 @@ def test_a_model_is_removed_by_its_name_or_its_id(caplog: pytest.LogCaptureFixtu
         ({"id": 5}, "no model or light with the id 5"),
     ],
 )
-def test_what_cannot_be_removed_is_said(entity: dict[str, Any], why: str, caplog: pytest.LogCaptureFixture) -> None:
+def test_an_entity_that_cannot_be_removed_is_refused(
+    entity: dict[str, Any], why: str, caplog: pytest.LogCaptureFixture
+) -> None:
     with load() as sim:
         assert not ask(sim, "remove", entity=entity).success
         assert why in caplog.text
 
 
-def test_a_pose_is_set_of_models_static_ones_too_and_of_lights() -> None:
+def test_poses_of_models_static_models_and_lights_are_set() -> None:
     with load() as sim:
         for name in ("box", "ground", "lamp"):
             assert ask(sim, "set_pose", entity={"name": name}, pose={"position": {"x": 3, "z": 2}}).success
@@ -147,7 +149,7 @@ def test_a_pose_is_set_of_models_static_ones_too_and_of_lights() -> None:
         assert sim.light("lamp").pose.position == pytest.approx((3, 0, 2))
 
 
-def test_a_rotation_is_brought_to_unit_length_and_one_of_zeros_is_none() -> None:
+def test_a_rotation_is_normalised_and_zeros_are_the_identity() -> None:
     with load() as sim:
         ask(sim, "set_pose", entity={"name": "box"}, pose={"orientation": {"z": 3.0, "w": 3.0}})
         assert sim.model("box").pose.rpy == pytest.approx((0, 0, math.pi / 2))
@@ -155,7 +157,7 @@ def test_a_rotation_is_brought_to_unit_length_and_one_of_zeros_is_none() -> None
         assert sim.model("box").pose.rpy == pytest.approx((0, 0, 0))
 
 
-def test_numbers_that_are_none_are_refused(caplog: pytest.LogCaptureFixture) -> None:
+def test_nan_and_infinite_numbers_are_refused(caplog: pytest.LogCaptureFixture) -> None:
     with load() as sim:
         assert not ask(sim, "set_pose", entity={"name": "box"}, pose={"position": {"x": math.nan}}).success
         assert "found pose.position.x nan, allowed is a finite number" in caplog.text
@@ -174,7 +176,7 @@ def test_several_poses_are_set_or_none() -> None:
         assert response.status_message == "found 2 entities and 1 poses, allowed are as many"
 
 
-def test_every_service_but_control_is_there_as_blocking_too() -> None:
+def test_every_service_except_control_has_a_blocking_variant() -> None:
     with load() as sim:
         assert ask(sim, "set_pose/blocking", entity={"name": "box"}, pose={"position": {"z": 2}}).success
         assert sim.model("box").pose.position[2] == 2
@@ -195,7 +197,7 @@ def test_gravity_and_pace_are_set() -> None:
         assert sim.control.pausing.pace is None
 
 
-def test_a_step_of_another_length_is_refused_and_nothing_is_changed() -> None:
+def test_a_different_step_length_is_refused_without_any_change() -> None:
     with load() as sim:
         response = ask(sim, "set_physics", time_step=0.002, gravity={"z": -1.6})
         assert not response.success
@@ -204,17 +206,17 @@ def test_a_step_of_another_length_is_refused_and_nothing_is_changed() -> None:
         assert sim.gravity[2] == -10.0
 
 
-def test_what_the_engine_has_no_word_for_is_told() -> None:
+def test_unsupported_physics_settings_are_listed() -> None:
     with load() as sim:
         response = ask(sim, "set_physics", ode_config={"cfm": 0.1, "sor_pgs_iters": 50})
         assert response.success
-        assert response.status_message == "not used, for the engine is another: sor_pgs_iters, cfm"
+        assert response.status_message == "not supported by this physics engine: sor_pgs_iters, cfm"
 
 
 # ---------------------------------------------------------------------- looks
 
 
-def test_a_light_changes_what_the_request_gives_and_keeps_the_rest() -> None:
+def test_a_light_changes_the_fields_of_the_request_and_keeps_the_others() -> None:
     with load() as sim:
         before = sim.light("lamp").scene
         assert ask(sim, "light_config", light={"name": "lamp", "diffuse": {"r": 0.25, "a": 1.0}}).success
@@ -233,7 +235,7 @@ def test_a_light_changes_what_the_request_gives_and_keeps_the_rest() -> None:
         assert sim.mj_model.light_dir[index] == pytest.approx((1, 0, 0))
 
 
-def test_snapshot_reset_and_spawn_keep_what_a_light_was_made() -> None:
+def test_snapshot_reset_and_spawn_handle_a_changed_light() -> None:
     with load() as sim:
         index = list(sim.contents.lights).index("lamp")
         ask(sim, "light_config", light={"name": "lamp", "diffuse": {"g": 0.75, "a": 1.0}})
@@ -258,14 +260,14 @@ def test_a_light_is_changed_by_topic_as_well() -> None:
 def test_a_light_keeps_its_type(caplog: pytest.LogCaptureFixture) -> None:
     with load() as sim:
         response = ask(sim, "light_config", light={"name": "lamp", "type": 2})
-        assert response.status_message == "light 'lamp' is a spot light, and cannot become a directional one"
+        assert response.status_message == "light 'lamp' is a spot light, and cannot become a directional light"
 
 
 def colours(sim: simkit.Simulation, visual: str) -> list[float]:
     return [float(c) for c in sim.mj_model.geom_rgba[sim.visual(visual).geoms[0]]]
 
 
-def test_a_visual_is_painted_or_all_of_a_model_or_all_of_a_name() -> None:
+def test_one_visual_all_of_a_model_or_all_of_a_name_are_painted() -> None:
     with load() as sim:
         create(sim, clone_name="box", name="other", pose={"position": {"x": 5}})
         red, green = {"r": 1.0, "a": 1.0}, {"g": 1.0, "a": 0.5}
@@ -280,7 +282,7 @@ def test_a_visual_is_painted_or_all_of_a_model_or_all_of_a_name() -> None:
         assert colours(sim, "box::body::skin") != [0, 1, 0, 0.5]
 
 
-def test_what_is_not_painted_is_told() -> None:
+def test_ignored_colours_are_reported() -> None:
     with load() as sim:
         asked = {"entity": {"name": "box"}, "diffuse": {"r": 1.0, "a": 1.0}, "emissive": {"r": 1.0}, "shininess": 3.0}
         response = ask(sim, "visual_config", material_color=asked)
@@ -292,7 +294,7 @@ def test_what_is_not_painted_is_told() -> None:
 
 
 @pytest.mark.parametrize("entity", [{"name": "box"}, {"name": "box::body"}, {"name": "box::body::hull", "type": 5}])
-def test_what_has_no_collisions_falls_through_the_ground_until_it_has_them_again(entity: dict[str, Any]) -> None:
+def test_a_model_with_disabled_collisions_falls_through_the_ground(entity: dict[str, Any]) -> None:
     with load() as sim:
         sim.run(0.1)
         assert ask(sim, "disable_collision", entity=entity).success
@@ -306,7 +308,7 @@ def test_what_has_no_collisions_falls_through_the_ground_until_it_has_them_again
         assert sim.model("box").pose.position[2] == pytest.approx(0.5, abs=1e-3)
 
 
-def test_one_collision_of_two_is_switched() -> None:
+def test_a_single_collision_of_two_is_disabled() -> None:
     feet = "".join(
         f'<collision name="{name}"><pose>0 0 {z} 0 0 0</pose><geometry><sphere><radius>0.1</radius></sphere></geometry>'
         "</collision>"
@@ -325,7 +327,7 @@ def test_one_collision_of_two_is_switched() -> None:
 # ---------------------------------------------------------------------- the place on Earth
 
 
-def test_the_world_is_laid_elsewhere_and_receivers_go_by_it() -> None:
+def test_the_worlds_origin_moves_and_gps_receivers_follow() -> None:
     with load(NAVSAT) as sim:
         gps = sim.subscribe("/gps")
         sim.step()
@@ -345,7 +347,7 @@ def test_the_world_is_laid_elsewhere_and_receivers_go_by_it() -> None:
         assert gps.latest.latitude == pytest.approx(-33.5, abs=1e-8)
 
 
-def test_a_world_without_a_place_gets_one() -> None:
+def test_a_world_without_a_location_gets_one() -> None:
     with load(NAVSAT[NAVSAT.index("<model") :]) as sim:
         gps = sim.subscribe("/gps")
         sim.step()
@@ -355,7 +357,7 @@ def test_a_world_without_a_place_gets_one() -> None:
         assert gps.latest.latitude == pytest.approx(10.0, abs=1e-9)
 
 
-def test_an_entity_is_put_at_a_place() -> None:
+def test_an_entity_is_moved_to_a_geographic_location() -> None:
     with load(NAVSAT) as sim:
         where = {"latitude_deg": 47.0, "longitude_deg": 8.001, "elevation": 400.0, "heading_deg": 90.0}
         assert ask(sim, "set_spherical_coordinates", entity={"name": "box"}, **where).success
@@ -372,10 +374,10 @@ def test_an_entity_is_put_at_a_place() -> None:
     [
         ({"latitude_deg": 91.0}, "found latitude_deg 91, allowed is a number from -90 to 90"),
         ({"surface_model": 7}, "found surface_model 7, allowed is 0 (EARTH_WGS84) or 1 (MOON_SCS)"),
-        ({"entity": {"name": "box"}}, "the world has no spherical coordinates"),
+        ({"entity": {"name": "box"}}, "the world has no <spherical_coordinates>"),
     ],
 )
-def test_places_that_are_none_are_refused(fields: dict[str, Any], why: str) -> None:
+def test_invalid_locations_are_refused(fields: dict[str, Any], why: str) -> None:
     with load() as sim:
         response = ask(sim, "set_spherical_coordinates", **fields)
         assert not response.success
@@ -385,7 +387,7 @@ def test_places_that_are_none_are_refused(fields: dict[str, Any], why: str) -> N
 # ---------------------------------------------------------------------- what is there
 
 
-def test_the_scene_has_every_entity_with_its_number_and_its_pose_of_now() -> None:
+def test_scene_info_has_every_entity_with_its_id_and_its_current_pose() -> None:
     with load() as sim:
         sim.joint("arm::hinge").set_position(math.pi / 6)
         scene = ask(sim, "scene/info")
@@ -403,7 +405,7 @@ def test_the_scene_has_every_entity_with_its_number_and_its_pose_of_now() -> Non
         assert len({e.entity.id for e in scene.entities}) == len(scene.entities)
 
 
-def test_the_world_is_written_as_it_is_now_and_can_be_opened_again() -> None:
+def test_the_generated_sdf_has_the_current_state_and_can_be_loaded() -> None:
     with load() as sim:
         sim.remove("arm")
         create(sim, clone_name="box", name="other", pose={"position": {"x": 6, "z": 2}, "orientation": HALF})
@@ -421,21 +423,21 @@ def test_the_world_is_written_as_it_is_now_and_can_be_opened_again() -> None:
             assert again.link("other::body").mass == 2.0
 
 
-def test_a_plugin_may_offer_a_service_of_its_own_in_place_of_one() -> None:
+def test_a_plugin_may_replace_a_service_of_the_world() -> None:
     with load() as sim:
         sim.offer("/world/w/create", "std_srvs/srv/Trigger", lambda _: {"message": "mine"})
         assert sim.call("/world/w/create").message == "mine"
         assert sim.communication.services.names()["/world/w/create"] == "std_srvs/srv/Trigger"
 
 
-def test_responses_are_the_messages_of_their_types() -> None:
+def test_responses_have_the_declared_types() -> None:
     with load() as sim:
         response = ask(sim, "create", entity_factory={"sdf": model("one", "4 0 0 0 0 0")})
         assert msgs.type_name(response) == "ros_gz_interfaces/srv/SpawnEntity_Response"
         assert msgs.serialize(response) == b"\x00\x01\x00\x00\x01"
 
 
-def test_a_call_from_a_hook_is_done_at_once() -> None:
+def test_a_call_from_a_hook_takes_effect_at_once() -> None:
     class Spawner(simkit.WorldPlugin):
         def load(self, parent: Any, params: simkit.Params) -> None:
             self.after_step_rate = 100.0
@@ -450,7 +452,7 @@ def test_a_call_from_a_hook_is_done_at_once() -> None:
         assert sim.model("one").pose.position == pytest.approx((4, 0, 0.5), abs=1e-3)
 
 
-def test_a_rotation_of_huge_or_tiny_numbers_is_one_too() -> None:
+def test_a_rotation_of_huge_or_tiny_numbers_is_valid() -> None:
     with load() as sim:
         for w, z in ((1e308, 1e308), (1e-300, 1e-300), (5e-324, 5e-324)):
             request = {"entity": {"name": "box"}, "pose": {"orientation": {"w": w, "z": z}}}
@@ -458,7 +460,7 @@ def test_a_rotation_of_huge_or_tiny_numbers_is_one_too() -> None:
             assert np.allclose(sim.model("box").pose.rpy, (0.0, 0.0, math.pi / 2))
 
 
-def test_a_model_whose_plugin_raises_is_not_spawned_and_the_run_goes_on(tmp_path: Path) -> None:
+def test_a_model_whose_plugin_raises_is_not_spawned_and_the_run_continues(tmp_path: Path) -> None:
     lines = (
         "import simkit",
         "class Bad(simkit.ModelPlugin):",
@@ -480,7 +482,7 @@ def test_a_model_whose_plugin_raises_is_not_spawned_and_the_run_goes_on(tmp_path
 
 
 @pytest.mark.parametrize("name", ["a::b", "", " ", "world", "__model__"])
-def test_names_that_no_model_can_have_are_refused(name: str) -> None:
+def test_invalid_model_names_are_refused(name: str) -> None:
     with load() as sim:
         for add in (lambda: sim.spawn(model("z"), name=name), lambda: sim.contents.clone("box", name)):
             with pytest.raises(simkit.InputError, match="name"):
@@ -490,7 +492,7 @@ def test_names_that_no_model_can_have_are_refused(name: str) -> None:
         assert list(sim.models) == ["ground", "box", "arm"]
 
 
-def test_several_of_which_one_cannot_be_leave_no_trace_in_the_bits() -> None:
+def test_a_failed_spawn_of_several_models_does_not_change_the_state() -> None:
     def run(asks: bool) -> bytes:
         with load() as sim:
             sim.run(0.5)  # the box rests
@@ -503,7 +505,7 @@ def test_several_of_which_one_cannot_be_leave_no_trace_in_the_bits() -> None:
     assert run(False) == run(True)
 
 
-def test_commands_behind_one_whose_spawn_fails_are_not_lost(tmp_path: Path) -> None:
+def test_commands_after_a_failed_spawn_are_not_lost(tmp_path: Path) -> None:
     class Asks(simkit.WorldPlugin):
         def load(self, parent: Any, params: simkit.Params) -> None:
             self.taken: list[int] = []

@@ -1,4 +1,4 @@
-"""What gz tells of a whole world: statistics, clock, poses; free while nobody listens, no trace in the bits."""
+"""Statistics, clock and poses of a world, as in gz: no cost without subscribers, no effect on the state."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ ASIDE = {"/stats", "/world/w/stats", "/world/w/clock", "/world/w/pose/info", "/w
 
 
 def plain(message: Any) -> dict[str, Any]:
-    """Of statistics all that the clock on the wall has no part in."""
+    """Return the fields of statistics that do not depend on the wall clock."""
     return {k: v for k, v in vars(message).items() if k not in WALL}
 
 
@@ -36,7 +36,7 @@ def test_statistics_come_five_times_a_second_of_simulated_time() -> None:
         assert msgs.stamp_ns(last.step_size) == 1_000_000
 
 
-def test_the_real_time_factor_is_simulated_time_by_time_on_the_wall() -> None:
+def test_the_real_time_factor_is_simulated_time_over_wall_clock_time() -> None:
     with load() as sim:
         stats = sim.subscribe("/stats")
         sim.run(2.0)
@@ -46,7 +46,7 @@ def test_the_real_time_factor_is_simulated_time_by_time_on_the_wall() -> None:
         assert 0.0 < real < 60.0
 
 
-def test_a_pause_is_told_at_once() -> None:
+def test_a_pause_is_published_at_once() -> None:
     with load() as sim:
         stats = sim.subscribe("/stats")
         sim.run(0.05)
@@ -59,7 +59,7 @@ def test_a_pause_is_told_at_once() -> None:
         assert (stats.latest.paused, stats.latest.stepping) == (False, False)
 
 
-def test_nothing_is_scheduled_for_them_while_nobody_listens() -> None:
+def test_nothing_is_scheduled_without_subscribers() -> None:
     with load() as sim:
         before = len(sim.engine.scheduler.after._tasks)
         sub = sim.subscribe("/world/w/pose/info")
@@ -68,7 +68,7 @@ def test_nothing_is_scheduled_for_them_while_nobody_listens() -> None:
         assert len(sim.engine.scheduler.after._tasks) == before
 
 
-def test_who_listens_and_when_leaves_no_trace_in_the_bits() -> None:
+def test_subscribers_do_not_change_the_state() -> None:
     with load() as alone, load() as heard:
         alone.model("box").set_velocity((1, 0, 3), (1, 2, 3))
         heard.model("box").set_velocity((1, 0, 3), (1, 2, 3))
@@ -83,7 +83,7 @@ def test_who_listens_and_when_leaves_no_trace_in_the_bits() -> None:
         assert np.array_equal(alone.mj_data.qvel, heard.mj_data.qvel)
 
 
-def test_a_reader_in_the_middle_of_a_run_hears_from_then_on() -> None:
+def test_a_subscriber_in_the_middle_of_a_run_gets_messages_from_then_on() -> None:
     class Late(simkit.WorldPlugin):
         def load(self, parent: Any, params: simkit.Params) -> None:
             self.after_step_rate = 2.0
@@ -98,7 +98,7 @@ def test_a_reader_in_the_middle_of_a_run_hears_from_then_on() -> None:
         assert [msgs.stamp_ns(m.sim_time) for m in late.heard.messages] == [600_000_000, 800_000_000, 1_000_000_000]
 
 
-def test_the_clock_is_that_of_the_world() -> None:
+def test_the_clock_of_the_world_equals_the_ros_clock() -> None:
     with load() as sim:
         own, ros = sim.subscribe("/world/w/clock"), sim.subscribe("/clock")
         sim.run(0.1)
@@ -107,7 +107,7 @@ def test_the_clock_is_that_of_the_world() -> None:
 
 
 def placed(message: Any) -> dict[str, tuple[str, tuple[float, ...]]]:
-    """Child frame -> frame and position."""
+    """Map each child frame to its parent frame and position."""
     found = {}
     for t in message.transforms:
         at = t.transform.translation
@@ -115,7 +115,7 @@ def placed(message: Any) -> dict[str, tuple[str, tuple[float, ...]]]:
     return found
 
 
-def test_poses_are_those_of_everything_each_in_what_it_is_part_of() -> None:
+def test_poses_of_all_entities_are_in_the_frames_of_their_parents() -> None:
     with load() as sim:
         every, moving = sim.subscribe("/world/w/pose/info"), sim.subscribe("/world/w/dynamic_pose/info")
         sim.joint("arm::hinge").set_position(0.5)
@@ -132,7 +132,7 @@ def test_poses_are_those_of_everything_each_in_what_it_is_part_of() -> None:
         assert set(placed(moving.latest)) == {"box", "box::body", "arm", "arm::base", "arm::tip"}
 
 
-def test_a_spawned_model_is_among_them() -> None:
+def test_poses_include_a_spawned_model() -> None:
     with load() as sim:
         moving = sim.subscribe("/world/w/dynamic_pose/info")
         sim.spawn(model("one", "4 0 0.5 0 0 0"))
@@ -141,7 +141,7 @@ def test_a_spawned_model_is_among_them() -> None:
 
 
 def recorded(path: Path, **options: Any) -> set[str]:
-    """Topics of a recording of half a second, and what is in it."""
+    """Return the topics of a recording of half a second, and its contents."""
     with load() as sim:
         with Recorder(sim, path, **options):
             sim.run(0.5)
@@ -155,7 +155,7 @@ def topics_of(path: Path) -> set[str]:
         return {channel.topic for _, channel, _ in make_reader(stream).iter_messages()}
 
 
-def test_a_recorder_leaves_them_out_unless_they_are_named(tmp_path: Path) -> None:
+def test_a_recorder_skips_these_topics_unless_they_are_named(tmp_path: Path) -> None:
     assert recorded(tmp_path / "a.mcap") >= ASIDE
     recorded(tmp_path / "b.mcap")
     recorded(tmp_path / "c.mcap", topics=["/world/w/stats", "/clock"])
@@ -164,7 +164,7 @@ def test_a_recorder_leaves_them_out_unless_they_are_named(tmp_path: Path) -> Non
     assert topics_of(tmp_path / "c.mcap") == {"/world/w/stats", "/clock"}
 
 
-def test_all_but_the_statistics_are_listed_only_while_they_are_read() -> None:
+def test_all_topics_except_statistics_are_listed_only_with_subscribers() -> None:
     with load() as sim:
         assert set(sim.topics()) & ASIDE == {"/stats", "/world/w/stats"}
         sub = sim.subscribe("/world/w/pose/info")
@@ -173,7 +173,7 @@ def test_all_but_the_statistics_are_listed_only_while_they_are_read() -> None:
         assert "/world/w/pose/info" not in sim.topics()
 
 
-def test_a_counter_does_not_ask_for_them() -> None:
+def test_a_message_counter_does_not_subscribe_to_them() -> None:
     with load() as sim:
         counter = TopicCounter(sim)
         sim.run(0.1)
@@ -181,7 +181,7 @@ def test_a_counter_does_not_ask_for_them() -> None:
         assert not any(sim.communication.bus.wanted(topic) for topic in ASIDE)
 
 
-def test_time_on_the_wall_is_no_state_of_the_world() -> None:
+def test_wall_clock_time_is_not_part_of_the_state() -> None:
     with load() as sim:
         stats = sim.subscribe("/stats")
         sim.run(0.4)
