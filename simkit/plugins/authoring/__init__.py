@@ -1,5 +1,5 @@
-"""What helps whoever writes plugins: the catalogue behind `simkit plugin`, skeletons, reloading while a run goes on.
+"""Tools for plugin authors: the catalogue behind `simkit plugin`, skeletons, and reloading during a run.
 
-A class, a world or a file enters; facts, Python text or a new instance leaves. Nothing here is loaded by a run, except
-to reload a plugin whose file has changed.
+The tools read a class, a world or a file and return facts, Python source or a new instance. A run imports this package
+only to reload a plugin whose file has changed.
 """

@@ -1,4 +1,4 @@
-"""Which plugins there are, under which names, and what each does with its file."""
+"""Catalogue of all plugins: their names, and the parameters, topics and services of each."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ _UNKNOWN = "SK-PLUGIN-070"
 
 @dataclass(frozen=True)
 class Entry:
-    """A plugin class.
+    """Plugin class in the catalogue.
 
     Attributes:
-        cls: the class.
-        names: every spelling that a file may use, but for versions, folders and endings of libraries.
-        parents: what it may hang on: "world", "model", "visual", "sensor" or "any".
-        origin: where it comes from: "simkit", an entry point, or a file.
+        cls: plugin class.
+        names: spellings that a file may use, except versions, folders and suffixes of libraries.
+        parents: kinds of parents: "world", "model", "visual", "sensor" or "any".
+        origin: origin of the class: "simkit", an entry point, or a file.
     """
 
     cls: type[Plugin]
@@ -44,13 +44,13 @@ class Entry:
 
     @property
     def summary(self) -> str:
-        """The first sentence of what the class says of itself."""
+        """First paragraph of the class docstring."""
         paragraph = (inspect.getdoc(self.code) or "").split("\n\n")[0]
         return " ".join(paragraph.split())
 
     @property
     def source(self) -> str:
-        """File and line of the class; empty where there is no source."""
+        """File and line of the class; empty without a source."""
         try:
             file, (_, line) = inspect.getsourcefile(self.code), inspect.getsourcelines(self.code)
         except (OSError, TypeError):
@@ -59,12 +59,12 @@ class Entry:
 
     @property
     def code(self) -> Any:
-        """What its author wrote: the class, or what the class stands for."""
+        """Object that the author wrote: the class, or the object that the class wraps."""
         return getattr(self.cls, "stands_for", None) or self.cls
 
 
 def spellings(name: str) -> tuple[str, ...]:
-    """The ways to write a plugin's name: gz's with Ignition's before it, a library with `lib` and its ending."""
+    """Return the spellings of a plugin's name: gz's also with Ignition's prefix, a library with `lib` and suffix."""
     plain = normalise(name)
     if "::" in plain:
         return tuple(dict.fromkeys((plain, plain.replace("gz::sim::", "ignition::gazebo::", 1))))
@@ -75,18 +75,18 @@ def spellings(name: str) -> tuple[str, ...]:
 
 
 def entry_of(cls: type[Plugin], more: Iterable[str] = ()) -> Entry:
-    """What there is to say of a class without reading its code."""
+    """Return the catalogue entry of a class; its source is not read."""
     kinds = (cls.parent_kind,) if isinstance(cls.parent_kind, str) else cls.parent_kind
     names = dict.fromkeys(s for name in (*more, *cls.filenames, *cls.names) for s in spellings(name))
     return Entry(cls, tuple(names), tuple(kinds), _origin(cls))
 
 
 def known_plugins(plugin_paths: Sequence[Path] = (), problems: Diagnostics | None = None) -> list[Entry]:
-    """Every plugin that a file could name, in the order of their first names.
+    """Return every plugin that a file could name, sorted by first name.
 
     Args:
-        plugin_paths: folders whose modules the user allows; those are imported.
-        problems: is told which of those cannot be.
+        plugin_paths: folders whose modules the user allows; these modules are imported.
+        problems: collector of modules that cannot be imported.
     """
     classes: dict[type[Plugin], list[str]] = {cls: [] for cls in plugin_kinds().values()}
     for point in entry_points(group=ENTRY_POINT_GROUP):
@@ -103,30 +103,30 @@ def known_plugins(plugin_paths: Sequence[Path] = (), problems: Diagnostics | Non
 
 
 def find_entry(name: str, plugin_paths: Sequence[Path] = ()) -> Entry:
-    """The plugin of a name in any spelling, of a class's own name, of `module:Class` or of a file.
+    """Return the plugin of a name in any spelling, of a class name, of `module:Class` or of a file.
 
     Raises:
-        InputError: SK-PLUGIN-070 there is none; the closest name is told.
+        InputError: SK-PLUGIN-070 no plugin has the name; the message suggests the closest name.
     """
     by_class = {cls.__name__: cls for cls in plugin_kinds().values()}
-    said = Diagnostics()
-    found = by_class.get(name) or _find_class(name, name, plugin_paths, said)
-    said.raise_if_errors()
+    diagnostics = Diagnostics()
+    found = by_class.get(name) or _find_class(name, name, plugin_paths, diagnostics)
+    diagnostics.raise_if_errors()
     if found is not None:
         return entry_of(found, (name,) if name.endswith(".py") or ":" in name.replace("::", "") else ())
     if name.endswith(".py") and Path(name).is_file():
-        hint = f"allow its folder with --plugin-path {Path(name).parent}, and name the file alone"
+        hint = f"allow its folder with --plugin-path {Path(name).parent}, and give only the file name"
     else:
         near = closest(normalise(name), [*plugin_kinds(), *by_class])
-        hint = f"did you mean {near!r}?" if near else "simkit plugin list names them all"
+        hint = f"did you mean {near!r}?" if near else "simkit plugin list shows all plugins"
     raise InputError(f"{_UNKNOWN} there is no plugin {name!r}; {hint}", _UNKNOWN)
 
 
 def _find_class(filename: str, name: str, plugin_paths: Sequence[Path], problems: Diagnostics) -> type[Plugin] | None:
-    """The class behind a name; what is wrong with a file of that name goes to `problems`."""
-    said = Diagnostics()
-    found = find_plugin(ScenePlugin(name, filename, "anything", Params("plugin")), plugin_paths, said)
-    problems.extend(d for d in said if d.severity == "error")
+    """Return the class of a name; errors in a file of that name go to `problems`."""
+    diagnostics = Diagnostics()
+    found = find_plugin(ScenePlugin(name, filename, "anything", Params("plugin")), plugin_paths, diagnostics)
+    problems.extend(d for d in diagnostics if d.severity == "error")
     return found
 
 
@@ -141,10 +141,10 @@ def _origin(cls: type[Plugin]) -> str:
 
 @functools.cache
 def facts_of(cls: type[Plugin]) -> Facts:
-    """What a plugin reads and opens: the options that it declares, and what its source says literally; it does not run.
+    """Return the parameters, topics and services of a plugin from declared options and its source, which is not run.
 
     Args:
-        cls: the class; its module is imported.
+        cls: plugin class; its module is imported.
     """
     of_gz = getattr(cls, "stands_for", None)
     if of_gz is not None:
@@ -152,7 +152,7 @@ def facts_of(cls: type[Plugin]) -> Facts:
     kinds = getattr(cls, "parent_kind", "any")
     found = scan(cls, kinds if isinstance(kinds, str) and kinds != "any" else "model")
     declared = [p for options in option_types_of(cls) for p in _declared(options)]
-    # what is read in a block that was handed on appears without the block
+    # parameters read from a block that was passed to a helper appear without the block
     known = {name for p in declared for name in (p.name, p.path[-1])}
     both = merged([*declared, *(p for p in found.parameters if p.name not in known)])
     common = {p.path[0] for p in common_facts().parameters}
@@ -173,7 +173,7 @@ def _services(endpoints: Iterable[Endpoint]) -> tuple[Service, ...]:
 
 
 def _declared(options: type[Options], above: tuple[str, ...] = ()) -> Iterator[Parameter]:
-    """The parameters of a class of options."""
+    """Yield the parameters of a class of options."""
     fields = options.fields()
     for option in fields.values():
         inside, path = option.options is not None, (*above, option.element)
@@ -197,14 +197,14 @@ def _declared(options: type[Options], above: tuple[str, ...] = ()) -> Iterator[P
 
 
 def _default(option: Option, fields: Mapping[str, Option]) -> object:
-    """The default that is shown: of a field that is read instead, that one's."""
+    """Return the default to show; for a field with `instead`, that of the field it refers to."""
     while option.instead:
         option = fields[option.instead]
     return option.default
 
 
 class _RosOptions(Options):
-    """The `<ros>` block."""
+    """Options in the `<ros>` block."""
 
     namespace: str = text()
     remapping: tuple[str, ...] = texts()
@@ -212,7 +212,7 @@ class _RosOptions(Options):
 
 
 class _CommonOptions(Options):
-    """What every plugin reads: names as of a ROS node, and what becomes of it when it raises."""
+    """Options of every plugin: names as in a ROS node, and the error policy."""
 
     robot_namespace: str = text(element="robotNamespace")
     ros: _RosOptions = block(_RosOptions)
@@ -221,5 +221,5 @@ class _CommonOptions(Options):
 
 @functools.cache
 def common_facts() -> Facts:
-    """What every plugin's file may have besides: names as of a ROS node, what becomes of it when it raises."""
+    """Return the parameters that every plugin accepts: names as in a ROS node, and the error policy."""
     return Facts(tuple(_declared(_CommonOptions)))

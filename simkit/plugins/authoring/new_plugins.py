@@ -1,6 +1,6 @@
-"""Which new plugins are wanted: one by its name, or one for each library of a world that nothing stands for.
+"""Descriptions of new plugins: one by its name, or one for each library of a world that has no plugin.
 
-What their elements mean is told by the text, as far as it goes: numbers, vectors, poses, truth values, texts.
+The types of their elements are inferred from the text: numbers, vectors, poses, booleans, texts.
 """
 
 from __future__ import annotations
@@ -28,17 +28,17 @@ _BAD = "SK-PLUGIN-073"
 
 @dataclass(frozen=True)
 class NewPlugin:
-    """A plugin to be written.
+    """Plugin to be generated.
 
     Attributes:
-        module: its file without the ending, folders with dots.
-        class_name: its class.
-        filename: what a world calls its library.
-        gz_names: the class names that gz worlds give it.
-        parent: what it hangs on.
-        elements: its parameters.
-        plugins: where it is named, in document order.
-        sensor: the type of the sensor that it hangs on.
+        module: file without suffix, folders separated by dots.
+        class_name: name of the class.
+        filename: library name in the world.
+        gz_names: class names in gz worlds.
+        parent: kind of entity that the plugin is attached to.
+        elements: parameters of the plugin.
+        plugins: uses of the plugin, in document order.
+        sensor: type of the sensor that the plugin is attached to.
     """
 
     module: str
@@ -52,11 +52,11 @@ class NewPlugin:
 
 
 def plugin_named(name: str, parent: str) -> NewPlugin:
-    """A plugin by its name: `wheel_brake`, `WheelBrake` or `libwheel_brake.so`.
+    """Describe a plugin by its name: `wheel_brake`, `WheelBrake` or `libwheel_brake.so`.
 
     Raises:
-        InputError: SK-PLUGIN-073 no file or class can be called so, simkit has a plugin of that name, or there is no
-            such kind of parent.
+        InputError: SK-PLUGIN-073 the name is not usable in Python, simkit has a plugin of that name, or the kind of
+            parent is unknown.
     """
     if parent not in PARENTS:
         hint = did_you_mean(parent, PARENTS)
@@ -72,22 +72,22 @@ def plugin_named(name: str, parent: str) -> NewPlugin:
 
 
 def plugins_missing_in(scene: Scene, plugin_paths: Sequence[Path] = ()) -> list[NewPlugin]:
-    """A plugin for each library that nothing stands for, with the parameters that it is given.
+    """Describe a plugin for each library without a plugin, with the parameters in the file.
 
     Args:
-        scene: a file that was read.
-        plugin_paths: folders whose modules stand for libraries already.
+        scene: scene of the file.
+        plugin_paths: folders of modules that already implement libraries.
     """
     found: dict[str, list[tuple[ScenePlugin, ParentKind, str]]] = {}
     for plugin, parent, sensor in _plugins_of_scene(scene):
         if _is_unmapped(plugin, plugin_paths):
             key = normalise(plugin.filename) or normalise(plugin.name)
             found.setdefault(key, []).append((plugin, parent, sensor))
-    taken: set[str] = set()
-    return [_new_plugin_of_uses(uses, taken) for uses in found.values()]
+    used_modules: set[str] = set()
+    return [_new_plugin_of_uses(uses, used_modules) for uses in found.values()]
 
 
-def _new_plugin_of_uses(uses: Sequence[tuple[ScenePlugin, ParentKind, str]], taken: set[str]) -> NewPlugin:
+def _new_plugin_of_uses(uses: Sequence[tuple[ScenePlugin, ParentKind, str]], used_modules: set[str]) -> NewPlugin:
     plugins = tuple(plugin for plugin, _, _ in uses)
     first, parent, sensor = uses[0]
     as_class = _CLASS.match(first.filename)
@@ -100,10 +100,10 @@ def _new_plugin_of_uses(uses: Sequence[tuple[ScenePlugin, ParentKind, str]], tak
         of_gz = next((p.name for p in plugins if "::" in p.name), "")
         module, class_name = _python_names(of_gz or first.filename or first.name)
     base, count = module, 1
-    while module in taken:
+    while module in used_modules:
         count += 1
         module = f"{base}_{count}"
-    taken.add(module)
+    used_modules.add(module)
     gz_names = tuple(dict.fromkeys(p.name for p in plugins if "::" in p.name))
     blocks = [p.params for p in plugins]
     names = _common_elements(blocks)
@@ -111,25 +111,25 @@ def _new_plugin_of_uses(uses: Sequence[tuple[ScenePlugin, ParentKind, str]], tak
 
 
 def _common_elements(blocks: Sequence[Params]) -> frozenset[str]:
-    """What every plugin's names are read from: `<ros>`, `<robotNamespace>`."""
-    asked: set[str] = set()
+    """Return the elements that every plugin's names are read from: `<ros>`, `<robotNamespace>`."""
+    names_read: set[str] = set()
     for block in blocks:
         copy = block.copied()
         copy.diagnostics = Diagnostics()
         RosNames.from_params(copy, "plugin")
-        asked |= copy.asked
-    return frozenset(asked)
+        names_read |= copy.asked
+    return frozenset(names_read)
 
 
 def _is_unmapped(plugin: ScenePlugin, plugin_paths: Sequence[Path]) -> bool:
-    said = Diagnostics()
-    return find_plugin(plugin, plugin_paths, said, "any") is None and {"SK-PLUGIN-001", "SK-PLUGIN-002"} >= {
-        d.code for d in said
+    diagnostics = Diagnostics()
+    return find_plugin(plugin, plugin_paths, diagnostics, "any") is None and {"SK-PLUGIN-001", "SK-PLUGIN-002"} >= {
+        d.code for d in diagnostics
     }
 
 
 def _plugins_of_scene(scene: Scene) -> Iterator[tuple[ScenePlugin, ParentKind, str]]:
-    """Every plugin with what it hangs on and, of a sensor, the sensor's type."""
+    """Yield every plugin with the kind of its parent and, for a sensor, the sensor's type."""
     models = [scene.model] if scene.model else []
     for world in scene.worlds:
         for plugin in world.plugins:
@@ -155,10 +155,10 @@ def _plugins_of_model(model: SceneModel) -> Iterator[tuple[ScenePlugin, ParentKi
 
 
 def _python_names(name: str) -> tuple[str, str]:
-    """Module and class for a library: `libMyThing.so` is my_thing and MyThing.
+    """Return module and class name for a library: `libMyThing.so` is my_thing and MyThing.
 
     Raises:
-        InputError: SK-PLUGIN-073 nothing can be called so.
+        InputError: SK-PLUGIN-073 the name is not usable in Python.
     """
     stem = normalise(name).rsplit("::", 1)[-1].removeprefix("gz-sim-")
     words = re.findall(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+", re.sub(r"[^A-Za-z0-9]+", " ", stem))
@@ -170,7 +170,7 @@ def _python_names(name: str) -> tuple[str, str]:
         module, class_name = f"{module}_plugin", f"{class_name}Plugin"
     if not module.isidentifier():
         allowed = "allowed are names such as wheel_brake, WheelBrake or libwheel_brake.so"
-        raise InputError(f"{_BAD} nothing can be called {name!r}; {allowed}", _BAD)
+        raise InputError(f"{_BAD} {name!r} is not usable as a Python name; {allowed}", _BAD)
     return module, class_name
 
 
@@ -181,15 +181,15 @@ _POSES = ("pose", "offset", "origin", "transform")
 
 @dataclass(frozen=True)
 class Element:
-    """What all elements of one name have in common.
+    """Parameter of a new plugin, inferred from all elements of its name.
 
     Attributes:
-        name: of the element; of an attribute with `@` before it.
+        name: name of the element; an attribute has `@` in front.
         kind: "boolean", "number", "vector", "pose", "text" or "block".
-        values: the texts found, in document order, those of the first plugin first.
-        size: how many numbers a vector has.
-        repeated: whether one plugin has several.
-        children: what is in a block.
+        values: texts found, in document order, those of the first plugin first.
+        size: number of values in a vector.
+        repeated: whether a plugin has several such elements.
+        children: contents of a block.
     """
 
     name: str
@@ -201,25 +201,25 @@ class Element:
 
     @property
     def depth(self) -> int:
-        """How many blocks are within each other; 0 for a value."""
+        """Nesting depth of blocks; 0 for a value."""
         return 1 + max((c.depth for c in self.children), default=0) if self.kind == "block" else 0
 
 
 def elements_of(blocks: Sequence[Params], leave_out: frozenset[str] = frozenset()) -> tuple[Element, ...]:
-    """The elements of several plugins of one library, in the order in which they first come.
+    """Return the elements of several plugins of one library, in the order of their first occurrence.
 
     Args:
-        blocks: their parameters.
-        leave_out: names that are read elsewhere.
+        blocks: parameters of the plugins.
+        leave_out: names of elements to skip.
     """
     names = dict.fromkeys(c.name for block in blocks for c in block.children)
-    wanted = [name for name in names if ":" not in name and name not in leave_out]
-    return tuple(_element(name, [[c for c in b.children if c.name == name] for b in blocks]) for name in wanted)
+    selected = [name for name in names if ":" not in name and name not in leave_out]
+    return tuple(_element(name, [[c for c in b.children if c.name == name] for b in blocks]) for name in selected)
 
 
 def _element(name: str, by_plugin: Sequence[Sequence[Params]]) -> Element:
-    found = [element for one in by_plugin for element in one]
-    repeated = any(len(one) > 1 for one in by_plugin)
+    found = [element for elements in by_plugin for element in elements]
+    repeated = any(len(elements) > 1 for elements in by_plugin)
     attributes = dict.fromkeys(a for e in found for a in e.attributes)
     children = elements_of(found)
     if children or (attributes and any(":" not in a for a in attributes)):

@@ -1,4 +1,4 @@
-"""What a plugin class reads, publishes, listens to and offers, as its code says, and the units of its parameters."""
+"""Facts about a plugin class from its code: parameters with units, topics, services and actions."""
 
 from __future__ import annotations
 
@@ -6,27 +6,27 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
-_NARROWER = ("", "block", "text")  # any other kind is narrower still
+_NARROWER = ("", "block", "text")  # from vague to specific; any other kind is more specific
 
 
 @dataclass(frozen=True)
 class Parameter:
-    """One element (or attribute, `@name`) that a plugin reads.
+    """Element (or attribute, `@name`) that a plugin reads.
 
     Attributes:
         path: names of the elements, from the plugin down.
-        kind: "number", "integer", "boolean", "text", "vector", "pose", "choice", "block", or empty where the element
-            is taken without a value.
-        default: what holds where the file says nothing; a text may have holes such as `{model}`.
-        instead: elements that are taken where this one is not there.
-        required: whether the file must have it.
+        kind: "number", "integer", "boolean", "text", "vector", "pose", "choice", "block", or empty for an element
+            without a value.
+        default: value if the file has none; a text may have placeholders such as `{model}`.
+        instead: elements that are read if this element is missing.
+        required: whether the file must have the element.
         minimum, maximum: bounds of a number.
-        choices: the words allowed.
-        size: how many numbers a vector has.
-        repeated: whether every element of that name counts.
-        live: whether it may be changed while the simulation runs.
-        says: what its author says of it.
-        unit: SI unit; empty where it has none or nothing tells it.
+        choices: allowed words.
+        size: number of values in a vector.
+        repeated: whether the element may occur several times.
+        live: whether the parameter may change while the simulation runs.
+        says: description by the author.
+        unit: SI unit; empty if unknown or without unit.
     """
 
     path: tuple[str, ...]
@@ -45,20 +45,20 @@ class Parameter:
 
     @property
     def name(self) -> str:
-        """`odometry_noise/radius`."""
+        """Path as text, such as `odometry_noise/radius`."""
         return "/".join(self.path)
 
 
 @dataclass(frozen=True)
 class Topic:
-    """A topic of a plugin.
+    """Topic of a plugin.
 
     Attributes:
-        name: as the code names it; `~` is the plugin's own name, holes are in braces.
-        types: ROS types; the first is the listed one.
-        published: whether it goes out; else it is listened to.
+        name: name in the code; `~` is the plugin's own name, placeholders are in braces.
+        types: ROS types; the first is the type that is listed.
+        published: whether the plugin publishes the topic; otherwise it subscribes.
         latched: whether a later subscriber gets the last message.
-        elements: the parameters that change the name.
+        elements: parameters that change the name.
     """
 
     name: str
@@ -70,7 +70,7 @@ class Topic:
 
 @dataclass(frozen=True)
 class Service:
-    """A service or an action of a plugin; see `Topic`."""
+    """Service or action of a plugin; see `Topic`."""
 
     name: str
     type: str
@@ -80,7 +80,7 @@ class Service:
 
 @dataclass(frozen=True)
 class Facts:
-    """What the code of a plugin class says."""
+    """Parameters, topics, services and actions of a plugin class."""
 
     parameters: tuple[Parameter, ...] = ()
     topics: tuple[Topic, ...] = ()
@@ -88,10 +88,10 @@ class Facts:
 
 
 def merged(read: Iterable[Parameter]) -> tuple[Parameter, ...]:
-    """One entry for each element, in the order of reading: what is read twice is known by its narrower type."""
+    """Merge parameters to one entry per element, in the order of reading; the most specific type wins."""
     found: dict[tuple[str, ...], Parameter] = {}
     for parameter in read:
-        if not parameter.path or "*" in parameter.path:  # whatever is there: no name to be told
+        if not parameter.path or "*" in parameter.path:  # the plugin reads all elements, whatever their names
             continue
         before = found.get(parameter.path)
         found[parameter.path] = parameter if before is None else _both(before, parameter)
@@ -105,14 +105,14 @@ def merged(read: Iterable[Parameter]) -> tuple[Parameter, ...]:
     return tuple(found[path] for path in order)
 
 
-def _both(one: Parameter, other: Parameter) -> Parameter:
-    first, second = (one, other) if _rank(one.kind) >= _rank(other.kind) else (other, one)
+def _both(earlier: Parameter, later: Parameter) -> Parameter:
+    first, second = (earlier, later) if _rank(earlier.kind) >= _rank(later.kind) else (later, earlier)
     same_kind = first.kind == second.kind
     return replace(
         first,
         default=first.default if first.default is not None or not same_kind else second.default,
         instead=tuple(dict.fromkeys((*first.instead, *(second.instead if same_kind else ())))),
-        # asked for once more where it turned out to be missing, it is required either way
+        # a second read with required=True, after the element was found missing, makes it required
         required=first.required or second.required,
         repeated=first.repeated or second.repeated,
         live=first.live or second.live,
@@ -122,7 +122,7 @@ def _both(one: Parameter, other: Parameter) -> Parameter:
 
 
 def merged_topics(found: Iterable[Topic]) -> tuple[Topic, ...]:
-    """Each topic once, with all the parameters that may name it."""
+    """Merge topics to one entry each, with all the parameters that may change its name."""
     table: dict[tuple[str, tuple[str, ...], bool], Topic] = {}
     for topic in found:
         key = (topic.name, topic.types, topic.published)
@@ -140,7 +140,7 @@ _SAID = re.compile(r"\[\s*([^\]\d'\"\[][^\]'\"\[]{0,15}?)\s*\]")
 _KNOWN = "m cm mm s ms Hz kg N N·m rad deg m/s rad/s m/s² rad/s² m/s^2 rad/s^2 K Pa V A W J T % m² 1/s °C lx"
 _UNITS = frozenset(_KNOWN.split())
 _WORD = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+|\d+")
-# Each row is a unit and the names that stand for it; all words of a name must be there. The first row that fits counts.
+# Each row is a unit and the names that imply it; an element must contain all words of a name. The first match wins.
 _RULES: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("", ("error", "gain", "covariance", "count", "samples", "number", "factor", "ratio", "scale")),
     ("rad/s³", ("angular jerk",)),
@@ -166,13 +166,13 @@ _RULES: tuple[tuple[str, tuple[str, ...]], ...] = (
 
 
 def unit_of(name: str, kind: str, says: str = "", line: str = "") -> str:
-    """The unit of a parameter.
+    """Return the unit of a parameter.
 
     Args:
-        name: of the element, `wheelSeparation` or `wheel_separation`.
-        kind: its type; what is no number has no unit.
-        says: what its author says of it, `distance of the wheels [m]`.
-        line: the source line it is read at, whose comment may tell it.
+        name: name of the element, `wheelSeparation` or `wheel_separation`.
+        kind: type of the parameter; only numbers have a unit.
+        says: description by the author, `distance of the wheels [m]`.
+        line: source line that reads the parameter; its comment may state the unit.
     """
     if kind == "pose":
         return "m, rad"

@@ -1,4 +1,4 @@
-"""Reloads plugins whose file was changed, between two steps of a run that goes on."""
+"""Reloading of plugins whose file has changed, between two steps of a running simulation."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _BROKEN, _REFUSED = "SK-PLUGIN-071", "SK-PLUGIN-076"
 
 @dataclass
 class _WatchedFile:
-    """A file that is watched, as it was when it was last looked at."""
+    """Watched file with its stamp and contents at the last check."""
 
     path: Path
     stamp: tuple[int, int]
@@ -38,14 +38,14 @@ class _WatchedFile:
 
 
 class PluginReloader:
-    """Looks between steps whether the file of a plugin was changed, and then goes on with the new code.
+    """Checker for changed plugin files; it replaces their plugins with the new code between steps.
 
-    Looking is a `stat` of each file; no thread is needed, and a run whose files stay as they are is not changed by it.
+    Each check is a `stat` of each file and needs no thread. A run whose files do not change is not affected.
 
     Args:
-        sim: the simulation.
-        plugin_paths: folders whose modules may be plugins; whatever else of them was imported is watched as well.
-        say: is told each thing that happens, a line or several.
+        sim: simulation.
+        plugin_paths: folders whose modules may be plugins; other modules imported from there are watched as well.
+        say: function called with a text of one or several lines for each event.
     """
 
     def __init__(self, sim: Simulation, plugin_paths: Sequence[Path], say: Callable[[str], None]) -> None:
@@ -55,11 +55,11 @@ class PluginReloader:
 
     @property
     def files(self) -> list[Path]:
-        """What is watched."""
+        """Watched files."""
         return sorted(self._files)
 
     def poll(self) -> bool:
-        """Reloads what was changed since the last call; whether anything was."""
+        """Reload the plugins whose file has changed since the last call; return True after a reload."""
         changed = [file for file in self._files.values() if _has_changed(file)]
         if not changed:
             return False
@@ -70,7 +70,7 @@ class PluginReloader:
     # ------------------------------------------------------------------ files
 
     def _modules(self) -> dict[Path, list[str]]:
-        """Names of the modules that a user wrote, by their files."""
+        """Return the names of the modules written by the user, by file."""
         found: dict[Path, list[str]] = {}
         of_plugins = self._of_plugins()
         for name, module in list(sys.modules.items()):
@@ -99,7 +99,7 @@ class PluginReloader:
         of_plugins = self._of_plugins()
         paths = [file.path for file in changed]
         if any(not of_plugins.intersection(names.get(path, ())) for path in paths):
-            # something that plugins import: they are to see the new one
+            # a module that plugins import has changed: reload these plugins as well
             paths += [p for p, own in names.items() if p not in paths and of_plugins.intersection(own)]
             paths.sort(key=lambda path: bool(of_plugins.intersection(names.get(path, ()))))
         before = {name: sys.modules[name] for path in paths for name in names.get(path, ())}
@@ -115,7 +115,7 @@ class PluginReloader:
         return any(done)
 
     def _import(self, name: str, path: Path) -> bool:
-        """Runs a file anew as the module it was; where it cannot be run it is told why."""
+        """Run a file again as the same module; report the reason if that fails."""
         old = sys.modules[name]
         new = ModuleType(name)
         vars(new).update({k: v for k, v in vars(old).items() if k in _MODULE_ATTRIBUTES})
@@ -127,38 +127,38 @@ class PluginReloader:
                 exec(code, vars(new))
         except SyntaxError as error:
             self._say(
-                f"{error.filename}:{error.lineno}: error {_BROKEN}: {error.msg}; the run goes on with the old code"
+                f"{error.filename}:{error.lineno}: error {_BROKEN}: {error.msg}; the run continues with the old code"
             )
         except (Exception, SystemExit) as error:  # noqa: BLE001 - a user's module may raise anything
             what = f"{type(error).__name__}: {error}"
-            self._say(f"{_user_file_line(error, path)}: error {_BROKEN}: {what}; the run goes on with the old code")
+            self._say(f"{_user_file_line(error, path)}: error {_BROKEN}: {what}; the run continues with the old code")
         else:
             return True
         sys.modules[name] = old
         return False
 
     def _exchange(self, old: AttachedPlugin, before: dict[str, ModuleType]) -> bool:
-        """Puts the new code's plugin in the place of the old one's."""
+        """Replace a plugin with an instance of the new code."""
         from simkit.runtime.plugin_replacement import replace_plugin
 
         sim = self._sim
         file = Path(str(next(before[name].__file__ for name in modules_of(old) if name in before)))
         try:
             found = Diagnostics()
-            new = self._made_anew(old, found)
+            new = self._new_instance(old, found)
             if new is None:
                 self._say_all(found)
-                self._say(f"{old.where}: error {_REFUSED}: {old.name!r} is not in {file} any more")
+                self._say(f"{old.where}: error {_REFUSED}: {old.name!r} is no longer in {file}")
                 return False
             replace_plugin(sim, old, new, scene_of(sim, old.scoped))
         except LoadError as error:
             self._say_all(error.diagnostics)
-            self._say(f"{old.name!r} is not reloaded; the run goes on with the old code")
+            self._say(f"{old.name!r} is not reloaded; the run continues with the old code")
             return False
         except SimkitError as error:
             cause = error.__cause__
             where = f"{_user_file_line(cause, file)}: " if cause is not None else ""
-            self._say(f"{where}error: {error}; the run goes on with the old code")
+            self._say(f"{where}error: {error}; the run continues with the old code")
             return False
         except Exception as error:  # noqa: BLE001 - `prepare` of a user's class may raise anything
             what = f"{type(error).__name__}: {error}"
@@ -170,8 +170,8 @@ class PluginReloader:
         self._say(f"{file.name}: {new.name!r} reloaded at {sim.time:.6g} s")
         return True
 
-    def _made_anew(self, old: AttachedPlugin, found: Diagnostics) -> Plugin | None:
-        """An instance of the new class, with the parameters that the file gives it."""
+    def _new_instance(self, old: AttachedPlugin, found: Diagnostics) -> Plugin | None:
+        """Return an instance of the new class, with its parameters from the file."""
         new: Plugin | None
         if old.source is None:
             cls: type[Plugin] | None = getattr(sys.modules[type(old).__module__], type(old).__name__, None)
@@ -197,7 +197,7 @@ _MODULE_ATTRIBUTES = {"__name__", "__file__", "__spec__", "__loader__", "__packa
 
 
 def modules_of(plugin: object) -> set[str]:
-    """Names of the modules that hold a plugin's code: its class's, and of what stands behind a system of gz."""
+    """Return the names of the modules with a plugin's code: that of its class, and those of the gz system behind it."""
     system = getattr(plugin, "system", None)
     behind = [system] if system is not None else []
     behind.append(getattr(plugin, "_module", None))
@@ -210,7 +210,7 @@ def modules_of(plugin: object) -> set[str]:
 
 
 def _file_stamp(path: Path) -> tuple[int, int] | None:
-    """When a file was last written, and how long it is; None while it is not there."""
+    """Return modification time and size of a file; None while the file is missing."""
     try:
         status = path.stat()
     except OSError:
@@ -219,7 +219,7 @@ def _file_stamp(path: Path) -> tuple[int, int] | None:
 
 
 def _has_changed(file: _WatchedFile) -> bool:
-    """Whether there is other text in a file than before; one that is being replaced is waited for."""
+    """Check whether the contents of a file have changed; a file that is missing during a replacement has not."""
     stamp = _file_stamp(file.path)
     if stamp is None or stamp == file.stamp:
         return False
@@ -235,29 +235,29 @@ def _has_changed(file: _WatchedFile) -> bool:
 
 
 def _user_file_line(error: BaseException | None, path: Path) -> str:
-    """file:line of the innermost frame in a user's file."""
+    """Return file:line of the innermost frame in a user's file."""
     frames = traceback.extract_tb(error.__traceback__) if error is not None else []
     own = [frame for frame in frames if Path(frame.filename).resolve() == path.resolve()] or frames
     return f"{own[-1].filename}:{own[-1].lineno}" if own else str(path)
 
 
 def with_diagnostics(params: Params, diagnostics: Diagnostics) -> Params:
-    """The same tree, unread, whose problems go elsewhere."""
+    """Return an unread copy of parameters whose problems go to another collector."""
     children = [with_diagnostics(child, diagnostics) for child in params.children]
     return Params(params.name, params.value, params.attributes, children, params.where, diagnostics)
 
 
 def scene_of(sim: Simulation, scoped: str) -> SceneEntity:
-    """What a plugin hangs on, as the file has it: the world, a model, a visual or a sensor."""
+    """Return the scene entity of a plugin: the world, a model, a visual or a sensor."""
     for top in sim.engine.structure.models.values():
         if scoped != top.scoped and not scoped.startswith(f"{top.scoped}::"):
             continue
-        things: list[SceneModel | SceneSensor | SceneVisual] = [
+        entities: list[SceneModel | SceneSensor | SceneVisual] = [
             *top.all_models(),
             *top.all_sensors(),
             *(v for k in top.all_links() for v in k.visuals),
         ]
-        found = next((thing for thing in things if thing.scoped == scoped), None)
+        found = next((entity for entity in entities if entity.scoped == scoped), None)
         if found is not None:
             return found
     return sim.world

@@ -1,4 +1,4 @@
-"""Write a new plugin with typed parameters, its test, and both as files."""
+"""Source files of a new plugin with typed parameters, and of its test."""
 
 from __future__ import annotations
 
@@ -17,40 +17,41 @@ _PARENTS = {"world": "Simulation", "model": "Model", "visual": "Visual", "sensor
 _TYPES = {"number": "float", "boolean": "bool", "text": "str", "pose": "Pose", "block": "dict[str, Any]"}
 _RATES = {"update_rate", "updateRate", "updateRateHZ", "update_frequency", "rate"}
 _WIDEST = 118
-DEEPEST = 3  # blocks within blocks that are read at once
+DEEPEST = 3  # nesting depth up to which blocks are read in `load`
 _NAMES_OF_PLUGIN = """
 sim name scoped params where ros log source period parent_kind filenames names before_step after_step reset load
 prepare close advertise listen offer act declare random get_state set_state before_step_rate after_step_rate
 lets_sleep drives reads_parameter_files has_hook
 """
 _OWN = frozenset(_NAMES_OF_PLUGIN.split())
-"""Names that a plugin has already."""
+"""Attributes that every plugin has already."""
 
 
-def plugin_text(wanted: NewPlugin) -> str:
-    """The plugin's module."""
-    base, lines = _BASES[wanted.parent], _read_statements(wanted.elements, "params", "        ")
-    names = attribute_names(wanted.elements)
-    numbers = [element.name for element in wanted.elements if element.kind == "number" and not element.repeated]
+def plugin_text(plugin: NewPlugin) -> str:
+    """Return the source of the plugin's module."""
+    base, lines = _BASES[plugin.parent], _read_statements(plugin.elements, "params", "        ")
+    names = attribute_names(plugin.elements)
+    numbers = [element.name for element in plugin.elements if element.kind == "number" and not element.repeated]
     rate = next((names[name] for name in numbers if name in _RATES), None)
     imports = sorted({base, "Params", *(["Pose"] if any("Pose.from_rpy(" in line for line in lines) else [])})
     return _fill_template(
         "plugin.py.j2",
-        wanted=wanted,
+        plugin=plugin,
         base=base,
-        handle=_PARENTS[wanted.parent],
-        library=_printable(wanted.filename),
-        uses=_uses(wanted),
+        handle=_PARENTS[plugin.parent],
+        library=_printable(plugin.filename),
+        uses=_uses(plugin),
         imports=imports,
-        filename="" if _CALLED_BY_FILE.search(wanted.filename) else quote_text(wanted.filename),
-        gz_names=[quote_text(name) for name in wanted.gz_names],
+        filename="" if _CALLED_BY_FILE.search(plugin.filename) else quote_text(plugin.filename),
+        gz_names=[quote_text(name) for name in plugin.gz_names],
         statements=lines,
         rate=rate,
     )
 
 
 def _fill_template(name: str, **values: object) -> str:
-    from jinja2 import Environment, FileSystemLoader, StrictUndefined  # for who writes a plugin only
+    # imported here because only plugin authors need Jinja
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
     folder = FileSystemLoader(Path(__file__).with_name("templates"))
     environment = Environment(
@@ -59,21 +60,21 @@ def _fill_template(name: str, **values: object) -> str:
     return environment.get_template(name).render(values)
 
 
-def _uses(wanted: NewPlugin) -> str:
-    """Where it is named, without the folders of somebody's machine."""
-    places: dict[str, list[str]] = {}
-    for plugin in wanted.plugins:
-        if plugin.where.file and plugin.where.line:
-            places.setdefault(Path(plugin.where.file).name, []).append(str(plugin.where.line))
-    told = [f"Named in {file}, line {', '.join(lines[:8])}." for file, lines in places.items()]
-    return "".join(f"\n\n{line}" for line in told[:5])
+def _uses(plugin: NewPlugin) -> str:
+    """Return sentences that list the uses of the plugin, with file names without folders."""
+    lines_by_file: dict[str, list[str]] = {}
+    for use in plugin.plugins:
+        if use.where.file and use.where.line:
+            lines_by_file.setdefault(Path(use.where.file).name, []).append(str(use.where.line))
+    sentences = [f"Named in {file}, line {', '.join(lines[:8])}." for file, lines in lines_by_file.items()]
+    return "".join(f"\n\n{line}" for line in sentences[:5])
 
 
 _CALLED_BY_FILE = re.compile(r"\.py$|^[\w.]+:\w+$|^$")
 
 
 def _read_statements(elements: Sequence[Element], owner: str, indent: str) -> list[str]:
-    """One statement for each parameter."""
+    """Return one statement for each parameter."""
     names = attribute_names(elements)
     lines: list[str] = []
     for element in elements:
@@ -88,7 +89,7 @@ def _read_statements(elements: Sequence[Element], owner: str, indent: str) -> li
 
 
 def break_expression(head: str, expression: str, indent: str, tail: str = "") -> list[str]:
-    """An expression in lines that are not too long: what is in its outermost brackets, each on a line of its own."""
+    """Split a long expression into lines, with each part within its outermost brackets on its own line."""
     line = f"{head}{expression}{tail}"
     parts = _within_brackets(expression) if len(line) > _WIDEST else None
     if parts is None:
@@ -104,7 +105,7 @@ def break_expression(head: str, expression: str, indent: str, tail: str = "") ->
 
 
 def _within_brackets(expression: str) -> tuple[str, list[str], str] | None:
-    """An expression as what comes up to its first bracket, the parts within, and what closes it."""
+    """Split an expression into the text up to its first bracket, the parts within, and the closing bracket."""
     first = re.search(r"[\[({]", expression)
     if first is None or expression[-1] not in "])}":
         return None
@@ -123,7 +124,7 @@ def _within_brackets(expression: str) -> tuple[str, list[str], str] | None:
             parts.append(expression[begin:i].strip())
             begin = i + 1
         if depth < 0:
-            return None  # it is not one bracket: f(x)[0]
+            return None  # several brackets in a row: f(x)[0]
     parts.append(expression[begin:-1].strip())
     return expression[: first.end()], [part for part in parts if part], expression[-1]
 
@@ -134,7 +135,7 @@ def _type(element: Element) -> str:
 
 
 def _read(element: Element, owner: str) -> str:
-    """The expression that reads an element of the block called `owner`."""
+    """Return the expression that reads an element of the block called `owner`."""
     name = quote_text(element.name)
     if element.kind == "block":
         if element.repeated:
@@ -159,7 +160,7 @@ def _as_dict(element: Element, block: str) -> str:
 
 
 def _read_one(element: Element, owner: str) -> str:
-    """The expression that reads one element, with the value first found as its default."""
+    """Return the expression that reads a single element, with the first value found as its default."""
     name, value = quote_text(element.name), element.values[0]
     if element.kind == "boolean":
         return f"{owner}.boolean({name}, {value.lower() in ('true', '1')})"
@@ -174,13 +175,13 @@ def _read_one(element: Element, owner: str) -> str:
 
 
 def number_text(text: str) -> str:
-    """A number of a file as Python writes it."""
+    """Return a number of a file in Python syntax."""
     number = float(text)
     return f'float("{number}")' if number in (float("inf"), float("-inf")) else repr(number)
 
 
 def attribute_names(elements: Sequence[Element]) -> dict[str, str]:
-    """The attribute for each element: in Python's spelling, and none that a plugin has already."""
+    """Return the attribute for each element: a Python name that differs from the plugin's existing attributes."""
     found: dict[str, str] = {}
     for element in elements:
         name = re.sub(r"\W+", "_", re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", element.name)).lower().strip("_") or "value"
@@ -195,7 +196,7 @@ def attribute_names(elements: Sequence[Element]) -> dict[str, str]:
 
 
 def quote_text(text: str) -> str:
-    """A text as Python writes it, with double quotes where that is as well."""
+    """Return a text as a Python literal, with double quotes if that needs no escapes."""
     shown = repr(text)
     return f'"{text}"' if shown == f"'{text}'" and '"' not in text else shown
 
@@ -204,22 +205,22 @@ def _printable(text: str) -> str:
     return text.replace("\\", "/").replace('"', "'")
 
 
-def test_text(wanted: NewPlugin) -> str:
-    """The test's module."""
-    names = attribute_names(wanted.elements)
-    first = wanted.plugins[0].params if wanted.plugins else None
+def test_text(plugin: NewPlugin) -> str:
+    """Return the source of the test's module."""
+    names = attribute_names(plugin.elements)
+    first = plugin.plugins[0].params if plugin.plugins else None
     checks: list[str] = []
-    for element in wanted.elements:
-        for said in _expected(element, f"plugin.{names[element.name]}", first):
-            checks += break_expression("    assert ", said, "    ")
+    for element in plugin.elements:
+        for condition in _expected(element, f"plugin.{names[element.name]}", first):
+            checks += break_expression("    assert ", condition, "    ")
     is_approximate = any("approx(" in line for line in checks)
     return _fill_template(
-        "plugin_test.py.j2", wanted=wanted, world=_world(wanted), checks=checks, is_approximate=is_approximate
+        "plugin_test.py.j2", plugin=plugin, world=_world(plugin), checks=checks, is_approximate=is_approximate
     )
 
 
 def _expected(element: Element, attribute: str, owner: Params | None) -> list[str]:
-    """What the test expects of an attribute: what the element `owner` has, or else what the code says."""
+    """Return the conditions that a test asserts on an attribute: values in `owner`, else the defaults of the code."""
     if element.name.startswith("@"):
         text = owner.attributes.get(element.name[1:]) if owner else None
         return [f"{attribute} == {quote_text(element.values[0] if text is None else text)}"]
@@ -234,9 +235,9 @@ def _expected(element: Element, attribute: str, owner: Params | None) -> list[st
     if element.kind == "block":
         inside = here[0] if here else None
         return [
-            said
+            condition
             for child in element.children
-            for said in _expected(child, f"{attribute}[{quote_text(child.name)}]", inside)
+            for condition in _expected(child, f"{attribute}[{quote_text(child.name)}]", inside)
         ]
     return [_equal(element, attribute, here[0].value.strip() if here else element.values[0])]
 
@@ -253,54 +254,54 @@ def _equal(element: Element, attribute: str, text: str) -> str:
     return f"{attribute} == {quote_text(text)}"
 
 
-def _world(wanted: NewPlugin) -> str:
-    """A small world in which the plugin hangs as in the file."""
-    if wanted.plugins:
-        plugin = _xml(wanted.plugins[0].params, wanted.plugins[0].name, wanted.filename)
+def _world(plugin: NewPlugin) -> str:
+    """Return a small world with the plugin attached as in the file."""
+    if plugin.plugins:
+        element = _xml(plugin.plugins[0].params, plugin.plugins[0].name, plugin.filename)
     else:
-        body = "".join(f"<{e.name}>{escape(e.values[0])}</{e.name}>" for e in wanted.elements)
-        plugin = f'<plugin name="{wanted.module}" filename={quote_attribute(wanted.filename)}>{body}</plugin>'
-    return _fill_template("plugin_world.sdf.j2", wanted=wanted, plugin=plugin)
+        body = "".join(f"<{e.name}>{escape(e.values[0])}</{e.name}>" for e in plugin.elements)
+        element = f'<plugin name="{plugin.module}" filename={quote_attribute(plugin.filename)}>{body}</plugin>'
+    return _fill_template("plugin_world.sdf.j2", plugin=plugin, element=element)
 
 
 def _xml(params: Params, name: str, filename: str) -> str:
-    """A plugin's element as a file has it."""
+    """Return a plugin's element as XML."""
 
-    def one(node: Params, indent: str) -> str:
+    def element_xml(node: Params, indent: str) -> str:
         attributes = "".join(f" {key}={quote_attribute(value)}" for key, value in node.attributes.items())
-        inside = "".join(one(child, indent + "  ") for child in node.children)
+        inside = "".join(element_xml(child, indent + "  ") for child in node.children)
         text = escape(node.value) + (f"{inside}\n{indent}" if inside else "")
         return f"\n{indent}<{node.name}{attributes}>{text}</{node.name}>"
 
-    lines = "".join(one(child, "      ") for child in params.children if ":" not in child.name)
+    lines = "".join(element_xml(child, "      ") for child in params.children if ":" not in child.name)
     return f"<plugin name={quote_attribute(name)} filename={quote_attribute(filename)}>{lines}\n    </plugin>"
 
 
 def quote_attribute(text: str) -> str:
-    """A text as an attribute of XML."""
+    """Return a text as an XML attribute value in quotes."""
     return f'"{escape(text)}"'
 
 
 _FILE_EXISTS = "SK-PLUGIN-074"
 
 
-def write_plugins(wanted: Sequence[NewPlugin], folder: Path, *, overwrite: bool = False) -> list[Path]:
-    """Writes each plugin and its test; all or nothing.
+def write_plugins(plugins: Sequence[NewPlugin], folder: Path, *, overwrite: bool = False) -> list[Path]:
+    """Write each plugin and its test; no file if one exists already.
 
     Returns:
-        The files, in the order of writing.
+        Written files, in the order of writing.
 
     Raises:
-        InputError: SK-PLUGIN-074 a file is there already.
+        InputError: SK-PLUGIN-074 a file exists already or cannot be written.
     """
     files: dict[Path, str] = {}
-    for one in wanted:
-        path = folder / Path(*one.module.split(".")).with_suffix(".py")
-        files[path] = plugin_text(one)
-        files[folder / f"test_{one.module.replace('.', '_')}.py"] = test_text(one)
-    there = [str(path) for path in files if path.exists()]
-    if there and not overwrite:
-        raise InputError(f"{_FILE_EXISTS} there already: {', '.join(there)}; --force replaces", _FILE_EXISTS)
+    for plugin in plugins:
+        path = folder / Path(*plugin.module.split(".")).with_suffix(".py")
+        files[path] = plugin_text(plugin)
+        files[folder / f"test_{plugin.module.replace('.', '_')}.py"] = test_text(plugin)
+    existing = [str(path) for path in files if path.exists()]
+    if existing and not overwrite:
+        raise InputError(f"{_FILE_EXISTS} already exists: {', '.join(existing)}; --force replaces", _FILE_EXISTS)
     for path, text in files.items():
         try:
             path.parent.mkdir(parents=True, exist_ok=True)

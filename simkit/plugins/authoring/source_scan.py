@@ -1,7 +1,7 @@
-"""Find what a class's source reads from `Params` and which topics and services it opens, where it says so literally.
+"""Scanner for parameters, topics and services that appear as literals in the source of a plugin class.
 
-The source is parsed and nothing of it runs. Methods of the class and of those above it are looked through, and the
-functions of their modules that they call. A name that only a run knows appears as `{hole}`.
+The source is parsed and does not run. The scan covers methods of the class and its bases, and the functions of their
+modules that these methods call. A name that only a run knows appears as a placeholder `{hole}`.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ _DEEPEST: Final = 12
 
 @dataclass
 class _Function:
-    """A function's syntax, its module, its lines, and what its local names and the class's attributes are set to."""
+    """Syntax tree of a function, with its module, its lines and the assignments to its local names."""
 
     node: ast.FunctionDef
     module: ModuleType
@@ -61,7 +61,7 @@ class _Function:
 
     @property
     def blocks(self) -> frozenset[str]:
-        """Names of the plugin's parameters: that of `load`'s or `configure`'s argument too."""
+        """Names of the variables that hold the plugin's parameters, including the argument of `load` or `configure`."""
         arguments = [argument.arg for argument in self.node.args.args]
         is_hook = self.node.name in ("load", "prepare", "configure")
         return frozenset(
@@ -70,25 +70,25 @@ class _Function:
 
 
 def scan(cls: type, parent: str) -> Facts:
-    """What the source of a class reads and opens.
+    """Return the parameters, topics and services in the source of a class.
 
     Args:
-        cls: the class.
-        parent: what a plugin of it hangs on, for the names of topics.
+        cls: class to scan.
+        parent: kind of entity that its plugins are attached to, for the names of topics.
     """
     return _Scan(parent).run([c for c in reversed(cls.__mro__) if c not in Plugin.__mro__])
 
 
 def scan_function(function: object) -> Facts:
-    """What a function reads."""
+    """Return the parameters, topics and services in the source of a function."""
     return _Scan("model").run([function]) if isinstance(function, FunctionType) else Facts()
 
 
 class _Scan:
-    """One look through a class.
+    """Scan of one class.
 
     Args:
-        parent: the kind of entity that `parent` stands for.
+        parent: kind of entity that the name `parent` refers to.
     """
 
     def __init__(self, parent: str) -> None:
@@ -117,7 +117,7 @@ class _Scan:
                 if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
                     self._call(node, node.func)
         above = {p.path[:-1] for p in self._parameters}
-        # of elements that are listed and have nothing inside, the texts count
+        # a repeated element without children is read as text
         read = [replace(p, kind="text") if p.repeated and p.path not in above else p for p in self._parameters]
         return Facts(merged(read), merged_topics(self._topics), tuple(dict.fromkeys(self._services)))
 
@@ -195,7 +195,7 @@ class _Scan:
         )
 
     def _path(self, node: ast.expr, depth: int = 0) -> tuple[str, ...] | None:
-        """The elements above what a block reads: none for the plugin's own; None where it is no block."""
+        """Return the path of the elements above a block: empty for the plugin's own block; None for other objects."""
         if (
             isinstance(node, ast.Call)
             and isinstance(node.func, ast.Attribute)
@@ -211,7 +211,7 @@ class _Scan:
         return () if name in self._function.blocks else None
 
     def _instead(self, args: list[ast.expr]) -> tuple[str, ...]:
-        """The element whose value is another's default."""
+        """Return the element whose value is the default of another element."""
         for arg in args:
             node = self._assigned(arg) or arg
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in _READERS:
@@ -222,7 +222,7 @@ class _Scan:
     # ------------------------------------------------------------------ topics
 
     def _topic(self, node: ast.expr, depth: int = 0) -> tuple[str, tuple[str, ...]]:
-        """A topic's name, and the elements that change it."""
+        """Return a topic's name, and the elements that change it."""
         if depth > _DEEPEST:
             return "{topic}", ()
         if isinstance(node, ast.BoolOp):
@@ -259,7 +259,7 @@ class _Scan:
         return None
 
     def _value(self, node: ast.expr, depth: int = 0) -> Any:
-        """The value of an expression; a text with a hole where only a run knows it."""
+        """Return the value of an expression; a text has placeholders for values that only a run knows."""
         if isinstance(node, ast.JoinedStr):
             parts = [part.value if isinstance(part, ast.FormattedValue) else part for part in node.values]
             return "".join(_shown(self._value(part, depth + 1)) for part in parts)
@@ -307,12 +307,12 @@ def _parsed(function: FunctionType) -> _Function | None:
 
 
 def _named_functions(function: _Function) -> Iterator[FunctionType]:
-    """The functions, and the methods of classes, of its own module that a function calls by name."""
+    """Yield the functions, and the methods of classes, of its own module that a function calls by name."""
     for node in ast.walk(function.node):
         if isinstance(node, ast.Call):
             target = _constant(node.func, function.module)
             module = function.module.__name__
-            # plugins of simkit declare what their helpers read
+            # plugins of simkit declare the options that their helpers read
             if getattr(target, "__module__", "") != module or module.startswith("simkit."):
                 continue
             if isinstance(target, FunctionType):
@@ -322,7 +322,7 @@ def _named_functions(function: _Function) -> Iterator[FunctionType]:
 
 
 def _assignments(node: ast.FunctionDef) -> Iterator[tuple[str, ast.expr]]:
-    """What each local name and attribute is first set to."""
+    """Yield each local name and attribute with its assigned values."""
     for inner in ast.walk(node):
         match inner:
             case ast.Assign(targets=[ast.Tuple(elts=names)], value=ast.Tuple(elts=values)):
@@ -339,7 +339,7 @@ def _assignments(node: ast.FunctionDef) -> Iterator[tuple[str, ast.expr]]:
 
 
 def _constant(node: ast.expr, module: ModuleType) -> Any:
-    """The value of an expression of literals and of names of the module; None where it is none."""
+    """Return the value of an expression of literals and of names of the module; None for any other expression."""
     match node:
         case ast.Constant(value=value):
             return value

@@ -1,5 +1,6 @@
-"""Which class stands behind a plugin of a file, and what it hangs on.
+"""Discovery of plugins: find the class of a plugin and attach its instance to an entity.
 
-A `ScenePlugin`, or a plugin made in Python, enters; an instance, attached to a world, a model, a visual or a sensor,
-leaves, or a diagnostic that says why there is none. Nothing of a user runs that is not installed or allowed.
+A plugin is a `ScenePlugin` from a file or an object created in Python. The result is an instance attached to a world, a
+model, a visual or a sensor, or else a diagnostic with the reason. Only installed or explicitly allowed code of a user
+is executed.
 """

@@ -1,4 +1,4 @@
-"""Find the plugin class behind a name in a file: the kinds that come with simkit, and those of users."""
+"""Lookup of plugin classes by their names in a file, among the plugins of simkit and of users."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from simkit.scene import ScenePlugin
 
 @functools.cache
 def plugin_kinds() -> Kinds[Plugin]:
-    """Every known plugin class by each normalised name it answers to; computed once, read-only."""
+    """Return every known plugin class by each of its normalised names; computed once, read-only."""
 
     def names(cls: type[Plugin]) -> list[str]:
         return [normalise(name) for name in (*cls.filenames, *cls.names)]
@@ -33,25 +33,25 @@ def find_plugin(
     diagnostics: Diagnostics | None = None,
     parent: ParentKind = "any",
 ) -> type[Plugin] | None:
-    """The class behind a plugin of a file, or None after a diagnostic that says why.
+    """Return the class of a plugin in a file, or None after a diagnostic with the reason.
 
-    A file can name only what is installed or allowed: kinds of simkit, classes of entry points in the group
-    `simkit.plugins` (by alias or as `module:Class`), and modules that lie in a folder of `plugin_paths`.
+    A file can only use installed or allowed classes: those of simkit, of entry points in the group `simkit.plugins` (by
+    alias or as `module:Class`), and of modules in a folder of `plugin_paths`.
 
     Args:
-        plugin: as read from the file.
+        plugin: plugin as read from the file.
         plugin_paths: folders whose modules the user allows (`--plugin-path`).
-        diagnostics: where problems go; the file's own where not given.
-        parent: what the plugin hangs on; a class for another kind of parent is left out. "any": a plugin that is
-            scoped to nothing hangs on the world, of others nothing is known.
+        diagnostics: collector of problems; that of the file by default.
+        parent: kind of entity that the plugin is attached to; a class for another kind is ignored. "any": a plugin with
+            an empty scope is attached to the world; the entity of other plugins is unknown.
     """
     found = diagnostics if diagnostics is not None else plugin.params.diagnostics
     kinds = plugin_kinds()
     cls = next((kinds[alias] for alias in aliases(plugin) if alias in kinds), None)
     if cls is None:
-        said = len(found)
+        reported = len(found)
         cls = find_user_plugin(plugin, plugin_paths, found)
-        if cls is None and len(found) == said:
+        if cls is None and len(found) == reported:
             _report_unknown(plugin, found)
     if parent == "any" and not plugin.scoped:
         parent = "world"
@@ -61,13 +61,13 @@ def find_plugin(
 
 
 def _fits(cls: type[Plugin], plugin: ScenePlugin, parent: ParentKind, diagnostics: Diagnostics) -> bool:
-    """Whether the class may hang where the file puts it; a warning says where it belongs."""
+    """Check whether the class supports this kind of parent; a warning names the right kind."""
     kinds = (cls.parent_kind,) if isinstance(cls.parent_kind, str) else cls.parent_kind
     if parent == "any" or "any" in kinds or parent in kinds:
         return True
     places = " or a ".join(kinds)
-    message = f"plugin {plugin.filename!r} belongs on a {places}, the file puts it on a {parent}; it is left out"
-    hint = f"move it into the {' or '.join(f'<{kind}>' for kind in kinds)} that it is for"
+    message = f"plugin {plugin.filename!r} belongs on a {places}, but is on a {parent}; it is ignored"
+    hint = f"move the <plugin> into the {' or '.join(f'<{kind}>' for kind in kinds)}"
     diagnostics.warning("SK-PLUGIN-007", message, plugin.where, hint)
     return False
 
@@ -78,8 +78,8 @@ def _report_unknown(plugin: ScenePlugin, diagnostics: Diagnostics) -> None:
     if reason is not None or GAZEBO_PLUGINS.intersection(names):
         named = f"plugin {plugin.filename!r} (name {plugin.name!r})"
         why = f": {reason}" if reason else ""
-        message = f"{named} is a Gazebo plugin that simkit does not have; it is left out{why}"
-        hint = "what there is: docs/catalogue.md; write it in Python: docs/writing_a_plugin.md"
+        message = f"{named} is a Gazebo plugin that simkit does not support; it is ignored{why}"
+        hint = "supported plugins: docs/catalogue.md; to write it in Python: docs/writing_a_plugin.md"
         diagnostics.warning("SK-PLUGIN-002", message, plugin.where, hint)
         return
     spelled = plugin_kinds().written
@@ -89,11 +89,11 @@ def _report_unknown(plugin: ScenePlugin, diagnostics: Diagnostics) -> None:
         hint = f"did you mean {cores[near]!r}?"
     else:
         nearest = closest(names[0] if names else "", spelled, least=0.0)
-        hint = f"no name is near; the closest known one is {spelled[nearest]!r}" if nearest else ""
-    message = f"unknown plugin {plugin.filename!r} (name {plugin.name!r}); it is left out"
+        hint = f"no known name is similar; the closest is {spelled[nearest]!r}" if nearest else ""
+    message = f"unknown plugin {plugin.filename!r} (name {plugin.name!r}); it is ignored"
     diagnostics.warning("SK-PLUGIN-001", message, plugin.where, hint)
 
 
 def _core(name: str) -> str:
-    """What of a normalised name is not the same in all of its family, and so says how near two are."""
+    """Return the part of a normalised name that distinguishes it within its family, for similarity."""
     return re.sub(r"^(gazebo_ros_|gz-sim-|gz::sim::systems::)|-system$", "", name) or name

@@ -1,6 +1,6 @@
-"""Make the sensors and plugins that a scene asks for; report those of unknown kinds, and add those of every world.
+"""Instances of the sensors and plugins of a scene, and of the plugins that every world has.
 
-Of a world that has errors, find what else is wrong with it.
+Unknown kinds are reported. For a file with errors, the module also finds further problems.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class _PluginSite:
-    """A plugin of the file: where it hangs, the scoped name of its model, and what gives its parent."""
+    """Plugin of a file with the kind and scene of its parent, the model's scoped name, and a handle getter."""
 
     plugin: ScenePlugin
     kind: ParentKind
@@ -42,36 +42,38 @@ class _PluginSite:
 
 
 _DocumentPosition = tuple[tuple[bool, int], ...]
-"""A place in a document that includes others: in the world, in the model, in the model inside it."""
+"""Position in a document that includes others: in the world, in the model, in the nested model."""
 
 
 def _model_positions(model: SceneModel) -> dict[str, tuple[_DocumentPosition, str | None]]:
-    """Where each model below one stands, and in which file, by scoped name."""
+    """Return document position and file of a model and of its nested models, by scoped name."""
     found: dict[str, tuple[_DocumentPosition, str | None]] = {}
 
-    def enter(one: SceneModel, outer: _DocumentPosition, file: str | None) -> None:
-        # what an include adds to the model stands in the outer file, and comes after what the model's own file says
-        place = (*outer, (bool(outer) and one.where.file == file, one.where.serial))
-        found[one.scoped] = place, one.where.file
-        for nested in one.models:
-            enter(nested, place, one.where.file)
+    def enter(model: SceneModel, outer: _DocumentPosition, file: str | None) -> None:
+        # plugins that an <include> adds are in the outer file and come after those of the model's own file
+        position = (*outer, (bool(outer) and model.where.file == file, model.where.serial))
+        found[model.scoped] = position, model.where.file
+        for nested in model.models:
+            enter(nested, position, model.where.file)
 
     enter(model, (), None)
     return found
 
 
-def _document_order(one: _PluginSite, places: Mapping[str, tuple[_DocumentPosition, str | None]]) -> _DocumentPosition:
-    where = one.plugin.where
-    place, file = places.get(one.model) or next(iter(places.values()))
-    return (*place, (where.file == file, where.serial))
+def _document_order(
+    site: _PluginSite, positions: Mapping[str, tuple[_DocumentPosition, str | None]]
+) -> _DocumentPosition:
+    where = site.plugin.where
+    position, file = positions.get(site.model) or next(iter(positions.values()))
+    return (*position, (where.file == file, where.serial))
 
 
 class InstanceMaker:
-    """Makes the instances of one world.
+    """Factory of the sensors and plugins of one world.
 
     Args:
-        builder: what sensors and plugins add to.
-        diagnostics: gets the problems.
+        builder: spec that sensors and plugins extend.
+        diagnostics: collector of the problems.
         plugin_paths: folders whose Python the user allows.
     """
 
@@ -79,20 +81,20 @@ class InstanceMaker:
         self._builder, self._diagnostics, self._plugin_paths = builder, diagnostics, plugin_paths
 
     def all_parts(self, world: SceneWorld, plugins: Iterable[object] = ()) -> dict[str, SensorsAndPlugins]:
-        """The sensors and plugins of every model, of the world (under no name), and those made in Python."""
+        """Return the sensors and plugins of every model and of the world (under ""), and those created in Python."""
         parts = {model.name: self.model_parts(model) for model in world.models}
         parts[""] = self.world_parts(world)
-        for hung in attach_plugins(plugins, world, self._diagnostics):
-            self._add_python_plugin(parts[hung.top], hung, 1)
+        for attachment in attach_plugins(plugins, world, self._diagnostics):
+            self._add_python_plugin(parts[attachment.top], attachment, 1)
         return parts
 
     def model_parts(self, model: SceneModel) -> SensorsAndPlugins:
-        """Sensors and plugins of a model, in document order."""
+        """Return the sensors and plugins of a model, in document order."""
         from simkit.runtime import SensorsAndPlugins
 
         parts, diagnostics = SensorsAndPlugins(), self._diagnostics
         found: list[_PluginSite] = []
-        places = _model_positions(model)
+        positions = _model_positions(model)
         for named in model.all_sensors():
             faults = diagnostics.error_count
             scene = add_preset_defaults(named, diagnostics)
@@ -115,33 +117,33 @@ class InstanceMaker:
             for visual in (v for link in nested.links for v in link.visuals if v.plugins):
                 parent = handle_getter("visual", visual.scoped)
                 found += [_PluginSite(p, "visual", visual, nested.scoped, parent) for p in visual.plugins]
-        for one in sorted(found, key=lambda one: _document_order(one, places)):
-            self._add_plugin(parts, one, _document_order(one, places))
+        for site in sorted(found, key=lambda site: _document_order(site, positions)):
+            self._add_plugin(parts, site, _document_order(site, positions))
         return parts
 
     def world_parts(self, world: SceneWorld) -> SensorsAndPlugins:
-        """The file's own plugins of a world, and those of every world."""
+        """Return the plugins of a world in the file, and those that every world has."""
         from simkit.runtime import SensorsAndPlugins
 
         parts = SensorsAndPlugins()
         report_sensors_without_model(world, self._diagnostics)
         for plugin in world.plugins:
-            one = _PluginSite(plugin, "world", world, "", lambda sim: sim)
-            self._add_plugin(parts, one, ((False, plugin.where.serial),))
+            site = _PluginSite(plugin, "world", world, "", lambda sim: sim)
+            self._add_plugin(parts, site, ((False, plugin.where.serial),))
         first, last = plugins_of_every_world(world)
-        for rank, instance in (*((0, one) for one in first), *((2, one) for one in last)):
-            hung = Attachment(instance, "", "", world, lambda sim: sim)
-            self._add_python_plugin(parts, hung, rank)
+        for rank, instance in (*((0, plugin) for plugin in first), *((2, plugin) for plugin in last)):
+            attachment = Attachment(instance, "", "", world, lambda sim: sim)
+            self._add_python_plugin(parts, attachment, rank)
         return parts
 
-    def _add_python_plugin(self, parts: SensorsAndPlugins, hung: Attachment, rank: int) -> None:
+    def _add_python_plugin(self, parts: SensorsAndPlugins, attachment: Attachment, rank: int) -> None:
         from simkit.runtime.engine.entity_structure import FROM_PYTHON
 
-        plugin = hung.plugin
-        plugin.hand_over(self._diagnostics, hung.scoped)
+        plugin = attachment.plugin
+        plugin.hand_over(self._diagnostics, attachment.scoped)
         plugin._order = (FROM_PYTHON, rank)
-        self._prepare_plugin(plugin, hung.scene)
-        parts.plugins.append((plugin, hung.parent))
+        self._prepare_plugin(plugin, attachment.scene)
+        parts.plugins.append((plugin, attachment.parent))
 
     def _make_sensor(self, scene: SceneSensor) -> Sensor | None:
         kinds, diagnostics = sensor_kinds(), self._diagnostics
@@ -152,37 +154,37 @@ class InstanceMaker:
             message = f"sensor {scene.scoped!r}: kind {scene.kind!r} is not simulated"
             diagnostics.warning("SK-SENSOR-001", message, scene.where, hint)
             return None
-        cls, place = kinds[scene.kind], "joint" if scene.on_joint else "link"
-        if place not in cls.belongs_to:
-            places = " or a ".join(cls.belongs_to)
-            message = f"sensor {scene.scoped!r}: {scene.kind} belongs to a {places}, not to a {place}"
-            hint = f"move it from the {place} {scene.parent!r} into a <{cls.belongs_to[0]}>"
-            diagnostics.warning("SK-SENSOR-024", f"{message}; it is left out, as in Gazebo", scene.where, hint)
+        cls, parent_kind = kinds[scene.kind], "joint" if scene.on_joint else "link"
+        if parent_kind not in cls.belongs_to:
+            allowed_kinds = " or a ".join(cls.belongs_to)
+            message = f"sensor {scene.scoped!r}: {scene.kind} belongs to a {allowed_kinds}, not to a {parent_kind}"
+            hint = f"move it from the {parent_kind} {scene.parent!r} into a <{cls.belongs_to[0]}>"
+            diagnostics.warning("SK-SENSOR-024", f"{message}; it is ignored, as in Gazebo", scene.where, hint)
             return None
         return cls(scene, diagnostics)
 
-    def _add_plugin(self, parts: SensorsAndPlugins, one: _PluginSite, place: _DocumentPosition) -> None:
+    def _add_plugin(self, parts: SensorsAndPlugins, site: _PluginSite, position: _DocumentPosition) -> None:
         from simkit.runtime.engine.entity_structure import FROM_FILE
 
-        plugin, scene, diagnostics = one.plugin, one.scene, self._diagnostics
-        cls = find_plugin(plugin, self._plugin_paths, diagnostics, one.kind)
+        plugin, scene, diagnostics = site.plugin, site.scene, self._diagnostics
+        cls = find_plugin(plugin, self._plugin_paths, diagnostics, site.kind)
         if cls is None:
             return
         if cls.drives and isinstance(scene, SceneModel) and scene.static:
-            message = f"plugin {plugin.name!r} drives joints of {scene.scoped!r}, which is static; it is left out"
-            diagnostics.warning("SK-PLUGIN-010", message, plugin.where, "nothing moves in a static model")
+            message = f"plugin {plugin.name!r} is ignored: it drives joints of {scene.scoped!r}, which is static"
+            diagnostics.warning("SK-PLUGIN-010", message, plugin.where, "remove <static>true</static> or the plugin")
             return
         instance = _make_plugin(cls, plugin)
         instance.source = plugin
-        instance._order = (FROM_FILE, place)
+        instance._order = (FROM_FILE, position)
         instance.plugin_paths = tuple(self._plugin_paths)
         faults = diagnostics.error_count
         self._prepare_plugin(instance, scene)
-        if diagnostics.error_count == faults:  # a faulty one would only say more of the same when it is loaded
-            parts.plugins.append((instance, one.parent))
+        if diagnostics.error_count == faults:  # loading a plugin with errors would repeat them
+            parts.plugins.append((instance, site.parent))
 
     def _prepare_plugin(self, instance: Plugin, scene: SceneEntity) -> None:
-        """Lets a plugin prepare the spec, and notes which servos and motors it adds."""
+        """Call the plugin's `prepare`, and record the servos and motors that it adds."""
         from simkit.runtime.engine.plugin_faults import call_plugin
 
         if instance._failed is not None or not instance.has_hook("prepare"):
@@ -195,26 +197,26 @@ class InstanceMaker:
             raise
         except Exception as error:
             if self._diagnostics.has_errors:
-                raise  # what was left out for its own fault may be missed here
-            instance._failed = "prepare", error  # met when it would be loaded, there is no simulation yet
+                raise  # the cause may be an entity that was dropped because of an earlier error
+            instance._failed = "prepare", error  # handled at load time, because no simulation exists yet
         after = [ref for record in builder.records.values() for ref in record.actuators]
         instance._actuators = tuple(ref for ref in after if id(ref) not in before)
 
 
 def _make_plugin(cls: type[Plugin], plugin: ScenePlugin) -> Plugin:
-    """An instance of a plugin's class."""
+    """Return an instance of a plugin's class."""
     from simkit.runtime.engine.plugin_faults import call_plugin
 
     try:
         made: Plugin = call_plugin(plugin, "__init__", cls)
-    except Exception as error:  # noqa: BLE001 - a plugin may raise anything; it is met when it would be loaded
+    except Exception as error:  # noqa: BLE001 - a plugin may raise anything; handled at load time
         made = cls.__new__(cls)
         made._failed = "__init__", error
     return made
 
 
 def report_unread(parts: Iterable[SensorsAndPlugins]) -> None:
-    """Warns about each parameter that its plugin or sensor did not read; a plugin that was not loaded read nothing."""
+    """Warn about each parameter that its sensor or loaded plugin did not read."""
     for part in parts:
         for sensor in part.sensors:
             sensor.scene.params.report_unread("SK-PARAM-003", f"sensor {sensor.scoped!r}")
@@ -224,7 +226,7 @@ def report_unread(parts: Iterable[SensorsAndPlugins]) -> None:
 
 
 def plugins_of_every_world(world: SceneWorld) -> tuple[tuple[Plugin, ...], tuple[Plugin, ...]]:
-    """Plugins that a world has by itself: those that run before the file's own, and those that run after them."""
+    """Return the plugins that every world has: those that run before the file's plugins, and those that run after."""
     from simkit.plugins.actors import ActorMover
     from simkit.plugins.world.world_services import WorldServices
 
@@ -235,7 +237,7 @@ def plugins_of_every_world(world: SceneWorld) -> tuple[tuple[Plugin, ...], tuple
 def add_actor_models(
     world: SceneWorld, find_file: Callable[[str, Path | None], Path | None], diagnostics: Diagnostics
 ) -> SceneWorld:
-    """The world with a model for every actor in it; what is wrong with an actor is reported."""
+    """Return the world with a model for every actor; problems with an actor are reported."""
     if not world.actors:
         return world
     from simkit.plugins.actors.actor_model import with_actors
@@ -245,11 +247,11 @@ def add_actor_models(
 
 FileFinder = Callable[[str, Path | None], Path | None]
 
-# what the engine says of a world that lacks its faulty parts
+# engine diagnostics caused by missing parts, which are misleading for a file with errors
 _ENGINE_CODES = frozenset(("SK-PHYS-023", "SK-PHYS-025", "SK-PHYS-028"))
 
 _MAX_MODELS_SEARCHED = 5000
-"""Models of a faulty world that are built to find more faults: the engine takes minutes for 20 000."""
+"""Limit of models for a search for further errors: the engine takes minutes for 20 000."""
 
 
 def make_all_parts(
@@ -259,11 +261,11 @@ def make_all_parts(
     plugin_paths: Sequence[Path],
     plugins: Sequence[object],
 ) -> dict[str, SensorsAndPlugins]:
-    """The sensors and plugins of every model, of the world (under no name), and those made in Python."""
+    """Return the sensors and plugins of every model and of the world (under ""), including those created in Python."""
     try:
         parts = InstanceMaker(builder, diagnostics, plugin_paths).all_parts(world, plugins)
     except Exception:
-        # What was left out for its own fault (a joint without a direction) may be asked for here.
+        # the cause may be an entity dropped because of an earlier error, such as a joint without an axis
         diagnostics.raise_if_errors()
         raise
     if diagnostics.has_errors:
@@ -274,10 +276,10 @@ def make_all_parts(
 def find_more_problems(
     world: SceneWorld, diagnostics: Diagnostics, plugin_paths: Sequence[Path], find_file: FileFinder
 ) -> None:
-    """What else is wrong with a file that has errors: it is built without its faulty parts, as far as that goes.
+    """Find further problems of a file with errors by building the world without its faulty parts.
 
-    So everything comes in one pass: meshes, inertias, and what plugins find in `prepare` and `load`. What only follows
-    from an error that is said already (a plugin's joint that was left out because of its own fault) is dropped.
+    One pass therefore reports everything: meshes, inertias, and problems found in `prepare` and `load`. A consequence
+    of an error already reported is dropped, such as a missing joint that was skipped because of its own error.
     """
     from simkit.compiler import SpecBuilder
 
@@ -289,7 +291,7 @@ def find_more_problems(
         builder.find_file = find_file
         parts = InstanceMaker(builder, diagnostics, plugin_paths).all_parts(world)
         _load_sound_parts(world, builder, parts, diagnostics)
-    except Exception:  # noqa: BLE001 - on a file with errors anything may be missing; what was found by then counts
+    except Exception:  # noqa: BLE001 - anything may be missing in a file with errors; keep what was found so far
         pass
     diagnostics.drop(d for d in tuple(diagnostics)[len(before) :] if d.code in _ENGINE_CODES or follows_from(d, before))
 
@@ -297,7 +299,7 @@ def find_more_problems(
 def _load_sound_parts(
     world: SceneWorld, builder: SpecBuilder, parts: dict[str, SensorsAndPlugins], diagnostics: Diagnostics
 ) -> None:
-    """What the sound parts of a faulty world say when they are compiled and loaded; nobody steps it."""
+    """Compile and load the valid parts of a world with errors to collect their diagnostics; no step runs."""
     from simkit.runtime import Simulation, WorldStructure
 
     before = tuple(diagnostics)
@@ -305,10 +307,10 @@ def _load_sound_parts(
         compiled = builder.compile()
         structure = WorldStructure(builder, compiled, {m.name: m for m in world.models}, frozenset(), parts)
         with suppress(LoadError), Simulation(world, structure, diagnostics, 0, _unused_callback, _unused_callback):
-            pass  # what is wrong with a plugin is said once all of them have been loaded
+            pass  # the constructor loads all plugins and reports their problems
         report_unread(parts.values())
     diagnostics.drop(d for d in tuple(diagnostics)[len(before) :] if d.code in _ENGINE_CODES)
 
 
 def _unused_callback(*_: object, **__: object) -> Any:
-    """Stands for what a simulation that nobody steps never asks for."""
+    """Replace callbacks that only a stepped simulation calls."""

@@ -1,4 +1,4 @@
-"""Attach plugins made in Python, `simkit.load(world, plugins=[…])`, to the world, a model, a visual or a sensor.
+"""Plugins created in Python, `simkit.load(world, plugins=[…])`, and the entities that they are attached to.
 
 A class, an object or a module with the hooks of gz-sim is a plugin as well, without the base class `Plugin`.
 """
@@ -20,22 +20,22 @@ if TYPE_CHECKING:
     from simkit.runtime import Simulation
 
 SceneEntity = SceneWorld | SceneModel | SceneSensor | SceneVisual
-"""What a plugin may hang on, as a file has it."""
+"""Entity of a scene that a plugin may be attached to."""
 
 ParentGetter = Callable[["Simulation"], object]
-"""Gives the handle of what a plugin hangs on."""
+"""Function from the simulation to the handle of a plugin's parent."""
 
 
 @dataclass(frozen=True)
 class Attachment:
-    """A plugin and what it hangs on.
+    """Plugin with the entity that it is attached to.
 
     Attributes:
-        plugin: the instance.
-        top: name of the top-level model that it is part of; empty for the world.
-        scoped: scoped name of what it hangs on; empty for the world.
-        scene: the resolved entity.
-        parent: gives the handle, once there is a simulation.
+        plugin: plugin instance.
+        top: name of the top-level model that contains the entity; empty for the world.
+        scoped: scoped name of the entity; empty for the world.
+        scene: resolved entity.
+        parent: function from the simulation to the entity's handle.
     """
 
     plugin: Plugin
@@ -46,20 +46,20 @@ class Attachment:
 
 
 def attach_plugins(made: Iterable[object], world: SceneWorld, diagnostics: Diagnostics) -> list[Attachment]:
-    """What each plugin hangs on: what it was handed over with, `("robot", MyPlugin())`, else the world, else the only.
+    """Attach each plugin to the named entity, `("robot", MyPlugin())`, else the world, else the only candidate.
 
     Args:
         made: plugins, or pairs of a scoped name and a plugin.
-        world: what there is.
-        diagnostics: gets errors; who has one is left out.
+        world: world with its entities.
+        diagnostics: collector of errors; a plugin with an error is skipped.
     """
     found = []
     for item in made:
-        name, one = item if isinstance(item, tuple) and len(item) == 2 else ("", item)
-        plugin = as_plugin(one, diagnostics)
-        hung = None if plugin is None else _attach_plugin(plugin, str(name), world, diagnostics)
-        if hung is not None:
-            found.append(hung)
+        name, candidate = item if isinstance(item, tuple) and len(item) == 2 else ("", item)
+        plugin = as_plugin(candidate, diagnostics)
+        attachment = None if plugin is None else _attach_plugin(plugin, str(name), world, diagnostics)
+        if attachment is not None:
+            found.append(attachment)
     return found
 
 
@@ -68,26 +68,28 @@ def _attach_plugin(plugin: Plugin, name: str, world: SceneWorld, diagnostics: Di
     may_be_world = "world" in kinds or "any" in kinds
     if may_be_world and name in ("", world.name):
         return Attachment(plugin, "", "", world, lambda sim: sim)
-    there = {scoped: hung for kind in kinds for scoped, hung in _candidates_of_kind(kind, plugin, world).items()}
+    candidates: dict[str, Attachment] = {}
+    for kind in kinds:
+        candidates.update(_candidates_of_kind(kind, plugin, world))
     shown = type(plugin).__name__
-    places = " or a ".join(kind for kind in kinds if kind != "any") or "model, visual or sensor"
-    listed = ", ".join(map(repr, list(there)[:12])) or "none"
+    allowed = " or a ".join(kind for kind in kinds if kind != "any") or "model, visual or sensor"
+    listed = ", ".join(map(repr, list(candidates)[:12])) or "none"
     if name:
-        if name not in there:
-            message = f"plugin {shown!r} is to hang on {name!r}, which is no {places}; there is {listed}"
-            diagnostics.error("SK-PLUGIN-021", message, hint=did_you_mean(name, there))
-        return there.get(name)
-    moving = [hung for hung in there.values() if not getattr(hung.scene, "static", False)]
-    fitting = [hung for hung in moving if not isinstance(hung.scene, SceneModel) or "::" not in hung.scoped]
+        if name not in candidates:
+            message = f"plugin {shown!r} cannot be attached to {name!r}: it is not a {allowed}; there is {listed}"
+            diagnostics.error("SK-PLUGIN-021", message, hint=did_you_mean(name, candidates))
+        return candidates.get(name)
+    moving = [a for a in candidates.values() if not getattr(a.scene, "static", False)]
+    fitting = [a for a in moving if not isinstance(a.scene, SceneModel) or "::" not in a.scoped]
     if len(fitting) == 1:
         return fitting[0]
-    message = f"plugin {shown!r} belongs on a {places}, and there is not exactly one to hang it on: {listed}"
-    diagnostics.error("SK-PLUGIN-021", message, hint=f'say which: plugins=[("name", {shown}(...))]')
+    message = f"plugin {shown!r} belongs on a {allowed}, and there is not exactly one candidate: {listed}"
+    diagnostics.error("SK-PLUGIN-021", message, hint=f'name the entity: plugins=[("name", {shown}(...))]')
     return None
 
 
 def _candidates_of_kind(kind: str, plugin: Plugin, world: SceneWorld) -> Mapping[str, Attachment]:
-    """Everything of a kind that a plugin might hang on, by scoped name."""
+    """Return every entity of a kind that a plugin might be attached to, by scoped name."""
     found: dict[str, Attachment] = {}
     entities: Iterable[SceneEntity]
     for top in world.models:
@@ -101,12 +103,12 @@ def _candidates_of_kind(kind: str, plugin: Plugin, world: SceneWorld) -> Mapping
 
 
 def handle_getter(kind: str, scoped: str) -> ParentGetter:
-    """What gives the handle of a model, a visual or a sensor."""
+    """Return a function from the simulation to the handle of a model, a visual or a sensor."""
     return lambda sim: getattr(sim, kind)(scoped)
 
 
 def as_plugin(made: object, diagnostics: Diagnostics, where: Where = NOWHERE) -> Plugin | None:
-    """A plugin of what was handed over; None after an error that says what may be."""
+    """Return a plugin for an object of a user; None after an error that lists the allowed objects."""
     if isinstance(made, Plugin):
         return made
     if inspect.isclass(made) and issubclass(made, Plugin) and not inspect.isabstract(made):
@@ -120,7 +122,7 @@ def as_plugin(made: object, diagnostics: Diagnostics, where: Where = NOWHERE) ->
 
 
 def as_class(found: object) -> type[Plugin] | None:
-    """The class of plugins that a class, or a module with gz's hooks, stands for; None where it is no plugin."""
+    """Return the plugin class for a class, or for a module with gz's hooks; None if it is not a plugin."""
     if inspect.isclass(found) and issubclass(found, Plugin):
         return None if inspect.isabstract(found) else found
     if not (isinstance(found, ModuleType) or inspect.isclass(found)) or not has_hooks(found):
@@ -134,14 +136,14 @@ def as_class(found: object) -> type[Plugin] | None:
 
 
 def has_hooks(made: object) -> bool:
-    """Whether a class, an object or a module has one of gz's hooks, or the function that gives a system."""
+    """Check whether a class, an object or a module has a hook of gz, or the function `get_system`."""
     if isinstance(made, Plugin) or (inspect.isclass(made) and issubclass(made, Plugin)):
         return False
     return any(callable(getattr(made, name, None)) for name in (*HOOKS, "get_system"))
 
 
 def system_of(made: Any) -> object:
-    """The object whose hooks are called: what `get_system` gives, an instance of the class, or the thing itself."""
+    """Return the object whose hooks are called: result of `get_system`, instance of the class, or `made` itself."""
     if inspect.isclass(made):
         return made()
     has_own = any(callable(getattr(made, name, None)) for name in HOOKS)
@@ -149,7 +151,7 @@ def system_of(made: Any) -> object:
 
 
 def describe_allowed_plugins() -> str:
-    """What may be a plugin, in words."""
+    """Return a description of the objects that may be plugins."""
     return f"a class derived from simkit's Plugin with a load method, or one with hooks of gz ({', '.join(HOOKS)})"
 
 

@@ -1,4 +1,4 @@
-"""List the plugins that come with Gazebo, and say why simkit leaves some of them out: `unsupported_plugins.toml`."""
+"""Plugins of Gazebo, and the reasons why simkit does not support some of them: `unsupported_plugins.toml`."""
 
 from __future__ import annotations
 
@@ -30,4 +30,4 @@ def _reasons_by_name() -> dict[str, str]:
 
 
 UNSUPPORTED_REASONS: Final = MappingProxyType(_reasons_by_name())
-"""Normalised names (`simkit.plugins.normalise`) of libraries and of gz classes, and why they are left out."""
+"""Reasons by normalised name (`simkit.plugins.normalise`) of library or gz class."""

@@ -1,4 +1,4 @@
-"""Find plugins that a user wrote: in entry points and in the folders that the user allows, nowhere else."""
+"""Lookup of plugins written by users: only in entry points and in folders that the user allows."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _CLASS = re.compile(r"^(?P<module>[A-Za-z_][\w.]*):(?P<name>[A-Za-z_]\w*)$")
 
 
 def find_user_plugin(plugin: ScenePlugin, paths: Sequence[Path], diagnostics: Diagnostics) -> type[Plugin] | None:
-    """The class that `module:Class`, `file.py` or a library alias stands for, if it is installed or allowed."""
+    """Return the class for `module:Class`, `file.py` or a library alias, if it is installed or allowed."""
     if _CLASS.match(plugin.filename):
         return _find_by_class_name(plugin, paths, diagnostics)
     if plugin.filename.endswith(".py"):
@@ -43,7 +43,7 @@ def _find_by_class_name(plugin: ScenePlugin, paths: Sequence[Path], diagnostics:
                 module = _import_file(match["module"], file, plugin, diagnostics)
                 return _checked_class(getattr(module, match["name"], None), plugin, diagnostics) if module else None
     message = f"plugin {plugin.filename!r}: no module {match['module']!r} in an entry point or under the plugin paths"
-    diagnostics.warning("SK-PLUGIN-001", f"{message}; it is left out", plugin.where, _allow_hint(paths))
+    diagnostics.warning("SK-PLUGIN-001", f"{message}; it is ignored", plugin.where, _allow_hint(paths))
     return None
 
 
@@ -55,34 +55,34 @@ def _find_by_file(plugin: ScenePlugin, paths: Sequence[Path], diagnostics: Diagn
             if module is None:
                 return None
             classes = _classes_of(module)
-            wanted = [c for c in classes if c.__name__ == plugin.name] or classes
-            if len(wanted) == 1:
-                return as_class(wanted[0])
+            matching = [c for c in classes if c.__name__ == plugin.name] or classes
+            if len(matching) == 1:
+                return as_class(matching[0])
             whole = None if any(issubclass(c, Plugin) for c in classes) else as_class(module)
             if whole is not None:
                 return whole
             listed = ", ".join(c.__name__ for c in classes) or "none with a load method"
-            message = f"{plugin.filename!r} must have one plugin class, or one called {plugin.name!r}; it has: {listed}"
+            message = f"{plugin.filename!r} needs one plugin class, or one named {plugin.name!r}; it has: {listed}"
             diagnostics.error("SK-PLUGIN-008", message, plugin.where)
             return None
-    message = f"plugin file {plugin.filename!r} is not under a plugin path; it is left out"
+    message = f"plugin file {plugin.filename!r} is not under a plugin path; it is ignored"
     diagnostics.warning("SK-PLUGIN-001", message, plugin.where, _allow_hint(paths))
     return None
 
 
 def _find_by_alias(plugin: ScenePlugin, paths: Sequence[Path], diagnostics: Diagnostics) -> type[Plugin] | None:
-    """Looks among the names of entry points, then for the classes' own in modules directly in the allowed folders."""
-    wanted = set(aliases(plugin))
+    """Search the names of entry points, then the plugin classes of modules directly in the allowed folders."""
+    names = set(aliases(plugin))
     for point in entry_points_of(ENTRY_POINT_GROUP):
-        if normalise(point.name) in wanted:
+        if normalise(point.name) in names:
             return _load_entry_point(point, plugin, diagnostics)
     for folder in paths:
         for file in sorted(folder.glob("*.py")):
-            if not _is_inside(file, folder) or not wanted & _string_literals(file):
-                continue  # only what claims the name is run
+            if not _is_inside(file, folder) or not names & _string_literals(file):
+                continue  # import only files that contain the name
             module = _import_file(file.stem, file, plugin, diagnostics)
             for cls in _classes_of(module) if module else ():
-                if wanted & set(map(normalise, (*getattr(cls, "filenames", ()), *getattr(cls, "names", ())))):
+                if names & set(map(normalise, (*getattr(cls, "filenames", ()), *getattr(cls, "names", ())))):
                     return as_class(cls)
     return None
 
@@ -98,7 +98,7 @@ def _load_entry_point(point: EntryPoint, plugin: ScenePlugin, diagnostics: Diagn
 
 
 def _string_literals(file: Path) -> set[str]:
-    """Every text literal of a Python file as a normalised plugin name; the file is read, not run."""
+    """Return every text literal of a Python file as a normalised plugin name; the file is parsed, not run."""
     try:
         tree = ast.parse(file.read_bytes(), str(file))
     except (SyntaxError, ValueError):
@@ -112,7 +112,7 @@ def _is_inside(file: Path, folder: Path) -> bool:
 
 
 def _import_file(name: str, file: Path, plugin: ScenePlugin, diagnostics: Diagnostics) -> object | None:
-    """The module at `file`, under a name of its own so that it shadows nothing."""
+    """Import `file` under a unique module name, so that it hides no other module."""
     key = f"simkit_user_plugins.{file.resolve()}"
     if key in sys.modules:
         return sys.modules[key]
@@ -131,7 +131,7 @@ def _import_file(name: str, file: Path, plugin: ScenePlugin, diagnostics: Diagno
 
 
 def _classes_of(module: object) -> list[type]:
-    """The classes of a module that can be plugins; those with hooks of gz only where none derives from `Plugin`."""
+    """Return the plugin classes of a module; classes with gz's hooks only if none derives from `Plugin`."""
     own = [c for _, c in inspect.getmembers(module, inspect.isclass) if c.__module__ == getattr(module, "__name__", "")]
     derived = [c for c in own if issubclass(c, Plugin) and not inspect.isabstract(c)]
     if derived or callable(getattr(module, "get_system", None)):

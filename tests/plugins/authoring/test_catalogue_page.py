@@ -1,4 +1,4 @@
-"""The page of all plugin names says what the classes say, and whoever names a plugin that is left out is told why."""
+"""Page of all plugin names, which matches the classes, and the reasons for unsupported plugins."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from simkit.plugins.discovery.unsupported_plugins import UNSUPPORTED_REASONS
 PAGE = Path(__file__).resolve().parents[3] / "docs" / "catalogue.md"
 
 
-def test_the_page_is_written_from_the_classes() -> None:
+def test_the_page_is_up_to_date_with_the_classes() -> None:
     assert PAGE.read_text(encoding="utf-8") == page(), (
         "write it anew: python -m simkit.plugins.authoring.catalogue_page > docs/catalogue.md"
     )
 
 
-def test_nothing_is_both_there_and_left_out() -> None:
+def test_no_plugin_is_both_supported_and_unsupported() -> None:
     assert sorted(set(UNSUPPORTED_REASONS) & set(plugin_kinds())) == []
 
 
-def test_a_plugin_that_is_left_out_is_reported_with_the_reason() -> None:
+def test_an_unsupported_plugin_is_reported_with_the_reason() -> None:
     text = """<sdf version="1.9"><world name="w">
       <plugin filename="gz-sim-thruster-system" name="gz::sim::systems::Thruster"/>
       <plugin filename="mine.so" name="ignition::gazebo::systems::LensFlare"/>

@@ -1,4 +1,4 @@
-"""What a plugin reads and opens: what it declares, and what its source says literally."""
+"""Facts about a plugin: its declared options and endpoints, and the literals of its source."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def test_a_default_that_is_another_element_names_it() -> None:
     assert (turn.default, turn.instead) == (1.0, ("speed",))
 
 
-def test_the_unit_is_what_the_comment_the_description_or_the_name_says() -> None:
+def test_the_unit_comes_from_the_comment_the_description_or_the_name() -> None:
     facts = facts_of(Everything)
     assert parameter(facts, "reach").unit == "m"
     assert parameter(facts, "damping").unit == "N·m·s/rad" and parameter(facts, "damping").live
@@ -91,7 +91,7 @@ def test_the_unit_is_what_the_comment_the_description_or_the_name_says() -> None
     assert units["left_joint"] == ""
 
 
-def test_topics_services_and_actions_are_found_with_what_changes_their_names() -> None:
+def test_topics_services_and_actions_are_found_with_the_elements_that_name_them() -> None:
     facts = facts_of(Everything)
     out = topics(facts)["/{model}/out"]
     assert (out.types, out.published, out.latched) == (("std_msgs/msg/Float64",), True, True)
@@ -105,7 +105,7 @@ def test_topics_services_and_actions_are_found_with_what_changes_their_names() -
     ]
 
 
-def test_a_plugin_of_a_sensor_publishes_what_the_sensor_gives() -> None:
+def test_a_sensor_plugin_publishes_the_sensors_products() -> None:
     imu = facts_of(plugin_kinds()["gazebo_ros_imu_sensor"])
     assert topics(imu)["~/out"].types == ("sensor_msgs/msg/Imu",)
     bumper = facts_of(plugin_kinds()["gazebo_ros_bumper"])  # it asks the contact sensor to publish
@@ -123,7 +123,7 @@ class Derived(Base):
         params.number("more", math.inf, finite=False)
 
 
-def test_what_the_classes_above_read_is_found_too() -> None:
+def test_parameters_read_by_base_classes_are_found() -> None:
     facts = facts_of(Derived)
     assert [p.name for p in facts.parameters] == ["topic", "more"]
     assert list(topics(facts)) == ["from_base"]
@@ -143,7 +143,7 @@ class Brake(ModelPlugin):
         self._delay = params.number("delay", 0.0)  # [s]
 
 
-def test_declared_options_and_endpoints_come_with_what_the_source_says() -> None:
+def test_declared_options_and_endpoints_are_merged_with_the_source() -> None:
     facts = facts_of(Brake)
     assert [p.name for p in facts.parameters] == ["force", "wheel", "weak_force", "delay"]
     force, wheel, weak, delay = facts.parameters
@@ -154,7 +154,7 @@ def test_declared_options_and_endpoints_come_with_what_the_source_says() -> None
 
 
 class GzSystem:
-    """Written the gz-sim way."""
+    """System with the hooks of gz-sim."""
 
     def configure(self, entity: Any, sdf: Any, ecm: Any, event_manager: Any) -> None:
         self.gain, _ = sdf.get_double("gain", 2.5)
@@ -175,14 +175,14 @@ def test_systems_of_gz_are_read_in_configure() -> None:
     ]
 
 
-def test_every_plugin_can_be_read() -> None:
+def test_every_plugin_can_be_scanned() -> None:
     for cls in dict.fromkeys(plugin_kinds().values()):
         facts = facts_of(cls)
         assert len({p.path for p in facts.parameters}) == len(facts.parameters)
 
 
 @pytest.mark.parametrize("world", ["turtlebot3_world"])
-def test_what_a_run_asks_for_was_found_by_reading(world: str) -> None:
+def test_every_parameter_read_in_a_run_is_found_by_the_scan(world: str) -> None:
     common = {p.path[0] for p in common_facts().parameters}
     with simkit.load(world) as sim:
         read = [p for p in sim.engine.structure.all_plugins() if p.source is not None]

@@ -1,4 +1,4 @@
-"""How a name in a file finds its plugin class, and what is said when it does not."""
+"""Lookup of a plugin class by a name in a file, and the diagnostics of a failed lookup."""
 
 from __future__ import annotations
 
@@ -58,11 +58,11 @@ def test_a_plugin_is_found_by_library_or_by_class_name() -> None:
     assert by_class is not None and by_class.__name__ == "DiffDrive"
 
 
-def test_what_an_author_calls_a_plugin_does_not_choose_it() -> None:
+def test_the_name_attribute_does_not_select_the_class() -> None:
     assert find_plugin(named("libmine.so", "solar_sensor")) is None
 
 
-def test_every_kind_derives_from_one_of_the_parents_and_writes_load() -> None:
+def test_every_kind_derives_from_a_base_class_and_has_load() -> None:
     for name, cls in plugin_kinds().items():
         kinds = (cls.parent_kind,) if isinstance(cls.parent_kind, str) else cls.parent_kind
         assert kinds and set(kinds) <= {"world", "model", "visual", "sensor", "any"}, name
@@ -84,20 +84,22 @@ def test_an_unknown_plugin_is_a_warning_with_the_closest_known_name() -> None:
     assert "'libgazebo_ros_diff_drive.so'" in found.hint
 
 
-def test_a_name_far_from_all_still_gets_the_closest() -> None:
+def test_a_dissimilar_name_still_gets_the_closest_name() -> None:
     plugin = named("libgazebo_tutorials.so")
     assert find_plugin(plugin) is None
     (found,) = plugin.params.diagnostics
-    assert "libgazebo_tutorials.so" in found.message and "closest known one" in found.hint
+    assert "libgazebo_tutorials.so" in found.message and found.hint.startswith(
+        "no known name is similar; the closest is "
+    )
 
 
-def test_a_plugin_of_gazebo_that_is_missing_here_is_called_so() -> None:
+def test_an_unsupported_gazebo_plugin_is_reported_as_such() -> None:
     plugin = named("gz-sim-thruster-system", "gz::sim::systems::Thruster")
     assert find_plugin(plugin) is None
     assert said(plugin) == [("SK-PLUGIN-002", "warning")]
 
 
-def test_a_plugin_on_the_wrong_kind_of_parent_is_left_out_and_told_where_it_belongs() -> None:
+def test_a_plugin_on_the_wrong_kind_of_parent_is_ignored_with_the_right_kind() -> None:
     plugin = named("gz-sim-diff-drive-system")
     assert find_plugin(plugin, parent="world") is None
     (found,) = plugin.params.diagnostics
@@ -143,13 +145,13 @@ def test_a_module_and_class_run_only_from_an_allowed_folder(tmp_path: Path) -> N
     assert found is not None and found.__name__ == "Hello"
 
 
-def test_an_importable_module_is_not_run_because_a_file_names_it() -> None:
+def test_an_importable_module_named_by_a_file_is_not_run() -> None:
     plugin = named("antigravity:Plugin")
     assert find_plugin(plugin) is None
     assert said(plugin) == [("SK-PLUGIN-001", "warning")]
 
 
-def test_an_alias_is_looked_for_in_allowed_folders(tmp_path: Path) -> None:
+def test_an_alias_is_found_in_allowed_folders(tmp_path: Path) -> None:
     (tmp_path / "hello.py").write_text(HELLO)
     (tmp_path / "other.py").write_text("raise SystemExit('was run')")
     found = find_plugin(named("libmy_hello.so"), [tmp_path])
@@ -165,7 +167,7 @@ def test_a_module_that_raises_on_import_is_an_error_with_its_reason(tmp_path: Pa
     assert "ZeroDivisionError" in found.message
 
 
-def test_a_class_that_is_no_plugin_is_an_error(tmp_path: Path) -> None:
+def test_a_class_that_is_not_a_plugin_is_an_error(tmp_path: Path) -> None:
     (tmp_path / "mine.py").write_text("class Thing: pass")
     plugin = named("mine:Thing")
     assert find_plugin(plugin, [tmp_path]) is None
@@ -175,7 +177,7 @@ def test_a_class_that_is_no_plugin_is_an_error(tmp_path: Path) -> None:
 # ------------------------------------------------------------------ the base class
 
 
-def test_a_hook_that_is_not_written_is_not_there() -> None:
+def test_a_hook_that_is_not_overridden_does_not_count() -> None:
     class Reader(ModelPlugin):
         def load(self, parent: object, params: Params) -> None: ...
         def after_step(self) -> None: ...
