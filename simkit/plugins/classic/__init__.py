@@ -1,6 +1,6 @@
-"""Plugins of Gazebo Classic, one kind a file, in the spellings of ROS 2 and of ROS 1.
+"""Plugins of Gazebo Classic, one kind per file, in the spellings of ROS 2 and of ROS 1.
 
-What a kind shares with its twin of gz lies in `drives`, `joints`, `fluids` or beside this folder; what several kinds
-of Classic share lies here (`camera_settings`, `server_services` with the tables of its services). No kind of gz is
-imported but as a base.
+Code shared with the corresponding plugin of gz is in `drives`, `joints`, `fluids` or `simkit/plugins`. Code shared by
+several kinds of Classic is here: `camera_settings`, and `server_services` with its tables of services. A kind of gz is
+imported only as a base class.
 """

@@ -1,9 +1,9 @@
 """Ackermann drive of Gazebo Classic: `libgazebo_ros_ackermann_drive.so`.
 
-A command is the speed (`linear.x`) and the angle of a wheel in the middle (`angular.z`). Controllers push the
-steering's joints and the rear wheels' at every update, for one step, as Classic's do: their gains are of efforts of a
-single step. Where it differs from Gazebo Classic on purpose: `<publish_steerangle>`, of which its documentation speaks,
-is there.
+A command has the speed (`linear.x`) and the angle of a virtual wheel between the front wheels (`angular.z`). As in
+Classic, PID controllers push the steering joints and the rear wheels at every update, for a single step. Their gains
+are therefore those of efforts in a single step. One deliberate difference to Gazebo Classic: `<publish_steerangle>`
+works here, while Classic only documents it.
 """
 
 from __future__ import annotations
@@ -64,10 +64,9 @@ class GazeboRosAckermannDriveOptions(Options):
 
 
 class GazeboRosAckermannDrive(CommandedDrive):
-    """Steers the front wheels and drives the rear ones of a car from `cmd_vel`; odometry is the world's truth.
+    """Steers the front wheels and drives the rear wheels of a car from `cmd_vel`; odometry is the ground truth.
 
-    The distance between the axles, that between the front wheels and the rear wheels' radius are those of the wheels'
-    collisions, as in Classic.
+    The wheel base, the track width and the radius of the rear wheels come from the wheels' collisions, as in Classic.
     """
 
     endpoints = (
@@ -90,7 +89,7 @@ class GazeboRosAckermannDrive(CommandedDrive):
         self._wheels = wheels
         if len(wheels) == len(_WHEELS) and len(self._turned) == len(_STEERING):
             self._measure(scene, wheels, params)
-        self._hand = self._prepare_hand(scene, params, builder)
+        self._steering_wheel = self._add_steering_wheel_servo(scene, params, builder)
 
     def _read(self, params: Params) -> None:
         options = self.options.read_all()
@@ -101,7 +100,7 @@ class GazeboRosAckermannDrive(CommandedDrive):
             "linear_velocity": _pid_numbers(options.linear_velocity_pid_gain, options.linear_velocity_i_range),
         }
         x, y = (params.number(f"covariance_{axis}", 1e-5, minimum=0) for axis in "xy")
-        self._told = DriveOutputOptions(
+        self._output_options = DriveOutputOptions(
             odometry_topic="odom",
             odometry_frame=options.odometry_frame,
             base_frame=options.robot_base_frame,
@@ -113,18 +112,18 @@ class GazeboRosAckermannDrive(CommandedDrive):
         )
 
     def _measure(self, scene: SceneModel, wheels: list[SceneJoint], params: Params) -> None:
-        """Radius of the rear wheels, and where all are."""
+        """Measure the radius of the rear wheels, the track width and the wheel base."""
         links = {link.scoped: link for link in scene.all_links()}
         found = [links[joint.child_link] for joint in wheels]
         bare = [link.name for link in found if not link.collisions]
         if bare:
             names = ", ".join(map(repr, bare))
-            params.error("SK-PLUGIN-093", f"the drive measures its wheels, and {names} has no collision")
+            params.error("SK-PLUGIN-093", f"the drive needs the size of its wheels, but {names} has no collision")
             return
         shape = found[3].collisions[0].geometry
         if not isinstance(shape, (Cylinder, Sphere)):
             kind = type(shape).__name__.lower()
-            message = f"the drive measures its wheels, and that of {found[3].name!r} is a {kind}"
+            message = f"the drive needs the radius of its wheels, but the collision of {found[3].name!r} is a {kind}"
             params.error("SK-PLUGIN-093", f"{message}; allowed is a cylinder or a sphere")
             return
         self._radius = shape.radius
@@ -136,10 +135,10 @@ class GazeboRosAckermannDrive(CommandedDrive):
         ]
         self._base = math.dist(*middles)
         if self._base <= 0.0:
-            params.error("SK-PLUGIN-093", "the front and the rear wheels are at the same place; there is no wheel base")
+            params.error("SK-PLUGIN-093", "the front and the rear wheels are at the same position; the wheel base is 0")
 
-    def _prepare_hand(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> ActuatorRef | None:
-        """The servo of the driver's wheel, where there is one; Classic's default is no demand."""
+    def _add_steering_wheel_servo(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> ActuatorRef | None:
+        """Add a servo for the steering wheel joint, if there is one; Classic's default name is optional."""
         name = self.options.steering_wheel_joint
         there = any(name in (joint.name, joint.scoped) for joint in scene.all_joints())
         if not (params.has("steering_wheel_joint") or there):
@@ -155,14 +154,14 @@ class GazeboRosAckermannDrive(CommandedDrive):
         self._pids = {name: Pid.of(numbers) for name, numbers in self._gains.items()}
         self._distance = 0.0
         self._place = self._true.place()[:2]
-        self._outputs = DriveOutputs(self, self._told, [*self._turned, *self._wheels])
+        self._outputs = DriveOutputs(self, self._output_options, [*self._turned, *self._wheels])
         self._distance_out = self.advertise("distance", _FLOAT) if self.options.publish_distance else None
         self._angle_out = self.advertise("steerangle", _FLOAT) if self.options.publish_steerangle else None
 
     # ------------------------------------------------------------------ commands
 
     def before_step(self) -> None:
-        """Pushes the joints for one step."""
+        """Push the joints for one step."""
         options, elapsed = self.options, self._elapsed()
         if elapsed <= 0.0:
             elapsed = max(self.period, 1.0 / options.update_rate) if options.update_rate > 0 else self.period
@@ -172,22 +171,22 @@ class GazeboRosAckermannDrive(CommandedDrive):
         push = self._pids["linear_velocity"].update(rear_right.velocity - target, elapsed)
         most = options.max_steer
         angle = max(-most, min(most, math.copysign(angle, angle * math.copysign(1.0, speed))))
-        wanted = steering_angles(math.tan(angle), self._base, self._width)
-        for axis, name, goal in zip((left, right), ("left_steering", "right_steering"), wanted, strict=True):
+        goals = steering_angles(math.tan(angle), self._base, self._width)
+        for axis, name, goal in zip((left, right), ("left_steering", "right_steering"), goals, strict=True):
             axis.push(self._pids[name].update(axis.position - goal, elapsed))
         for axis in (rear_left, rear_right):
             axis.push(push)
-        if self._hand is not None:
-            self.sim.engine.set_control(self._hand, self._steered() / self._ratio)
+        if self._steering_wheel is not None:
+            self.sim.engine.set_control(self._steering_wheel, self._steered() / self._ratio)
 
     def _steered(self) -> float:
-        """Angle of the steering, in the mean of both wheels [rad]."""
+        """Return the mean steering angle of both wheels [rad]."""
         return (self._axes[0].position + self._axes[1].position) / 2
 
     # ------------------------------------------------------------------ readings
 
     def after_step(self) -> None:
-        """Odometry, transforms, distance and angle."""
+        """Publish odometry, transforms, distance and steering angle."""
         place = self._true.place()[:2]
         self._distance += math.dist(place, self._place)
         self._place = place
@@ -199,13 +198,13 @@ class GazeboRosAckermannDrive(CommandedDrive):
 
 
 def _pid_numbers(gains: tuple[float, float, float], bounds: tuple[float, ...]) -> dict[str, float]:
-    """Gains (p, i, d), bounds of the integral (least, most), and of the output where there are some."""
+    """Return gains (p, i, d) and bounds of the integral (minimum, maximum) in the form that `Pid.of` reads."""
     (p, i, d), (least, most) = gains, bounds
     numbers = {"p_gain": p, "i_gain": i, "d_gain": d, "i_min": least, "i_max": most}
     return {**numbers, "cmd_min": 0.0, "cmd_max": -1.0, "cmd_offset": 0.0}
 
 
 def _centre(link: SceneLink) -> tuple[float, float, float]:
-    """Of the first collision, in the world at load time [m]."""
+    """Return the centre of a link's first collision, in the world at load time [m]."""
     x, y, z = (link.pose_world @ link.collisions[0].pose_link).position.tolist()
     return x, y, z

@@ -1,4 +1,4 @@
-"""The bumper of Gazebo Classic: `libgazebo_ros_bumper.so`, with its ROS 2 and its ROS 1 spelling."""
+"""Bumper of Gazebo Classic: `libgazebo_ros_bumper.so`, with its ROS 2 and its ROS 1 spelling."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class GazeboRosBumperOptions(Options):
 
 
 class GazeboRosBumper(SensorPlugin):
-    """Publishes the contacts of its sensor on `bumper_states`, at the sensor's rate, also when there are none.
+    """Publishes the contacts of its sensor on `bumper_states` at the sensor's rate, also if there are none.
 
     Positions, normals and wrenches are in the frame of the link `<frame_name>` (ROS 1: `<frameName>`), or in the world.
     """
@@ -42,5 +42,5 @@ class GazeboRosBumper(SensorPlugin):
             return
         if not parent.publish_states(topic, frame):
             links = [scoped.rsplit("::", 1)[-1] for scoped in self.sim.engine.names.links]
-            message = f"plugin {self.name!r}: there is no link {frame!r}; contacts are told in the world until there is"
+            message = f"plugin {self.name!r}: there is no link {frame!r}; contacts use the world frame until it exists"
             params.diagnostics.warning("SK-SENSOR-042", message, self.where, did_you_mean(frame, links))

@@ -1,4 +1,4 @@
-"""The buoyancy of Gazebo Classic: `libBuoyancyPlugin.so`."""
+"""Buoyancy of Gazebo Classic: `libBuoyancyPlugin.so`."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ if TYPE_CHECKING:
     from simkit.scene import SceneModel
 
 WATER: Final = 999.1026
-"""[kg/m³], at 15 °C."""
+"""Density of water at 15 °C [kg/m³]."""
 
 
 class BuoyancyPluginLinkOptions(Options):
-    """The `<link>` block."""
+    """Options in the `<link>` block."""
 
     name: str = text(element="@name")
     volume: float = number(minimum=1e-15, maximum=1000000000000000.0, required=True)
@@ -40,9 +40,9 @@ class BuoyancyPluginOptions(Options):
 
 
 class BuoyancyPlugin(BuoyancyBase, ModelPlugin):
-    """The links of the model float, wholly under water, by the volume of their collisions or by numbers of the file.
+    """Makes the links of the model float, fully submerged, by the volume of their collisions or by values in the file.
 
-    `<link name="…">` with `<center_of_volume>` (link frame) and `<volume>` says what the shapes do not.
+    `<link name="…">` with `<center_of_volume>` (link frame) and `<volume>` overrides the volume of the collisions.
     """
 
     options = OptionsOf(BuoyancyPluginOptions)
@@ -51,21 +51,21 @@ class BuoyancyPlugin(BuoyancyBase, ModelPlugin):
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         self._fluid = Fluid((self.options.fluid_density,))
         self._links = [link.scoped for link in scene.all_links()]
-        self._given: dict[str, Hull] = {}
-        for given in self.options.link:
-            element = given.params
-            link = find_link(scene, given.name, element) if given.name else None
-            if not given.name:
-                element.error("SK-PARAM-001", '<link> needs name="…": the link whose volume it is')
-            hull = Hull(given.volume, np.array(given.center_of_volume))
+        self._hulls_in_file: dict[str, Hull] = {}
+        for block in self.options.link:
+            element = block.params
+            link = find_link(scene, block.name, element) if block.name else None
+            if not block.name:
+                element.error("SK-PARAM-001", '<link> needs name="…": the name of the link')
+            hull = Hull(block.volume, np.array(block.center_of_volume))
             if link is not None:
-                self._given.setdefault(link.scoped, hull)
+                self._hulls_in_file.setdefault(link.scoped, hull)
 
     def load(self, parent: Model, params: Params) -> None:
         self.start()
 
     def find_hulls(self) -> Mapping[str, Sequence[Hull]]:
-        """Of the model's links; numbers of the file before shapes."""
+        """Return the hulls of the model's links; values in the file override collisions."""
         links = self.sim.engine.names.links
-        given = self._given
-        return {n: [given[n]] if n in given else self._yard.hulls(links[n].scene) for n in self._links if n in links}
+        hulls = self._hulls_in_file
+        return {n: [hulls[n]] if n in hulls else self._yard.hulls(links[n].scene) for n in self._links if n in links}

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from simkit.sensors.cameras.rendered_camera import RenderedCamera
     from simkit.sensors.cameras.rgbd_camera import RgbdCamera
 
-_NEAREST = 0.4  # [m] where <min_depth> says nothing
+_NEAREST = 0.4  # [m], default of <min_depth>
 
 
 class GazeboRosCameraOptions(CameraOptions):
@@ -33,10 +33,10 @@ class GazeboRosCamera(CameraPlugin):
     """Publishes its camera below `<camera_name>` (by default the sensor's name), in the link's frame.
 
     Topics: `image_raw` and `camera_info`; of a depth camera also `depth/image_raw`, `depth/camera_info` and `points`,
-    whose axes are optical; of a multicamera both below each camera's name. `<hack_baseline>` [m] stands in the
-    projection matrix (of a multicamera: of all but the left one). `<triggered>` true takes a picture for each message
-    on `image_trigger`, at the sensor's next due time. `<min_depth>` and `<max_depth>` [m] bound the depths. Written as
-    for ROS 1: `<cameraName>`, `<imageTopicName>`, `<cameraInfoTopicName>`, `<frameName>`, `<updateRate>`, ….
+    whose axes are optical; of a multicamera both below each camera's name. `<hack_baseline>` [m] sets the baseline in
+    the projection matrix (of a multicamera: of all but the left camera). `<triggered>` true takes a picture for each
+    message on `image_trigger`, at the sensor's next due time. `<min_depth>` and `<max_depth>` [m] bound the depths. ROS
+    1 spelling: `<cameraName>`, `<imageTopicName>`, `<cameraInfoTopicName>`, `<frameName>`, `<updateRate>`, ….
     """
 
     endpoints = (
@@ -68,13 +68,13 @@ class GazeboRosCamera(CameraPlugin):
 
 
 class TriggeredCameraOptions(CameraOptions):
-    """Options of the cameras that are triggered by a message."""
+    """Options of the cameras that a message triggers."""
 
     trigger_topic_name: str = text("image_trigger", element="triggerTopicName")
 
 
 class GazeboRosTriggeredCamera(CameraPlugin):
-    """ROS 1: as `libgazebo_ros_camera.so`, a picture after a message on `<triggerTopicName>` (`image_trigger`)."""
+    """Publishes a picture after each message on `<triggerTopicName>` (`image_trigger`), else as the ROS 1 camera."""
 
     options = OptionsOf(TriggeredCameraOptions)
     filenames = ("libgazebo_ros_triggered_camera.so",)
@@ -94,7 +94,7 @@ class ProsilicaOptions(CameraOptions):
 
 
 class GazeboRosProsilica(CameraPlugin):
-    """ROS 1: streams as `libgazebo_ros_camera.so` does; it cannot be polled, since there are no services."""
+    """Streams pictures as the ROS 1 camera does; polling is not supported, because its services do not exist."""
 
     options = OptionsOf(ProsilicaOptions)
     filenames = ("libgazebo_ros_prosilica.so",)
@@ -103,17 +103,17 @@ class GazeboRosProsilica(CameraPlugin):
         if camera_settings.is_camera(self, parent, "camera"):
             names = CameraNames(self, parent, is_ros_1=True)
             connect_camera(self, parent, names, image_topics(names))
-            why = "there are no services; the camera streams"
+            why = "its services do not exist; the camera streams"
             camera_settings.report_without_effect(self, {"pollServiceName": why, "trigger_mode": why})
 
 
 def image_topics(names: CameraNames) -> dict[str, str]:
-    """Product -> topic of a camera with one picture."""
+    """Return the topic of each product of a camera with one picture."""
     return {"image": names.topic(names.image), "camera_info": names.topic(names.info)}
 
 
 def connect_camera(plugin: CameraPlugin, sensor: RenderedCamera, names: CameraNames, topics: dict[str, str]) -> None:
-    """Names a camera's topics and frame, and reads what all camera plugins do with it."""
+    """Set the topics and the frame of a camera, and apply the parameters that all camera plugins share."""
     baseline = plugin.options.hack_baseline
     camera_settings.name_frame(plugin, sensor)
     if names.is_ros_1:
@@ -126,10 +126,13 @@ def connect_camera(plugin: CameraPlugin, sensor: RenderedCamera, names: CameraNa
 
 
 def connect_stereo(plugin: CameraPlugin, sensor: MultiCamera, names: CameraNames, folder: Callable[[str], str]) -> None:
-    """The same for a multicamera.
+    """Set the topics and the frame of a multicamera, and apply the parameters that all camera plugins share.
 
     Args:
-        folder: gives the name that a camera's topics are below, of the camera's name.
+        plugin: camera plugin.
+        sensor: multicamera.
+        names: names of topics.
+        folder: function from a camera's name to the namespace of its topics.
     """
     topics = {}
     for eye in sensor.eyes:
@@ -139,12 +142,12 @@ def connect_stereo(plugin: CameraPlugin, sensor: MultiCamera, names: CameraNames
 
 
 def connect_trigger(plugin: CameraPlugin, sensor: RenderedCamera, names: CameraNames) -> None:
-    """ROS 1: pictures only after a message on `<triggerTopicName>`."""
+    """Take pictures only after a message on `<triggerTopicName>`, as in ROS 1."""
     topic = TriggeredCameraOptions(plugin.params).trigger_topic_name
     sensor.trigger_on(names.topic(topic), camera_settings.EMPTY)
 
 
-_CUTOFF, _CUTOFF_MAX = 0.4, 5.0  # [m] where the file says nothing
+_CUTOFF, _CUTOFF_MAX = 0.4, 5.0  # [m], defaults
 _NOT_DRAWN = {
     "reflectanceTopicName": "there is no reflectance",
     "normalsTopicName": "there are no normals",
@@ -193,12 +196,12 @@ class Ros1DepthCamera(CameraPlugin):
 
 
 class GazeboRosDepthCamera(Ros1DepthCamera):
-    """Publishes a depth camera below `<cameraName>`, in `<frameName>` or the link's frame, which are optical frames.
+    """Publishes a depth camera below `<cameraName>` in an optical frame: `<frameName>` or the link's frame.
 
     Topics: `<imageTopicName>` (image_raw), `<cameraInfoTopicName>` (camera_info), `<depthImageTopicName>`
     (depth/image_raw), `<depthImageCameraInfoTopicName>` (depth/camera_info), `<pointCloudTopicName>` (points). Depths
-    of at most `<pointCloudCutoff>` [m] (0.4) are NaN, in the image and in the cloud; with `<useDepth16UC1Format>` the
-    image is in millimetres, and 0 there. Otherwise as `libgazebo_ros_camera.so` in ROS 1.
+    of at most `<pointCloudCutoff>` [m] (0.4) are NaN, in the image and in the cloud. With `<useDepth16UC1Format>` the
+    image is in millimetres, and these depths are 0. Other parameters are those of `libgazebo_ros_camera.so` in ROS 1.
     """
 
     options = OptionsOf(GazeboRosDepthCameraOptions)
@@ -210,7 +213,10 @@ class GazeboRosDepthCamera(Ros1DepthCamera):
 
 
 class GazeboRosOpenniKinect(Ros1DepthCamera):
-    """The same, with NaN from `<pointCloudCutoffMax>` [m] (5) on as well."""
+    """Publishes a depth camera like `libgazebo_ros_depth_camera.so`.
+
+    Depths beyond `<pointCloudCutoffMax>` [m] (5) are NaN as well.
+    """
 
     options = OptionsOf(KinectOptions)
     filenames = ("libgazebo_ros_openni_kinect.so",)
@@ -221,7 +227,7 @@ class GazeboRosOpenniKinect(Ros1DepthCamera):
 
 
 def connect_depth_camera(plugin: Ros1DepthCamera, sensor: RgbdCamera, near: float, far: float) -> None:
-    """Publishes a depth camera, with depths between `near` and `far` [m] only."""
+    """Publish a depth camera whose depths are limited to `near` to `far` [m]."""
     options = plugin.options
     in_millimetres = options.use_depth_16_uc_1_format
     if not camera_settings.is_camera(plugin, sensor, "depth", "points"):
@@ -243,8 +249,8 @@ def connect_depth_camera(plugin: Ros1DepthCamera, sensor: RgbdCamera, near: floa
 class GazeboRosMultiCamera(CameraPlugin):
     """Publishes the cameras below `<cameraName>/left` and `<cameraName>/right`, others below their own name.
 
-    What is left and right is in the cameras' names. `<hackBaseline>` [m] stands in the right one's projection matrix,
-    else what the cameras' poses give.
+    The names of the cameras contain `left` and `right`. `<hackBaseline>` [m] sets the baseline in the projection matrix
+    of the right camera; the default follows from the cameras' poses.
     """
 
     filenames = ("libgazebo_ros_multicamera.so",)
@@ -254,7 +260,7 @@ class GazeboRosMultiCamera(CameraPlugin):
 
 
 class GazeboRosTriggeredMultiCamera(CameraPlugin):
-    """The same, with pictures after a message on `<triggerTopicName>` (`image_trigger`) below `<cameraName>`."""
+    """Publishes a multicamera after each message on `<triggerTopicName>` (`image_trigger`) below `<cameraName>`."""
 
     options = OptionsOf(TriggeredCameraOptions)
     filenames = ("libgazebo_ros_triggered_multicamera.so",)
@@ -266,7 +272,7 @@ class GazeboRosTriggeredMultiCamera(CameraPlugin):
 
 
 def connect_multicamera(plugin: CameraPlugin, sensor: MultiCamera) -> CameraNames | None:
-    """Names the topics; None after an error where the sensor is no multicamera."""
+    """Set the topics of a multicamera; return None after an error if the sensor is not a multicamera."""
     if not hasattr(sensor, "eyes"):
         plugin.refuse(sensor, "multicamera")
         return None

@@ -20,25 +20,25 @@ if TYPE_CHECKING:
     from simkit.sensors.cameras.rendered_camera import RenderedCamera
 
 EMPTY: Final = ("std_msgs/msg/Empty", "std_msgs/msg/Bool")
-"""What triggers a camera of Classic; the first is Classic's own."""
+"""Types of messages that trigger a camera of Classic; the first is Classic's own."""
 
 _OF_ROS_1 = (
     "cameraName", "imageTopicName", "cameraInfoTopicName", "frameName", "updateRate", "hackBaseline", "robotNamespace",
     "triggerTopicName",
 )  # fmt: skip
-_CROPPED = "pictures are drawn beyond their edges before the lens bends them, so nothing is black and K holds"
-CROP = {"border_crop": _CROPPED, "borderCrop": _CROPPED, "CxPrime": "Classic reads it and tells <Cx>"}
-"""Parameters of every camera plugin that change nothing, and why."""
+_CROPPED = "pictures are rendered beyond their edges before distortion, so they have no black border and K is valid"
+CROP = {"border_crop": _CROPPED, "borderCrop": _CROPPED, "CxPrime": "Classic reads it and publishes <Cx>"}
+"""Parameters of every camera plugin that have no effect, with the reasons."""
 
 _MOST_PIXELS = 1e9
 FARTHEST = 1e30  # [m]; depths have 32 bits
 _MOST_BENT = 1e3
-_FEW_PIXELS = 0.51  # of a principal point; Classic's own default is half a pixel off the picture's middle
-_LITTLE = 1e-3  # of a focal length, and of a distortion: people write 1e-8 for none
+_FEW_PIXELS = 0.51  # tolerance of a principal point; Classic's default is half a pixel off the picture's centre
+_LITTLE = 1e-3  # tolerance, relative for a focal length, absolute for a distortion: files use 1e-8 for none
 
 
 class CameraOptions(Options):
-    """Options of every camera plugin: of ROS 2, and in camelCase of ROS 1."""
+    """Options of every camera plugin: in the spelling of ROS 2, and in camelCase of ROS 1."""
 
     camera_name: str = text()
     camera_name_ros_1: str = text(element="cameraName")
@@ -78,11 +78,11 @@ class CameraPlugin(SensorPlugin):
 
 
 class CameraNames:
-    """Where a camera's messages go.
+    """Topics of a camera's messages.
 
     Attributes:
-        is_ros_1: whether the file is written for ROS 1: camelCase, and no `<ros>`.
-        camera: topics are below it; empty where a ROS 1 file names none.
+        is_ros_1: whether the file uses the ROS 1 spelling: camelCase, and no `<ros>`.
+        camera: namespace of the topics; empty if a ROS 1 file has none.
     """
 
     def __init__(self, plugin: CameraPlugin, sensor: RenderedCamera, *, is_ros_1: bool | None = None) -> None:
@@ -96,22 +96,22 @@ class CameraNames:
         self.info = options.camera_info_topic_name
 
     def topic(self, name: str, below: str = "") -> str:
-        """The absolute topic of a name below the camera's (and another name below that); `/name` is absolute."""
+        """Return the absolute topic of a name below the camera's namespace and `below`; `/name` is absolute already."""
         if name.startswith("/"):
             return self._ros.topic(name)
         return self._ros.topic("/".join(part.strip("/") for part in (self.camera, below, name) if part.strip("/")))
 
 
-def is_camera(plugin: SensorPlugin, sensor: RenderedCamera, wanted: str, product: str = "image") -> bool:
-    """Whether the sensor has what a plugin publishes; reported where it has not."""
+def is_camera(plugin: SensorPlugin, sensor: RenderedCamera, required_kind: str, product: str = "image") -> bool:
+    """Check whether the sensor has the product that a plugin publishes, and report an error if not."""
     fits = hasattr(sensor, "set_baseline") and product in sensor.products()
     if not fits:
-        plugin.refuse(sensor, wanted)
+        plugin.refuse(sensor, required_kind)
     return fits
 
 
 def name_frame(plugin: CameraPlugin, sensor: RenderedCamera) -> None:
-    """`<frame_name>` of all messages, else the link's name; an `<optical_frame_id>` of the camera then stays."""
+    """Set the frame of all messages to `<frame_name>`, else to the link's name, and keep `<optical_frame_id>`."""
     frame = (plugin.options.frame_name or plugin.options.frame_name_ros_1 or link_name(sensor)).lstrip("/")
     is_named = any(plugin.params.has(name) for name in ("frame_name", "frameName"))
     if is_named or not sensor.optical_frame_id:
@@ -121,18 +121,18 @@ def name_frame(plugin: CameraPlugin, sensor: RenderedCamera) -> None:
 
 
 def apply_update_rate(plugin: CameraPlugin, sensor: RenderedCamera) -> None:
-    """`<updateRate>` [Hz] of ROS 1 slows a sensor down; 0 is as fast as the sensor goes."""
+    """Lower a sensor's rate to `<updateRate>` [Hz] of ROS 1; 0 keeps the sensor's rate."""
     rate, _ = plugin.options.update_rate, plugin.options.always_on
     if rate > 0 and (sensor.update_rate == 0 or rate < sensor.update_rate):
         sensor.set_rate(rate)
 
 
 def override_intrinsics(plugin: CameraPlugin, sensor: RenderedCamera, *, is_ros_1: bool) -> None:
-    """What the plugin's parameters make `CameraInfo` say; pictures are the sensor's own business.
+    """Replace intrinsics in `CameraInfo` with those of the plugin's parameters; the pictures do not change.
 
-    `<focalLength>`, `<Cx>`, `<Cy>` (`<focal_length>`, `<cx>`, `<cy>` in ROS 2) [px], 0 for the picture's own, and in
-    ROS 1 `<distortionK1>` … `<distortionT2>`. Classic's default for the principal point, (w+1)/2, is half a pixel off
-    the middle of its own pictures; it is told only in a world with Gazebo's quirks.
+    `<focalLength>`, `<Cx>`, `<Cy>` (`<focal_length>`, `<cx>`, `<cy>` in ROS 2) [px], 0 for the values of the picture,
+    and in ROS 1 `<distortionK1>` … `<distortionT2>`. Classic's default for the principal point, (w+1)/2, is half a
+    pixel off the centre of its own pictures. It is used only in a world with Gazebo's quirks.
     """
     params, options = plugin.params, plugin.options
     if is_ros_1:
@@ -157,14 +157,14 @@ def override_intrinsics(plugin: CameraPlugin, sensor: RenderedCamera, *, is_ros_
         )
 
     drawn = sensor.options.model
-    told = change(drawn)
-    if told != (drawn.info_model or drawn):
+    published = change(drawn)
+    if published != (drawn.info_model or drawn):
         sensor.override_camera_info(change)
-    _report_difference(params, drawn, told, names)
+    _report_difference(params, drawn, published, names)
 
 
 def _read_distortion(options: CameraOptions) -> dict[str, Any]:
-    """D of ROS 1, where it says something; `<autoDistortion>` takes the lens of the sensor."""
+    """Return the distortion of ROS 1, if it is not zero; `<autoDistortion>` uses the lens of the sensor."""
     found = {
         "k1": options.distortion_k1,
         "k2": options.distortion_k2,
@@ -177,23 +177,23 @@ def _read_distortion(options: CameraOptions) -> dict[str, Any]:
     return found
 
 
-def _report_difference(params: Params, drawn: CameraModel, told: CameraModel, names: Sequence[str]) -> None:
+def _report_difference(params: Params, drawn: CameraModel, published: CameraModel, names: Sequence[str]) -> None:
     off = []
-    if abs(told.fx - drawn.fx) > _LITTLE * drawn.fx:
-        off.append(f"<{names[0]}>{told.fx:g}, where the picture has {drawn.fx:g}")
-    for name, value, own in ((names[1], told.cx, drawn.cx), (names[2], told.cy, drawn.cy)):
+    if abs(published.fx - drawn.fx) > _LITTLE * drawn.fx:
+        off.append(f"<{names[0]}>{published.fx:g}, where the picture has {drawn.fx:g}")
+    for name, value, own in ((names[1], published.cx, drawn.cx), (names[2], published.cy, drawn.cy)):
         if abs(value - own) > _FEW_PIXELS:
             off.append(f"<{name}>{value:g}, where the picture has {own:g}")
-    if np.abs(told.coefficients - drawn.coefficients).max(initial=0.0) > _LITTLE:
+    if np.abs(published.coefficients - drawn.coefficients).max(initial=0.0) > _LITTLE:
         off.append("a distortion that the picture does not have")
     if off:
-        message = f"CameraInfo is made to say {'; '.join(off)}"
-        hint = "<horizontal_fov>, <lens><intrinsics> and <distortion> of the sensor draw and tell it"
+        message = f"CameraInfo differs from the picture: {'; '.join(off)}"
+        hint = "set <horizontal_fov>, <lens><intrinsics> and <distortion> of the sensor, which change both"
         params.diagnostics.warning("SK-SENSOR-122", message, params.where, hint)
 
 
 def read_depths(options: Options, near: str, far: str) -> tuple[float, float]:
-    """The nearest and the farthest depth [m], by the names of their fields; the far one must be beyond the near one."""
+    """Return the nearest and the farthest depth [m] from the named fields; the far depth must exceed the near depth."""
     fields = type(options).fields()
     found: float = getattr(options, near)
     last: float = getattr(options, far)
@@ -206,7 +206,7 @@ def read_depths(options: Options, near: str, far: str) -> tuple[float, float]:
 
 
 def report_without_effect(plugin: Plugin, names: dict[str, str]) -> None:
-    """Says once which of a plugin's parameters, each with its reason, change nothing here."""
+    """Report each of a plugin's parameters that has no effect, with the reason."""
     params = plugin.params
     for name, why in names.items():
         child = params.child(name)

@@ -1,4 +1,4 @@
-"""Base of Gazebo Classic's drives that take a speed and a turn from a topic."""
+"""Base of Gazebo Classic's drives that receive a forward speed and a turn rate on a topic."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ if TYPE_CHECKING:
 
 
 class CommandedDrive(ModelPlugin):
-    """A drive whose last command holds until the next."""
+    """Drive whose last command stays active until the next."""
 
     drives = True
     _canonical: str
 
     def start(self, parent: Model, topic: str, rate: float) -> None:
-        """Listens to commands, and has both hooks called at a rate [Hz]; to be called first in `load`."""
+        """Subscribe to commands, and set the rate of both hooks [Hz]; to be called first in `load`."""
         self.once = OneTimeWarnings(self)
         self.before_step_rate = self.after_step_rate = rate
         self._true = TrueMotion(parent, self.sim.link(self._canonical))

@@ -2,9 +2,9 @@
 
 ROS 1's skid steering with four wheels is `libgazebo_ros_skid_steer_drive.so`.
 
-Each wheel is a velocity servo limited to the wheel torque. Where it differs from Gazebo Classic on purpose: the
-acceleration ramp follows the commanded rim speed (Classic adds to it what the wheel still lacks, and winds up while a
-wheel is held), and an encoder twist is negative when the robot drives backwards.
+Each wheel is a velocity servo limited to the wheel torque. Deliberate differences to Gazebo Classic: the acceleration
+ramp follows the commanded rim speed (Classic adds the speed error, which winds up while a wheel is blocked), and an
+encoder twist is negative when the robot drives backwards.
 """
 
 from __future__ import annotations
@@ -58,12 +58,12 @@ if TYPE_CHECKING:
     from simkit.scene import SceneModel
 
 _ROS_1 = ("robotNamespace", "leftJoint", "rightJoint", "wheelSeparation", "wheelDiameter", "commandTopic", "updateRate")
-_CLOSE = 0.01  # rim speed [m/s] below which a wheel takes its target at once
+_CLOSE = 0.01  # rim speed error [m/s] below which a wheel jumps to its target
 
 
 @dataclass(frozen=True, slots=True)
 class Pair:
-    """Two opposite wheels: joint names, distance between them [m], radius [m]."""
+    """Opposite wheels: joint names, distance between them [m], radius [m]."""
 
     left: str
     right: str
@@ -72,7 +72,7 @@ class Pair:
 
 
 class CommonDiffDriveOptions(Options, abc.ABC):
-    """Options in either spelling, with what holds where a spelling has no element for it."""
+    """Options that both spellings share, with fixed values for elements that a spelling does not have."""
 
     command_topic: str = "cmd_vel"
     odometry_topic: str = "odom"
@@ -94,7 +94,7 @@ class CommonDiffDriveOptions(Options, abc.ABC):
     odometry_noise: OdometryNoiseOptions = block(OdometryNoiseOptions)
 
     def read_all(self) -> Self:
-        """Reads the pairs of wheels, then every other option, and the odometry's noise, our own."""
+        """Read the pairs of wheels, then every other option, and simkit's own noise of the odometry."""
         self.pairs = self._read_pairs()
         super().read_all()
         self.noise = odometry_noise(self.odometry_noise)
@@ -106,12 +106,12 @@ class CommonDiffDriveOptions(Options, abc.ABC):
 
     @property
     def from_encoders(self) -> bool:
-        """Whether the odometry is that of the wheels, not the world's truth."""
+        """True if the odometry comes from the wheels instead of the ground truth."""
         return self.odometry_source in (0, "0", "encoder")
 
     @property
     def tells_odom_tf(self) -> bool:
-        """Whether the odometry goes out as a transform."""
+        """True if the odometry is published as a transform."""
         return self.publish_odom_tf
 
 
@@ -141,7 +141,7 @@ class DiffDriveOptions(CommonDiffDriveOptions):
             allowed = f"allowed is one of each for each of {count} <num_wheel_pairs>"
             self.params.error("SK-PARAM-002", f"{found_text}, {allowed}")
             return ()
-        # Gazebo's default stands for each pair that the lists do not reach
+        # pairs beyond the end of a list get Gazebo's default
         separations = [*self.wheel_separations, *[0.34] * (len(left) - len(self.wheel_separations))]
         diameters = [*self.wheel_diameters, *[0.15] * (len(left) - len(self.wheel_diameters))]
         joined = zip(left, right, separations, diameters, strict=False)
@@ -173,33 +173,33 @@ class DiffDriveRos1Options(CommonDiffDriveOptions):
     def _read_pairs(self) -> tuple[Pair, ...]:
         left, right = self.left_joint, self.right_joint
         if self.legacy_mode:
-            # for files of before 2016, whose wheels were named the other way round
+            # files from before 2016 have swapped names of the wheels
             left, right = right, left
         return (Pair(left, right, self.wheel_separation, self.wheel_diameter / 2),)
 
     @property
     def tells_odom_tf(self) -> bool:
-        return self.publish_odom_tf and self.publish_odom  # Gazebo's <publishTf> is of both
+        return self.publish_odom_tf and self.publish_odom  # Gazebo's <publishTf> switches both
 
 
 def read_options(params: Params) -> CommonDiffDriveOptions:
-    """Reads either spelling; ROS 1's is taken where one of its names occurs and there is no `<ros>` block."""
+    """Read the options in either spelling; ROS 1's if one of its names occurs and there is no `<ros>` block."""
     if is_ros_1(params, _ROS_1):
         return DiffDriveRos1Options(params).read_all()
-    given = DiffDriveOptions(params).read_all()
-    for name, fixed in (("command_topic", given.command_topic), ("odometry_topic", given.odometry_topic)):
-        # the ROS 2 plugin has no such element; one that only repeats the name it uses anyway is no loss
+    options = DiffDriveOptions(params).read_all()
+    for name, fixed in (("command_topic", options.command_topic), ("odometry_topic", options.odometry_topic)):
+        # the ROS 2 plugin has no such element, but one that repeats the fixed name is harmless
         if any(c.name == name and c.value.strip("/") == fixed for c in params.children):
             params.child(name)
-    return given
+    return options
 
 
 class GazeboRosDiffDrive(CommandedDrive):
-    """Drives pairs of wheels from `cmd_vel`, and says where the robot went on `odom` and `/tf`.
+    """Drives pairs of wheels from `cmd_vel`, and publishes odometry on `odom` and `/tf`.
 
-    The last command holds until the next. With `<publish_ground_truth>` (simkit's own) the model's true pose in the
-    world goes out on `ground_truth/odom`, at the same instants as the odometry. With `<odometry_noise>` (simkit's own)
-    the odometry errs from either source, and tells the covariance that its wheels' errors add up to.
+    The last command stays active until the next. `<publish_ground_truth>` (simkit's own) publishes the model's true
+    pose on `ground_truth/odom`, at the same instants as the odometry. `<odometry_noise>` (simkit's own) adds errors to
+    either source; the covariance accumulates those of the wheels.
     """
 
     endpoints: ClassVar[tuple[Endpoint, ...]] = (
@@ -211,10 +211,10 @@ class GazeboRosDiffDrive(CommandedDrive):
     )
     option_types: ClassVar[tuple[type[Options], ...]] = (DiffDriveOptions, DiffDriveRos1Options)
     filenames = ("libgazebo_ros_diff_drive.so",)
-    is_level = False  # whether the odometry leaves out the height
+    is_level = False  # whether the height in the odometry is 0
 
     def read(self, params: Params) -> CommonDiffDriveOptions:
-        """The parameters, in the spelling that they are in."""
+        """Return the options, in the spelling of the file."""
         return read_options(params)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
@@ -249,7 +249,7 @@ class GazeboRosDiffDrive(CommandedDrive):
     # ------------------------------------------------------------------ commands
 
     def before_step(self) -> None:
-        """Moves each wheel's rim speed towards its target, by at most the acceleration limit."""
+        """Move each wheel's rim speed towards its target, by at most the acceleration limit."""
         (forward, turn), elapsed = self._command, self._elapsed()
         for index, pair in enumerate(self.options.pairs):
             for side, sign in ((0, -1.0), (1, 1.0)):
@@ -270,7 +270,7 @@ class GazeboRosDiffDrive(CommandedDrive):
     # ------------------------------------------------------------------ readings
 
     def after_step(self) -> None:
-        """Odometry, transforms and whatever else was asked for."""
+        """Publish odometry, transforms, ground truth and joint states."""
         options, now = self.options, self.sim.time_ns
         if self._erring is not None:
             self._err(self._erring)
@@ -292,7 +292,7 @@ class GazeboRosDiffDrive(CommandedDrive):
             self._states.publish_later(partial(joint_state_message, now, joint_readings(self._wheels)))
 
     def _measured(self) -> tuple[Pose, BodyTwist]:
-        """Pose and twist from the chosen source; the twist in the robot's own axes."""
+        """Return pose and twist from the chosen source; the twist is in the robot's own axes."""
         if self._erring is not None:
             reckoned, twist = self._erring.reckoning, self._erring.twist
             return (
@@ -304,7 +304,7 @@ class GazeboRosDiffDrive(CommandedDrive):
         return self._reckoning.pose, rolling_twist(self._wheels, pair.radius, pair.separation)
 
     def _start_erring(self) -> tuple[NoisyOdometry | None, EquivalentWheelAngles | None]:
-        """The odometry that errs, and the wheels that it is told of where its source is the world."""
+        """Return the noisy odometry, and the equivalent wheels if its source is the ground truth."""
         options, followed = self.options, None
         if options.noise is None:
             return None, None
@@ -325,7 +325,7 @@ class GazeboRosDiffDrive(CommandedDrive):
             erring.advance(left, right, elapsed, sideways)
 
     def _covariances(self) -> tuple[Vector, ...]:
-        """Those that the wheels' errors add up to, or the file's where they have no random ones."""
+        """Return the accumulated covariances of the wheels' errors, or the file's if there are no random errors."""
         erring = self._erring
         if erring is None or not erring.noise.wheel_variance:
             return (self._covariance,)
@@ -380,10 +380,10 @@ class SkidSteerOptions(CommonDiffDriveOptions):
 
 
 class GazeboRosSkidSteerDrive(GazeboRosDiffDrive):
-    """Drives two pairs of wheels from `<commandTopic>` (`cmd_vel`), both sides as a differential drive does.
+    """Drives two pairs of wheels from `<commandTopic>` (`cmd_vel`), both sides like a differential drive.
 
-    The odometry on `<odometryTopic>` (`odom`) is the model's true pose and twist in the plane: height zero, attitude
-    whole. With `<broadcastTF>` the pose goes out on `/tf` too, height and all. The last command holds until the next.
+    The odometry on `<odometryTopic>` (`odom`) is the model's true pose and twist in the plane, with height zero. With
+    `<broadcastTF>` the pose, with its height, is also on `/tf`. The last command stays active until the next.
     """
 
     endpoints = (

@@ -1,4 +1,4 @@
-"""Gazebo Classic's elevator: `libElevatorPlugin.so`, and with ROS's topic `libgazebo_ros_elevator.so`."""
+"""Elevator of Gazebo Classic: `libElevatorPlugin.so`, and with a ROS topic `libgazebo_ros_elevator.so`."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _AFTER: Final[dict[Phase, Phase]] = {
     "closing": "idle",
 }
 _LIFT: Final = (1e5, 1e5)
-"""[N/m, N·s/m] of the cabin's controller."""
+"""Gains of the cabin's controller [N/m, N·s/m]."""
 _DOOR: Final = (2.0, 1.0)
 _OPEN: Final = 1.0  # [m or rad]
 _CABIN_WITHIN: Final = 0.15  # [m]
@@ -51,15 +51,15 @@ class ElevatorPluginOptions(Options):
 
 
 class ElevatorPlugin(ModelPlugin):
-    """Takes the cabin to the floor whose number comes as text, with the door shut; opens it there, waits, and shuts it.
+    """Moves the cabin to the requested floor with the door closed; then opens the door, waits, and closes it.
 
-    Floors are `<floor_height>` apart from where the joint `<lift_joint>` is 0; `<door_joint>` is open at 1 and shut at
-    0. A command that comes while it is under way is left out, as in Gazebo. The topic is `~/elevator`, which is
-    `/gazebo/<world>/elevator`, or `<topic>`.
+    The command is the floor number as text. Floors are `<floor_height>` apart, starting where the joint `<lift_joint>`
+    is 0; `<door_joint>` is open at 1 and closed at 0. A command during a ride is ignored, as in Gazebo. The topic is
+    `~/elevator`, which is `/gazebo/<world>/elevator`, or `<topic>`.
 
-    Cabin and door are held by springs and dampers of Gazebo's strengths (10⁵ N/m and N·s/m, 2 N/m and 1 N·s/m). Gazebo
-    damps the change of the error, which throws the cabin when the floor changes, and loses the door's damping as time
-    goes on; here it is the speed that is damped. The wait is in simulated time, in Gazebo by the clock on the wall.
+    Springs and dampers of Gazebo's strengths hold cabin and door (10⁵ N/m and N·s/m, 2 N/m and 1 N·s/m). Gazebo damps
+    the change of the error, which throws the cabin when the floor changes, and its damping of the door fades over time.
+    Here the speed is damped. The wait is in simulated time; Gazebo uses wall-clock time.
     """
 
     endpoints = (listens("/gazebo/{world}/elevator", STRING, named_by=("topic",)),)
@@ -98,7 +98,7 @@ class ElevatorPlugin(ModelPlugin):
         self.open_topic(params)
 
     def open_topic(self, params: Params) -> None:
-        """Listens to what floor to go to."""
+        """Subscribe to the commands."""
         own = f"/gazebo/{self.sim.world.name}"
         topic = self.options.topic
         found = read_topic(params, "topic", f"{own}/elevator")
@@ -109,30 +109,30 @@ class ElevatorPlugin(ModelPlugin):
     def _on_floor(self, message: String) -> None:
         found = _FLOOR.match(message.data)
         if found is None or len(found[0]) > 9:
-            self.once.left_out("text", f"{message.data[:40]!r} is not the number of a floor; it is left out")
+            self.once.left_out("text", f"{message.data[:40]!r} is not a floor number; the command is ignored")
             return
         floor = int(found[0])
         if self._bottom is not None and floor < self._bottom:
-            self._beyond(floor, f"the lowermost is {self._bottom}")
+            self._beyond(floor, f"the lowest is {self._bottom}")
         elif self._top is not None and floor > self._top:
-            self._beyond(floor, f"the topmost is {self._top}")
+            self._beyond(floor, f"the highest is {self._top}")
         elif self._phase == "idle":
             self._floor = floor
             self._go("closing first")
 
-    def _beyond(self, floor: int, which: str) -> None:
-        self.once.left_out(f"floor {floor}", f"there is no floor {floor}, {which}; it is left out")
+    def _beyond(self, floor: int, limit: str) -> None:
+        self.once.left_out(f"floor {floor}", f"there is no floor {floor}, {limit}; the command is ignored")
 
     def before_step(self) -> None:
-        """Goes on where something has come to its end."""
+        """Start the next phase when the present phase has ended."""
         phase = self._phase
         if phase == "moving":
             is_over = abs(self._lift.position - self._floor * self._height) < _CABIN_WITHIN
         elif phase == "waiting":
             is_over = self.sim.time_ns >= self._until_ns
         else:
-            wanted = _OPEN if phase == "opening" else 0.0
-            is_over = abs(self._door.position - wanted) < _DOOR_WITHIN
+            target = _OPEN if phase == "opening" else 0.0
+            is_over = abs(self._door.position - target) < _DOOR_WITHIN
         if phase != "idle" and is_over:
             self._go(_AFTER[phase])
 
@@ -150,7 +150,7 @@ class ElevatorPlugin(ModelPlugin):
             self.sim.engine.reschedule()
 
     def _hold(self, number: int, position: float) -> None:
-        """Tells the cabin's servo (0) or the door's (1) where to be."""
+        """Set the target of the servo of the cabin (0) or the door (1)."""
         sim = self.sim
         sim.mj_data.ctrl[sim.engine.names.actuator(self._servos[number])] = position
         sim.engine.physics.changed(CONTROL)
@@ -164,14 +164,17 @@ class GazeboRosElevatorOptions(ElevatorPluginOptions):
 
 
 class GazeboRosElevator(ElevatorPlugin):
-    """The same with the floor on ROS's topic `elevator` (ROS 1: `<topic>`), from `<bottom_floor>` to `<top_floor>`."""
+    """Moves an elevator like `libElevatorPlugin.so`, from `<bottom_floor>` to `<top_floor>`.
+
+    Commands come on the ROS topic `elevator` (ROS 1: `<topic>`).
+    """
 
     endpoints = (listens("elevator", STRING, named_by=("topic",)),)
     options = OptionsOf(GazeboRosElevatorOptions)
     filenames = ("libgazebo_ros_elevator.so",)
 
     def open_topic(self, params: Params) -> None:
-        """Listens to what floor to go to."""
+        """Subscribe to the commands."""
         self.listen(self.options.topic or "elevator", STRING, self._on_floor)
         self._bottom = self.options.bottom_floor if params.has("bottom_floor") else None
         self._top = self.options.top_floor if params.has("top_floor") else None

@@ -1,4 +1,4 @@
-"""Pushing a link in Gazebo Classic: `libgazebo_ros_force.so`."""
+"""Force on a link in Gazebo Classic: `libgazebo_ros_force.so`."""
 
 from __future__ import annotations
 
@@ -34,10 +34,10 @@ class GazeboRosForceOptions(Options):
 
 
 class GazeboRosForce(ModelPlugin):
-    """Pushes a link at its centre of mass with the wrench of the last message, at every step.
+    """Applies the wrench of the last message to a link at its centre of mass, at every step.
 
-    ROS 2: `<link_name>`, `<force_frame>` world (where nothing is said) or link, on `gazebo_ros_force`. ROS 1:
-    `<bodyName>` and `<topicName>`, always in the world's axes.
+    ROS 2: `<link_name>`, `<force_frame>` world (default) or link, on `gazebo_ros_force`. ROS 1: `<bodyName>` and
+    `<topicName>`, always in the world's axes.
     """
 
     endpoints = (listens("gazebo_ros_force", WRENCH, named_by=("topicName",)),)
@@ -54,7 +54,7 @@ class GazeboRosForce(ModelPlugin):
     def load(self, parent: Model, params: Params) -> None:
         self.once = OneTimeWarnings(self)
         self._wrench = np.zeros(6)
-        # what turns with the link is set anew at every step
+        # a wrench in the link's axes rotates with the link, so every step sets it again
         self.before_step_rate = None if self._turns else NEVER
         self.listen(self._topic, WRENCH, self._on_wrench)
 
@@ -66,19 +66,19 @@ class GazeboRosForce(ModelPlugin):
             return
         self._wrench = wrench
         if not self._turns:
-            self._stand()
+            self._apply_constant_wrench()
 
-    def _stand(self, *, are_applied: bool = False) -> None:
-        self.sim.engine.wrenches.set(self, self._standing(), are_applied=are_applied)
+    def _apply_constant_wrench(self, *, are_applied: bool = False) -> None:
+        self.sim.engine.wrenches.set(self, self._constant_wrench(), are_applied=are_applied)
 
-    def _standing(self) -> dict[str, Vector]:
+    def _constant_wrench(self) -> dict[str, Vector]:
         return {self._scoped: self._wrench} if self._wrench.any() else {}
 
     def set_state(self, state: Mapping[str, object]) -> None:
-        """Back to a state from `get_state`."""
+        """Restore a state from `get_state`."""
         super().set_state(state)
         if not self._turns:
-            self._stand(are_applied=True)
+            self._apply_constant_wrench(are_applied=True)
 
     def before_step(self) -> None:
         if not self._turns or not self._wrench.any():

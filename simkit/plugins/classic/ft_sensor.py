@@ -42,15 +42,15 @@ class GazeboRosFtSensorOptions(Options):
 
 
 class GazeboRosFtSensor(ModelPlugin):
-    """Publishes on `wrench` (after `<remapping>`) what passes through a joint, or what acts on a link.
+    """Publishes on `wrench` (after `<remapping>`) the wrench in a joint, or the sum of all wrenches on a link.
 
-    With `<joint_name>`: what the child link does to the joint, about the joint's origin, in the child link's axes and
-    frame. With `<body_name>`: the sum of all that acts on the link, gravity included (mass times acceleration of its
-    centre of mass, and the change of its angular momentum), in the world's axes and in the frame `<frame_name>`.
+    With `<joint_name>`: the wrench of the child link on the joint, about the joint's origin, in the child link's axes
+    and frame. With `<body_name>`: the sum of all wrenches on the link, including gravity (mass times acceleration of
+    its centre of mass, and the change of its angular momentum), in the world's axes and in the frame `<frame_name>`.
     `<gaussian_noise>` is the standard deviation on each of the six numbers [N, N·m].
 
     Attributes:
-        reads_contacts: what rests on something that never moves must not sleep, or it would weigh nothing.
+        reads_contacts: keeps resting bodies awake, because a sleeping body would have no weight.
     """
 
     endpoints = (publishes("wrench", TYPE, named_by=("topicName",)),)
@@ -87,7 +87,7 @@ class GazeboRosFtSensor(ModelPlugin):
         self._index = 0
 
     def after_step(self) -> None:
-        self._index += 1  # counted whether read or not, so that who listens does not change the noise
+        self._index += 1  # counted without subscribers too, so that they do not change the noise
         if not self._out.wanted:
             return
         data = self.sim.engine.physics.fresh_accelerations()
@@ -109,7 +109,7 @@ class GazeboRosFtSensor(ModelPlugin):
         if not body:
             return np.zeros(3), np.zeros(3)
         velocity, acceleration = np.empty(6), np.empty(6)
-        # in the axes of the principal moments, at the centre of mass; the engine counts gravity as acceleration upwards
+        # in the principal axes, at the centre of mass; the engine adds gravity as an upward acceleration
         mujoco.mj_objectVelocity(model, data, _BODY, body, velocity, 1)
         mujoco.mj_objectAcceleration(model, data, _BODY, body, acceleration, 1)
         axes, moments, turning = data.ximat[body].reshape(3, 3), model.body_inertia[body], velocity[:3]
@@ -136,14 +136,14 @@ class GazeboRosF3DOptions(Options):
 
 
 class GazeboRosF3D(GazeboRosFtSensor):
-    """Publishes on `<topicName>` the sum of all that acts on the link `<bodyName>`, at every step.
+    """Publishes on `<topicName>` the sum of all wrenches on the link `<bodyName>`, at every step.
 
-    In the world's axes, gravity included: the link's mass times the acceleration of its centre of mass [N], and the
-    change of its angular momentum [N·m]. `<frameName>` (`world`) is only said.
+    In the world's axes, including gravity: the link's mass times the acceleration of its centre of mass [N], and the
+    change of its angular momentum [N·m]. `<frameName>` (`world`) sets only the `frame_id`.
     """
 
     endpoints = (publishes("{topicName}", "geometry_msgs/msg/WrenchStamped", named_by=("topicName",)),)
-    options = OptionsOf(GazeboRosF3DOptions)  # type: ignore[assignment]  # it reads none of the other one's
+    options = OptionsOf(GazeboRosF3DOptions)  # type: ignore[assignment]  # it reads none of its base's options
     filenames = ("libgazebo_ros_f3d.so",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:

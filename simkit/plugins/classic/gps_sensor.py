@@ -1,4 +1,4 @@
-"""The satellite receiver of Gazebo Classic: `libgazebo_ros_gps_sensor.so` of ROS 2."""
+"""GPS receiver of Gazebo Classic: `libgazebo_ros_gps_sensor.so` of ROS 2."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from simkit.sensors.environment.navsat import NavSat
 
 _KINDS = ("gps", "navsat")
-_BACKWARDS = -0.999  # cosine of a heading of 180 degrees, or nearly
+_BACKWARDS = -0.999  # cosine of a heading close to 180 degrees
 
 
 class GazeboRosGpsSensorOptions(Options):
@@ -28,7 +28,7 @@ class GazeboRosGpsSensorOptions(Options):
 class GazeboRosGpsSensor(SensorPlugin):
     """Publishes the fix on `~/out` and the velocity (east, north, up) on `~/vel`, after `<remapping>`.
 
-    In the link's frame or `<frame_name>`.
+    The frame is the link's frame or `<frame_name>`.
     """
 
     endpoints = (
@@ -48,9 +48,9 @@ class GazeboRosGpsSensor(SensorPlugin):
         parent.publish_on({"fix": self.ros.topic("~/out"), "velocity": self.ros.topic("~/vel")})
 
     def _check_heading(self, params: Params) -> None:
-        """Classic turns positions by 180 degrees; worlds that undo it are turned here."""
+        """Warn about a heading of 180 degrees, with which worlds compensate that Classic turns positions."""
         place = self.sim.world.spherical_coordinates
         if place is not None and math.cos(place.heading) < _BACKWARDS and not self.sim.world.gazebo_quirks:
-            message = "<heading_deg> 180 points x to the west; in Gazebo Classic, which is half a turn off, to the east"
-            hint = "<heading_deg>0</heading_deg>, or <gazebo_quirks> for Classic's half turn"
+            message = "<heading_deg> 180 makes x point west; in Gazebo Classic, which is half a turn off, x points east"
+            hint = "write <heading_deg>0</heading_deg>, or <gazebo_quirks> for Classic's half turn"
             params.diagnostics.warning("SK-SENSOR-068", message, place.where, hint)

@@ -1,4 +1,4 @@
-"""Gazebo Classic's hand that holds a link at a frame of tf, in both spellings: `libgazebo_ros_hand_of_god.so`."""
+"""Gazebo Classic's plugin that holds a link at a frame of tf, in both spellings: `libgazebo_ros_hand_of_god.so`."""
 
 from __future__ import annotations
 
@@ -40,11 +40,12 @@ class GazeboRosHandOfGodOptions(Options):
 
 
 class GazeboRosHandOfGod(ModelPlugin):
-    """Draws a link, which it takes the weight of, to the frame `<frame_id>_desired` that others tell on `/tf`.
+    """Pulls a link, whose weight it carries, to the frame `<frame_id>_desired` that others publish on `/tf`.
 
-    The force is `<kl>` [N/m] times the way that is left, damped critically by the link's mass; the torque is `<ka>`
-    [N·m/rad] times half the angle that is left, damped by 2 √(ka Ixx), as in Gazebo. Where the link is, is told on
-    `/tf` as `<frame_id>_actual`. Frames may hang on others, up to `world`. ROS 1: `<linkName>`, `<frameId>`.
+    The force is `<kl>` [N/m] times the distance to the target, damped critically for the link's mass. The torque is
+    `<ka>` [N·m/rad] times half the angle to the target, damped by 2 √(ka Ixx), as in Gazebo. The link's pose is
+    published on `/tf` as `<frame_id>_actual`. The frame may be the end of a chain of frames from `world`. ROS 1:
+    `<linkName>`, `<frameId>`.
     """
 
     options = OptionsOf(GazeboRosHandOfGodOptions)
@@ -56,7 +57,7 @@ class GazeboRosHandOfGod(ModelPlugin):
         self._scoped = find_named_link(scene, "linkName" if old else "link_name", params)
         self._frame = self.options.frame_id_ros_1 if old else self.options.frame_id
         self._stiffness = np.array([self.options.kl, self.options.ka])
-        link = next((one for one in scene.all_links() if one.scoped == self._scoped), None)
+        link = next((candidate for candidate in scene.all_links() if candidate.scoped == self._scoped), None)
         self._mass, self._inertia = (1.0, 1.0) if link is None else (link.inertial.mass, link.inertial.inertia[0])
         self._has_weight = link is not None and link.gravity
 
@@ -66,7 +67,7 @@ class GazeboRosHandOfGod(ModelPlugin):
         self._link = self.sim.link(self._scoped)
         self._frames: dict[str, tuple[str, Pose]] = {}
         self.before_step_rate = NEVER
-        self._stand()
+        self._compensate_weight()
         self._tf = self.advertise("/tf", TRANSFORMS)
         for topic in ("/tf", "/tf_static"):
             self.subscribe(topic, self._on_transforms)
@@ -75,37 +76,37 @@ class GazeboRosHandOfGod(ModelPlugin):
         self.sim.engine.reschedule()
 
     def set_state(self, state: Mapping[str, object]) -> None:
-        """Back to a state from `get_state`."""
+        """Restore a state from `get_state`."""
         super().set_state(state)
-        self._stand(are_applied=True)
+        self._compensate_weight(are_applied=True)
 
-    def _stand(self, *, are_applied: bool = False) -> None:
-        """Takes the link's weight."""
+    def _compensate_weight(self, *, are_applied: bool = False) -> None:
+        """Compensate the link's weight."""
         force = -self._mass * np.asarray(self.sim.gravity) if self._has_weight else np.zeros(3)
         lift = {self._scoped: np.array([*force, 0.0, 0.0, 0.0])} if force.any() else {}
         self.sim.engine.wrenches.set(self, lift, are_applied=are_applied)
 
     def _on_transforms(self, message: TFMessage) -> None:
         own = f"{self._frame}_actual"
-        for one in message.transforms:
-            child = one.child_frame_id.lstrip("/")
-            t, q = one.transform.translation, one.transform.rotation
-            place, turn = (t.x, t.y, t.z), (q.w, q.x, q.y, q.z)
+        for transform in message.transforms:
+            child = transform.child_frame_id.lstrip("/")
+            t, q = transform.transform.translation, transform.transform.rotation
+            position, turn = (t.x, t.y, t.z), (q.w, q.x, q.y, q.z)
             if child == own:
                 continue
-            if not all(abs(number) <= _FARTHEST for number in place) or not 1e-6 <= math.hypot(*turn) <= 1e6:
-                self.once.left_out(child, f"a frame {child!r} whose numbers make no pose is left out")
+            if not all(abs(number) <= _FARTHEST for number in position) or not 1e-6 <= math.hypot(*turn) <= 1e6:
+                self.once.left_out(child, f"frame {child!r} is ignored: its transform is not a valid pose")
                 continue
-            self._frames[child] = one.header.frame_id.lstrip("/"), Pose(place, turn)
+            self._frames[child] = transform.header.frame_id.lstrip("/"), Pose(position, turn)
         pace = None if self._desired() is not None else NEVER
         if pace != self.before_step_rate:
             self.before_step_rate = pace
             self.sim.engine.reschedule()
 
     def _desired(self) -> Pose | None:
-        """Where the link is wanted in the world; None while nobody has told."""
+        """Return the desired pose of the link in the world; None until it has been published."""
         frame, pose = f"{self._frame}_desired", IDENTITY
-        for _ in range(len(self._frames)):  # a ring of frames ends too
+        for _ in range(len(self._frames)):  # the bound ends the loop for a cycle of frames
             if frame not in self._frames:
                 return None
             frame, step = self._frames[frame]
@@ -115,18 +116,18 @@ class GazeboRosHandOfGod(ModelPlugin):
         return None
 
     def before_step(self) -> None:
-        """Pulls and turns the link."""
-        wanted = self._desired()
-        if wanted is None:
+        """Apply force and torque towards the desired pose."""
+        desired = self._desired()
+        if desired is None:
             return
         link, (kl, ka), (cl, ca) = self._link, self._stiffness, self._damping
         pose = link.pose
-        turn = (pose.inverse() @ wanted).quaternion
+        turn = (pose.inverse() @ desired).quaternion
         turn = turn if turn[0] >= 0.0 else -turn
         sine = float(np.linalg.norm(turn[1:]))
         # the quaternion's logarithm: half the angle
         half = turn[1:] * (math.atan2(sine, float(turn[0])) / sine) if sine > 1e-12 else turn[1:]
-        force = kl * (wanted.position - pose.position) - cl * link.linear_velocity
+        force = kl * (desired.position - pose.position) - cl * link.linear_velocity
         link.apply_wrench(force, pose.rotate(ka * half) - ca * link.angular_velocity)
         if self._tf.wanted:
             self._tf.publish_later(partial(transforms, self.sim.time_ns, (_WORLD, f"{self._frame}_actual", pose)))

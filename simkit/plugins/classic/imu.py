@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from simkit.sensors.inertial.imu_measurement import ImuMeasurement
 
 TYPE = "sensor_msgs/msg/Imu"
-_DEFAULT = "/default_imu"  # of topic and service both
+_DEFAULT = "/default_imu"  # of both topic and service
 
 
 class GazeboRosImuOptions(Options):
@@ -40,14 +40,14 @@ class GazeboRosImuOptions(Options):
 
 
 class GazeboRosImu(ModelPlugin):
-    """Publishes what an IMU at the origin of the link `<bodyName>` feels, on `<topicName>` (`/default_imu`).
+    """Publishes the reading of an IMU at the origin of the link `<bodyName>` on `<topicName>` (`/default_imu`).
 
-    Rates and accelerations are in the link's axes, the orientation is the link's in the world, turned by `<rpyOffset>`
-    about the world's axes; `<frameName>` (the link's name) is only said. Gravity's reaction is in the acceleration, as
-    `sensor_msgs/Imu` wants it; Gazebo's plugin leaves it out, and turns both vectors the wrong way round, and so does
-    this one in a world with `<gazebo_quirks>`. `<gaussianNoise>` is a standard deviation on each of the six numbers
-    [rad/s, m/s²], its square is on the diagonals of the covariances. `<updateRate>` [Hz]; 0 is every step. The service
-    `<serviceName>` (`/default_imu`) calibrates: there is nothing to do.
+    Rates and accelerations are in the link's axes; the orientation is the link's in the world, turned by `<rpyOffset>`
+    about the world's axes. `<frameName>` (the link's name) sets only the `frame_id`. The acceleration includes the
+    reaction to gravity, as `sensor_msgs/Imu` requires. Gazebo's plugin omits it and turns both vectors in the wrong
+    direction; this plugin does the same in a world with `<gazebo_quirks>`. `<gaussianNoise>` is a standard deviation on
+    each of the six numbers [rad/s, m/s²]; its square is on the diagonals of the covariances. `<updateRate>` [Hz]; 0 is
+    every step. The calibration service `<serviceName>` (`/default_imu`) does nothing.
     """
 
     endpoints = (
@@ -69,8 +69,8 @@ class GazeboRosImu(ModelPlugin):
             params.diagnostics.note("SK-SENSOR-072", message, params.block("xyzOffset").where)
         self._is_gazebos = builder.world.gazebo_quirks
         if not self._is_gazebos:
-            message = f"plugin {self.name!r}: gravity's reaction is in the acceleration; Gazebo's plugin leaves it out"
-            hint = "<simkit:gazebo_quirks>true</simkit:gazebo_quirks> in the world has it as Gazebo"
+            message = f"plugin {self.name!r}: the acceleration includes gravity's reaction; Gazebo's plugin omits it"
+            hint = "for Gazebo's reading, add <simkit:gazebo_quirks>true</simkit:gazebo_quirks> to the world"
             params.diagnostics.note("SK-PLUGIN-060", message, self.where, hint)
 
     def load(self, parent: Model, params: Params) -> None:
@@ -86,7 +86,7 @@ class GazeboRosImu(ModelPlugin):
         self._covariance = covariance
 
     def after_step(self) -> None:
-        self._index += 1  # counted whether read or not, so that who listens does not change the noise
+        self._index += 1  # counted without subscribers too, so that they do not change the noise
         if self._out is None or not self._out.wanted:
             return
         link, pose = self._link, self._link.pose
@@ -132,9 +132,9 @@ class GazeboRosImuSensorOptions(Options):
 class GazeboRosImuSensor(SensorPlugin):
     """Publishes its IMU on `~/out` (after `<remapping>`), in the link's frame or `<frame_name>`.
 
-    The orientation is measured against the world (REP 145), or with `<initial_orientation_as_reference>` true against
-    the attitude at the start. Of ROS 1 are `<gaussianNoise>` on everything that is published, `<rpyOffset>`, which
-    turns the orientation, and `<updateRateHZ>`, which may slow the sensor down.
+    The orientation is relative to the world (REP 145), or with `<initial_orientation_as_reference>` true to the
+    attitude at the start. ROS 1 has `<gaussianNoise>` on all published numbers, `<rpyOffset>`, which turns the
+    orientation, and `<updateRateHZ>`, which may lower the sensor's rate.
     """
 
     endpoints = (publishes("~/out", "sensor_msgs/msg/Imu", named_by=("topicName",)),)
@@ -165,7 +165,7 @@ class GazeboRosImuSensor(SensorPlugin):
         if any(self.options.xyz_offset):
             where = params.block("xyzOffset").where
             message = f"plugin {self.name!r}: <xyzOffset> changes no reading, as in Gazebo"
-            hint = "the sensor's <pose> puts it elsewhere on its link"
+            hint = "move the sensor with its <pose> instead"
             params.diagnostics.note("SK-SENSOR-072", message, where, hint)
         rate = self.options.update_rate_hz
         if rate and not 0 < imu.update_rate <= rate:

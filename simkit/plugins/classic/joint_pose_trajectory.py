@@ -1,4 +1,4 @@
-"""Joints put through poses in Gazebo Classic: `libgazebo_ros_joint_pose_trajectory.so`."""
+"""Joint trajectories in Gazebo Classic that set positions: `libgazebo_ros_joint_pose_trajectory.so`."""
 
 from __future__ import annotations
 
@@ -34,15 +34,15 @@ class GazeboRosJointPoseTrajectoryOptions(Options):
 
 
 class GazeboRosJointPoseTrajectory(ModelPlugin):
-    """Puts joints at the positions of a `JointTrajectory`, one point after another; between them they are free.
+    """Sets joints to the positions of a `JointTrajectory`, one point after another; between points the joints are free.
 
-    Gazebo counts the times so: the first point is set at once (or at the time of the header, where that is later), and
-    after each point its `time_from_start` passes before the next. `<simkit:point_times>` from_start sets each at its
+    Times are as in Gazebo: the first point is set at once (or at the time of the header, if that is later), and after
+    each point its `time_from_start` passes before the next. `<simkit:point_times>` from_start sets each point at its
     own time instead. Points are set at `<update_rate>` (ROS 2, 100 Hz; 0: every step), one at a time.
 
-    The header's `frame_id` is `world`, `map`, or a link, of this model or another, that keeps its place; the joints
-    are then that model's. ROS 2: on `set_joint_trajectory`. ROS 1: `<topicName>`, at every step; there the world's
-    physics stands still meanwhile, here it goes on.
+    The header's `frame_id` is `world`, `map`, or a link whose pose is kept, of this model or another; the joints are
+    then those of that link's model. ROS 2: on `set_joint_trajectory`. ROS 1: `<topicName>`, at every step. Gazebo on
+    ROS 1 pauses the physics meanwhile; here the physics continues.
     """
 
     endpoints = (listens("set_joint_trajectory", TRAJECTORY, named_by=("topicName",)),)
@@ -55,9 +55,9 @@ class GazeboRosJointPoseTrajectory(ModelPlugin):
         self._model = parent
         is_ros_1 = any(params.has(name) for name in ("topicName", "serviceName", "updateRate", "robotNamespace"))
         if is_ros_1:
-            _ = self.options.update_rate_ros_1  # read by Gazebo, and used for nothing
-            _ = self.options.service_name  # of a service that Gazebo is built without
-            message = f"plugin {self.name!r}: the physics goes on while a trajectory plays; Gazebo on ROS 1 stops it"
+            _ = self.options.update_rate_ros_1  # Gazebo reads it and does not use it
+            _ = self.options.service_name  # Gazebo is built without this service
+            message = f"plugin {self.name!r}: the physics continues while a trajectory plays; Gazebo on ROS 1 pauses it"
             params.diagnostics.note("SK-PLUGIN-046", message, self.where)
             rate, topic = 0.0, self.options.topic_name
         else:
@@ -66,7 +66,7 @@ class GazeboRosJointPoseTrajectory(ModelPlugin):
         self._is_chained = self.options.point_times == "chained"
         self._points: list[tuple[tuple[float, ...], int]] = []
         self._names: tuple[str, ...] = ()
-        self._of, self._fixed = parent.scoped, ""
+        self._model_name, self._fixed = parent.scoped, ""
         self._index, self._due, self._start, self._last = 0, 0, 0, 0
         if topic:
             self.listen(topic, TRAJECTORY, self._on_trajectory)
@@ -83,21 +83,21 @@ class GazeboRosJointPoseTrajectory(ModelPlugin):
         known = model._below("joints")
         unknown = [name for name in names if name not in known]
         if unknown:
-            what = f"a trajectory is left out: model {model.scoped!r} has no joint {unknown[0]!r}"
-            self.once.left_out(unknown[0], what, suggest_names(unknown[0], list(known)))
+            problem = f"a trajectory is ignored: model {model.scoped!r} has no joint {unknown[0]!r}"
+            self.once.left_out(unknown[0], problem, suggest_names(unknown[0], list(known)))
             return
         points = [(tuple(float(v) for v in p.positions), nanoseconds(p.time_from_start)) for p in message.points]
         for i, (positions, _) in enumerate(points):
             if not all(math.isfinite(v) for v in positions):
-                self.once.left_out("finite", f"a trajectory is left out: point {i} has a number that is not finite")
+                self.once.left_out("finite", f"a trajectory is ignored: point {i} has a NaN or infinite number")
                 return
-        self._names, self._points, self._of = names, points, model.scoped
+        self._names, self._points, self._model_name = names, points, model.scoped
         self._fixed = link.scoped if link is not None else ""
         self._start = self._due = max(nanoseconds(message.header.stamp), self.sim.time_ns)
         self._index = 0
 
     def _reference(self, frame: str) -> Link | None:
-        """The link that a trajectory holds in place; None for the world, or after a report."""
+        """Return the link whose pose a trajectory keeps; None for the world, or after a report."""
         if frame in _WORLD:
             return None
         links: dict[str, Link] = self.sim.contents.handles.tables["link"]
@@ -105,8 +105,8 @@ class GazeboRosJointPoseTrajectory(ModelPlugin):
         found = links.get(own) or links.get(frame)
         found = found or next((link for scoped, link in links.items() if scoped.endswith("::" + frame)), None)
         if found is None:
-            what = f"a trajectory is left out: its frame_id {frame!r} is neither 'world' nor a link"
-            self.once.left_out(f"frame {frame}", what, suggest_names(frame, list(links)))
+            problem = f"a trajectory is ignored: its frame_id {frame!r} is neither 'world' nor a link"
+            self.once.left_out(f"frame {frame}", problem, suggest_names(frame, list(links)))
         return found
 
     def before_step(self) -> None:
@@ -118,24 +118,24 @@ class GazeboRosJointPoseTrajectory(ModelPlugin):
         if now < due or now - self._last < self._period:
             return
         if len(positions) == len(self._names):
-            self._put(positions)
+            self._set_joints(positions)
         else:
             counts = f"{len(positions)} positions for {len(self._names)} joint names"
-            self.once.left_out(counts, f"point {self._index} of a trajectory has {counts}; it is left out")
+            self.once.left_out(counts, f"point {self._index} of a trajectory has {counts}; the point is ignored")
         self._last = now
         self._due += time
         self._index += 1
 
-    def _put(self, positions: tuple[float, ...]) -> None:
-        """Sets the joints; the link of reference, or the model, stays where it is."""
-        model = self.sim.model(self._of)
+    def _set_joints(self, positions: tuple[float, ...]) -> None:
+        """Set the joints; the reference link, or the model, keeps its pose."""
+        model = self.sim.model(self._model_name)
         link = self.sim.link(self._fixed) if self._fixed else None
         before = model.pose if link is None else link.pose
         for name, position in zip(self._names, positions, strict=True):
             joint: Joint = model.joint(name)
             if joint.dof != 1:
-                what = f"joint {joint.scoped!r} is {joint.type} and not set; allowed is a joint with one axis"
-                self.once.left_out(joint.scoped, what)
+                problem = f"joint {joint.scoped!r} is {joint.type} and is not set; allowed is a joint with one axis"
+                self.once.left_out(joint.scoped, problem)
                 continue
             try:
                 joint.set_position(position)

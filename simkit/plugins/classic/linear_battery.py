@@ -1,4 +1,4 @@
-"""Gazebo Classic's battery and what draws from it: `libLinearBatteryPlugin.so`, `libLinearBatteryConsumerPlugin.so`."""
+"""Battery of Gazebo Classic and its consumers: `libLinearBatteryPlugin.so`, `libLinearBatteryConsumerPlugin.so`."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ class ClassicLinearBatteryOptions(Options):
 
 
 class ClassicLinearBattery(Battery):
-    """The same arithmetic; it drains from the start by what consumers draw, and an empty one stops nobody.
+    """Drains a battery with the arithmetic of gz's linear battery, from the start; an empty battery stops nothing.
 
-    In Classic only other plugins can ask how it is. Here its state is published as gz's battery's is.
+    In Classic only other plugins can read the battery. Here its state is published like that of gz's battery.
     """
 
     options = OptionsOf(ClassicLinearBatteryOptions)
@@ -61,7 +61,7 @@ class LinearBatteryConsumerOptions(Options):
 
 
 class LinearBatteryConsumer(BatteryConsumer):
-    """Draws a power from a battery of its model, Classic's or gz's."""
+    """Draws power from a battery of its model, Classic's or gz's."""
 
     options = OptionsOf(LinearBatteryConsumerOptions)
     filenames = ("libLinearBatteryConsumerPlugin.so",)
@@ -71,12 +71,12 @@ class LinearBatteryConsumer(BatteryConsumer):
         self.battery = read_required_name(params, "battery_name")
 
     def load(self, parent: Model, params: Params) -> None:
-        self._power = self.declare("power_load", 0.0, description="what is drawn from the battery [W]")
+        self._power = self.declare("power_load", 0.0, description="power drawn from the battery [W]")
         plugins = [p for p in self.sim.engine.structure.all_plugins() if isinstance(p, Battery)]
-        there = [p.battery for p in plugins if p.scoped == self.scoped]
-        if self.battery and self.battery not in there:
-            message = f"plugin {self.name!r}: its model has no battery {self.battery!r}; nothing is drawn"
-            params.diagnostics.warning("SK-PLUGIN-123", message, self.where, did_you_mean(self.battery, there))
+        batteries = [p.battery for p in plugins if p.scoped == self.scoped]
+        if self.battery and self.battery not in batteries:
+            message = f"plugin {self.name!r}: its model has no battery {self.battery!r}; no power is drawn"
+            params.diagnostics.warning("SK-PLUGIN-123", message, self.where, did_you_mean(self.battery, batteries))
 
     @property
     def power(self) -> float:

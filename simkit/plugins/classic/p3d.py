@@ -1,4 +1,4 @@
-"""Gazebo Classic's true pose of a link as odometry, in ROS 2 and ROS 1 spelling: `libgazebo_ros_p3d.so`."""
+"""Ground truth pose of a link as odometry in Gazebo Classic, in both spellings: `libgazebo_ros_p3d.so`."""
 
 from __future__ import annotations
 
@@ -51,16 +51,16 @@ class GazeboRosP3DOptions(Options):
 
 
 class GazeboRosP3D(ModelPlugin):
-    """Publishes where the link `<body_name>` truly is, and how it moves, on `odom` (ROS 1: `<topicName>`).
+    """Publishes the true pose and twist of the link `<body_name>` on `odom` (ROS 1: `<topicName>`).
 
-    Pose and twist are in the world's axes, or in those of the link that `<frame_name>` names, as seen from it; the
-    twist is that of the link's origin, and never in the link's own axes. `<xyz_offset>` is added to the position, along
-    the axes of the frame, and `<rpy_offset>` turns the orientation about them; neither changes the twist.
-    `<gaussian_noise>` is the standard deviation on each part of the twist [m/s, rad/s], and its square stands on the
-    diagonals of both covariances. `<update_rate>` [Hz]; 0 is every step.
+    Pose and twist are in the world's axes, or relative to the link that `<frame_name>` names and in its axes. The twist
+    is that of the link's origin, and never in the link's own axes. `<xyz_offset>` is added to the position, along the
+    axes of the frame, and `<rpy_offset>` turns the orientation about them; neither changes the twist.
+    `<gaussian_noise>` is the standard deviation on each part of the twist [m/s, rad/s]; its square is on the diagonals
+    of both covariances. `<update_rate>` [Hz]; 0 is every step.
 
-    Where the reference is a link that turns, Gazebo multiplies orientations in the wrong order, turns velocities the
-    wrong way and leaves out what the turning adds; here the twist is how the pose changes.
+    If the reference is a rotating link, Gazebo multiplies orientations in the wrong order, turns velocities in the
+    wrong direction and omits the velocity due to the rotation. Here the twist is the rate of change of the pose.
     """
 
     endpoints = (publishes("odom", ODOMETRY, named_by=("topicName",)),)
@@ -88,15 +88,15 @@ class GazeboRosP3D(ModelPlugin):
         self._frame, self._reference = frame.strip("/"), self._find_reference(scene, frame.strip("/"), params)
 
     def _find_reference(self, scene: SceneModel, frame: str, params: Params) -> str:
-        """The scoped name of the link that poses are told in; empty for the world."""
+        """Return the scoped name of the link that is the frame of the poses; empty for the world."""
         if frame in _INERTIAL:
             return ""
         links = {link.name: link.scoped for link in scene.all_links()}
         links |= {link.scoped.removeprefix(f"{scene.scoped}::"): link.scoped for link in scene.all_links()}
         if frame not in links:
-            message = f"plugin {self.name!r}: frame {frame!r} is no link of model {scene.scoped!r}"
+            message = f"plugin {self.name!r}: frame {frame!r} is not a link of model {scene.scoped!r}"
             hint = did_you_mean(frame, [*links, *_INERTIAL])
-            params.diagnostics.warning("SK-PLUGIN-054", f"{message}; poses are the world's", self.where, hint)
+            params.diagnostics.warning("SK-PLUGIN-054", f"{message}; poses are in the world frame", self.where, hint)
         return links.get(frame, "")
 
     def load(self, parent: Model, params: Params) -> None:
@@ -108,14 +108,14 @@ class GazeboRosP3D(ModelPlugin):
         publish_while_subscribed(self, self._out, self._rate, "tell")
 
     def tell(self) -> None:
-        """Publishes."""
+        """Publish the odometry."""
         pose, motion = self._reading()
-        # counted whether heard or not, so that who listens does not change the noise
+        # independent of subscribers, so that they do not change the noise
         index = count_instants(self, self._rate)
         self._out.publish_later(partial(self._message, self.sim.time_ns, pose, motion, index))
 
     def _reading(self) -> tuple[Pose, Vector]:
-        """Pose with its offset, and the twist: linear (3) and angular (3), both along the axes of the frame."""
+        """Return the pose with its offset, and the twist (linear, angular), both along the axes of the frame."""
         link, base = self._link, self._base
         pose, velocity = link.pose, link._velocity()
         linear, angular = velocity[3:], velocity[:3]
@@ -125,7 +125,7 @@ class GazeboRosP3D(ModelPlugin):
             carried = base.linear_velocity + np.cross(turning, pose.position - frame.position)
             linear, angular = quat_rotate(back, linear - carried), quat_rotate(back, angular - turning)
             pose = frame.inverse() @ pose
-        if not self._is_shifted and _is_whole(pose):
+        if not self._is_shifted and _is_unchanged_by_zero_offset(pose):
             return pose, np.concatenate((linear, angular))
         shifted = Pose(pose.position + self._shift, quat_multiply(self._turn, pose.quaternion))
         return shifted, np.concatenate((linear, angular))
@@ -137,7 +137,7 @@ class GazeboRosP3D(ModelPlugin):
         return odometry_message(time_ns, self._frame, self._link.name, pose, twist, self._spread)
 
 
-def _is_whole(pose: Pose) -> bool:
-    """Whether no bit of a pose changes where an offset of nothing is added: no zero has a sign, and it is unit."""
+def _is_unchanged_by_zero_offset(pose: Pose) -> bool:
+    """Check whether a zero offset leaves every bit of a pose unchanged: it has no zeros, and its quaternion is unit."""
     turn = pose.quaternion
     return abs(math.sqrt(turn.dot(turn)) - 1.0) <= 1e-15 and bool(pose.position.all() and turn.all())

@@ -1,4 +1,4 @@
-"""Gazebo Classic's planar move, in ROS 2 and ROS 1 spelling: `libgazebo_ros_planar_move.so`."""
+"""Planar move of Gazebo Classic, in ROS 2 and ROS 1 spelling: `libgazebo_ros_planar_move.so`."""
 
 from __future__ import annotations
 
@@ -43,8 +43,8 @@ class PlanarMoveOptions(Options):
     """Options in the spelling of ROS 2, whose topics have fixed names; rates in Hz, 0 is every step.
 
     Attributes:
-        timeout: how long a command holds [s].
-        is_level: whether the odometry leaves out the height, and has zeros for the twist's covariance.
+        timeout: duration for which a command stays active [s].
+        is_level: whether the height in the odometry and the twist's covariance are 0.
     """
 
     command_topic: str = "cmd_vel"
@@ -64,7 +64,7 @@ class PlanarMoveOptions(Options):
 
 
 class PlanarMoveRos1Options(Options):
-    """Options in the spelling of ROS 1, where one rate is of the odometry and of its transform."""
+    """Options in the spelling of ROS 1, which has one rate for the odometry and its transform."""
 
     covariance_x, covariance_y, covariance_yaw = 1e-5, 1e-5, 1e-3
     update_rate = 0.0
@@ -79,34 +79,33 @@ class PlanarMoveRos1Options(Options):
 
     @property
     def timeout(self) -> float:
-        """How long a command holds [s]; a negative `<cmdTimeout>` is none, and so is one that is absent."""
+        """Duration for which a command stays active [s]; unlimited if `<cmdTimeout>` is negative or missing."""
         return self.cmd_timeout if self.cmd_timeout >= 0 else math.inf
 
     @property
     def publish_odom(self) -> bool:
-        """Whether odometry and transform go out."""
+        """True if odometry and transform are published."""
         return self.publish_rate > 0
 
     publish_odom_tf = publish_odom
 
 
 def read_options(params: Params) -> PlanarMoveOptions | PlanarMoveRos1Options:
-    """Reads either spelling; ROS 1's is taken where one of its names occurs and there is no `<ros>` block."""
+    """Read the options in either spelling; ROS 1's if one of its names occurs and there is no `<ros>` block."""
     kind = PlanarMoveRos1Options if is_ros_1(params, (*_ROS_1, *_ROS_1_TIMES)) else PlanarMoveOptions
     return kind(params).read_all()
 
 
 class GazeboRosPlanarMove(ModelPlugin):
-    """Moves the model over the plane with the twist on `cmd_vel`: ahead, to the left, and about the vertical.
+    """Moves the model in the plane with the twist on `cmd_vel`: forward, left, and rotation about the vertical.
 
-    The linear speeds are along the model's heading, about the model's origin; the last command holds, in ROS 1 for
-    `<cmdTimeout>` [s]. The model neither tilts nor climbs by itself, and slides on what is static; where nothing
-    touches it, it falls. Odometry on `odom` and `/tf` is the model's true pose in the world and its true twist along
-    its heading; ROS 1's leaves out the height, and has zeros for the twist's covariance. `<odometryRate>` 0 publishes
-    nothing.
+    The linear speeds are along the model's heading, at the model's origin. The last command stays active, in ROS 1 for
+    `<cmdTimeout>` [s]. The model neither tilts nor climbs by itself, and slides on static objects; without any contact,
+    it falls. Odometry on `odom` and `/tf` is the model's true pose in the world and its true twist along its heading.
+    In ROS 1 its height and the twist's covariance are 0. `<odometryRate>` 0 publishes nothing.
 
-    Gazebo sets the velocity anew at `<update_rate>` (20 Hz) only, and lets friction brake in between; here it is held
-    at every step, and commands are taken at that rate.
+    Gazebo sets the velocity only at `<update_rate>` (20 Hz), and friction brakes the model in between. Here every step
+    holds the velocity, and commands are read at that rate.
     """
 
     endpoints = (
@@ -132,14 +131,14 @@ class GazeboRosPlanarMove(ModelPlugin):
         self._covariance = planar_covariance(options.covariance_x, options.covariance_y, options.covariance_yaw)
         self._twist_covariance = np.zeros(36) if options.is_level else self._covariance
         self._true = TrueMotion(parent, self.sim.link(self._canonical))
-        self._told = self._command = (0.0, 0.0, 0.0)
-        self._told_ns = self.sim.time_ns
+        self._requested = self._command = (0.0, 0.0, 0.0)
+        self._requested_ns = self.sim.time_ns
         self._next = 0
         self._motion = KinematicMotion(self.sim, self._links, self._canonical, self._in_canonical)
         self._mover = KinematicMover(self.sim)
         if not self._motion:
-            message = f"plugin {self.name!r}: model {self.scoped!r} is joined to the world and stays where it is"
-            hint = "leave out the joint to the world"
+            message = f"plugin {self.name!r}: model {self.scoped!r} is joined to the world and cannot move"
+            hint = "remove the joint to the world"
             params.diagnostics.warning("SK-PLUGIN-053", message, self.where, hint)
         self.listen(options.command_topic, COMMAND_TYPES, self._on_command)
         self._odom = self.advertise(options.odometry_topic, ODOMETRY) if options.publish_odom else None
@@ -149,21 +148,21 @@ class GazeboRosPlanarMove(ModelPlugin):
 
     def _on_command(self, message: Twist | TwistStamped) -> None:
         twist = cast("Twist", getattr(message, "twist", message))
-        told = float(twist.linear.x), float(twist.linear.y), float(twist.angular.z)
-        if all(map(math.isfinite, told)):
-            self._told, self._told_ns = told, self.sim.time_ns
+        requested = float(twist.linear.x), float(twist.linear.y), float(twist.angular.z)
+        if all(map(math.isfinite, requested)):
+            self._requested, self._requested_ns = requested, self.sim.time_ns
         else:
             self.once.not_finite()
 
     def before_step(self) -> None:
-        """Sets the velocity that holds through the step."""
+        """Set the velocity for the next step."""
         self._mover.move(self._moves())
 
     @classmethod
     def before_step_together(
         cls, plugins: Sequence[GazeboRosPlanarMove]
     ) -> Callable[[Iterable[GazeboRosPlanarMove]], None]:
-        """The same of many: what they share is worked out once."""
+        """Run `before_step` of many plugins, with a shared mover."""
         mover = KinematicMover(plugins[0].sim)
 
         def run(rota: Iterable[GazeboRosPlanarMove]) -> None:
@@ -172,14 +171,14 @@ class GazeboRosPlanarMove(ModelPlugin):
         return run
 
     def _moves(self) -> list[VelocityTarget]:
-        """What is to be moved now: the model, in the axes of its heading."""
+        """Return the target velocity of the model, in the axes of its heading."""
         tick = self.sim.tick
         if tick >= self._next:
             grid: TickGrid | None = self.sim.engine.clock.grid(self.options.update_rate)
             self._next = grid.next(tick) if grid is not None else tick
-            self._command = self._told
-        if (self.sim.time_ns - self._told_ns) * 1e-9 > self.options.timeout:
-            self._told = self._command = (0.0, 0.0, 0.0)
+            self._command = self._requested
+        if (self.sim.time_ns - self._requested_ns) * 1e-9 > self.options.timeout:
+            self._requested = self._command = (0.0, 0.0, 0.0)
         if not self._motion:
             return []
         ahead, aside, turn = self._command
@@ -190,7 +189,7 @@ class GazeboRosPlanarMove(ModelPlugin):
     # ------------------------------------------------------------------ readings
 
     def after_step(self) -> None:
-        """Odometry and its transform."""
+        """Publish the odometry and its transform."""
         odom = self._odom if self._odom is not None and self._odom.wanted else None
         tf = self._tf if self._tf is not None and self._tf.wanted else None
         if not (odom or tf):
@@ -205,7 +204,7 @@ class GazeboRosPlanarMove(ModelPlugin):
             tf.publish_later(partial(transforms, now, (*frames, pose)))
 
     def _reading(self) -> tuple[Pose, BodyTwist]:
-        """True pose, and the twist in the plane along the heading."""
+        """Return the true pose, and the twist in the plane along the heading."""
         pose, twist = self._true.state()
         level = quat_from_rpy(0.0, 0.0, -float(pose.rpy[2]))
         x, y, _ = Pose((0.0, 0.0, 0.0), level).rotate(pose.rotate(twist.linear)).tolist()

@@ -1,4 +1,4 @@
-"""Read and set properties of models, joints, links and lights for Gazebo Classic's services."""
+"""Properties of models, joints, links and lights for Gazebo Classic's services."""
 
 from __future__ import annotations
 
@@ -20,6 +20,7 @@ _OF_ODE: Final = ("erp", "cfm", "stop_erp", "stop_cfm", "fudge_factor", "fmax", 
 
 
 def model_properties(sim: Simulation, request: msgs.GetModelProperties_Request) -> dict[str, object]:
+    """Return the response of `GetModelProperties`."""
     scoped = find_entity(sim, request.model_name, ("model",))[1]
     scene = sim.model(scoped).scene
     return {
@@ -35,6 +36,7 @@ def model_properties(sim: Simulation, request: msgs.GetModelProperties_Request) 
 
 
 def joint_properties(sim: Simulation, request: msgs.GetJointProperties_Request) -> dict[str, object]:
+    """Return the response of `GetJointProperties`."""
     joint = joint_of(sim, request.joint_name)
     if joint.type not in _TYPES:
         message = f"GetJointProperties: got properties; {joint.type} joints have no type in this message"
@@ -50,7 +52,11 @@ def joint_properties(sim: Simulation, request: msgs.GetJointProperties_Request) 
 
 
 def set_joint_properties(sim: Simulation, request: msgs.SetJointProperties_Request) -> str:
-    """Sets damping and position limits; of ODE's parameters nothing, which is said. Raises Refused."""
+    """Set damping and position limits; return a message that lists the ignored parameters of ODE.
+
+    Raises:
+        RequestRefused: the joint does not exist, or a value does not fit it.
+    """
     joint, config = joint_of(sim, request.joint_name), request.ode_joint_config
     dofs = list(joint.mj_dofs)
     damping = [require_finite(value, "damping", 0.0) for value in config.damping]
@@ -59,7 +65,7 @@ def set_joint_properties(sim: Simulation, request: msgs.SetJointProperties_Reque
         if len(values) > len(dofs):
             raise RequestRefused(f"found {len(values)} numbers in {name}, joint {joint.scoped!r} has {len(dofs)}")
     if any(stops.values()) and len(dofs) != 1:
-        raise RequestRefused(f"joint {joint.scoped!r} has {len(dofs)} degrees of freedom; limits are set of one only")
+        raise RequestRefused(f"joint {joint.scoped!r} has {len(dofs)} degrees of freedom; limits need a joint with one")
     if damping:
         sim.engine.touch("dof_damping")[dofs[: len(damping)]] = damping
     for name, values in stops.items():
@@ -70,6 +76,7 @@ def set_joint_properties(sim: Simulation, request: msgs.SetJointProperties_Reque
 
 
 def link_properties(sim: Simulation, request: msgs.GetLinkProperties_Request) -> dict[str, object]:
+    """Return the response of `GetLinkProperties`."""
     scene = sim.link(find_entity(sim, request.link_name, ("link",))[1]).scene
     moments = dict(zip(("ixx", "iyy", "izz", "ixy", "ixz", "iyz"), scene.inertial.inertia, strict=True))
     return {
@@ -82,6 +89,7 @@ def link_properties(sim: Simulation, request: msgs.GetLinkProperties_Request) ->
 
 
 def light_properties(sim: Simulation, request: msgs.GetLightProperties_Request) -> dict[str, object]:
+    """Return the response of `GetLightProperties`."""
     scene = sim.light(find_entity(sim, request.light_name, ("light",))[1]).scene
     _, constant, linear, quadratic = scene.attenuation
     return {
@@ -93,6 +101,7 @@ def light_properties(sim: Simulation, request: msgs.GetLightProperties_Request) 
 
 
 def set_light_properties(sim: Simulation, request: msgs.SetLightProperties_Request) -> None:
+    """Set diffuse colour and attenuation of a light."""
     light = sim.light(find_entity(sim, request.light_name, ("light",))[1])
     names = ("attenuation_constant", "attenuation_linear", "attenuation_quadratic")
     constant, linear, quadratic = (require_finite(getattr(request, name), name, 0.0) for name in names)
@@ -102,5 +111,5 @@ def set_light_properties(sim: Simulation, request: msgs.SetLightProperties_Reque
 
 
 def joint_of(sim: Simulation, name: str) -> Joint:
-    """A joint by its scoped name, or the first of its plain name. Raises Refused."""
+    """Return a joint by its scoped name, or the first with that plain name; raises `RequestRefused`."""
     return sim.joint(find_entity(sim, name, ("joint",))[1])

@@ -1,6 +1,6 @@
-"""Lidars of Gazebo Classic: `libgazebo_ros_ray_sensor.so` of ROS 2, `libgazebo_ros_laser.so` and kin of ROS 1.
+"""Lidars of Gazebo Classic: `libgazebo_ros_ray_sensor.so` of ROS 2, `libgazebo_ros_laser.so` and related of ROS 1.
 
-ROS 1's `libgazebo_ros_range.so` is a lidar of which the nearest ray counts.
+ROS 1's `libgazebo_ros_range.so` is a lidar that publishes its nearest ray.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _OUTPUTS = {
     "sensor_msgs/PointCloud": "old_hits",
     "sensor_msgs/Range": "range",
 }
-RADIATION = {"ultrasound": 0, "infrared": 1}  # of a Range
+RADIATION = {"ultrasound": 0, "infrared": 1}  # values of sensor_msgs/Range
 
 
 class GazeboRosRaySensorOptions(Options):
@@ -40,8 +40,8 @@ class GazeboRosRaySensorOptions(Options):
 class GazeboRosRaySensor(SensorPlugin):
     """Publishes its lidar on `~/out` (after `<remapping>`), in the link's frame or `<frame_name>`.
 
-    `<output_type>` is sensor_msgs/LaserScan, PointCloud2 (the default), PointCloud or Range. Intensities are at least
-    `<min_intensity>`. `<radiation_type>` (ultrasound or infrared) goes into Range messages.
+    `<output_type>` is sensor_msgs/LaserScan, PointCloud2 (the default), PointCloud or Range. `<min_intensity>` is a
+    lower bound of intensities. `<radiation_type>` (ultrasound or infrared) is copied to Range messages.
     """
 
     endpoints = (
@@ -74,7 +74,7 @@ class GazeboRosLaserOptions(Options):
 
 
 class GazeboRosLaser(SensorPlugin):
-    """ROS 1: a LaserScan on `<topicName>` (`/world`), in the link's frame or `<frameName>`."""
+    """Publishes a ROS 1 LaserScan on `<topicName>` (`/world`), in the link's frame or `<frameName>`."""
 
     endpoints = (publishes("/world", "sensor_msgs/msg/LaserScan", named_by=("topicName",)),)
     options = OptionsOf(GazeboRosLaserOptions)
@@ -96,11 +96,11 @@ class GazeboRosBlockLaserOptions(Options):
 
 
 class GazeboRosBlockLaser(SensorPlugin):
-    """ROS 1: a PointCloud with a point for every ray on `<topicName>` (`/world`), in the link's frame or `<frameName>`.
+    """Publishes a ROS 1 PointCloud with a point for every ray on `<topicName>` (`/world`).
 
-    A ray without a reading ends at the sensor's maximum range. `<gaussianNoise>` is a standard deviation on x, y and z
-    [m] of those with one, and on every intensity, besides the sensor's own noise. `<hokuyoMinIntensity>` and
-    `<updateRate>` change nothing, as in Gazebo.
+    The frame is the link's frame or `<frameName>`. A ray without a reading ends at the sensor's maximum range.
+    `<gaussianNoise>` is a standard deviation on x, y and z [m] of rays with a reading, and on every intensity, in
+    addition to the sensor's own noise. `<hokuyoMinIntensity>` and `<updateRate>` have no effect, as in Gazebo.
     """
 
     endpoints = (publishes("/world", "sensor_msgs/msg/PointCloud", named_by=("topicName",)),)
@@ -112,8 +112,8 @@ class GazeboRosBlockLaser(SensorPlugin):
         for name in ("hokuyoMinIntensity", "updateRate"):
             params.number(name, 0.0)
             if params.has(name):
-                message = f"plugin {self.name!r}: <{name}> changes nothing, as in Gazebo"
-                hint = "the sensor's <update_rate> counts" if name == "updateRate" else ""
+                message = f"plugin {self.name!r}: <{name}> has no effect, as in Gazebo"
+                hint = "set the sensor's <update_rate>" if name == "updateRate" else ""
                 params.diagnostics.note("SK-PLUGIN-061", message, params.block(name).where, hint)
         topic = _named_topic(self, self.options.topic_name)
         if _connect(self, parent, {"block": topic}, 0.0, RADIATION["infrared"]) and noise > 0:
@@ -121,7 +121,7 @@ class GazeboRosBlockLaser(SensorPlugin):
 
 
 def _named_topic(plugin: SensorPlugin, topic: str) -> str:
-    """`<topicName>`, which in Gazebo is `/world` where it is not given."""
+    """Return the topic `<topicName>`, which is `/world` by default in Gazebo."""
     if not topic:
         message = f"plugin {plugin.name!r} has no <topicName>: it publishes on '/world', as in Gazebo"
         plugin.params.diagnostics.note("SK-PLUGIN-062", message, plugin.where, "<topicName>scan</topicName>")
@@ -142,10 +142,11 @@ class GazeboRosVelodyneLaserOptions(Options):
 
 
 class GazeboRosVelodyneLaser(SensorPlugin):
-    """A PointCloud2 with x, y, z, intensity and ring, on `~/out` (after `<remapping>`; or `<topicName>`).
+    """Publishes a PointCloud2 with x, y, z, intensity and ring on `~/out` (after `<remapping>`; or `<topicName>`).
 
-    Only points farther than `<min_range>`, nearer than `<max_range>` and of at least `<min_intensity>`; with
-    `<organize_cloud>` every ray has its place. `<gaussianNoise>`, a standard deviation [m], is added to the sensor's.
+    The cloud has only points farther than `<min_range>`, nearer than `<max_range>` and of at least `<min_intensity>`.
+    With `<organize_cloud>` every ray has a fixed index in the cloud. `<gaussianNoise>`, a standard deviation [m], is
+    added to the sensor's.
     """
 
     endpoints = (publishes("~/out", "sensor_msgs/msg/PointCloud2", named_by=("topicName",)),)
@@ -189,8 +190,8 @@ class GazeboRosRangeOptions(Options):
 class GazeboRosRange(SensorPlugin):
     """Publishes a `Range` on `<topicName>` (`range`), in the link's frame or `<frameName>`.
 
-    `<fov>` [rad] is only said in the message: the rays are the sensor's. `<gaussianNoise>` [m] is on the nearest range;
-    `<updateRate>` [Hz] holds where it is lower than the sensor's own.
+    `<fov>` [rad] only sets a field of the message: the rays are the sensor's. `<gaussianNoise>` [m] is on the nearest
+    range. `<updateRate>` [Hz] applies if it is lower than the sensor's own.
     """
 
     endpoints = (publishes("range", "sensor_msgs/msg/Range", named_by=("topicName",)),)

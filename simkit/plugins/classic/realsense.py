@@ -1,4 +1,4 @@
-"""Intel RealSense cameras as Gazebo Classic's `librealsense_gazebo_plugin.so` (PAL Robotics, Intel) has them."""
+"""Intel RealSense cameras of Gazebo Classic's `librealsense_gazebo_plugin.so` (PAL Robotics, Intel)."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ if TYPE_CHECKING:
     from simkit.sensors.cameras.rgbd_camera import RgbdCamera
 
 _STREAMS = {"color": "color", "infrared1": "ired1", "infrared2": "ired2", "depth": "depth"}
-"""What the parameters of a stream begin with -> how its sensor's name ends."""
+"""Parameter prefix of each stream -> suffix of its sensor's name."""
 
 _FOLDERS = {"color": "color", "infrared1": "infra1", "infrared2": "infra2", "depth": "depth"}
 _MESSAGES = (("image_raw", "Image", "TopicName"), ("camera_info", "CameraInfo", "CameraInfoTopicName"))
-_CUTOFF_MAX = 5.0  # [m] where the file says nothing
-_SENSORS_OWN = "a stream comes at its sensor's <update_rate>, as with the plugin itself"
+_CUTOFF_MAX = 5.0  # [m], default
+_SENSORS_OWN = "a stream has the <update_rate> of its sensor, as in Gazebo's plugin"
 
 
 class RealSenseOptions(Options):
@@ -51,11 +51,11 @@ class RealSenseOptions(Options):
 
 
 class RealSense(ModelPlugin):
-    """On a model whose sensors are named `<prefix>color`, `<prefix>depth`, `<prefix>ired1` and `<prefix>ired2`.
+    """Publishes the sensors `<prefix>color`, `<prefix>depth`, `<prefix>ired1` and `<prefix>ired2` of its model.
 
-    Each is published on `<prefix>/<colorTopicName>` and so on, with its `camera_info` beside it, in
+    The topics are `<prefix>/<colorTopicName>` and so on, each with a `camera_info`, in the frames
     `<colorOpticalframeName>` and so on. Depths are in millimetres (`16UC1`), 0 outside `<rangeMinDepth>` to
-    `<rangeMaxDepth>` [m]. With `<pointCloud>` true there is a cloud in the depth's optical frame on
+    `<rangeMaxDepth>` [m]. With `<pointCloud>` true a cloud in the depth's optical frame is on
     `<prefix>/<pointCloudTopicName>`, NaN outside `<pointCloudCutoff>` to `<pointCloudCutoffMax>` [m].
     """
 
@@ -73,7 +73,7 @@ class RealSense(ModelPlugin):
     def load(self, parent: Model, params: Params) -> None:
         prefix = self.options.prefix
         near, far = camera_settings.read_depths(self.options, "range_min_depth", "range_max_depth")
-        _ = self.options.point_cloud, self.options.point_cloud_topic_name  # also where there is no depth camera
+        _ = self.options.point_cloud, self.options.point_cloud_topic_name  # read even without a depth camera
         cloud = camera_settings.read_depths(self.options, "point_cloud_cutoff", "point_cloud_cutoff_max")
         for stream, ending in _STREAMS.items():
             topic = self._below(
@@ -100,18 +100,18 @@ class RealSense(ModelPlugin):
         self, sensor: RgbdCamera, prefix: str, topics: tuple[str, str], cloud: tuple[float, float]
     ) -> None:
         topic = self.options.point_cloud_topic_name
-        wanted = {"depth_image": topics[0], "depth_camera_info": topics[1]}
+        products = {"depth_image": topics[0], "depth_camera_info": topics[1]}
         if self.options.point_cloud and topic:
             sensor.use_optical_cloud_axes()
             sensor.crop_clouds(*cloud)
-            wanted["points"] = self._below(prefix, topic)
-        sensor.publish_on(wanted)
+            products["points"] = self._below(prefix, topic)
+        sensor.publish_on(products)
 
     def _below(self, prefix: str, name: str) -> str:
         return self.ros.topic(f"{prefix}/{name.lstrip('/')}" if prefix else name)
 
     def _find(self, model: Model, name: str, product: str) -> RgbdCamera | None:
-        """The model's camera of that name, or None after a warning."""
+        """Return the model's camera of that name, or None after a warning."""
         inside = model.scoped + "::"
         within = [s for scoped, s in self.sim.contents.sensors.items() if scoped.startswith(inside)]
         sensors = [sensor for sensor in within if hasattr(sensor, "transform_messages")]
@@ -120,13 +120,13 @@ class RealSense(ModelPlugin):
             return fitting[name]
         kind = "depth camera" if product == "points" else "camera"
         listed = ", ".join(repr(s.name) for s in sensors) or "none"
-        message = f"model {model.scoped!r} has no {kind} {name!r}, a stream is left out; its cameras are: {listed}"
+        message = f"model {model.scoped!r} has no {kind} {name!r}, so a stream is missing; its cameras are: {listed}"
         self.params.diagnostics.warning("SK-SENSOR-126", message, self.where, did_you_mean(name, fitting))
         return None
 
 
 def _as_driver(image: Image) -> Image:
-    """Grey as the driver names it."""
+    """Rename the grey encoding as in the camera's driver."""
     if image.encoding == "mono8":
         image.encoding = "8UC1"
     return image

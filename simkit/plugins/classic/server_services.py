@@ -1,4 +1,4 @@
-"""Services of Gazebo Classic's server for ROS 2, and for worlds of ROS 1 those under `/gazebo`."""
+"""Services of Gazebo Classic's server for ROS 2, and those under `/gazebo` for worlds of ROS 1."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ if TYPE_CHECKING:
     from simkit.scene import ScenePlugin, SceneWorld
 
 Handler = Callable[[Any], Any]
-"""What answers a request; each takes and gives a type of its own."""
+"""Function from a request to a response, each of the service's type."""
 
 Table = Mapping[str, tuple[str, Handler]]
-"""Short name -> type, and what it does with a request."""
+"""Short name -> type and handler of a service."""
 
 _ROS_1: Final = re.compile(r"libgazebo_ros_(api|paths)_plugin\.so$")
 _LIBRARY: Final = re.compile(r"libgazebo_ros_\w+\.so$")
@@ -43,12 +43,13 @@ _EMPTY: Final = "std_srvs/srv/Empty"
 
 
 class ClassicServices(WorldPlugin):
-    """Offers what Gazebo Classic's server does; part of every world.
+    """Offers the services of Gazebo Classic's server; part of every world.
 
-    Spawning, deleting, listing, pausing, resetting, wrenches and efforts, as `gazebo.launch.py` of ROS 2 loads them
-    into every server, and states and properties besides, for which Classic wants a plugin in the world: they cost
-    nothing. ROS 1's own names, under `/gazebo`, are there for a world with plugins in ROS 1's spelling (camelCase) or
-    with `libgazebo_ros_api_plugin.so`. `docs/services.md` says what each takes and does.
+    These are spawning, deleting, listing, pausing, resetting, wrenches and efforts, which `gazebo.launch.py` of ROS 2
+    loads into every server. States and properties, for which Classic needs a plugin in the world, are always available,
+    because they cost nothing. A world with plugins in ROS 1's spelling (camelCase) or with
+    `libgazebo_ros_api_plugin.so` also has ROS 1's own names, under `/gazebo`. `docs/services.md` describes the requests
+    and effects of all services.
     """
 
     on_error = "stop"
@@ -69,23 +70,23 @@ class ClassicServices(WorldPlugin):
         sim.communication.on_demand.add(lambda: bool(self.pushes), None, self._apply, "before")
 
     def push_link(self, request: msgs.ApplyLinkWrench_Request | msgs.ApplyBodyWrench_Request, link: str) -> str:
-        """Takes on what pushes a link for a while."""
+        """Add a wrench on a link for a limited time."""
         self._push(link_wrench(self.sim, link, request))
         return ""
 
     def push_joint(self, request: msgs.ApplyJointEffort_Request) -> str:
-        """Takes on what drives a joint for a while."""
+        """Add an effort on a joint for a limited time."""
         self._push(joint_effort(self.sim, request))
         return f"Effort on joint [{request.joint_name}] set"
 
     def clear_link(self, name: str) -> None:
-        """Ends what pushes a link."""
+        """Remove the wrenches on a link."""
         link = find_entity(self.sim, name, ("link",))[1]
         if not self._keep([push for push in self.pushes if push.link != link]):
             raise RequestRefused(f"no applied wrenches on {link!r}")
 
     def clear_joint(self, name: str) -> None:
-        """Ends what drives a joint."""
+        """Remove the efforts on a joint."""
         joint = properties.joint_of(self.sim, name).scoped
         if not self._keep([push for push in self.pushes if push.joint != joint]):
             raise RequestRefused(f"no applied efforts on {joint!r}")
@@ -95,7 +96,7 @@ class ClassicServices(WorldPlugin):
             self._keep([*self.pushes, push])
 
     def _keep(self, pushes: list[TimedWrench]) -> bool:
-        """Sets what pushes; False where that is as many as before."""
+        """Replace the active wrenches; return False if their number is unchanged."""
         if len(pushes) == len(self.pushes):
             return False
         self.pushes = pushes
@@ -107,9 +108,9 @@ class ClassicServices(WorldPlugin):
 
 
 def offer_table(prefix: str, sim: Simulation, *tables: Table, named: Callable[[str], str] | None = None) -> None:
-    """Offers services under a prefix, or under the names that `named` makes of the short ones.
+    """Offer services under a prefix, or under the names that `named` returns for the short names.
 
-    What a file's plugin names is offered for good; all else yields to whatever has the same name.
+    Services of a plugin in the file are permanent; all others are replaced by any other service of the same name.
     """
     for table in tables:
         for short, (type_name, does) in table.items():
@@ -125,11 +126,11 @@ def offer_table(prefix: str, sim: Simulation, *tables: Table, named: Callable[[s
                 sim.communication.services.offer(name, type_name, handler)
 
 
-# ---------------------------------------------------------------------- what the server has
+# ---------------------------------------------------------------------- services of the server
 
 
 def _server_services(sim: Simulation) -> Table:
-    """gazebo_ros_init and gazebo_ros_factory."""
+    """Return the services of gazebo_ros_init and gazebo_ros_factory."""
     return {
         "spawn_entity": ("gazebo_msgs/srv/SpawnEntity", partial(_spawn_entity, sim)),
         "delete_entity": ("gazebo_msgs/srv/DeleteEntity", partial(_delete_entity, sim)),
@@ -157,14 +158,14 @@ def _model_list(sim: Simulation, _: object) -> dict[str, object]:
 
 
 def _reset_simulation(sim: Simulation) -> None:
-    """Time, models and plugins start anew; a world that is paused stays so, as in Classic."""
+    """Reset time, models and plugins; as in Classic, a paused world stays paused."""
     is_paused = sim.paused
     sim.reset()
     sim.paused = is_paused
 
 
 def _wrench_services(plugin: ClassicServices) -> Table:
-    """gazebo_ros_force_system."""
+    """Return the services of gazebo_ros_force_system."""
     return {
         "apply_link_wrench": ("gazebo_msgs/srv/ApplyLinkWrench", lambda r: plugin.push_link(r, r.link_name)),
         "clear_link_wrenches": ("gazebo_msgs/srv/LinkRequest", lambda r: plugin.clear_link(r.link_name)),
@@ -173,11 +174,11 @@ def _wrench_services(plugin: ClassicServices) -> Table:
     }
 
 
-# ---------------------------------------------------------------------- what Classic has plugins for
+# ---------------------------------------------------------------------- services of Classic's plugins
 
 
 def state_services(sim: Simulation) -> Table:
-    """gazebo_ros_state."""
+    """Return the services of gazebo_ros_state."""
     return {
         "get_entity_state": ("gazebo_msgs/srv/GetEntityState", partial(_get_state, sim)),
         "set_entity_state": ("gazebo_msgs/srv/SetEntityState", partial(_set_state, sim)),
@@ -203,7 +204,7 @@ def _set_joints(sim: Simulation, request: msgs.SetModelConfiguration_Request) ->
 
 
 def property_services(sim: Simulation) -> Table:
-    """gazebo_ros_properties; masses and inertias are compiled, so there is no `set_link_properties`."""
+    """Return the services of gazebo_ros_properties, except `set_link_properties`: masses and inertias are compiled."""
     return {
         "get_world_properties": ("gazebo_msgs/srv/GetWorldProperties", partial(_world_properties, sim)),
         "get_model_properties": ("gazebo_msgs/srv/GetModelProperties", partial(properties.model_properties, sim)),
@@ -230,7 +231,7 @@ def _world_properties(sim: Simulation, _: object) -> dict[str, object]:
 
 
 def _ros_1_services(plugin: ClassicServices) -> Table:
-    """gazebo_ros_api_plugin, but for what it has in common with ROS 2's."""
+    """Return the services of gazebo_ros_api_plugin, except those that it shares with ROS 2."""
     sim = plugin.sim
     spawn_model = ("gazebo_msgs/srv/SpawnModel", partial(_spawn_model, sim))
     return {
@@ -292,7 +293,7 @@ def _configure_model(sim: Simulation, request: msgs.SetModelConfiguration_Reques
 
 
 def listen_to_states(prefix: str, sim: Simulation) -> None:
-    """ROS 1's commands by topic."""
+    """Subscribe to ROS 1's topics that set states."""
     inputs: dict[str, tuple[str, Callable[..., str]]] = {
         "set_model_state": ("ModelState", _set_model_state),
         "set_link_state": ("LinkState", _set_link_state),
@@ -306,7 +307,7 @@ def listen_to_states(prefix: str, sim: Simulation) -> None:
 
 
 def broadcast_states(sim: Simulation, models: str, links: str, rate: float, *, is_aside: bool) -> None:
-    """Publishes the states of models and links while somebody listens."""
+    """Publish the states of models and links while they have subscribers."""
     topics = {models: MODEL_STATES, links: LINK_STATES}
     make = partial(states.states_message, sim)
     sim.communication.on_demand.broadcast(topics, rate, lambda topic: make(topics[topic]), is_aside=is_aside)
@@ -314,11 +315,11 @@ def broadcast_states(sim: Simulation, models: str, links: str, rate: float, *, i
 
 def _broadcast_states(prefix: str, sim: Simulation) -> None:
     models, links = f"{prefix}/model_states", f"{prefix}/link_states"
-    if not {models, links} & set(sim.communication.bus.all_topics()):  # a plugin of the file may have them
+    if not {models, links} & set(sim.communication.bus.all_topics()):  # a plugin of the file may publish them already
         broadcast_states(sim, models, links, STATES_RATE, is_aside=True)
 
 
-# ---------------------------------------------------------------------- which ROS a world is of
+# ---------------------------------------------------------------------- ROS version of a world
 
 
 def _plugins(world: SceneWorld) -> Iterator[ScenePlugin]:
@@ -332,7 +333,7 @@ def _plugins(world: SceneWorld) -> Iterator[ScenePlugin]:
 
 
 def _is_of_ros_1(plugin: ScenePlugin) -> bool:
-    """Whether a plugin is in the spelling of gazebo_ros for ROS 1: parameters in camelCase, and no `<ros>`."""
+    """Check whether a plugin has the spelling of gazebo_ros for ROS 1: parameters in camelCase, and no `<ros>`."""
     if not _LIBRARY.search(plugin.filename):
         return False
     if _ROS_1.search(plugin.filename):
@@ -348,9 +349,9 @@ class GazeboRosStateOptions(Options):
 
 
 class GazeboRosState(WorldPlugin):
-    """Publishes `model_states` and `link_states`, and offers `get_entity_state`, `set_entity_state` and the rest.
+    """Publishes `model_states` and `link_states`, and offers `get_entity_state`, `set_entity_state` and others.
 
-    All in its own `<ros><namespace>`. `<update_rate>` [Hz] is 100 where it is not given; of 0 it is every step.
+    All names are in its own `<ros><namespace>`. `<update_rate>` [Hz] is 100 by default; 0 is every step.
     """
 
     options = OptionsOf(GazeboRosStateOptions)
@@ -368,7 +369,7 @@ class GazeboRosState(WorldPlugin):
 
 
 class GazeboRosProperties(WorldPlugin):
-    """Offers `get_model_properties`, `get_physics_properties` and the rest in its own `<ros><namespace>`."""
+    """Offers `get_model_properties`, `get_physics_properties` and others in its own `<ros><namespace>`."""
 
     filenames = ("libgazebo_ros_properties.so",)
     endpoints = offers_all(

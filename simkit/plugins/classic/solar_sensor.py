@@ -1,4 +1,4 @@
-"""The robotics course's solar sensor: `libsolar_sensor.so`, a model plugin that tells where a light stands."""
+"""Solar sensor of the robotics course: `libsolar_sensor.so`, a model plugin that measures the direction of a light."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _NONE = np.zeros(9)
 
 
 class SolarSensorPanelOptions(Options):
-    """The `<panel>` block."""
+    """Options in the `<panel>` block."""
 
     area: float = number(minimum=0.0, maximum=1e100, required=True)
     efficiency: float = number(minimum=0.0, maximum=1.0, required=True)
@@ -63,20 +63,18 @@ class SolarSensorOptions(Options):
 class SolarSensor(ModelPlugin):
     """Publishes the direction of a light, seen from a link, as the orientation of an `Imu` on `sunloin_imu`.
 
-    The unit vector from the link's origin to the light, in the link's axes, plus `<xyz_offset>`, gives
-    pitch = asin(-z) and yaw = atan2(y, x): the x axis of that orientation points at the light. `<rpy_offset>` turns
-    the result afterwards.
+    The unit vector from the link's origin to the light, in the link's axes, plus `<xyz_offset>`, gives pitch = asin(-z)
+    and yaw = atan2(y, x): the x axis of that orientation points at the light. `<rpy_offset>` turns the result
+    afterwards.
 
-    `<frame_name>` names the link and is the message's frame; `<body_name>` names the link where the frame is another;
-    with neither it is the model's canonical link. `<gaussian_noise>` [rad] is the standard deviation of independent
-    noise on roll, pitch and yaw, and its square stands on the diagonal of the covariance. `<update_rate>` [Hz], 0 is
-    every step.
+    `<frame_name>` names the link and is the message's frame; `<body_name>` names the link if the frame differs; the
+    default is the model's canonical link. `<gaussian_noise>` [rad] is the standard deviation of independent noise on
+    roll, pitch and yaw; its square is on the diagonal of the covariance. `<update_rate>` [Hz], 0 is every step.
 
-    Beyond the course, all of them off where the file does not ask: `<simkit:shadow>`, `<simkit:field_of_view>`,
-    `<simkit:irradiance>`, `<simkit:panel>`, `<simkit:falloff>` and `<simkit:normal>` as of the `solar_irradiance`
-    sensor, their readings on topics below this one; `<simkit:angular_noise>` [rad], which turns the direction about a
-    random axis at right angles to it; `<simkit:towards>` `direction`, which takes a directional light's rays for
-    parallel.
+    Extensions of the course's sensor, all off by default: `<simkit:shadow>`, `<simkit:field_of_view>`,
+    `<simkit:irradiance>`, `<simkit:panel>`, `<simkit:falloff>` and `<simkit:normal>` as in the `solar_irradiance`
+    sensor, with their readings on topics below this one; `<simkit:angular_noise>` [rad], which turns the direction
+    about a random perpendicular axis; `<simkit:towards>` `direction`, which uses parallel rays for a directional light.
     """
 
     endpoints = (
@@ -91,8 +89,8 @@ class SolarSensor(ModelPlugin):
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         frame, body = self.options.frame_name, self.options.body_name
-        wanted = body or frame
-        link = find_link(scene, wanted, params) if wanted else None
+        name = body or frame
+        link = find_link(scene, name, params) if name else None
         self._link_name = link.scoped if link else scene.canonical_link
         self._frame = frame or self._link_name.rsplit("::", 1)[-1]
         self._xyz = _offset(params, "xyz_offset")
@@ -117,7 +115,7 @@ class SolarSensor(ModelPlugin):
         self._find_view(params)
 
     def _find_view(self, params: Params) -> None:
-        """What the file asks for beyond the course, and its topics."""
+        """Create the view and open the topics of the extensions that the file enables."""
         options = self._options
         judges = options.shadow or params.has("field_of_view")
         self._view: SolarView | None = None
@@ -129,17 +127,17 @@ class SolarSensor(ModelPlugin):
         if judges or options.measures_irradiance:
             self._view = SolarView(options, self._light)
         number, topic = "std_msgs/msg/Float64", self.ros.topic("sunloin_imu")
-        for name, kind, is_asked, value in (
+        for name, kind, is_enabled, value in (
             ("valid", "std_msgs/msg/Bool", judges, lambda r: r.is_valid),
             ("irradiance", number, options.measures_irradiance, lambda r: r.irradiance),
             ("power", number, options.panel is not None, lambda r: r.power),
             ("shadow", "std_msgs/msg/String", options.shadow, lambda r: r.shadow),
         ):
-            if is_asked:
+            if is_enabled:
                 self._more.append((self.advertise(f"{topic}/{name}", kind), msgs.type_of(kind), value))
 
     def after_step(self) -> None:
-        self._index += 1  # counted whether read or not, so that who listens does not change the noise
+        self._index += 1  # counted without subscribers too, so that they do not change the noise
         if self._light is None:
             return
         if self._view is not None:
@@ -148,15 +146,15 @@ class SolarSensor(ModelPlugin):
             self._publish(self._link.pose, self._light.pose, True)
 
     def _look(self, view: SolarView, light: Light) -> None:
-        wanted = [end for end in self._more if end[0].wanted]
-        if not (wanted or self._readings.wanted):
+        subscribed = [endpoint for endpoint in self._more if endpoint[0].wanted]
+        if not (subscribed or self._readings.wanted):
             return
         sim, pose = self.sim, self._link.pose
         if self._compiled is not sim.engine.compiled:  # the structure changed
             self._compiled = sim.engine.compiled
             view.bind(self._compiled, self._link_name)
         reading = view.measure(sim.mj_model, sim.engine.physics.fresh(), light.state, pose.position, pose.matrix)
-        for publisher, make, value in wanted:
+        for publisher, make, value in subscribed:
             publisher.publish(make(value(reading)))
         if self._readings.wanted:
             self._publish(pose, light.pose, reading.is_valid)
@@ -178,7 +176,7 @@ class SolarSensor(ModelPlugin):
         return imu(header, quaternion(x, y, z, w), *rest)
 
     def _measured(self, index: int, pose: Pose, light: Pose) -> tuple[Vector, Vector]:
-        """The orientation (w, x, y, z) with its noise, and its covariance, shape (9,)."""
+        """Return the orientation (w, x, y, z) with its noise, and its covariance, shape (9,)."""
         roll, (pitch, yaw) = 0.0, self._angles(pose, light)
         covariance = self._covariance.copy()
         if self._stream is not None:
@@ -198,7 +196,7 @@ class SolarSensor(ModelPlugin):
         return orientation, covariance
 
     def _angles(self, pose: Pose, light: Pose) -> tuple[float, float]:
-        """Pitch and yaw [rad] of the light in the link's axes."""
+        """Return pitch and yaw [rad] of the light in the link's axes."""
         assert self._light is not None
         is_parallel = self._options.towards == "direction" and self._light.scene.type == "directional"
         towards = -light.rotate(self._light.scene.direction) if is_parallel else light.position - pose.position
@@ -209,9 +207,9 @@ class SolarSensor(ModelPlugin):
 
 
 def _find_light(sim: Simulation, params: Params, name: str) -> Light | None:
-    """The light that `<light_name>` names; None after an error that lists the lights, or a note for a bare model."""
+    """Return the light that `<light_name>` names; None after an error with the lights, or a note for a bare model."""
     if name and not sim.contents.lights and sim.world.where == NOWHERE:
-        message = f"a bare model has no light {name!r}: no reading is published until it stands in a world that has it"
+        message = f"a bare model has no light {name!r}: nothing is published until a world with this light contains it"
         params.diagnostics.note("SK-PLUGIN-009", message, params.where)
         return None
     if name:
@@ -222,9 +220,9 @@ def _find_light(sim: Simulation, params: Params, name: str) -> Light | None:
 
 
 def _offset(params: Params, name: str) -> tuple[float, float, float]:
-    """`name`, or its older spelling with an s, which is said."""
+    """Read `name`, or its older spelling with an s, which is reported."""
     older = params.child(name + "s")
     if older is None or params.has(name):
         return params.vector3(name, (0.0, 0.0, 0.0))
-    params.diagnostics.warning("SK-PARAM-004", f"<{older.name}> is an older spelling", older.where, f"write <{name}>")
+    params.diagnostics.warning("SK-PARAM-004", f"<{older.name}> is an old spelling", older.where, f"write <{name}>")
     return params.vector3(name + "s", (0.0, 0.0, 0.0))

@@ -1,4 +1,4 @@
-"""Spawn and delete models, and read and set states, for Gazebo Classic's services."""
+"""Spawning and deletion of models, and states of entities, for Gazebo Classic's services."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 MODEL_STATES: Final = "gazebo_msgs/msg/ModelStates"
 LINK_STATES: Final = "gazebo_msgs/msg/LinkStates"
 STATES_RATE: Final = 100.0
-"""[Hz] of the topics of states where a file says nothing, as in gazebo_ros_state."""
+"""Default rate of the topics of states [Hz], as in gazebo_ros_state."""
 
 _PLUGIN: Final = re.compile(r"(<plugin\b(?:[^>\"']|\"[^\"]*\"|'[^']*')*?)(/>|>(.*?)</plugin\s*>)", re.DOTALL)
 _NAMESPACE: Final = re.compile(r"<namespace\s*>.*?</namespace\s*>|<namespace\s*/>", re.DOTALL)
@@ -41,31 +41,31 @@ _KINDS: Final = ("model", "link", "light", "visual")
 
 
 def spawn_model(sim: Simulation, xml: str, name: str, namespace: str, pose_message: msgs.Pose, frame: str) -> str:
-    """Spawns a model as Classic does: its own pose counts in the initial one, that one in the frame.
+    """Spawn a model as Classic does, with its pose in the file relative to the initial pose in the frame.
 
     Returns:
-        Its name.
+        Name of the model.
 
     Raises:
-        Refused: it cannot be.
+        RequestRefused: the model cannot be spawned.
     """
     if not xml.strip():
-        raise RequestRefused("there is no XML to make an entity of")
+        raise RequestRefused("the XML of the entity is empty")
     if name and name in sim.models:
         raise RequestRefused(f"Entity [{name}] already exists.")
     source = add_namespace(xml, namespace) if namespace else xml
     initial = frame_of(sim, frame) @ pose_of(pose_message, "initial_pose")
     pose = None if initial == IDENTITY else initial @ sim.contents.pose_in_file(source)
     if not name:
-        name = wanted = sim.contents.name_in_file(source)
+        name = base = sim.contents.name_in_file(source)
         number = 0
         while name in sim.models:
-            name, number = f"{wanted}_{number}", number + 1
+            name, number = f"{base}_{number}", number + 1
     return str(spawn_entities(sim.spawn, source, name, pose).name)
 
 
 def add_namespace(xml: str, namespace: str) -> str:
-    """The description with `<ros><namespace>` in each of its plugins, as `robot_namespace` has it; ROS 1's as well."""
+    """Add `<ros><namespace>` to each plugin of a description, as Classic's `robot_namespace`; also for ROS 1."""
     namespace = escape(namespace, quote=False)
     element = f"<namespace>{namespace}</namespace>"
 
@@ -89,12 +89,12 @@ def add_namespace(xml: str, namespace: str) -> str:
 
 
 def delete_model(sim: Simulation, name: str) -> None:
-    """Removes a top-level model. Raises Refused."""
+    """Remove a top-level model; raises `RequestRefused`."""
     if name not in sim.models:
         kind, scoped = find_entity(sim, name, ("model", "light", "link"), "entity")
         if kind == "light":
             raise RequestRefused(f"the light {scoped!r} cannot be removed; set_light_properties can darken it")
-        raise RequestRefused(f"{scoped!r} is a part of the model {scoped.split('::')[0]!r}; delete that")
+        raise RequestRefused(f"{scoped!r} is part of the model {scoped.split('::')[0]!r}; delete the model instead")
     sim.remove(name)
 
 
@@ -102,7 +102,7 @@ def delete_model(sim: Simulation, name: str) -> None:
 
 
 def carrying_link(sim: Simulation, kind: str, scoped: str) -> Link | None:
-    """The link that an entity moves with: for a model its canonical one."""
+    """Return the link that an entity moves with; the link of a model is its canonical link."""
     if kind == "link":
         return sim.link(scoped)
     if kind == "visual":
@@ -114,7 +114,7 @@ def carrying_link(sim: Simulation, kind: str, scoped: str) -> Link | None:
 
 
 def velocity_of(sim: Simulation, kind: str, scoped: str) -> tuple[Vector, Vector]:
-    """Linear velocity of an entity's origin [m/s] and angular velocity [rad/s], world frame, each of shape (3,)."""
+    """Return linear velocity of an entity's origin [m/s] and angular velocity [rad/s], world frame, shape (3,)."""
     link = carrying_link(sim, kind, scoped)
     if link is None:
         return np.zeros(3), np.zeros(3)
@@ -124,12 +124,12 @@ def velocity_of(sim: Simulation, kind: str, scoped: str) -> tuple[Vector, Vector
 
 
 def twist_fields(linear: Vector, angular: Vector) -> dict[str, object]:
-    """The fields of a `Twist` message."""
+    """Return the fields of a `Twist` message."""
     return {"linear": vector_fields(linear.tolist()), "angular": vector_fields(angular.tolist())}
 
 
 def state_of(sim: Simulation, name: str, frame: str, kinds: tuple[str, ...] = _KINDS) -> tuple[Pose, Vector, Vector]:
-    """Pose and velocities of an entity in the frame of another, less that one's velocity. Raises Refused."""
+    """Return pose and velocities of an entity relative to the frame of another; raises `RequestRefused`."""
     kind, scoped = find_entity(sim, name, kinds, "entity" if kinds == _KINDS else "")
     pose = handle_of(sim, kind, scoped).pose
     linear, angular = velocity_of(sim, kind, scoped)
@@ -148,12 +148,12 @@ def set_state(
     frame: str,
     kinds: tuple[str, ...] = ("model", "link", "light"),
 ) -> None:
-    """Puts an entity somewhere with a velocity, both in the frame of another. Raises Refused."""
+    """Set pose and velocity of an entity, both in the frame of another; raises `RequestRefused`."""
     kind, scoped = find_entity(sim, name, kinds, "entity" if len(kinds) > 1 else "")
-    place = frame_of(sim, frame)
-    pose = place @ pose_of(pose_message)
-    linear = place.rotate(vector_of(twist.linear, "twist.linear"))
-    angular = place.rotate(vector_of(twist.angular, "twist.angular"))
+    frame_pose = frame_of(sim, frame)
+    pose = frame_pose @ pose_of(pose_message)
+    linear = frame_pose.rotate(vector_of(twist.linear, "twist.linear"))
+    angular = frame_pose.rotate(vector_of(twist.angular, "twist.angular"))
     handle = handle_of(sim, kind, scoped)
     handle.set_pose(pose)
     if kind == "link" or (kind == "model" and not handle.static):
@@ -161,22 +161,22 @@ def set_state(
 
 
 def set_joints(sim: Simulation, model: str, names: list[str], positions: npt.NDArray[np.float64]) -> None:
-    """Puts joints of a model at positions [rad or m]. Raises Refused."""
+    """Set positions of a model's joints [rad or m]; raises `RequestRefused`."""
     handle = sim.model(find_entity(sim, model, ("model",))[1])
     if len(names) != len(positions):
         raise RequestRefused("joint name and position list have different lengths")
-    wanted = {
+    targets = {
         name: require_finite(value, f"the position of {name!r}") for name, value in zip(names, positions, strict=True)
     }
-    for name in wanted:
+    for name in targets:
         joint = handle.joint(name)
         if joint.dof != 1:
-            raise RequestRefused(f"joint {name!r} has {joint.dof} degrees of freedom, one position is for one of them")
-    handle.set_joint_positions(wanted)
+            raise RequestRefused(f"joint {name!r} has {joint.dof} degrees of freedom, allowed is one")
+    handle.set_joint_positions(targets)
 
 
 def states_message(sim: Simulation, type_name: str) -> object:
-    """A message of `MODEL_STATES`, the top-level models', or of `LINK_STATES`, all links' by their scoped names."""
+    """Return a message of `MODEL_STATES` with all top-level models, or of `LINK_STATES` with all links."""
     kind = "model" if type_name == MODEL_STATES else "link"
     names = list(sim.models if kind == "model" else sim.contents.handles.tables["link"])
     return msgs.make(

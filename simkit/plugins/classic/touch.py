@@ -1,4 +1,4 @@
-"""Gazebo Classic's touch detector, `libTouchPlugin.so`."""
+"""Touch detector of Gazebo Classic, `libTouchPlugin.so`."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ class ClassicTouchPluginOptions(TouchOptions):
 
 
 class ClassicTouchPlugin(TouchTimer):
-    """Says once that its model has touched a target, and nothing else, for a while without a break.
+    """Publishes once that its model has touched a target, and nothing else, for an uninterrupted duration.
 
-    What counts are the collisions that the named contact sensors watch. Its messages are whole numbers: 1 on
-    `/<namespace>/enable` has it look, 0 has it rest; 1 on `/<namespace>/touched` says that it is done.
+    Only the collisions of the named contact sensors count. The messages are integers: 1 on `/<namespace>/enable` starts
+    the detection, 0 stops it; 1 on `/<namespace>/touched` reports the touch.
     """
 
     endpoints = (

@@ -29,12 +29,12 @@ if TYPE_CHECKING:
     from simkit.runtime import Model
 
 _SIDES = ("left", "right")
-_STRAIGHT, _STANDING = 0.1, 0.1  # rate of turning [rad/s] and speed [m/s] below which Gazebo takes them for none
+_STRAIGHT, _STOPPED = 0.1, 0.1  # turn rate [rad/s] and speed [m/s] below which Gazebo treats them as zero
 _SPEEDS = "geometry_msgs/msg/Vector3"
 
 
 class TrackedVehicleOptions(Options):
-    """Options of both."""
+    """Options of both kinds of tracked vehicles."""
 
     robot_namespace: str = text("{model}")
     steering_efficiency: float = number(0.5, minimum=1e-06)
@@ -46,10 +46,11 @@ class TrackedVehicleOptions(Options):
 
 
 class _TrackedVehicle(ModelPlugin):
-    """What both have: commands in, speeds of the tracks out.
+    """Base of tracked vehicles: convert commands to speeds of the tracks.
 
-    Commands: `/<robot_namespace>/cmd_vel` takes a Twist that turns left for a positive rate, as everywhere in ROS;
-    `/<robot_namespace>/cmd_vel_twist` one that turns right, as Gazebo's own topic does. The last command holds.
+    Commands: `/<robot_namespace>/cmd_vel` takes a Twist that turns left for a positive rate, as usual in ROS.
+    `/<robot_namespace>/cmd_vel_twist` takes a Twist that turns right, like Gazebo's own topic. The last command stays
+    active.
     """
 
     endpoints = (
@@ -66,14 +67,14 @@ class _TrackedVehicle(ModelPlugin):
         self._efficiency, self._separation = options.steering_efficiency, options.tracks_separation
         self._fastest, self._fastest_turn = options.max_linear_speed, options.max_angular_speed
         frictions = {"track_mu": options.track_mu, "track_mu2": options.track_mu2}
-        self._asked = [min(MU_MOST, mu) if params.has(name) else None for name, mu in frictions.items()]
+        self._friction_overrides = [min(MU_MOST, mu) if params.has(name) else None for name, mu in frictions.items()]
 
     def load(self, parent: Model, params: Params) -> None:
         self.once = OneTimeWarnings(self)
         own = valid_topic(f"/{self._namespace}") if self._namespace else ""
         self.listen(f"{own}/cmd_vel", COMMAND_TYPES, partial(self._on_command, 1.0))
         self.listen(f"{own}/cmd_vel_twist", COMMAND_TYPES, partial(self._on_command, -1.0))
-        self._told = self.advertise(f"{own}/tracks_speed", _SPEEDS)
+        self._tracks_speed = self.advertise(f"{own}/tracks_speed", _SPEEDS)
 
     def _on_command(self, sense: float, message: Twist | TwistStamped) -> None:
         command = command_of(message)
@@ -84,14 +85,14 @@ class _TrackedVehicle(ModelPlugin):
         half = sense * _clamped(command[1], self._fastest_turn) * self._separation / 2 / self._efficiency
         left, right = _clamped(ahead - half, self._fastest), _clamped(ahead + half, self._fastest)
         self.drive(left, right)
-        self._told.publish(msgs.type_of(_SPEEDS)(left, right, 0.0))
+        self._tracks_speed.publish(msgs.type_of(_SPEEDS)(left, right, 0.0))
 
     @abc.abstractmethod
     def drive(self, left: float, right: float) -> None:
-        """Has the tracks run at these speeds [m/s]."""
+        """Set the speeds of the tracks [m/s]."""
 
-    def rub(self, link: SceneLink, mu: float) -> None:
-        """Gives the collisions of a link a coefficient of friction, in the engine's model."""
+    def set_friction(self, link: SceneLink, mu: float) -> None:
+        """Set the coefficient of friction of a link's collisions in the engine's model."""
         geoms = list(self.sim.engine.names.link(link.scoped).geoms)
         self.sim.engine.touch("geom_friction")[geoms, 0] = mu
         self.sim.engine.touch("geom_priority")[geoms] = friction_priority(mu)
@@ -110,9 +111,9 @@ class SimpleTrackedVehiclePluginOptions(TrackedVehicleOptions):
 
 
 class SimpleTrackedVehiclePlugin(_TrackedVehicle):
-    """Tracks whose surface runs: `<left_track>` and `<right_track>`, with flippers on either side.
+    """Drives tracks with a moving surface: `<left_track>` and `<right_track>`, with flippers on either side.
 
-    In a turn the surfaces' way is bent to circles round the point that the vehicle is to turn about.
+    In a turn the surface velocities follow circles about the vehicle's centre of rotation.
     """
 
     options = OptionsOf(SimpleTrackedVehiclePluginOptions)
@@ -120,13 +121,13 @@ class SimpleTrackedVehiclePlugin(_TrackedVehicle):
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         super().prepare(scene, params, builder)
-        _ = self.options.collide_without_contact_bitmask  # a way round ODE's categories
+        _ = self.options.collide_without_contact_bitmask  # a workaround for ODE's collision categories
         body = self._link("body", scene, params)
         self._body = "" if body is None else body.scoped
         self._tracks: list[tuple[SceneLink, int]] = []
         for index, side in enumerate(_SIDES):
             found = [self._link(f"{side}_track", scene, params)]
-            found += [find_link(scene, one.value, one) for one in params.all(f"{side}_flipper")]
+            found += [find_link(scene, flipper.value, flipper) for flipper in params.all(f"{side}_flipper")]
             self._tracks += [(link, index) for link in found if link is not None]
         for link, _ in self._tracks:
             report_missing_collisions(link, params)
@@ -136,54 +137,56 @@ class SimpleTrackedVehiclePlugin(_TrackedVehicle):
         return None if named is None or not name else find_link(scene, name, named)
 
     def _friction(self, link: SceneLink) -> tuple[float, float] | None:
-        """Along and across the belt, where the plugin asks for any; what it leaves open is as the file has it."""
-        if self._asked == [None, None] or not link.collisions:
+        """Return the friction along and across the belt, if the plugin sets any; the file's for a missing value."""
+        if self._friction_overrides == [None, None] or not link.collisions:
             return None
         of_file = directional_friction(link.collisions[0].surface)
-        along, across = (old if new is None else new for new, old in zip(self._asked, of_file, strict=True))
+        along, across = (
+            old if new is None else new for new, old in zip(self._friction_overrides, of_file, strict=True)
+        )
         return along, across
 
     def load(self, parent: Model, params: Params) -> None:
         super().load(parent, params)
         links = [link for link, _ in self._tracks]
-        self._rubs = [self._friction(link) for link in links]
-        for link, friction in zip(links, self._rubs, strict=True):
+        self._frictions = [self._friction(link) for link in links]
+        for link, friction in zip(links, self._frictions, strict=True):
             if friction is not None:
-                self.rub(link, max(friction))
-        directed = [needs_direction(link) or friction for link, friction in zip(links, self._rubs, strict=True)]
-        self._stands = [BeltMotion(0.0) if one else None for one in directed]
-        self._runs: list[BeltMotion | None] = list(self._stands)
+                self.set_friction(link, max(friction))
+        directed = [needs_direction(link) or friction for link, friction in zip(links, self._frictions, strict=True)]
+        self._stopped_belts = [BeltMotion(0.0) if is_directed else None for is_directed in directed]
+        self._belt_motions: list[BeltMotion | None] = list(self._stopped_belts)
         self._speeds = (0.0, 0.0)
         self.before_step_rate = 1e-9
         self.sim.engine.friction.add_belts(self, self._belts)
 
     def _belts(self) -> list[Belt]:
         def now(index: int) -> BeltMotion | None:
-            return self._runs[index]
+            return self._belt_motions[index]
 
         return [
             belt_of(self.sim, link.scoped, IDENTITY, partial(now, i), friction)
-            for i, ((link, _), friction) in enumerate(zip(self._tracks, self._rubs, strict=True))
+            for i, ((link, _), friction) in enumerate(zip(self._tracks, self._frictions, strict=True))
         ]
 
     def drive(self, left: float, right: float) -> None:
         self._speeds = left, right
         self._run()
-        pace = None if self._turn() is not None else 1e-9  # in a turn the centre goes along with the vehicle
+        pace = None if self._turn() is not None else 1e-9  # in a turn the centre moves with the vehicle
         if pace != self.before_step_rate:
             self.before_step_rate = pace
             self.sim.engine.reschedule()
 
     def _turn(self) -> float | None:
-        """Distance of the point that it turns round, to the left [m]; None where it drives straight."""
+        """Return the distance of the centre of rotation to the left [m]; None for a straight motion."""
         left, right = self._speeds
         ahead, turning = (left + right) / 2, (right - left) * self._efficiency / self._separation
         if abs(turning) < _STRAIGHT:
             return None
-        return 0.0 if abs(ahead) < _STANDING else ahead / turning
+        return 0.0 if abs(ahead) < _STOPPED else ahead / turning
 
     def before_step(self) -> None:
-        """In a turn: the point that it turns round is where the vehicle is now."""
+        """Update the centre of rotation in a turn."""
         self._run()
 
     def _run(self) -> None:
@@ -194,10 +197,10 @@ class SimpleTrackedVehiclePlugin(_TrackedVehicle):
             centre = x, y, z
         runs = [
             BeltMotion(self._speeds[side], centre) if self._speeds[side] else stands
-            for (_, side), stands in zip(self._tracks, self._stands, strict=True)
+            for (_, side), stands in zip(self._tracks, self._stopped_belts, strict=True)
         ]
-        if runs != self._runs:
-            self._runs = runs
+        if runs != self._belt_motions:
+            self._belt_motions = runs
             self.sim.engine.physics.changed_surface()
 
 
@@ -210,7 +213,7 @@ class WheelTrackedVehiclePluginOptions(TrackedVehicleOptions):
 
 
 class WheelTrackedVehiclePlugin(_TrackedVehicle):
-    """Tracks made of wheels: `<left_joint>` and `<right_joint>`, any number of each, driven at the track's speed.
+    """Drives tracks made of wheels: any number of `<left_joint>` and `<right_joint>`, at the speed of the track.
 
     A wheel's radius is that of its cylinder, else of its sphere.
     """
@@ -233,17 +236,17 @@ class WheelTrackedVehiclePlugin(_TrackedVehicle):
                 servo = builder.add_velocity_servo(joint.scoped, max_effort=torque, owner=self.name)
                 self._links.append(link)
                 self._servos.append((servo, index, radius))
-        given = [mu for mu in self._asked if mu is not None]
-        self._mu = min(given) if given else None
-        if len(set(given)) > 1:
-            message = "<track_mu> and <track_mu2> of wheels differ: the smaller one is used both ways"
+        frictions = [mu for mu in self._friction_overrides if mu is not None]
+        self._mu = min(frictions) if frictions else None
+        if len(set(frictions)) > 1:
+            message = "<track_mu> and <track_mu2> of wheels differ; the smaller value is used in both directions"
             params.diagnostics.warning("SK-PLUGIN-103", message, params.where)
 
     def _radius(self, link: SceneLink, joint: SceneJoint, params: Params) -> float:
         sizes = [c.geometry.radius for c in link.collisions if isinstance(c.geometry, Cylinder)]
         sizes = sizes or [r for c in link.collisions if (r := float(getattr(c.geometry, "radius", 0.0) or 0.0)) > 0.0]
         if not sizes:
-            message = f"link {link.name!r} of joint {joint.name!r} has no round collision: no radius is known"
+            message = f"link {link.name!r} of joint {joint.name!r} has no cylinder or sphere: its radius is unknown"
             params.error("SK-PLUGIN-102", message)
             return 1.0
         return max(sizes)
@@ -252,7 +255,7 @@ class WheelTrackedVehiclePlugin(_TrackedVehicle):
         super().load(parent, params)
         if self._mu is not None:
             for link in self._links:
-                self.rub(link, self._mu)
+                self.set_friction(link, self._mu)
 
     def drive(self, left: float, right: float) -> None:
         speeds = left, right

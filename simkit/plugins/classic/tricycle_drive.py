@@ -1,10 +1,13 @@
 """Tricycle drive of Gazebo Classic: `libgazebo_ros_tricycle_drive.so`, with its ROS 2 and its ROS 1 spelling.
 
-A command is the speed of the driven wheel (`linear.x`) and the angle of its steering (`angular.z`). Where it differs
-from Gazebo Classic on purpose: the acceleration ramp follows the commanded speed (Classic adds to the wheel's own, and
-winds up while it is held), steering at a speed goes towards its angle (Classic compares it with a speed), an odometry
-by the wheels counts a turn to the left as positive, and the steering without a speed is a servo (Classic sets its
-angle).
+A command has the speed of the driven wheel (`linear.x`) and the angle of its steering (`angular.z`). Deliberate
+differences to Gazebo Classic:
+
+- The acceleration ramp follows the commanded speed. Classic adds to the wheel's own, which winds up while the wheel is
+  blocked.
+- Steering with a speed moves towards its angle. Classic compares the angle with a speed.
+- An odometry from the wheels counts a left turn as positive.
+- Steering without a speed is a servo. Classic sets its angle.
 """
 
 from __future__ import annotations
@@ -39,9 +42,9 @@ _COVARIANCE = (1e-5, 1e-5, 1e-3)
 class TricycleOptions(Options):
     """Options in the spelling of ROS 2; its topics have fixed names.
 
-    The torque [N·m] is that of the driven wheel, and of the steering where it has a speed. Within the tolerances the
-    wheel takes its speed at once [rad/s], and the steering stands still [rad]. A speed of the steering of 0 is as fast
-    as it can, an acceleration of 0 has no limit.
+    The torque [N·m] is that of the driven wheel, and of the steering if it has a speed. Within the tolerances the wheel
+    jumps to its speed [rad/s], and the steering stops [rad]. A steering speed of 0 is as fast as possible, an
+    acceleration of 0 has no limit.
     """
 
     command_topic: str = "cmd_vel"
@@ -69,7 +72,7 @@ class TricycleOptions(Options):
 
 
 class TricycleRos1Options(Options):
-    """Options in the spelling of ROS 1; it always publishes its odometry."""
+    """Options in the spelling of ROS 1; the odometry is always published."""
 
     publish_odom = True
     max_wheel_acceleration: float = number(0.0, "m/s²", element="wheelAcceleration", minimum=0)
@@ -95,21 +98,21 @@ class TricycleRos1Options(Options):
     publish_wheel_joint_state: bool = boolean(element="publishWheelJointState")
 
 
-def _outputs(given: TricycleOptions | TricycleRos1Options) -> DriveOutputOptions:
+def _outputs(options: TricycleOptions | TricycleRos1Options) -> DriveOutputOptions:
     return DriveOutputOptions(
-        odometry_topic=given.odometry_topic,
-        odometry_frame=given.odometry_frame,
-        base_frame=given.robot_base_frame,
-        odometry=given.publish_odom,
-        odometry_tf=given.publish_odom,
-        wheel_tf=given.publish_wheel_tf,
-        joint_states=given.publish_wheel_joint_state,
+        odometry_topic=options.odometry_topic,
+        odometry_frame=options.odometry_frame,
+        base_frame=options.robot_base_frame,
+        odometry=options.publish_odom,
+        odometry_tf=options.publish_odom,
+        wheel_tf=options.publish_wheel_tf,
+        joint_states=options.publish_wheel_joint_state,
         covariance=_COVARIANCE,
     )
 
 
 class GazeboRosTricycleDrive(CommandedDrive):
-    """Steers and drives one wheel from `cmd_vel`; odometry by the world's truth or by two wheels without a drive."""
+    """Steers and drives one wheel from `cmd_vel`; odometry from the ground truth or from two undriven wheels."""
 
     endpoints = (
         listens("cmd_vel", *COMMAND_TYPES, named_by=("commandTopic",)),
@@ -146,8 +149,8 @@ class GazeboRosTricycleDrive(CommandedDrive):
     def load(self, parent: Model, params: Params) -> None:
         self.start(parent, self.options.command_topic, self.options.update_rate)
         steering, _, left, right = (self.sim.joint(joint.scoped) for joint in self._all)
-        self._turned, self._pair = steering, (left, right)
-        self._speed, self._given = 0.0, 0.0
+        self._steering_joint, self._pair = steering, (left, right)
+        self._speed, self._steering_target = 0.0, 0.0
         self._reckoning = DeadReckoning()
         self._angles = wheel_angles(*self._pair)
         self._outputs = DriveOutputs(self, _outputs(self.options), self._all)
@@ -155,20 +158,20 @@ class GazeboRosTricycleDrive(CommandedDrive):
     # ------------------------------------------------------------------ commands
 
     def before_step(self) -> None:
-        """Takes the wheel's speed and the steering towards the command."""
+        """Move the wheel's speed and the steering towards the command."""
         forward, angle = self._command
         speed = self._ramped(forward / self._driven_radius, self._elapsed())
         if speed != self._speed:
             self._speed = speed
             self.sim.engine.set_control(self._motor, speed)
         angle = max(-math.pi / 2, min(math.pi / 2, angle))
-        given = self._steered(angle) if self.options.max_steering_speed > 0 else angle
-        if given != self._given:
-            self._given = given
-            self.sim.engine.set_control(self._steering, given)
+        target = self._steering_speed(angle) if self.options.max_steering_speed > 0 else angle
+        if target != self._steering_target:
+            self._steering_target = target
+            self.sim.engine.set_control(self._steering, target)
 
     def _ramped(self, target: float, elapsed: float) -> float:
-        """The wheel's speed on its way to a target [rad/s]."""
+        """Return the wheel's next speed towards a target [rad/s]."""
         options, speed = self.options, self._speed
         is_faster = abs(target) > abs(speed) and target * speed >= 0.0
         most = options.max_wheel_acceleration if is_faster else options.max_wheel_deceleration
@@ -176,9 +179,9 @@ class GazeboRosTricycleDrive(CommandedDrive):
             return target
         return speed + max(-most * elapsed, min(most * elapsed, target - speed))
 
-    def _steered(self, angle: float) -> float:
-        """Speed of the steering on its way to an angle [rad/s]; the last bit of the way no further than it is."""
-        missing = angle - wheel_angles(self._turned, self._turned)[0]
+    def _steering_speed(self, angle: float) -> float:
+        """Return the steering speed towards an angle [rad/s], limited so that the next update does not overshoot."""
+        missing = angle - wheel_angles(self._steering_joint, self._steering_joint)[0]
         if abs(missing) < self.options.max_steering_angle_tolerance:
             return 0.0
         most = self.options.max_steering_speed
@@ -189,7 +192,7 @@ class GazeboRosTricycleDrive(CommandedDrive):
     # ------------------------------------------------------------------ readings
 
     def after_step(self) -> None:
-        """Odometry, transforms and joint states."""
+        """Publish odometry, transforms and joint states."""
         separation, outputs = self.options.wheel_separation, self._outputs
         if self._from_encoders:
             angles = wheel_angles(*self._pair)

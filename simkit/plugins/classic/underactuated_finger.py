@@ -1,4 +1,4 @@
-"""Finger joints that follow one motor, as a tendon pulls them: PAL's `libgazebo_underactuated_finger.so`."""
+"""Finger joints coupled to one motor like a tendon: PAL's `libgazebo_underactuated_finger.so`."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ if TYPE_CHECKING:
     from simkit.scene import SceneJoint, SceneModel
 
 _NOISE: Final = 0.02
-"""[rad] that the motor has to turn before its joints hear of it: Gazebo's filter."""
+"""Deadband of the motor's position in Gazebo's filter [rad]."""
 
 _GAINS: Final = ("p", "i", "d", "i_max", "i_min")
 
 
 class UnderactuatedFingerPidGainsOptions(Options):
-    """The `<pid_gains>` block."""
+    """Options in the `<pid_gains>` block."""
 
     p: float = number(0.0)
     i: float = number(0.0)
@@ -39,7 +39,7 @@ class UnderactuatedFingerPidGainsOptions(Options):
 
 
 class UnderactuatedFingerVirtualJointOptions(Options):
-    """The `<virtualJoint>` block."""
+    """Options in the `<virtualJoint>` block."""
 
     name: tuple[str, ...] = texts(required=True)
     scale_factor: float = number(1.0, required=True)
@@ -58,9 +58,9 @@ class UnderactuatedFingerOptions(Options):
 class UnderactuatedFinger(ModelPlugin):
     """Keeps each `<virtualJoint>` at the position of `<actuatedJoint>` over its `<scale_factor>`, within its limits.
 
-    The motor's position counts anew once it is more than 0.02 rad away from the one that counted before. A joint with a
-    whole set of `<pid_gains>` (`p`, `i`, `d`, `i_max`, `i_min`) is pushed by that loop; Gazebo puts the others where
-    they belong at once, whatever they touch, and here a servo brings them there within their effort limit.
+    A new position of the motor is used once it differs by more than 0.02 rad from the position used before. A joint
+    with a complete set of `<pid_gains>` (`p`, `i`, `d`, `i_max`, `i_min`) is controlled by that PID. Gazebo sets the
+    position of other joints at once, regardless of contacts; here a servo moves them within their effort limit.
     """
 
     options = OptionsOf(UnderactuatedFingerOptions)
@@ -76,18 +76,20 @@ class UnderactuatedFinger(ModelPlugin):
         self._loops: list[tuple[str, float, tuple[float, ...]]] = []
         if not self.options.virtual_joint:
             params.error("SK-PARAM-001", f"plugin {self.name!r} needs a <virtualJoint>")
-        for given in self.options.virtual_joint:
-            self._take(given, scene, builder)
+        for virtual_joint in self.options.virtual_joint:
+            self._add_joint(virtual_joint, scene, builder)
 
-    def _take(self, given: UnderactuatedFingerVirtualJointOptions, scene: SceneModel, builder: SpecBuilder) -> None:
-        """One finger joint."""
-        given.params.text("name", required=True)
-        named = given.params.child("name")
+    def _add_joint(
+        self, options: UnderactuatedFingerVirtualJointOptions, scene: SceneModel, builder: SpecBuilder
+    ) -> None:
+        """Add a servo or a PID for one finger joint."""
+        options.params.text("name", required=True)
+        named = options.params.child("name")
         joint = None if named is None else _of_one_axis(scene, named)
-        scale = given.scale_factor
+        scale = options.scale_factor
         if scale == 0.0:
-            given.params.error("SK-PARAM-002", "found <scale_factor> 0, allowed is any other number")
-        gains = self._gains(given.pid_gains)
+            options.params.error("SK-PARAM-002", "found <scale_factor> 0, allowed is any other number")
+        gains = self._gains(options.pid_gains)
         if joint is None or scale == 0.0:
             return
         if gains is not None:
@@ -96,17 +98,17 @@ class UnderactuatedFinger(ModelPlugin):
         ref = builder.add_position_servo(joint.scoped, max_effort=math.inf, owner=self.name)
         self._servos.append((joint.scoped, scale, ref))
 
-    def _gains(self, given: UnderactuatedFingerPidGainsOptions) -> tuple[float, ...] | None:
-        """Those of the joint's loop; None where it has no whole set, which Gazebo does not take."""
-        if not given.is_given:
+    def _gains(self, options: UnderactuatedFingerPidGainsOptions) -> tuple[float, ...] | None:
+        """Return the gains of the joint's PID; None if the set is incomplete, which Gazebo ignores as well."""
+        if not options.is_given:
             return None
-        block = given.params
+        block = options.params
         missing = [name for name in _GAINS if not block.has(name)]
-        gains = given.p, given.i, given.d, given.i_max, given.i_min
+        gains = options.p, options.i, options.d, options.i_max, options.i_min
         if not missing:
             return gains
-        message = f"<pid_gains> without {', '.join(f'<{name}>' for name in missing)} is not taken: a servo is"
-        block.diagnostics.warning("SK-PLUGIN-047", message, block.where, "all of p, i, d, i_max and i_min are needed")
+        message = f"<pid_gains> without {', '.join(f'<{name}>' for name in missing)} is ignored; a servo is used"
+        block.diagnostics.warning("SK-PLUGIN-047", message, block.where, "add <p>, <i>, <d>, <i_max> and <i_min>")
         return None
 
     def load(self, parent: Model, params: Params) -> None:
@@ -122,7 +124,7 @@ class UnderactuatedFinger(ModelPlugin):
         self._sums = np.zeros(len(self._loops))
         self._errors = np.zeros(len(self._loops))
         self._gain = np.array([gains for *_, gains in self._loops]).reshape(-1, len(_GAINS)).T
-        # the engine's model that the numbers of the servos are of, weakly
+        # weak reference to the engine's model that the servo ids belong to
         self._seen: Callable[[], mujoco.MjModel | None] = _nothing
 
     def before_step(self) -> None:
@@ -141,7 +143,7 @@ class UnderactuatedFinger(ModelPlugin):
             self._push(physics.model.opt.timestep)
 
     def _push(self, step: float) -> None:
-        """Efforts of the loops, as ROS's control_toolbox reckons them: the integral's part alone is bounded."""
+        """Apply the efforts of the PIDs as ROS's control_toolbox computes them: only the integral term is bounded."""
         first = len(self._servos)
         joints = self._moved[first:]
         error = self._targets[first:] - np.array([float(joint.position) for joint in joints])
@@ -155,11 +157,11 @@ class UnderactuatedFinger(ModelPlugin):
 
 
 def _nothing() -> None:
-    """Stands for a weak reference to nothing."""
+    """Act as a weak reference to nothing."""
 
 
 def _of_one_axis(scene: SceneModel, named: Params) -> SceneJoint | None:
-    """The joint that an element names; None after an error."""
+    """Return the joint that an element names; None after an error."""
     joint = find_joint(scene, named.value, named) if named.value else None
     if joint is not None and len(joint.axes) != 1:
         named.error("SK-PLUGIN-003", f"joint {joint.name!r} has {len(joint.axes)} axes, allowed is one")

@@ -1,4 +1,4 @@
-"""Gazebo Classic's vacuum gripper, in ROS 2 and ROS 1 spelling: `libgazebo_ros_vacuum_gripper.so`."""
+"""Vacuum gripper of Gazebo Classic, in ROS 2 and ROS 1 spelling: `libgazebo_ros_vacuum_gripper.so`."""
 
 from __future__ import annotations
 
@@ -47,15 +47,15 @@ class GazeboRosVacuumGripperOptions(Options):
 
 
 class GazeboRosVacuumGripper(ModelPlugin):
-    """While it is on, holds every link whose origin comes within `<max_distance>` of a gripper link's origin.
+    """Holds every link whose origin comes within `<max_distance>` of a gripper link's origin, while switched on.
 
-    What it holds keeps its place at the gripper link until it is switched off; its weight is the robot's to carry. Not
-    held are the robot itself, what cannot move, and the models named in `<fixed>`. Whether it holds something is told
-    on `grasping`. ROS 2: `<link_name>` (several), the service `switch` (SetBool). ROS 1: `<bodyName>`, `<topicName>`,
-    `<maxDistance>`, the services `on` and `off` (Empty).
+    A held link keeps its pose relative to the gripper link until the gripper is switched off; the robot carries its
+    weight. The robot itself, immovable links, and the models named in `<fixed>` are never held. A Bool on `grasping`
+    reports whether a link is held. ROS 2: `<link_name>` (several), the service `switch` (SetBool). ROS 1: `<bodyName>`,
+    `<topicName>`, `<maxDistance>`, the services `on` and `off` (Empty).
 
-    Gazebo pulls at what is near: with 1 N in ROS 2, by setting its velocity in ROS 1. Neither lifts a load and keeps it
-    where it is; here it is held by a joint, as things are held by suction.
+    Gazebo pulls at near links: with 1 N in ROS 2, by setting their velocity in ROS 1. Neither can lift a load and hold
+    its pose. Here a weld joint holds the link, like real suction.
     """
 
     endpoints = (
@@ -78,13 +78,13 @@ class GazeboRosVacuumGripper(ModelPlugin):
             for name in ("maxForce", "minDistance"):
                 if params.has(name):
                     params.number(name, minimum=0.0)
-                    message = f"plugin {self.name!r}: <{name}> has no effect: what is near is held by a joint"
+                    message = f"plugin {self.name!r}: <{name}> has no effect: a joint holds near links"
                     params.diagnostics.note("SK-PLUGIN-138", message, self.where)
         else:
             named = params.all("link_name")
             if not named:
                 _ = self.options.link_name
-            found = [find_link(scene, one.value, one) for one in named]
+            found = [find_link(scene, element.value, element) for element in named]
             self._grippers = [link.scoped for link in found if link is not None]
             self._reach = self.options.max_distance
             self._fixed = frozenset(self.options.fixed)
@@ -93,12 +93,12 @@ class GazeboRosVacuumGripper(ModelPlugin):
     def load(self, parent: Model, params: Params) -> None:
         self._is_on = False
         self._held: dict[str, str] = {}  # scoped link -> the weld that holds it
-        self._things = _GrippableLinks()
+        self._candidates = _GrippableLinks()
         self.before_step_rate = NEVER
         words = ("on", "off") if self._is_ros_1 else ("switch",)
         self._services = tuple(self.ros.topic(word) for word in words)
-        first = self._together()[0]
-        if first is not self:  # the first answers for all whose services have the same names
+        first = self._switched_grippers()[0]
+        if first is not self:  # the first of several grippers with the same service names offers the services
             pass
         elif self._is_ros_1:
             self.offer("on", EMPTY, partial(self._on_empty, True))
@@ -113,30 +113,30 @@ class GazeboRosVacuumGripper(ModelPlugin):
 
     @property
     def holds(self) -> list[str]:
-        """Scoped names of the links that it holds."""
+        """Scoped names of the links that the gripper holds."""
         return [link for link, weld in self._held.items() if self._is_there(weld)]
 
     def tell(self) -> None:
-        """Publishes whether it holds something."""
+        """Publish whether the gripper holds a link."""
         self._grasping.publish(msgs.make(BOOL, data=bool(self.holds)))
 
     # ------------------------------------------------------------------ services
 
-    def _together(self) -> list[GazeboRosVacuumGripper]:
-        """The grippers that are switched with one service, in the order of the file."""
+    def _switched_grippers(self) -> list[GazeboRosVacuumGripper]:
+        """Return the grippers that share the services of this gripper, in the order of the file."""
         grippers = [p for p in self.sim.engine.structure.all_plugins() if isinstance(p, GazeboRosVacuumGripper)]
         return [p for p in grippers if p._services == self._services]
 
     def _on_switch(self, request: SetBool_Request) -> dict[str, object]:
-        is_new = max([gripper._switch(bool(request.data)) for gripper in self._together()])
+        is_new = max([gripper._switch(bool(request.data)) for gripper in self._switched_grippers()])
         return {"success": is_new, "message": "" if is_new else f"it is {'on' if request.data else 'off'} already"}
 
     def _on_empty(self, is_on: bool, _: object) -> None:
-        for gripper in self._together():
+        for gripper in self._switched_grippers():
             gripper._switch(is_on)
 
     def _switch(self, is_on: bool) -> bool:
-        """Switches it; False where it was so already."""
+        """Switch the gripper; return False without a change."""
         if is_on == self._is_on:
             return False
         self._is_on = is_on
@@ -152,25 +152,25 @@ class GazeboRosVacuumGripper(ModelPlugin):
     # ------------------------------------------------------------------ holding
 
     def before_step(self) -> None:
-        """Takes hold of what has come near."""
+        """Attach links that have come near."""
         if not self._is_on:
             return
-        sim, things = self.sim, self._things
-        things.bind(sim, self._own, self._fixed, self._grippers)
+        sim, candidates = self.sim, self._candidates
+        candidates.bind(sim, self._own, self._fixed, self._grippers)
         physics = sim.engine.physics
-        # where things are does not hang on what velocities and forces have been set since the last step
-        near = things.near(physics.fresh() if physics.stage == STALE else physics.data, self._reach)
-        for gripper, thing in near:
-            weld = self._held.get(thing)
+        # positions do not depend on velocities and forces set since the last step
+        near = candidates.near(physics.fresh() if physics.stage == STALE else physics.data, self._reach)
+        for gripper, link in near:
+            weld = self._held.get(link)
             if weld is None or not self._is_there(weld):
-                self._hold(gripper, thing)
+                self._hold(gripper, link)
 
-    def _hold(self, gripper: str, thing: str) -> None:
-        sim, weld = self.sim, f"{gripper}#vacuum {thing}"
+    def _hold(self, gripper: str, link: str) -> None:
+        sim, weld = self.sim, f"{gripper}#vacuum {link}"
         if not self._is_there(weld):
-            sim.contents.add_weld(weld, gripper, thing)
+            sim.contents.add_weld(weld, gripper, link)
         sim.contents.set_weld(weld, True)
-        self._held = {**self._held, thing: weld}
+        self._held = {**self._held, link: weld}
 
     def _is_there(self, weld: str) -> bool:
         try:
@@ -181,7 +181,7 @@ class GazeboRosVacuumGripper(ModelPlugin):
 
 
 class _GrippableLinks:
-    """Where grippers and what they may hold are in the engine; a handle, without state of its own."""
+    """Positions of gripper links and of links that they may hold in the engine; a handle without state of its own."""
 
     def __init__(self) -> None:
         self._known: WorldStructure | None = None
@@ -190,7 +190,7 @@ class _GrippableLinks:
         return self
 
     def bind(self, sim: Simulation, own: str, fixed: frozenset[str], grippers: list[str]) -> None:
-        """Finds them in the present model."""
+        """Find the links in the present model."""
         if self._known is sim.engine.structure:
             return
         self._known, names, weld = sim.engine.structure, sim.engine.names, sim.mj_model.body_weldid
@@ -206,30 +206,30 @@ class _GrippableLinks:
         self._others = _frames(names, self._links)
 
     def near(self, data: mujoco.MjData, reach: float) -> list[tuple[str, str]]:
-        """Each link within reach with the first gripper link that it is near to; scoped names, gripper first."""
+        """Return each link within reach with the first gripper link near it; scoped names, gripper first."""
         if not self._links:
             return []
-        places = _origins(data, *self._others)
+        origins = _origins(data, *self._others)
         found: dict[str, str] = {}
-        for gripper, place in zip(self._grippers, _origins(data, *self._own), strict=True):
-            away = places - place
-            for k in np.flatnonzero(np.einsum("ij,ij->i", away, away) <= reach * reach).tolist():
+        for gripper, origin in zip(self._grippers, _origins(data, *self._own), strict=True):
+            offsets = origins - origin
+            for k in np.flatnonzero(np.einsum("ij,ij->i", offsets, offsets) <= reach * reach).tolist():
                 found.setdefault(self._links[k], gripper)
-        return [(gripper, thing) for thing, gripper in found.items()]
+        return [(gripper, link) for link, gripper in found.items()]
 
 
 Numbers = npt.NDArray[np.float64]
 
 
 def _frames(names: NameMap, links: list[str]) -> tuple[npt.NDArray[np.intp], Numbers]:
-    """Bodies of links, and the links' origins in them, shape (n, 3)."""
+    """Return the bodies of links, and the links' origins in these bodies [m], shape (n, 3)."""
     found = [names.link(link) for link in links]
-    bodies = np.array([int(one.body) for one in found], dtype=np.intp)
-    return bodies, np.array([one.offset.position for one in found]).reshape(-1, 3)
+    bodies = np.array([int(link.body) for link in found], dtype=np.intp)
+    return bodies, np.array([link.offset.position for link in found]).reshape(-1, 3)
 
 
 def _origins(data: mujoco.MjData, bodies: npt.NDArray[np.intp], offsets: Numbers) -> Numbers:
-    """Origins of links in the world [m], shape (n, 3)."""
+    """Return the origins of links in the world [m], shape (n, 3)."""
     turns = data.xmat[bodies].reshape(-1, 3, 3)
     found: Numbers = data.xpos[bodies] + np.einsum("nij,nj->ni", turns, offsets)
     return found

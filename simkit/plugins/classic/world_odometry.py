@@ -1,4 +1,4 @@
-"""PAL's true pose of a link as odometry: `libgazebo_world_odometry.so`, on the PMB2 base and the older TIAGo."""
+"""Ground truth pose of a link as odometry by PAL: `libgazebo_world_odometry.so`, on PMB2 and the older TIAGo."""
 
 from __future__ import annotations
 
@@ -33,12 +33,13 @@ class GazeboWorldOdometryOptions(Options):
 
 
 class GazeboWorldOdometry(ModelPlugin):
-    """Publishes on `<topicName>` where the link `<bodyName>` truly is in the world, whatever `<frameName>` says.
+    """Publishes the true pose of the link `<bodyName>` in the world on `<topicName>`, whatever `<frameName>` is.
 
-    As Gazebo's: the frame of the message is `<frameName>` (`world`), which is the link as well where there is no
-    `<bodyName>`; the linear velocity is along the world's axes, the angular one along the link's own; `<updateRate>` is
-    1000 [Hz]. While it runs the parameters `x_offset`, `y_offset` [m] and `yaw_offset` [rad] move what is told, and
-    `gaussian_noise` lets it walk: the standard deviation of each step of x and y [m] and of the yaw [rad].
+    Details are as in Gazebo: the frame of the message is `<frameName>` (`world`), which also names the link if there is
+    no `<bodyName>`. The linear velocity is along the world's axes, the angular velocity along the link's own.
+    `<updateRate>` is 1000 [Hz] by default. The live parameters `x_offset`, `y_offset` [m] and `yaw_offset` [rad] shift
+    the published pose. `gaussian_noise` adds a random walk: the standard deviation of each step of x and y [m] and of
+    the yaw [rad].
     """
 
     endpoints = (publishes("ft_data", ODOMETRY, named_by=("topicName",)),)
@@ -58,7 +59,7 @@ class GazeboWorldOdometry(ModelPlugin):
         self._yaw = self.declare(
             "yaw_offset", 0.0, minimum=-math.pi, maximum=math.pi, description="added to the yaw [rad]"
         )
-        what = "standard deviation of each step of the walk of x, y [m] and yaw [rad]"
+        what = "standard deviation of each step of the random walk of x, y [m] and yaw [rad]"
         self._deviation = self.declare(
             "gaussian_noise",
             0.0,
@@ -70,11 +71,11 @@ class GazeboWorldOdometry(ModelPlugin):
         self._stream = self.random("gaussian_noise", 3)
         self._walk: Vector = np.zeros(3)
         self._out = self.advertise(self.options.topic_name, ODOMETRY)
-        # whether heard or not, so that who listens does not change the noise
+        # independent of subscribers, so that they do not change the noise
         publish_while_subscribed(self, self._out, self._rate, "tell", also=lambda: self._deviation.value > 0)
 
     def tell(self) -> None:
-        """Publishes."""
+        """Publish the odometry."""
         if self._deviation.value > 0:
             self._walk = self._walk + self._deviation.value * self._stream.normal(count_instants(self, self._rate))
         if not self._out.wanted:
@@ -88,5 +89,5 @@ class GazeboWorldOdometry(ModelPlugin):
         )
         angular = quat_rotate(quat_conjugate(pose.quaternion), link.angular_velocity)
         twist = BodyTwist(link.linear_velocity.tolist(), angular.tolist())
-        told = partial(odometry_message, self.sim.time_ns, self._frame, link.name, moved, twist)
-        self._out.publish_later(told)
+        message = partial(odometry_message, self.sim.time_ns, self._frame, link.name, moved, twist)
+        self._out.publish_later(message)

@@ -1,4 +1,4 @@
-"""Wrenches and efforts that hold for a while: `/apply_link_wrench` and `/apply_joint_effort`."""
+"""Wrenches and efforts with a duration: `/apply_link_wrench` and `/apply_joint_effort`."""
 
 from __future__ import annotations
 
@@ -20,12 +20,14 @@ _WORLD = ("", "world", "map", "/map")
 
 @dataclass(frozen=True, slots=True)
 class TimedWrench:
-    """What pushes a link or drives a joint, from one tick to another.
+    """Wrench on a link or effort on a joint, from one tick to another.
 
     Attributes:
-        link, joint: scoped name of the one that is meant; the other is empty.
+        link: scoped name of the link; empty for an effort.
+        joint: scoped name of the joint; empty for a wrench.
         values: force [N] and torque [N·m] in the world at the link's centre of mass, or the effort [N·m or N].
-        start, end: it is there in the steps from tick `start` on, before tick `end`; None for ever.
+        start: first tick of the steps in which it acts.
+        end: tick before which it ends; None for no end.
     """
 
     link: str
@@ -38,13 +40,13 @@ class TimedWrench:
 def link_wrench(
     sim: Simulation, link_name: str, request: msgs.ApplyLinkWrench_Request | msgs.ApplyBodyWrench_Request
 ) -> TimedWrench | None:
-    """What a request for a wrench means; None where it lasts no time.
+    """Return the wrench that a request asks for; None for a duration of zero.
 
-    In the world's frame the reference point is a lever from the link's centre of mass, as Classic takes it; in the
-    frame of an entity it is a point of that frame, and so is the frame's origin where no point is given.
+    In the world's frame the reference point is a lever from the link's centre of mass, as in Classic. In the frame of
+    an entity it is a point of that frame, by default the frame's origin.
 
     Raises:
-        Refused: there is no such link or frame, or a number cannot be used.
+        RequestRefused: the link or the frame does not exist, or a number is NaN or infinite.
     """
     scoped = find_entity(sim, link_name, ("link",))[1]
     link = sim.link(scoped)
@@ -62,10 +64,14 @@ def link_wrench(
 
 
 def joint_effort(sim: Simulation, request: msgs.ApplyJointEffort_Request) -> TimedWrench | None:
-    """What a request for an effort means; None where it lasts no time. Raises Refused."""
+    """Return the effort that a request asks for; None for a duration of zero.
+
+    Raises:
+        RequestRefused: the joint does not exist or has not one degree of freedom, or the effort is NaN or infinite.
+    """
     joint = joint_of(sim, request.joint_name)
     if joint.dof != 1:
-        raise RequestRefused(f"joint {joint.scoped!r} has {joint.dof} degrees of freedom, an effort is for one")
+        raise RequestRefused(f"joint {joint.scoped!r} has {joint.dof} degrees of freedom, allowed is one")
     effort, span = require_finite(request.effort, "effort"), _tick_range(sim, request)
     return None if span is None else TimedWrench("", joint.scoped, (effort,), *span)
 
@@ -74,7 +80,7 @@ def _tick_range(
     sim: Simulation,
     request: msgs.ApplyLinkWrench_Request | msgs.ApplyBodyWrench_Request | msgs.ApplyJointEffort_Request,
 ) -> tuple[int, int | None] | None:
-    """First tick, and the one at which it ends; a duration below zero is for ever, of zero nothing."""
+    """Return the first tick and the end tick; a negative duration has no end, zero gives None."""
     duration, start_ns = msgs.stamp_ns(request.duration), msgs.stamp_ns(request.start_time)
     start = sim.tick
     if start_ns > sim.time_ns:
@@ -88,7 +94,7 @@ def _tick_range(
 
 
 def apply_wrenches(sim: Simulation, pushes: list[TimedWrench]) -> list[TimedWrench]:
-    """Applies for the next step what is due; gives what is left of it, without what is over or has no link any more."""
+    """Apply the active wrenches for the next step; return those that have not ended and whose entity still exists."""
     tick = sim.tick
     tables = sim.contents.handles.tables
     left = [

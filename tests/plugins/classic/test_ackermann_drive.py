@@ -1,4 +1,4 @@
-"""Gazebo Classic's Ackermann drive."""
+"""Ackermann drive of Gazebo Classic."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import simkit
 
 
 def plugin(settings=""):
-    """Gains are of efforts of one step in ten."""
+    """Return a car whose gains are those of efforts in one step of ten."""
     joints = "".join(
         f"<{ours}>{own}</{ours}>"
         for ours, own in (
@@ -34,7 +34,7 @@ def drive(sim, speed, angle, duration):
     sim.run(duration)
 
 
-def test_it_drives_a_circle_by_an_angle_of_its_wheels():
+def test_a_steering_angle_gives_a_circle():
     sim = simkit.load(
         world(car(plugin("<publish_distance>true</publish_distance><publish_steerangle>1</publish_steerangle>")))
     )
@@ -54,7 +54,7 @@ def test_it_drives_a_circle_by_an_angle_of_its_wheels():
     assert (told.x, told.y, told.z) == pytest.approx(tuple(at), abs=1e-6)
 
 
-def test_backwards_the_angle_is_turned_round_and_both_are_limited():
+def test_the_angle_is_reversed_when_driving_backwards_and_both_are_limited():
     sim = simkit.load(world(car(plugin("<max_steer>0.2</max_steer><max_speed>0.3</max_speed>"))))
     drive(sim, -5.0, 1.0, 3.0)
     radius = BASE / math.tan(0.2)
@@ -62,7 +62,7 @@ def test_backwards_the_angle_is_turned_round_and_both_are_limited():
     assert sim.joint("car::rr_joint").velocity * 0.1 == pytest.approx(-0.3, abs=0.02)
 
 
-def test_without_gains_nothing_moves_and_without_a_steering_wheel_nothing_is_missing():
+def test_without_gains_nothing_moves_and_the_steering_wheel_is_optional():
     bare = plugin().replace("15 0 1", "0 0 0").replace("2 1 0", "0 0 0")
     sim = simkit.load(world(car(bare)))
     drive(sim, 0.5, 0.3, 0.5)
@@ -77,13 +77,13 @@ def test_a_car_that_cannot_be_measured_is_refused():
     assert "SK-PLUGIN-093" in str(caught.value)
 
 
-def test_a_joint_that_is_not_there_is_named():
+def test_a_missing_joint_is_an_error_with_its_name():
     with pytest.raises(simkit.LoadError) as caught:
         simkit.load(world(car(plugin("").replace("rr_joint", "rear_joint"))))
     assert "'rear_joint'" in str(caught.value)
 
 
-def test_a_reset_brings_it_back():
+def test_a_reset_returns_to_the_start():
     sim = simkit.load(world(car(plugin())))
     drive(sim, 0.5, 0.2, 0.5)
     here = sim.mj_data.qpos.tobytes()
@@ -93,7 +93,7 @@ def test_a_reset_brings_it_back():
 
 
 def test_a_rate_above_that_of_steps_is_every_step():
-    """The first update has no time before it: its slope is over a step, not over the shorter period of the rate."""
+    """The first update has no earlier time: its derivative uses a step, not the shorter period of the rate."""
     found = []
     for rate in ("0", "1e9"):
         sim = simkit.load(world(car(plugin().replace("<update_rate>0<", f"<update_rate>{rate}<"))))

@@ -1,4 +1,4 @@
-"""The bumper of Gazebo Classic."""
+"""Bumper of Gazebo Classic."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def xyz(message: Any) -> np.ndarray:
         ("<bumperTopicName>box_bumper</bumperTopicName><robotNamespace>r</robotNamespace>", "/r/box_bumper"),
     ],
 )
-def test_it_publishes_where_ros_expects_it(content: str, topic: str) -> None:
+def test_the_bumper_publishes_on_the_ros_topic(content: str, topic: str) -> None:
     with simkit.load(world(plugin(content))) as sim:
         assert sim.topics()[topic] == "gazebo_msgs/msg/ContactsState"
         assert not [t for t in sim.topics() if t.startswith("/world/") and t not in sim.communication.bus.aside]
@@ -71,7 +71,7 @@ def test_at_rest_the_total_wrench_is_the_weight_and_no_torque() -> None:
         assert corners == [(0.9, 1.9), (0.9, 2.1), (1.1, 1.9), (1.1, 2.1)]
 
 
-def test_it_also_says_that_nothing_touches() -> None:
+def test_an_empty_message_is_published_without_contacts() -> None:
     with simkit.load(world(plugin(), pose="0 0 5 0 0 0")) as sim:
         sub = sim.subscribe("/bumper_states")
         sim.run(0.1)
@@ -86,8 +86,8 @@ TURNED = (
 
 @pytest.mark.parametrize("element", ["frame_name", "frameName"])
 @pytest.mark.parametrize("frame", ["eye", "mast::eye", "/eye"])
-def test_geometry_is_told_in_the_frame_of_the_link_that_is_named(frame: str, element: str) -> None:
-    """Seen from the mast, which is turned to the left, what lies 1 m to its world's left lies ahead."""
+def test_contacts_are_in_the_frame_of_the_named_link(frame: str, element: str) -> None:
+    """The mast is turned to the left, so a point 1 m to the left in the world is ahead of the mast."""
     with simkit.load(world(plugin(f"<{element}>{frame}</{element}>"), more=TURNED)) as sim:
         sub = sim.subscribe("/bumper_states", keep=1)
         sim.run(0.5)
@@ -105,7 +105,7 @@ def test_geometry_is_told_in_the_frame_of_the_link_that_is_named(frame: str, ele
         np.testing.assert_allclose(xyz(state.contact_normals[0]), (0, 0, 1), atol=1e-6)
 
 
-def test_its_own_link_comes_first_and_turns_with_it() -> None:
+def test_the_sensors_own_link_is_preferred_and_its_frame_rotates() -> None:
     tower = TURNED.replace("eye", "body")
     with simkit.load(world(plugin("<frame_name>body</frame_name>"), "0 0 0.1 0 0 1.2", more=tower)) as sim:
         sub = sim.subscribe("/bumper_states", keep=1)
@@ -114,7 +114,7 @@ def test_its_own_link_comes_first_and_turns_with_it() -> None:
         assert corners == [(-0.1, -0.1), (-0.1, 0.1), (0.1, -0.1), (0.1, 0.1)]
 
 
-def test_a_frame_that_is_not_there_is_told_and_waited_for() -> None:
+def test_a_missing_frame_is_reported_and_used_once_it_exists() -> None:
     with simkit.load(world(plugin("<frame_name>eyes</frame_name>"))) as sim:
         (found,) = [d for d in sim.diagnostics if d.code == "SK-SENSOR-042"]
         assert found.severity == "warning"
@@ -131,7 +131,7 @@ def test_a_frame_that_is_not_there_is_told_and_waited_for() -> None:
         assert sub.latest.header.frame_id == "world"
 
 
-def test_with_gazebos_ways_only_the_header_names_the_frame() -> None:
+def test_with_gazebo_quirks_only_the_header_has_the_frame() -> None:
     quirks = "<gazebo_quirks>true</gazebo_quirks>"
     with simkit.load(world(plugin("<frame_name>eye</frame_name>"), more=TURNED, top=quirks)) as sim:
         sub = sim.subscribe("/bumper_states")
@@ -142,11 +142,11 @@ def test_with_gazebos_ways_only_the_header_names_the_frame() -> None:
 
 
 def test_on_another_sensor_it_is_an_error() -> None:
-    with pytest.raises(simkit.LoadError, match="for a sensor of type contact"):
+    with pytest.raises(simkit.LoadError, match="needs a sensor of type contact; this sensor is 'imu'"):
         simkit.load(world(plugin()).replace('type="contact"', 'type="imu"'))
 
 
-def test_a_message_can_be_written_and_read() -> None:
+def test_a_message_survives_serialisation() -> None:
     with simkit.load(world(plugin())) as sim:
         sim.run(0.1)
         message = sim.sensor("box::body::s").latest

@@ -1,4 +1,4 @@
-"""Classic's camera plugins: topics, frames, what CameraInfo says, depths, triggers; ROS 2 and ROS 1 spellings."""
+"""Classic's camera plugins: topics, frames, CameraInfo, depths, triggers; ROS 2 and ROS 1 spellings."""
 
 from __future__ import annotations
 
@@ -59,13 +59,13 @@ def test_frame_name_goes_before_the_cameras_optical_frame() -> None:
     assert image.header.frame_id == "named"
 
 
-def test_the_hacked_baseline_stands_in_p() -> None:
+def test_hack_baseline_is_in_the_projection_matrix() -> None:
     text = world("camera", CAMERA, plugin("gazebo_ros_camera", "<hack_baseline>0.07</hack_baseline>"))
     (info,) = heard(text, "/eye/camera_info")
     assert info.p[3] == pytest.approx(-0.07 * FOCAL)
 
 
-def test_intrinsics_that_the_plugin_tells_and_does_not_draw() -> None:
+def test_intrinsics_that_differ_from_the_picture_are_reported() -> None:
     content = "<focal_length>50</focal_length><cx>17</cx><cy>11</cy>"
     text = world("camera", CAMERA, plugin("gazebo_ros_camera", content))
     (info,) = heard(text, "/eye/camera_info")
@@ -76,7 +76,7 @@ def test_intrinsics_that_the_plugin_tells_and_does_not_draw() -> None:
     assert "SK-SENSOR-122" not in codes(world("camera", CAMERA, same))
 
 
-def test_classics_principal_point_comes_with_gazebos_quirks() -> None:
+def test_classics_principal_point_needs_gazebo_quirks() -> None:
     quirks = "<gazebo_quirks>true</gazebo_quirks>"
     (info,) = heard(world("camera", CAMERA, plugin("gazebo_ros_camera"), extra=quirks), "/eye/camera_info")
     assert (info.k[2], info.k[5]) == ((WIDTH + 1) / 2, (HEIGHT + 1) / 2)
@@ -144,7 +144,7 @@ def test_a_multicamera_publishes_each_camera_below_its_name() -> None:
 
 
 @pytest.mark.parametrize("library", ["gazebo_ros_multicamera", "gazebo_ros_triggered_multicamera"])
-def test_ros_1_knows_left_and_right(library: str) -> None:
+def test_ros_1_has_left_and_right_cameras(library: str) -> None:
     block = STEREO.replace('"left"', '"my_left"').replace('"right"', '"my_right"')
     content = """<robotNamespace>/r</robotNamespace><cameraName>stereo</cameraName>
       <imageTopicName>picture</imageTopicName><hackBaseline>0.2</hackBaseline><frameName>/left_optical</frameName>"""
@@ -163,7 +163,7 @@ def test_ros_1_knows_left_and_right(library: str) -> None:
 # ---------------------------------------------------------------------- ROS 1
 
 
-def test_ros_1s_camera() -> None:
+def test_ros_1s_camera_publishes_in_its_spelling() -> None:
     content = """<alwaysOn>true</alwaysOn><updateRate>10</updateRate><cameraName>rrbot/camera1</cameraName>
       <imageTopicName>image_raw</imageTopicName><cameraInfoTopicName>camera_info</cameraInfoTopicName>
       <frameName>camera_link</frameName><hackBaseline>0.07</hackBaseline><distortionK1>0.0</distortionK1>
@@ -185,7 +185,7 @@ def test_ros_1_without_a_camera_name_publishes_in_its_namespace() -> None:
         assert sorted(topics_of(sim)) == ["/r/image_raw", "/told/info"]
 
 
-def test_a_distortion_told_by_ros_1_and_not_drawn_is_said() -> None:
+def test_a_distortion_of_ros_1_that_the_picture_lacks_is_reported() -> None:
     content = "<cameraName>c</cameraName><distortionK1>-0.2</distortionK1>%s"
     text = world("camera", CAMERA, plugin("gazebo_ros_camera", content % ""))
     (info,) = heard(text, "/c/camera_info")
@@ -199,7 +199,7 @@ def test_a_distortion_told_by_ros_1_and_not_drawn_is_said() -> None:
 
 
 @pytest.mark.parametrize("library", ["gazebo_ros_depth_camera", "gazebo_ros_openni_kinect"])
-def test_ros_1s_depth_cameras_have_nan_where_there_is_no_depth(library: str) -> None:
+def test_ros_1s_depth_cameras_have_nan_outside_the_depth_range(library: str) -> None:
     content = """<cameraName>kinect</cameraName><imageTopicName>rgb/image_raw</imageTopicName>
       <depthImageTopicName>/deep</depthImageTopicName><pointCloudTopicName>depth/points</pointCloudTopicName>
       <cameraInfoTopicName>rgb/camera_info</cameraInfoTopicName><frameName>optical</frameName>"""
@@ -223,7 +223,7 @@ def test_ros_1s_depth_cameras_have_nan_where_there_is_no_depth(library: str) -> 
     assert not cloud.is_dense
 
 
-def test_millimetres_in_16_bits() -> None:
+def test_depths_may_be_16_bit_millimetres() -> None:
     content = "<cameraName>k</cameraName><useDepth16UC1Format>true</useDepth16UC1Format>"
     (depth,) = heard(world("depth", CAMERA, plugin("gazebo_ros_openni_kinect", content)), "/k/depth/image_raw")
     depths = image_messages.pixels_of(depth)
@@ -232,7 +232,7 @@ def test_millimetres_in_16_bits() -> None:
     assert not depths[:, [2, 16]].any()
 
 
-def test_what_ros_1s_depth_camera_publishes_beside_is_said_to_be_left_out() -> None:
+def test_unsupported_topics_of_ros_1s_depth_camera_are_reported() -> None:
     content = "<cameraName>k</cameraName><reflectanceTopicName>reflectance</reflectanceTopicName>"
     assert "SK-SENSOR-123" in codes(world("depth", CAMERA, plugin("gazebo_ros_depth_camera", content)))
 
@@ -242,7 +242,7 @@ def test_a_depth_plugin_needs_a_depth_camera() -> None:
         simkit.load(world("camera", CAMERA, plugin("gazebo_ros_openni_kinect")))
 
 
-def test_ros_1s_triggered_camera() -> None:
+def test_ros_1s_triggered_camera_needs_a_message() -> None:
     content = "<cameraName>c</cameraName><triggerTopicName>go</triggerTopicName>"
     with simkit.load(world("camera", CAMERA, plugin("gazebo_ros_triggered_camera", content))) as sim:
         image = sim.subscribe("/c/image_raw")
@@ -254,7 +254,7 @@ def test_ros_1s_triggered_camera() -> None:
         assert len(image.messages) == 1
 
 
-def test_prosilica_streams() -> None:
+def test_prosilica_streams_pictures() -> None:
     content = "<cameraName>p</cameraName><pollServiceName>request_image</pollServiceName>"
     text = world("camera", CAMERA, plugin("gazebo_ros_prosilica", content))
     (image,) = heard(text, "/p/image_raw")
@@ -265,7 +265,7 @@ def test_prosilica_streams() -> None:
 # ---------------------------------------------------------------------- life
 
 
-def test_a_plugins_camera_is_the_same_after_reset_restore_and_spawn() -> None:
+def test_reset_restore_and_spawn_keep_the_settings_of_the_plugin() -> None:
     content = "<cameraName>k</cameraName><updateRate>20</updateRate>"
     with simkit.load(world("depth", CAMERA, plugin("gazebo_ros_openni_kinect", content))) as sim:
         depth = sim.subscribe("/k/depth/image_raw")
@@ -288,6 +288,6 @@ def test_a_plugins_camera_is_the_same_after_reset_restore_and_spawn() -> None:
         ("gazebo_ros_openni_kinect", "<pointCloudCutoff>6</pointCloudCutoff>"),
     ],
 )
-def test_depths_that_end_before_they_begin_are_an_error(library: str, content: str) -> None:
+def test_an_empty_depth_range_is_an_error(library: str, content: str) -> None:
     with pytest.raises(simkit.LoadError, match="allowed is a .* beyond"):
         simkit.load(world("depth", CAMERA, plugin(library, content)))

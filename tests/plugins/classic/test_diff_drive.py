@@ -1,4 +1,4 @@
-"""Gazebo Classic's differential drive, driven on the ground."""
+"""Differential drive of Gazebo Classic on the ground."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def test_namespace_and_remapping_move_its_topics() -> None:
         assert {"/one/cmd_vel", "/one/wheels"} <= set(sim.topics())
 
 
-def test_it_drives_as_far_as_it_is_told_and_keeps_the_last_command() -> None:
+def test_the_robot_drives_at_the_commanded_speed_and_keeps_the_last_command() -> None:
     with opened() as sim:
         sim.run(0.5)
         start = sim.model("rover").pose.position
@@ -53,7 +53,7 @@ def test_a_stamped_command_does_the_same() -> None:
     np.testing.assert_array_equal(ends[0], ends[1])
 
 
-def test_a_positive_turn_is_to_the_left_at_the_rate_that_was_told() -> None:
+def test_a_positive_turn_is_to_the_left_at_the_commanded_rate() -> None:
     with opened() as sim:
         sim.run(0.5)
         sim.publish("/cmd_vel", {"angular": {"z": 0.5}})
@@ -61,7 +61,7 @@ def test_a_positive_turn_is_to_the_left_at_the_rate_that_was_told() -> None:
         assert sim.model("rover").pose.rpy[2] == pytest.approx(1.0, abs=0.03)
 
 
-def test_odometry_comes_at_the_update_rate_in_the_frames_that_were_named() -> None:
+def test_odometry_has_the_update_rate_and_the_frames_of_the_file() -> None:
     with opened(update_rate=30, odometry_frame="here", robot_base_frame="base") as sim:
         odometry = sim.subscribe("/odom")
         sim.run(1.0)
@@ -106,7 +106,7 @@ def test_driving_backwards_has_a_negative_speed() -> None:
     assert odometry.latest.twist.twist.linear.x == pytest.approx(-0.2, abs=2e-3)
 
 
-def test_covariances_are_what_the_file_says() -> None:
+def test_covariances_are_those_of_the_file() -> None:
     with opened(covariance_x=0.1, covariance_y=0.2, covariance_yaw=0.3) as sim:
         odometry = sim.subscribe("/odom")
         sim.run(0.1)
@@ -125,7 +125,7 @@ def test_the_acceleration_limit_is_that_of_the_rim() -> None:
         assert sim.link("rover::base").linear_velocity[0] == pytest.approx(0.4, abs=0.01)
 
 
-def test_the_torque_limit_bounds_how_fast_it_gathers_speed() -> None:
+def test_the_torque_limit_bounds_the_acceleration() -> None:
     """Two wheels of 0.1 N·m on a rim of 0.1 m push with 2 N; 5.2 kg and two wheels' spin take that as 0.37 m/s²."""
     with opened(max_wheel_torque=0.1) as sim:
         sim.run(0.5)
@@ -136,7 +136,7 @@ def test_the_torque_limit_bounds_how_fast_it_gathers_speed() -> None:
         assert 0.2 < speed < 2.0 / (5.2 + 2 * 0.002 / 0.1**2) * 1.01
 
 
-def test_a_saturated_wheel_does_not_ring() -> None:
+def test_a_saturated_wheel_does_not_oscillate() -> None:
     with opened(max_wheel_torque=0.05) as sim:
         sim.run(0.5)
         sim.publish("/cmd_vel", {"linear": {"x": 0.1}})
@@ -148,7 +148,7 @@ def test_a_saturated_wheel_does_not_ring() -> None:
     assert np.abs(np.diff(speeds)).max() < 0.05
 
 
-def test_the_transform_of_the_base_goes_out_on_tf() -> None:
+def test_the_transform_of_the_base_is_on_tf() -> None:
     with opened(publish_odom_tf="true", publish_wheel_tf="true") as sim:
         tf = sim.subscribe("/tf")
         sim.publish("/cmd_vel", TWIST)
@@ -160,7 +160,7 @@ def test_the_transform_of_the_base_goes_out_on_tf() -> None:
     np.testing.assert_allclose(xyz(found["base", "left"].translation), [0, 0.2, -0.03], atol=1e-4)
 
 
-def test_ground_truth_goes_out_beside_the_odometry_on_request() -> None:
+def test_ground_truth_is_published_on_request() -> None:
     with opened(odometry_source=0, publish_ground_truth="true") as sim:
         odometry, truth = sim.subscribe("/odom"), sim.subscribe("/ground_truth/odom")
         sim.publish("/cmd_vel", TWIST)
@@ -207,7 +207,7 @@ def test_a_wheel_on_a_fixed_joint_is_an_error() -> None:
         opened(left_joint="front_weld")
 
 
-def test_reset_forgets_command_and_odometry() -> None:
+def test_reset_clears_command_and_odometry() -> None:
     with opened(odometry_source=0) as sim:
         odometry = sim.subscribe("/odom")
         sim.publish("/cmd_vel", TWIST)
@@ -231,7 +231,7 @@ def test_a_restored_run_repeats_bit_for_bit() -> None:
     assert runs[0] == runs[1]
 
 
-def test_the_same_way_at_other_steps() -> None:
+def test_other_step_lengths_give_the_same_path() -> None:
     for step in (0.001, 0.002, 0.004):
         with simkit.load(world(GROUND, rover(classic_drive()), step=step)) as sim:
             sim.run(0.5)

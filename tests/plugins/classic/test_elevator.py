@@ -1,4 +1,4 @@
-"""Gazebo Classic's elevator: one door, floors of one height, a floor's number as text."""
+"""Elevator of Gazebo Classic: one door, floors of equal height, floor numbers as text."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def load(*args: str, mass: float = 500.0, **options: str) -> simkit.Simulation:
     return simkit.load(world(bare(plugin(*args, **options), mass), step=0.004))
 
 
-def test_the_cabin_comes_near_as_a_spring_and_a_damper_say() -> None:
+def test_the_cabin_approaches_the_floor_like_a_spring_and_damper() -> None:
     sim = load("<floor_height>3</floor_height><door_wait_time>1</door_wait_time>")
     lift, door = sim.joint("lift_1::lift"), sim.joint("lift_1::door")
     sim.run(8.0)
@@ -39,7 +39,7 @@ def test_the_cabin_comes_near_as_a_spring_and_a_damper_say() -> None:
     assert door.position > 0.9
 
 
-def test_the_door_closes_again_after_the_wait_and_it_comes_back() -> None:
+def test_the_door_closes_after_the_wait_and_the_cabin_returns_on_command() -> None:
     sim = load("<floor_height>2</floor_height><door_wait_time>2</door_wait_time>")
     lift, door = sim.joint("lift_1::lift"), sim.joint("lift_1::door")
     sim.publish(TOPIC, {"data": "2"})
@@ -51,7 +51,7 @@ def test_the_door_closes_again_after_the_wait_and_it_comes_back() -> None:
     assert lift.position == pytest.approx(0.0, abs=0.06)
 
 
-def test_who_calls_while_it_is_under_way_calls_in_vain() -> None:
+def test_a_command_during_a_ride_is_ignored() -> None:
     sim = load()
     sim.publish(TOPIC, {"data": "1"})
     sim.run(0.1)
@@ -60,7 +60,7 @@ def test_who_calls_while_it_is_under_way_calls_in_vain() -> None:
     assert sim.joint("lift_1::lift").position == pytest.approx(3.0, abs=0.06)
 
 
-def test_ros_names_bounds_and_texts_that_are_no_floor() -> None:
+def test_ros_names_and_bounds_apply_and_invalid_floors_are_reported() -> None:
     inner = "<ros><namespace>hotel</namespace></ros><floor_height>1</floor_height>"
     sim = load(f"{inner}<bottom_floor>-1</bottom_floor><top_floor>3</top_floor>", library="gazebo_ros_elevator")
     for text in ("attic", "4", "-2"):
@@ -68,13 +68,13 @@ def test_ros_names_bounds_and_texts_that_are_no_floor() -> None:
     sim.run(2.0)
     assert abs(sim.joint("lift_1::lift").position) < 0.06
     said = [d.message for d in sim.diagnostics if d.code == "SK-PLUGIN-041"]
-    assert [any(word in m for m in said) for word in ("attic", "topmost is 3", "lowermost is -1")] == [True] * 3
+    assert [any(word in m for m in said) for word in ("attic", "highest is 3", "lowest is -1")] == [True] * 3
     sim.publish("/hotel/elevator", {"data": "3"})
     sim.run(6.0)
     assert sim.joint("lift_1::lift").position == pytest.approx(3.0, abs=0.06)
 
 
-def test_a_light_cabin_holds_too_and_a_spawn_does_not_let_it_fall() -> None:
+def test_a_light_cabin_is_held_and_a_spawn_does_not_drop_it() -> None:
     sim = load(mass=5.0)
     sim.publish(TOPIC, {"data": "1"})
     sim.run(6.0)
@@ -83,7 +83,7 @@ def test_a_light_cabin_holds_too_and_a_spawn_does_not_let_it_fall() -> None:
     assert sim.joint("lift_1::lift").position == pytest.approx(3.0, abs=0.02)
 
 
-def test_reset_begins_at_the_ground_floor_and_restore_goes_on() -> None:
+def test_reset_returns_to_the_ground_floor_and_restore_continues() -> None:
     sim = load("<floor_height>3</floor_height><door_wait_time>1</door_wait_time>")
     sim.publish(TOPIC, {"data": "1"})
     sim.run(2.0)
@@ -98,7 +98,7 @@ def test_reset_begins_at_the_ground_floor_and_restore_goes_on() -> None:
     assert (sim.joint("lift_1::door").position, sim.joint("lift_1::lift").position) == (door, lift)
 
 
-def test_faults_are_said_in_one_pass() -> None:
+def test_all_errors_are_reported_in_one_pass() -> None:
     with pytest.raises(simkit.InputError) as caught:
         simkit.load(world(bare(plugin("<door_wait_time>-1</door_wait_time>").replace(">door<", ">dor<"))))
     assert "door_wait_time" in str(caught.value)

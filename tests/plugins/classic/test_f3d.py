@@ -1,4 +1,4 @@
-"""The force plugin of ROS 1 on a model."""
+"""Force plugin of ROS 1 on a model."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def six(message: Any) -> np.ndarray:
     return np.concatenate((xyz(message.wrench.force), xyz(message.wrench.torque)))
 
 
-def test_a_falling_stone_is_pulled_by_its_weight_at_every_step() -> None:
+def test_a_falling_stone_has_its_weight_at_every_step() -> None:
     with loaded("0 0 9 0.3 0 0", robotNamespace="arm") as sim:
         assert sim.topics()["/arm/force"] == "geometry_msgs/msg/WrenchStamped"
         heard = sim.subscribe("/arm/force")
@@ -48,7 +48,7 @@ def test_on_a_stone_at_rest_all_forces_cancel() -> None:
         np.testing.assert_allclose(six(heard.latest), 0, atol=1e-2)
 
 
-def test_a_push_is_in_the_sum() -> None:
+def test_an_external_force_is_in_the_sum() -> None:
     with loaded("0 0 9 0 0 0") as sim:
         heard = sim.subscribe("/force")
         sim.link("m::stone").apply_wrench((6, 0, 0), (0, 0, 0.2))
@@ -57,7 +57,7 @@ def test_a_push_is_in_the_sum() -> None:
         assert sim.link("m::stone").linear_velocity[0] == pytest.approx(6 / 3 * 0.001)
 
 
-def test_body_and_topic_are_needed() -> None:
+def test_body_and_topic_are_required() -> None:
     with pytest.raises(simkit.LoadError) as caught:
         loaded("0 0 9 0 0 0", bodyName=None, topicName=None)
     errors = [d for d in caught.value.diagnostics if d.severity == "error"]

@@ -1,4 +1,4 @@
-"""Pushing a link in Gazebo Classic."""
+"""Force on a link in Gazebo Classic."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def push(content: str) -> str:
 LINK = "<link_name>body</link_name>"
 
 
-def test_it_pushes_at_the_centre_of_mass_until_told_otherwise() -> None:
+def test_the_force_acts_at_the_centre_of_mass_until_the_next_message() -> None:
     sim = load(BODY, push(f"{LINK}<ros><namespace>/lab</namespace><remapping>gazebo_ros_force:=push</remapping></ros>"))
     assert sim.topics()["/lab/push"] == "geometry_msgs/msg/Wrench"
     link = sim.link("m::body")
@@ -37,7 +37,7 @@ def test_it_pushes_at_the_centre_of_mass_until_told_otherwise() -> None:
     assert link.angular_velocity[2] == pytest.approx(1.0, rel=1e-6)
 
 
-def test_in_the_links_frame_it_turns_with_the_link() -> None:
+def test_in_the_links_frame_the_force_rotates_with_the_link() -> None:
     sim = load(BODY, push(f"{LINK}<force_frame>link</force_frame>"))
     link = sim.link("m::body")
     sim.publish("/gazebo_ros_force", {"force": {"x": 3.0}})
@@ -54,7 +54,7 @@ def test_in_the_links_frame_it_turns_with_the_link() -> None:
     assert not link.linear_velocity.any()
 
 
-def test_the_spelling_of_ros_1() -> None:
+def test_the_spelling_of_ros_1_is_supported() -> None:
     content = "<robotNamespace>lab</robotNamespace><bodyName>body</bodyName><topicName>shove</topicName>"
     sim = load(BODY, push(content))
     sim.publish("/lab/shove", {"force": {"y": 4.0}})
@@ -62,7 +62,7 @@ def test_the_spelling_of_ros_1() -> None:
     np.testing.assert_allclose(sim.link("m::body").linear_velocity, [0.0, 1.0, 0.0], atol=1e-9)
 
 
-def test_a_restore_puts_back_the_push_of_then() -> None:
+def test_a_restore_brings_back_the_force() -> None:
     sim = load(BODY, push(LINK))
     sim.publish("/gazebo_ros_force", {"force": {"x": 2.0}})
     sim.run(0.1)
@@ -74,7 +74,7 @@ def test_a_restore_puts_back_the_push_of_then() -> None:
     assert sim.link("m::body").linear_velocity[0] == pytest.approx(0.2, rel=1e-9)
 
 
-def test_what_cannot_be_used_is_told() -> None:
+def test_an_invalid_wrench_is_reported() -> None:
     with pytest.raises(LoadError, match="no link 'bodi'"):
         load(BODY, push("<link_name>bodi</link_name>"))
     with pytest.raises(LoadError, match="no link ''; it has: 'body'"):
@@ -91,7 +91,7 @@ def test_what_cannot_be_used_is_told() -> None:
     assert len(codes(sim.diagnostics, "SK-PLUGIN-041")) == 1
 
 
-def test_of_two_pushes_a_reset_ends_both_and_a_restore_brings_both_back() -> None:
+def test_a_reset_ends_two_forces_and_a_restore_brings_both_back() -> None:
     other = BODY.replace('name="body"', 'name="other"')
     sim = load(BODY, other, push("<link_name>other</link_name>") + push(f"{LINK}<ros><namespace>/a</namespace></ros>"))
     for topic in ("/gazebo_ros_force", "/a/gazebo_ros_force"):
@@ -107,7 +107,7 @@ def test_of_two_pushes_a_reset_ends_both_and_a_restore_brings_both_back() -> Non
     assert speeds == pytest.approx([0.2, 0.2], rel=1e-9)
 
 
-def test_a_model_under_the_name_of_one_that_was_pushed_is_not() -> None:
+def test_a_new_model_with_the_name_of_a_pushed_one_is_not_pushed() -> None:
     sim = load(BODY, push(LINK))
     text = f'<sdf version="1.9"><model name="m">{BODY}{push(LINK)}</model></sdf>'
     sim.publish("/gazebo_ros_force", {"force": {"x": 2.0}})

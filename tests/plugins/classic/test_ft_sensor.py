@@ -1,4 +1,4 @@
-"""The force-torque plugin of Gazebo Classic: on joints and links, in both spellings."""
+"""Force-torque plugin of Gazebo Classic: on joints and links, in both spellings."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def six(message: Any) -> Any:
     return np.array((force.x, force.y, force.z, torque.x, torque.y, torque.z))
 
 
-def test_of_a_joint_it_is_what_the_child_does_to_the_joint_in_the_child_s_axes() -> None:
+def test_the_wrench_of_a_joint_is_that_of_the_child_in_the_childs_axes() -> None:
     ros = "<ros><namespace>arm</namespace><remapping>wrench:=ft</remapping></ros>"
     plugin = f'<plugin name="n" {FILE}>{ros}<joint_name>wall</joint_name><update_rate>50</update_rate></plugin>'
     with simkit.load(world(plugin)) as sim:
@@ -56,7 +56,7 @@ def test_ros_1_spelling_names_topic_joint_and_rate() -> None:
         assert not [d for d in sim.diagnostics if d.code == "SK-PARAM-003"]
 
 
-def test_of_a_link_it_is_mass_times_acceleration_in_the_world() -> None:
+def test_the_wrench_of_a_link_is_mass_times_acceleration_in_the_world() -> None:
     """On its circle the beam is pulled to the middle by m ω² r; its weight is held, so the sum has none of it."""
     plugin = f'<plugin name="n" {FILE}><body_name>beam</body_name></plugin>'
     with simkit.load(world(plugin)) as sim:
@@ -78,7 +78,7 @@ def test_a_falling_link_has_its_weight_and_no_torque() -> None:
         np.testing.assert_allclose(six(sub.latest), (0, 0, -3 * G, 0, 0, 0), atol=1e-6)
 
 
-def test_noise_is_the_same_whoever_listened_before() -> None:
+def test_noise_does_not_depend_on_earlier_subscribers() -> None:
     plugin = f'<plugin name="n" {FILE}><joint_name>wall</joint_name><gaussian_noise>0.5</gaussian_noise></plugin>'
     with simkit.load(world(plugin), seed=3) as early, simkit.load(world(plugin), seed=3) as late:
         first = early.subscribe("/wrench")
@@ -94,7 +94,7 @@ def test_noise_is_the_same_whoever_listened_before() -> None:
         np.testing.assert_array_equal(values[:10], [six(m) for m in first.messages[-10:]])
 
 
-def test_what_rests_on_a_link_that_never_moves_still_weighs() -> None:
+def test_a_body_resting_on_a_static_link_still_has_its_weight() -> None:
     shape = '<collision name="c"><geometry><box><size>1 1 0.2</size></box></geometry></collision>'
     plate = f'<link name="plate"><pose>5 0 0 0 0 0</pose><inertial><mass>1</mass></inertial>{shape}</link>'
     plate += '<joint name="floor" type="fixed"><parent>world</parent><child>plate</child></joint>'
@@ -115,12 +115,12 @@ def test_what_rests_on_a_link_that_never_moves_still_weighs() -> None:
         ("<joint_name>wall</joint_name><gaussian_noise>-1</gaussian_noise>", "SK-PARAM-002"),
     ],
 )
-def test_what_is_missing_or_misspelt_is_an_error(content: str, code: str) -> None:
+def test_a_missing_or_misspelt_name_is_an_error(content: str, code: str) -> None:
     with pytest.raises(simkit.LoadError, match=code):
         simkit.load(world(f'<plugin name="n" {FILE}>{content}</plugin>'))
 
 
-def test_a_frame_has_no_meaning_for_a_joint_and_is_said_to_be_unused() -> None:
+def test_a_frame_is_reported_as_unused_for_a_joint() -> None:
     plugin = f'<plugin name="n" {FILE}><joint_name>wall</joint_name><frame_name>tool</frame_name></plugin>'
     with simkit.load(world(plugin)) as sim:
         assert any(d.code == "SK-PARAM-003" and "frame_name" in d.message for d in sim.diagnostics)

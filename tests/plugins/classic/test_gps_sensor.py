@@ -1,4 +1,4 @@
-"""The satellite receiver of Gazebo Classic."""
+"""GPS receiver of Gazebo Classic."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def classic(plugin: str, kind: str = "gps") -> str:
       </world></sdf>"""
 
 
-def test_it_publishes_the_fix_and_the_velocity_under_its_own_name() -> None:
+def test_fix_and_velocity_are_published_under_the_plugins_name() -> None:
     with simkit.load(classic("")) as sim:
         fix, velocity = sim.subscribe("/my_gps/out"), sim.subscribe("/my_gps/vel")
         sim.model("m").set_velocity((2.0, 0.0, 0.0), (0, 0, 0))
@@ -30,7 +30,7 @@ def test_it_publishes_the_fix_and_the_velocity_under_its_own_name() -> None:
         assert velocity.latest.vector.y == pytest.approx(2.0)  # the world's x points north
 
 
-def test_names_can_be_given() -> None:
+def test_remappings_and_frame_name_apply() -> None:
     plugin = """<ros><namespace>/demo</namespace><remapping>~/out:=gps/fix</remapping>
       <remapping>~/vel:=gps/vel</remapping></ros><frame_name>antenna</frame_name>"""
     with simkit.load(classic(plugin)) as sim:
@@ -47,8 +47,8 @@ def test_on_another_sensor_it_is_an_error() -> None:
 
 
 @pytest.mark.parametrize("quirks", [False, True])
-def test_the_half_turn_of_classic_is_a_quirk(quirks: bool) -> None:
-    """A world that undoes it with a heading of 180 degrees is warned of, and right with the quirks."""
+def test_the_half_turn_of_classic_needs_gazebo_quirks(quirks: bool) -> None:
+    """A world with a heading of 180 degrees gets a warning, and is correct with the quirks."""
     text = classic("").replace("<heading_deg>90<", "<heading_deg>180<")
     if quirks:
         text = text.replace("<gravity>", "<gazebo_quirks>true</gazebo_quirks><gravity>")

@@ -1,4 +1,4 @@
-"""A link that is drawn to a frame of tf."""
+"""Plugin that pulls a link to a frame of tf."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def told(frame: str, x: float = 0.0, yaw: float = 0.0, parent: str = "world") ->
     return simkit.msgs.make("tf2_msgs/msg/TFMessage", transforms=[one])
 
 
-def test_it_takes_the_weight_and_draws_the_link_without_overshoot() -> None:
+def test_the_weight_is_carried_and_the_link_is_pulled_without_overshoot() -> None:
     sim = simkit.load(world(ball()))
     sim.run(1.0)
     assert sim.model("ball").pose.position == pytest.approx((0, 0, 5), abs=1e-9)
@@ -37,7 +37,7 @@ def test_it_takes_the_weight_and_draws_the_link_without_overshoot() -> None:
         assert sim.model("ball").pose.position[0] == pytest.approx(1 - (1 + w * t) * math.exp(-w * t), abs=0.02)
 
 
-def test_it_turns_it_by_half_the_angle_and_tells_where_it_is() -> None:
+def test_the_torque_uses_half_the_angle_and_the_pose_is_published() -> None:
     sim = simkit.load(world(ball("<linkName>body</linkName><frameId>hog</frameId><ka>50</ka>")))
     heard = sim.subscribe("/tf")
     sim.publish("/tf", told("hand", 0.5, 0.2))
@@ -55,7 +55,7 @@ def test_it_turns_it_by_half_the_angle_and_tells_where_it_is() -> None:
     assert last.transform.translation.x == pytest.approx(0.5, abs=1e-3)
 
 
-def test_reset_and_restore() -> None:
+def test_reset_and_restore_repeat_the_motion() -> None:
     sim = simkit.load(world(ball()))
     sim.publish("/tf", told("hog_desired", 1.0))
     sim.run(0.1)
@@ -70,7 +70,7 @@ def test_reset_and_restore() -> None:
     assert sim.model("ball").pose.position == pytest.approx((0, 0, 5), abs=1e-9)
 
 
-def test_a_ring_of_frames_and_one_that_is_no_number_draw_nowhere() -> None:
+def test_a_cycle_of_frames_and_a_nan_transform_do_not_pull() -> None:
     sim = simkit.load(world(ball()))
     sim.publish("/tf", told("hog_desired", 1.0, parent="a"))
     sim.publish("/tf", told("a", 1.0, parent="hog_desired"))
@@ -79,13 +79,13 @@ def test_a_ring_of_frames_and_one_that_is_no_number_draw_nowhere() -> None:
     assert sim.model("ball").pose.position == pytest.approx((0, 0, 5), abs=1e-9)
 
 
-def test_a_link_that_is_not_there_is_an_error() -> None:
+def test_a_missing_link_is_an_error() -> None:
     with pytest.raises(simkit.InputError, match="did you mean 'body'"):
         simkit.load(world(ball("<link_name>bdy</link_name><kl>-1</kl>")))
 
 
 @pytest.mark.parametrize("size", [1e-320, 1e-200, 1e200, 1e308, math.nan])
-def test_a_turn_that_is_none_is_left_out_and_said(size: float) -> None:
+def test_an_invalid_rotation_is_ignored_and_reported(size: float) -> None:
     sim = simkit.load(world(ball()))
     message = told("hog_desired", 1.0)
     turn = message.transforms[0].transform.rotation
@@ -99,7 +99,7 @@ def test_a_turn_that_is_none_is_left_out_and_said(size: float) -> None:
     assert sim.model("ball").pose.position[0] == pytest.approx(1.0, abs=0.01)
 
 
-def test_a_place_beyond_all_bounds_is_left_out() -> None:
+def test_a_position_out_of_range_is_ignored() -> None:
     sim = simkit.load(world(ball()))
     sim.publish("/tf", told("hog_desired", 1e200))
     sim.run(0.1)

@@ -1,4 +1,4 @@
-"""The IMU plugin of ROS 1 on a model: what it feels, where it says so, and what Gazebo gets otherwise."""
+"""IMU plugin of ROS 1 on a model: readings, names, and Gazebo's quirks."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ def imu(**values: Any) -> str:
 
 
 def fixed(plugin: str, pose: str = "0 0 1 0 0 0", top: str = "") -> str:
-    """A head that stands on the world."""
+    """Return a head that is fixed to the world."""
     joint = "<joint name='foot' type='fixed'><parent>world</parent><child>head</child></joint>"
     return world(top, f"<model name='post'>{POST.format(pose=pose)}{joint}{plugin}</model>")
 
 
 def wheel(plugin: str, pose: str = "1 0 0 0 0 0", top: str = "") -> str:
-    """A head 1 m off an upright axle in the world."""
+    """Return a head 1 m off a vertical axle in the world."""
     joint = (
         "<joint name='axle' type='revolute'><pose relative_to='__model__'/><parent>world</parent><child>head</child>"
         "<axis><xyz expressed_in='__model__'>0 0 1</xyz></axis></joint>"
@@ -51,7 +51,7 @@ def turn(message: Any) -> Pose:
     return Pose((0, 0, 0), (q.w, q.x, q.y, q.z))
 
 
-def test_at_rest_it_feels_gravity_in_its_own_axes_and_knows_its_attitude() -> None:
+def test_at_rest_the_imu_measures_gravity_in_its_axes_and_its_attitude() -> None:
     with simkit.load(fixed(imu(updateRate=50), pose="0 0 1 0.3 -0.2 0.5")) as sim:
         assert sim.topics()["/imu"] == "sensor_msgs/msg/Imu"
         messages = first(sim, seconds=0.1)
@@ -66,8 +66,8 @@ def test_at_rest_it_feels_gravity_in_its_own_axes_and_knows_its_attitude() -> No
         assert "SK-PLUGIN-060" in {d.code for d in sim.diagnostics}
 
 
-def test_on_a_circle_it_feels_the_pull_to_the_middle() -> None:
-    """ω² r towards the axle [m/s²], whichever way the head looks."""
+def test_on_a_circle_the_imu_measures_the_centripetal_acceleration() -> None:
+    """The acceleration is ω² r towards the axle [m/s²], for every orientation of the head."""
     with simkit.load(wheel(imu(), pose="1 0 0 0 0 0.7")) as sim:
         sim.joint("wheel::axle").set_velocity(3.0)
         message = first(sim)[0]
@@ -77,12 +77,12 @@ def test_on_a_circle_it_feels_the_pull_to_the_middle() -> None:
         np.testing.assert_allclose(xyz(message.linear_acceleration), 9 * inwards + (0, 0, G), atol=1e-6)
 
 
-def test_in_free_fall_it_feels_nothing() -> None:
+def test_in_free_fall_the_acceleration_is_zero() -> None:
     with simkit.load(world(f"<model name='stone'>{POST.format(pose='0 0 9 0 0 0')}{imu()}</model>")) as sim:
         np.testing.assert_allclose(xyz(first(sim)[0].linear_acceleration), 0, atol=1e-9)
 
 
-def test_with_gazebos_quirks_gravity_is_left_out_and_vectors_turn_the_other_way() -> None:
+def test_with_gazebo_quirks_gravity_is_omitted_and_vectors_turn_in_the_wrong_direction() -> None:
     with simkit.load(wheel(imu(), pose="1 0 0 0 0 0.7", top=QUIRKS)) as sim:
         sim.joint("wheel::axle").set_velocity(3.0)
         message = first(sim)[0]
@@ -102,7 +102,7 @@ def test_names_and_offsets_are_as_in_the_file() -> None:
         assert "SK-SENSOR-072" in {d.code for d in sim.diagnostics}
 
 
-def test_what_is_not_given_has_gazebos_defaults() -> None:
+def test_missing_parameters_have_gazebos_defaults() -> None:
     with simkit.load(fixed(imu(topicName=None))) as sim:
         messages = first(sim, "/default_imu", 0.01)
         assert len(messages) == 10
@@ -110,7 +110,7 @@ def test_what_is_not_given_has_gazebos_defaults() -> None:
         np.testing.assert_array_equal(messages[0].angular_velocity_covariance, np.zeros(9))
 
 
-def test_two_of_one_robot_share_the_default_service() -> None:
+def test_two_imus_of_one_robot_share_the_default_service() -> None:
     both = "".join(
         f"<model name='{name}'>{POST.format(pose=f'0 {y} 9 0 0 0')}{imu()}</model>" for name, y in (("a", 0), ("b", 9))
     )
@@ -130,7 +130,7 @@ def test_noise_is_on_all_six_and_its_square_in_the_covariances() -> None:
             np.testing.assert_allclose(found, np.diag([0.25] * 3).reshape(9), atol=1e-12)
 
 
-def test_who_listens_late_hears_the_same_noise() -> None:
+def test_a_late_subscriber_gets_the_same_noise() -> None:
     def last(late: bool) -> str:
         with simkit.load(fixed(imu(gaussianNoise=0.5)), seed=3) as sim:
             if late:
@@ -146,7 +146,7 @@ def test_a_body_may_be_named_with_its_model() -> None:
         assert first(sim)[0].header.frame_id == "head"
 
 
-def test_a_body_is_needed_and_has_to_be_there() -> None:
+def test_a_missing_or_unknown_body_is_an_error() -> None:
     with pytest.raises(simkit.LoadError, match="SK-PARAM-001.*bodyName"):
         simkit.load(fixed(imu(bodyName=None)))
     with pytest.raises(simkit.LoadError, match="SK-PLUGIN-003(.|\n)*did you mean 'head'"):

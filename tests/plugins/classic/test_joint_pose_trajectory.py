@@ -1,4 +1,4 @@
-"""Joints put through poses in Gazebo Classic."""
+"""Joint trajectories in Gazebo Classic that set positions."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def positions(sim: Any) -> list[float]:
     return [sim.joint(f"m::j_{n}").position for n in "ab"]
 
 
-def test_points_are_set_one_after_another_as_gazebo_counts_their_times() -> None:
+def test_points_are_set_one_after_another_with_gazebos_times() -> None:
     sim = load(ARM, poses())
     assert sim.topics()[TOPIC] == "trajectory_msgs/msg/JointTrajectory"
     send(sim, [(0.1, [0.3, -0.3]), (0.2, [0.6, 0.0]), (0.0, [0.9, 0.2])])
@@ -42,7 +42,7 @@ def test_points_are_set_one_after_another_as_gazebo_counts_their_times() -> None
     assert [tick for tick, _ in seen[1:]] == [10, 100, 300]
 
 
-def test_each_may_come_at_its_own_time() -> None:
+def test_points_may_be_set_at_their_own_times() -> None:
     sim = load(ARM, poses("<simkit:point_times>from_start</simkit:point_times><update_rate>0</update_rate>"))
     send(sim, [(0.1, [0.3, 0.0]), (0.2, [0.6, 0.0])])
     seen = []
@@ -64,7 +64,7 @@ def test_between_two_points_a_joint_is_free() -> None:
     assert sim.joint("m::j_a").position < before - 0.04
 
 
-def test_a_link_may_keep_its_place_instead() -> None:
+def test_a_reference_link_may_keep_its_pose() -> None:
     base = "<link name='base'><inertial><mass>1</mass></inertial></link>"
     arm = rotor("a", parent="base") + "<link name='tip'><pose>1 0 0 0 0 0</pose></link>"
     weld = "<joint name='weld' type='fixed'><parent>a</parent><child>tip</child></joint>"
@@ -87,7 +87,7 @@ def test_the_spelling_of_ros_1_sets_at_every_step() -> None:
     assert sim.joint("m::j_a").position == pytest.approx(0.2)
 
 
-def test_what_cannot_be_used_is_left_out_and_said() -> None:
+def test_an_invalid_trajectory_is_ignored_and_reported() -> None:
     sim = load(ARM, poses())
     send(sim, [(0.0, [1.0, 1.0])], frame="m::aa")
     send(sim, [(0.0, [1.0])])
@@ -104,7 +104,7 @@ def test_what_cannot_be_used_is_left_out_and_said() -> None:
         load(ARM, poses("<update_rate>-5</update_rate>"))
 
 
-def test_a_reset_forgets_the_trajectory() -> None:
+def test_a_reset_clears_the_trajectory() -> None:
     sim = load(ARM, poses())
     send(sim, [(0.2, [0.3, 0.0]), (0.0, [0.6, 0.0])])
     sim.run(0.1)
@@ -113,7 +113,7 @@ def test_a_reset_forgets_the_trajectory() -> None:
     assert positions(sim) == [0.0, 0.0]
 
 
-def test_at_a_rate_next_to_nothing_nothing_is_set_for_long() -> None:
+def test_at_a_tiny_rate_no_point_is_set_for_a_long_time() -> None:
     sim = load(ARM, poses("<update_rate>1e-300</update_rate>"))
     send(sim, [(0.0, [0.5, 0.2]), (0.0, [1.0, 0.4])])
     sim.step(20)

@@ -1,4 +1,4 @@
-"""Gazebo Classic's true pose of a link."""
+"""Ground truth pose of a link in Gazebo Classic."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def test_rate_topic_and_offsets_of_ros_2() -> None:
     assert yaw(odometry.latest.pose.pose.orientation) == pytest.approx(0.75)
 
 
-def test_the_older_names_of_the_offsets_are_understood_and_the_newer_win() -> None:
+def test_old_names_of_the_offsets_are_read_and_new_names_override_them() -> None:
     with opened(body_name="base", xyz_offsets="1 0 0", rpy_offsets="0 0 0.1", rpy_offset="0 0 0.2") as sim:
         odometry = sim.subscribe("/odom")
         sim.step()
@@ -73,7 +73,7 @@ def test_an_offset_turns_the_attitude_about_the_frames_axes() -> None:
     np.testing.assert_allclose(turned, (math.cos(0.5), 0, math.sin(0.5)), atol=1e-12)
 
 
-def test_seen_from_another_link_the_twist_is_how_the_pose_changes() -> None:
+def test_relative_to_another_link_the_twist_is_the_rate_of_the_pose() -> None:
     with opened(ros="", body_name="base", frame_name="arm") as sim:
         sim.model("box").set_velocity((0.3, 0.4, 0.2), (0, 0, 0.6))
         sim.joint("box::hinge").set_velocity(2.0)
@@ -89,7 +89,7 @@ def test_seen_from_another_link_the_twist_is_how_the_pose_changes() -> None:
     assert np.linalg.norm(change) == pytest.approx(0.5 * abs(message.twist.twist.angular.z), abs=3e-3)
 
 
-def test_the_ros_1_spelling_says_the_same() -> None:
+def test_the_ros_1_spelling_gives_the_same_odometry() -> None:
     values = {
         "robotNamespace": "one",
         "alwaysOn": "true",
@@ -123,7 +123,7 @@ def test_noise_is_on_the_twist_and_its_variance_in_both_covariances() -> None:
     assert odometry.latest.pose.pose.position.x == pytest.approx(1, abs=1e-12)
 
 
-def test_who_listens_late_hears_the_same_and_another_seed_another() -> None:
+def test_a_late_subscriber_gets_the_same_noise_and_another_seed_differs() -> None:
     last = []
     for seed, late in ((1, False), (1, True), (2, False)):
         with opened(seed=seed, body_name="base", gaussian_noise=0.1, update_rate=10) as sim:
@@ -146,7 +146,7 @@ def test_a_missing_or_unknown_body_is_an_error() -> None:
         opened(bodyName="base")
 
 
-def test_an_unknown_frame_is_told_and_the_pose_is_the_worlds() -> None:
+def test_an_unknown_frame_is_reported_and_the_pose_is_in_the_world_frame() -> None:
     with opened(body_name="base", frame_name="amr") as sim:
         (found,) = (d for d in sim.diagnostics if d.code == "SK-PLUGIN-054")
         assert "'arm'" in found.hint

@@ -1,4 +1,4 @@
-"""Gazebo Classic's planar move."""
+"""Planar move of Gazebo Classic."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def planar(sim: simkit.Simulation) -> np.ndarray:
 # ------------------------------------------------------------------ parameters
 
 
-def test_what_a_ros_2_file_leaves_out_is_gazebos_default() -> None:
+def test_missing_parameters_of_ros_2_have_gazebos_defaults() -> None:
     found = read_options(Params.from_dict({}))
     assert (found.update_rate, found.publish_rate) == (20.0, 20.0)
     assert found.publish_odom and found.publish_odom_tf and not found.is_level
@@ -37,7 +37,7 @@ def test_what_a_ros_2_file_leaves_out_is_gazebos_default() -> None:
     assert (found.covariance_x, found.covariance_y, found.covariance_yaw) == (1e-5, 1e-5, 1e-3)
 
 
-def test_what_a_ros_1_file_leaves_out_is_gazebos_default() -> None:
+def test_missing_parameters_of_ros_1_have_gazebos_defaults() -> None:
     found = read_options(Params.from_dict({"robotNamespace": ""}))
     assert (found.command_topic, found.odometry_topic, found.publish_rate) == ("cmd_vel", "odom", 20.0)
     assert found.timeout == math.inf and found.is_level
@@ -54,7 +54,7 @@ def test_a_negative_rate_or_variance_is_an_error(name: str) -> None:
 
 
 @pytest.mark.parametrize("step", [0.001, 0.005])
-def test_it_goes_ahead_aside_and_round_as_it_is_told(step: float) -> None:
+def test_the_model_moves_forward_sideways_and_turns_as_commanded(step: float) -> None:
     """0.4 m/s ahead, 0.2 m/s to the left, 0.6 rad/s: a circle of radius 0.745 m, in the axes of its heading."""
     with opened(step=step, pose="1 2 0.1 0 0 1.5707963267948966", update_rate=0) as sim:
         sim.publish("/cmd_vel", {"linear": {"x": 0.4, "y": 0.2}, "angular": {"z": 0.6}})
@@ -66,7 +66,7 @@ def test_it_goes_ahead_aside_and_round_as_it_is_told(step: float) -> None:
         assert sim.model("box").pose.position[2] == pytest.approx(0.1, abs=1e-5)
 
 
-def test_the_last_command_holds_and_comes_at_the_update_rate() -> None:
+def test_the_last_command_stays_active_and_is_read_at_the_update_rate() -> None:
     """At 20 Hz a command of 10 ms waits until 50 ms."""
     with opened() as sim:
         sim.run(0.01)
@@ -75,7 +75,7 @@ def test_the_last_command_holds_and_comes_at_the_update_rate() -> None:
         assert planar(sim)[0] == pytest.approx(0.95, abs=1e-3)
 
 
-def test_in_the_air_it_falls_and_then_stands() -> None:
+def test_the_model_falls_without_contact_and_lands() -> None:
     with opened(pose="0 0 0.5 0 0 0") as sim:
         sim.publish("/cmd_vel", {"linear": {"x": 0.5}})
         sim.run(0.2)
@@ -86,7 +86,7 @@ def test_in_the_air_it_falls_and_then_stands() -> None:
         np.testing.assert_allclose(sim.model("box").pose.rpy, 0, atol=1e-4)
 
 
-def test_a_wall_stops_it_and_it_can_go_back() -> None:
+def test_a_wall_stops_the_model_and_it_can_move_back() -> None:
     with opened(WALL) as sim:
         sim.publish("/cmd_vel", {"linear": {"x": 1.0}})
         sim.run(1.5)
@@ -96,7 +96,7 @@ def test_a_wall_stops_it_and_it_can_go_back() -> None:
         assert planar(sim)[0] < 0.25
 
 
-def test_ros_1_stops_where_commands_stay_away_for_the_timeout() -> None:
+def test_ros_1_stops_after_the_timeout_without_commands() -> None:
     with opened(robotNamespace="", cmdTimeout=0.5) as sim:
         sim.publish("/cmd_vel", {"linear": {"x": 0.4}})
         sim.run(2.0)
@@ -123,7 +123,7 @@ def test_odometry_is_the_true_pose_and_the_twist_along_the_heading() -> None:
     np.testing.assert_allclose(xyz(transform.transform.translation), pose.position, atol=1e-12)
 
 
-def test_names_rates_and_variances_are_the_files() -> None:
+def test_names_rates_and_variances_are_those_of_the_file() -> None:
     ros = "<namespace>/one</namespace><remapping>cmd_vel:=go</remapping><remapping>odom:=where</remapping>"
     values = {"publish_rate": 10, "odometry_frame": "map", "robot_base_frame": "base", "covariance_yaw": 0.5}
     with opened(ros=ros, publish_odom_tf="false", **values) as sim:
@@ -136,7 +136,7 @@ def test_names_rates_and_variances_are_the_files() -> None:
     assert odometry.latest.pose.covariance[35] == odometry.latest.twist.covariance[35] == 0.5
 
 
-def test_ros_1_tells_no_height() -> None:
+def test_ros_1_has_height_zero() -> None:
     names = {"commandTopic": "go", "odometryTopic": "where", "odometryFrame": "map", "robotBaseFrame": "base"}
     with opened(robotNamespace="one", odometryRate=50, **names) as sim:
         odometry, tf = sim.subscribe("/one/where"), sim.subscribe("/tf")
@@ -155,7 +155,7 @@ def test_ros_1_with_rate_zero_publishes_nothing() -> None:
         assert "/odom" not in sim.topics()
 
 
-def test_it_repeats_bit_for_bit_after_a_restore() -> None:
+def test_a_restored_run_repeats_bit_for_bit() -> None:
     with opened(WALL) as sim:
         sim.publish("/cmd_vel", {"linear": {"x": 0.8, "y": 0.1}, "angular": {"z": 0.3}})
         sim.run(0.31)

@@ -1,4 +1,4 @@
-"""`libgazebo_ros_range.so`: the nearest ray of a lidar as a Range."""
+"""Range plugin `libgazebo_ros_range.so`: the nearest ray of a lidar as a Range."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ FULL = """<robotNamespace>r</robotNamespace><topicName>front</topicName><frameNa
   <radiation>infrared</radiation><fov>0.2</fov><gaussianNoise>0.02</gaussianNoise><updateRate>20</updateRate>"""
 
 
-def test_it_publishes_the_nearest_ray() -> None:
+def test_the_nearest_ray_is_published() -> None:
     with simkit.load(robot("")) as sim:
         sub = sim.subscribe("/range")
         sim.run(0.1)
@@ -36,7 +36,7 @@ def test_it_publishes_the_nearest_ray() -> None:
         assert (message.min_range, message.max_range) == pytest.approx((0.05, 4.0))
 
 
-def test_it_takes_its_own_rate_names_and_noise() -> None:
+def test_rate_names_and_noise_of_the_plugin_apply() -> None:
     with simkit.load(robot(FULL), seed=1) as sim:
         sub = sim.subscribe("/r/front")
         sim.run(20.0)
@@ -51,13 +51,13 @@ def test_it_takes_its_own_rate_names_and_noise() -> None:
         assert ranges.mean() == pytest.approx(truth, abs=0.004)
 
 
-def test_nothing_within_the_range_stays_infinite() -> None:
+def test_an_empty_range_is_infinite() -> None:
     with simkit.load(robot(FULL).replace("<max>4</max>", "<max>1</max>")) as sim:
         sim.run(0.2)
         assert sim.sensor("m::l::s").latest.range == np.inf
 
 
-def test_its_noise_repeats_after_a_reset() -> None:
+def test_noise_repeats_after_a_reset() -> None:
     with simkit.load(robot(FULL), seed=5) as sim:
         sub = sim.subscribe("/r/front")
         sim.run(0.5)

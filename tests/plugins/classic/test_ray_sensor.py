@@ -1,4 +1,4 @@
-"""The laser plugins of ROS 1: a scan, or a block of points, on the topic that the file names."""
+"""Laser plugins of ROS 1: a scan, or a block of points, on the topic of the file."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def test_a_laser_publishes_its_scan(library: str, kind: str) -> None:
 
 
 @pytest.mark.parametrize("library", ["laser", "gpu_laser", "block_laser"])
-def test_without_names_the_topic_is_gazebos_and_the_frame_the_links(library: str) -> None:
+def test_by_default_the_topic_is_gazebos_and_the_frame_the_links(library: str) -> None:
     with simkit.load(laser(library)) as sim:
         subscription = sim.subscribe("/world")
         sim.step(1)
@@ -104,7 +104,7 @@ def test_the_truth_of_a_block_has_no_noise() -> None:
         assert abs(points(sensor.latest)[:, 0] - 2).max() > 0.01
 
 
-def test_what_gazebo_reads_and_forgets_is_told() -> None:
+def test_parameters_without_effect_in_gazebo_are_reported() -> None:
     with simkit.load(laser("block_laser", topicName="c", hokuyoMinIntensity=101, updateRate=5)) as sim:
         told = [d.message for d in sim.diagnostics if d.code == "SK-PLUGIN-061"]
         assert len(told) == 2
@@ -115,7 +115,7 @@ def test_what_gazebo_reads_and_forgets_is_told() -> None:
 
 
 @pytest.mark.parametrize("library", ["laser", "gpu_laser", "block_laser"])
-def test_it_needs_a_lidar(library: str) -> None:
+def test_the_plugin_needs_a_lidar(library: str) -> None:
     plugin = f"<plugin name='laser' filename='libgazebo_ros_{library}.so'><topicName>scan</topicName></plugin>"
     with pytest.raises(simkit.LoadError, match="SK-PLUGIN-003.*type ray"):
         simkit.load(

@@ -1,4 +1,4 @@
-"""The RealSense plugin: four streams of a model, as the device's driver names and writes them."""
+"""RealSense plugin: four streams of a model, with the names and encodings of the device's driver."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def test_a_realsense_publishes_its_streams_as_the_driver_does() -> None:
     assert not found[:, 2].any()
 
 
-def test_a_realsenses_cloud() -> None:
+def test_a_realsense_publishes_its_cloud() -> None:
     more = """<pointCloud>true</pointCloud><pointCloudTopicName>depth/color/points</pointCloudTopicName>
       <pointCloudCutoff>0.3</pointCloudCutoff>"""
     (cloud,) = heard(realsense(more), "/d435/depth/color/points")
@@ -68,7 +68,7 @@ def test_a_realsenses_cloud() -> None:
     assert np.isnan(points["z"][:, 16]).all()  # 6 m, and <pointCloudCutoffMax> is 5 m where the file says nothing
 
 
-def test_a_realsense_without_one_of_its_cameras_says_so() -> None:
+def test_a_missing_camera_of_a_realsense_is_reported() -> None:
     with simkit.load(realsense(left_out="ired2")) as sim:
         (found,) = [d for d in sim.diagnostics if d.code == "SK-SENSOR-126"]
         assert "d435ired2" in found.message

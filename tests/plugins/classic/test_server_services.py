@@ -1,4 +1,4 @@
-"""Gazebo Classic's services with ROS 2, and with ROS 1 for worlds of its time."""
+"""Services of Gazebo Classic for ROS 2, and for worlds in ROS 1's spelling."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ def test_plugins_of_a_spawned_robot_are_in_its_namespace(own: str, topic: str) -
         assert topic in sim.topics()
 
 
-def test_a_namespace_is_text_and_no_xml() -> None:
+def test_a_namespace_is_escaped_in_the_xml() -> None:
     with load() as sim:
         response = sim.call("/spawn_entity", {"xml": RANGE.format(""), "robot_namespace": "left</namespace><a>&"})
         assert response.success, response.status_message
@@ -94,14 +94,14 @@ def test_a_namespace_is_text_and_no_xml() -> None:
 @pytest.mark.parametrize(
     ("request_", "why"),
     [
-        ({"xml": ""}, "there is no XML"),
+        ({"xml": ""}, "the XML of the entity is empty"),
         ({"xml": "<sdf version='1.9'><mdel name='a'/></sdf>"}, "did you mean 'model'?"),
         ({"xml": "<sdf"}, "SK-"),
         ({"xml": model("a"), "reference_frame": "bax"}, "there is no reference frame 'bax'; did you mean 'box'?"),
         ({"xml": model("a"), "initial_pose": {"position": {"x": math.inf}}}, "found initial_pose.position.x inf"),
     ],
 )
-def test_what_cannot_be_spawned_is_told_and_leaves_the_world_as_it_was(request_: dict[str, Any], why: str) -> None:
+def test_a_failed_spawn_is_reported_and_does_not_change_the_world(request_: dict[str, Any], why: str) -> None:
     with load() as sim:
         response = sim.call("/spawn_entity", request_)
         assert not response.success
@@ -109,17 +109,20 @@ def test_what_cannot_be_spawned_is_told_and_leaves_the_world_as_it_was(request_:
         assert list(sim.models) == ["ground", "box", "arm"]
 
 
-def test_what_is_not_there_cannot_be_deleted() -> None:
+def test_a_missing_entity_cannot_be_deleted() -> None:
     with load() as sim:
         assert "did you mean 'box'?" in sim.call("/delete_entity", {"name": "bux"}).status_message
-        assert "a part of the model 'box'" in sim.call("/delete_entity", {"name": "box::body"}).status_message
+        assert (
+            "is part of the model 'box'; delete the model"
+            in sim.call("/delete_entity", {"name": "box::body"}).status_message
+        )
         assert "'sun' cannot be removed" in sim.call("/delete_entity", {"name": "sun"}).status_message
 
 
 # ---------------------------------------------------------------------- pausing, resetting
 
 
-def test_physics_are_paused_and_go_on() -> None:
+def test_physics_are_paused_and_resumed() -> None:
     with load() as sim:
         sim.call("/pause_physics")
         assert sim.paused
@@ -127,7 +130,7 @@ def test_physics_are_paused_and_go_on() -> None:
         assert not sim.paused
 
 
-def test_a_reset_of_the_simulation_takes_time_along_and_stays_paused() -> None:
+def test_a_reset_of_the_simulation_resets_the_time_and_stays_paused() -> None:
     with load() as sim:
         sim.model("box").set_pose(simkit.Pose((3, 3, 3)))
         sim.run(0.1)
@@ -137,7 +140,7 @@ def test_a_reset_of_the_simulation_takes_time_along_and_stays_paused() -> None:
         assert sim.model("box").pose.position == pytest.approx((0, 0, 0.5))
 
 
-def test_a_reset_of_the_world_does_not() -> None:
+def test_a_reset_of_the_world_keeps_the_time() -> None:
     with load() as sim:
         sim.model("box").set_pose(simkit.Pose((3, 3, 3)))
         sim.joint("arm::hinge").set_position(0.5)
@@ -166,7 +169,7 @@ def test_a_state_is_set_and_read() -> None:
         assert (found.header.stamp.nanosec, xyz(found.state.pose.position)[0]) == (500_000_000, pytest.approx(0.5))
 
 
-def test_a_state_in_the_frame_of_another_is_less_that_ones_motion() -> None:
+def test_a_state_relative_to_a_moving_entity_subtracts_its_motion() -> None:
     with load() as sim:
         sim.spawn(model("one", "0 0 20 0 0 1.5707963267948966"))
         sim.model("one").set_velocity((0, 3, 0))
@@ -182,7 +185,7 @@ def test_a_state_in_the_frame_of_another_is_less_that_ones_motion() -> None:
         assert sim.link("box::body").linear_velocity == pytest.approx((0, 1, 0), abs=1e-12)
 
 
-def test_a_link_that_nothing_holds_is_moved_and_another_is_refused(caplog: pytest.LogCaptureFixture) -> None:
+def test_a_free_link_is_moved_and_a_joined_link_is_refused(caplog: pytest.LogCaptureFixture) -> None:
     with load() as sim:
         state = {"name": "box::body", "pose": {"position": {"x": 4, "z": 4}}, "twist": {"angular": {"z": 1}}}
         assert sim.call("/set_entity_state", {"state": state}).success
@@ -192,7 +195,7 @@ def test_a_link_that_nothing_holds_is_moved_and_another_is_refused(caplog: pytes
         assert "link 'arm::tip' is held by joints or the world; move the model 'arm'" in caplog.text
 
 
-def test_joints_are_put_at_positions() -> None:
+def test_joint_positions_are_set() -> None:
     with load() as sim:
         request = {"model_name": "arm", "joint_names": ["hinge"], "joint_positions": [0.25]}
         assert sim.call("/set_joint_positions", request).success
@@ -207,7 +210,7 @@ STATE = """<plugin name="state" filename="libgazebo_ros_state.so"><ros><namespac
 link_states:=links</remapping></ros><update_rate>20</update_rate></plugin>"""
 
 
-def test_states_are_published_where_a_plugin_says() -> None:
+def test_a_state_plugin_publishes_states_in_its_namespace() -> None:
     with load(STATE) as sim:
         models, links, root = (sim.subscribe(t) for t in ("/demo/model_states", "/demo/links", "/model_states"))
         sim.model("box").set_velocity((0, 0, 7))
@@ -220,7 +223,7 @@ def test_states_are_published_where_a_plugin_says() -> None:
         assert sim.call("/demo/get_entity_state", {"name": "box"}).success
 
 
-def test_a_state_plugin_without_a_namespace_is_the_one() -> None:
+def test_a_state_plugin_without_a_namespace_replaces_the_default_topics() -> None:
     with load('<plugin name="state" filename="libgazebo_ros_state.so"/>') as sim:
         models = sim.subscribe("/model_states")
         sim.run(0.1)
@@ -248,7 +251,7 @@ def test_properties_are_those_of_the_file() -> None:
         assert "did you mean 'hinge'?" in sim.call("/get_joint_properties", {"joint_name": "hingy"}).status_message
 
 
-def test_damping_and_limits_of_a_joint_are_set_and_last_over_a_spawn() -> None:
+def test_damping_and_limits_of_a_joint_are_set_and_survive_a_spawn() -> None:
     with load() as sim:
         config = {"damping": [4.0], "hi_stop": [0.5], "cfm": [0.1]}
         response = sim.call("/set_joint_properties", {"joint_name": "arm::hinge", "ode_joint_config": config})
@@ -301,7 +304,7 @@ def push(sim: simkit.Simulation, **fields: Any) -> Any:
     return sim.call("/apply_link_wrench", {"link_name": "box::body", **fields})
 
 
-def test_a_wrench_lasts_as_long_as_it_is_asked_for() -> None:
+def test_a_wrench_has_the_requested_duration() -> None:
     with flying() as sim:
         assert push(sim, wrench={"force": {"x": 4.0}, "torque": {"z": 1.0}}, duration={"nanosec": 100_000_000}).success
         sim.run(0.5)
@@ -310,7 +313,7 @@ def test_a_wrench_lasts_as_long_as_it_is_asked_for() -> None:
         assert sim.link("box::body").angular_velocity == pytest.approx((0, 0, 0.2), abs=1e-9)
 
 
-def test_a_duration_of_zero_is_nothing_and_one_shorter_than_a_step_is_a_step() -> None:
+def test_a_duration_of_zero_has_no_effect_and_a_shorter_one_than_a_step_is_a_step() -> None:
     with flying() as sim:
         push(sim, wrench={"force": {"x": 4.0}})
         sim.run(0.1)
@@ -320,7 +323,7 @@ def test_a_duration_of_zero_is_nothing_and_one_shorter_than_a_step_is_a_step() -
         assert sim.link("box::body").linear_velocity == pytest.approx((0.002, 0, 0), abs=1e-12)
 
 
-def test_a_wrench_begins_at_its_time_and_lasts_until_it_is_cleared(caplog: pytest.LogCaptureFixture) -> None:
+def test_a_wrench_starts_at_its_time_and_lasts_until_cleared(caplog: pytest.LogCaptureFixture) -> None:
     with flying() as sim:
         push(sim, wrench={"force": {"x": 4.0}}, start_time={"nanosec": 100_000_000}, duration={"sec": -1})
         sim.run(0.1)
@@ -345,7 +348,7 @@ def test_a_wrench_in_the_frame_of_an_entity_turns_with_it_and_has_a_lever() -> N
         assert sim.link("box::body").angular_velocity == pytest.approx((0, 0, -0.5 * 4 / 0.5 * 0.001), abs=1e-9)
 
 
-def test_an_effort_drives_a_joint_and_adds_to_what_a_plugin_gives() -> None:
+def test_an_effort_drives_a_joint_and_adds_to_a_plugins_effort() -> None:
     class Motor(simkit.WorldPlugin):
         def load(self, parent: Any, params: simkit.Params) -> None:
             self.joint = self.sim.joint("arm::hinge")
@@ -363,7 +366,7 @@ def test_an_effort_drives_a_joint_and_adds_to_what_a_plugin_gives() -> None:
             sim.call("/clear_joint_efforts", {"joint_name": "hinge"})
 
 
-def test_snapshots_and_reset_cover_what_pushes() -> None:
+def test_snapshots_and_reset_include_active_wrenches() -> None:
     with flying() as sim:
         push(sim, wrench={"force": {"x": 4.0}}, duration={"nanosec": 200_000_000})
         sim.run(0.1)
@@ -380,7 +383,7 @@ def test_snapshots_and_reset_cover_what_pushes() -> None:
         assert abs(sim.link("box::body").linear_velocity[0]) < 1e-9
 
 
-def test_nothing_is_due_at_every_step_once_nothing_pushes() -> None:
+def test_no_callback_runs_at_every_step_without_active_wrenches() -> None:
     with flying() as sim:
         push(sim, wrench={"force": {"x": 4.0}}, duration={"nanosec": 2_000_000})
         assert len(sim.engine.scheduler.before.every) == 1
@@ -388,7 +391,7 @@ def test_nothing_is_due_at_every_step_once_nothing_pushes() -> None:
         assert not sim.engine.scheduler.before.every
 
 
-def test_who_is_not_there_is_told() -> None:
+def test_a_missing_entity_is_reported() -> None:
     with load() as sim:
         response = sim.call("/apply_link_wrench", {"link_name": "box::boddy"})
         assert "did you mean 'box::body'?" in response.status_message
@@ -402,7 +405,7 @@ def test_who_is_not_there_is_told() -> None:
 
 
 @pytest.mark.parametrize(("more", "is_there"), [("", False), (STATE, False), (ROS_1, True), (API, True)])
-def test_the_names_of_ros_1_are_there_for_worlds_of_its_time(more: str, is_there: bool) -> None:
+def test_the_names_of_ros_1_exist_in_worlds_with_its_spelling(more: str, is_there: bool) -> None:
     with load(more) as sim:
         assert ("/gazebo/set_model_state" in sim.communication.services.names()) == is_there
         assert ("/gazebo/model_states" in sim.communication.bus.all_topics()) == is_there
@@ -427,7 +430,7 @@ def test_models_and_links_of_ros_1_are_spawned_set_and_read() -> None:
         assert not sim.call("/gazebo/get_model_state", {"model_name": "one"}).success
 
 
-def test_states_of_ros_1_come_in_and_go_out_by_topic() -> None:
+def test_states_of_ros_1_are_set_and_published_by_topic() -> None:
     with load(ROS_1) as sim:
         states = sim.subscribe("/gazebo/model_states")
         sim.publish("/gazebo/set_model_state", {"model_name": "box", "pose": {"position": {"x": 6, "z": 3}}})

@@ -1,4 +1,4 @@
-"""Four driven wheels: gz's DiffDrive with several joints a side, and ROS 1's skid steering."""
+"""Four driven wheels: gz's DiffDrive with several joints per side, and ROS 1's skid steering."""
 
 from __future__ import annotations
 
@@ -61,8 +61,8 @@ def test_gz_turns_all_wheels_of_a_side_alike() -> None:
         assert speeds(sim) == pytest.approx([3, 3, 7, 7], abs=1e-3)
 
 
-def test_gz_tells_the_odometry_of_the_first_pair_and_it_is_the_arc_of_the_wheels() -> None:
-    """Wheels that scrub sideways turn the body less than odometry believes; the odometry is the exact arc still."""
+def test_gz_publishes_the_odometry_of_the_first_pair_along_the_arc_of_the_wheels() -> None:
+    """Wheels that slip sideways turn the body less than the odometry; the odometry is still the exact arc."""
     with gz(odom_publish_frequency=4) as sim:
         odometry = sim.subscribe("/model/skid/odometry")
         sim.publish("/model/skid/cmd_vel", {"linear": {"x": 0.5}, "angular": {"z": 1.0}})
@@ -79,7 +79,7 @@ def test_gz_tells_the_odometry_of_the_first_pair_and_it_is_the_arc_of_the_wheels
     np.testing.assert_allclose(xyz(message.pose.pose.position), expected, atol=5e-3)
 
 
-def test_gz_goes_straight_as_far_as_told() -> None:
+def test_gz_drives_straight_at_the_commanded_speed() -> None:
     with gz(max_linear_acceleration=1, min_linear_acceleration=-1) as sim:
         sim.publish("/model/skid/cmd_vel", {"linear": {"x": 0.5}})
         sim.run(2.0)
@@ -96,7 +96,7 @@ def test_ros_1_turns_all_wheels_of_a_side_alike() -> None:
         assert speeds(sim) == pytest.approx([3, 3, 7, 7], abs=1e-3)
 
 
-def test_ros_1_tells_the_true_pose_without_height_and_the_transform_with_it() -> None:
+def test_ros_1_publishes_the_true_pose_without_height_and_the_transform_with_it() -> None:
     with ros_1(pose="1 2 0 0 0 1.0", broadcastTF="true") as sim:
         odometry, tf = sim.subscribe("/odom"), sim.subscribe("/tf")
         sim.publish("/cmd_vel", {"linear": {"x": 0.4}})
@@ -113,7 +113,7 @@ def test_ros_1_tells_the_true_pose_without_height_and_the_transform_with_it() ->
     assert (message.header.frame_id, message.child_frame_id) == ("odom", "base_footprint")
 
 
-def test_ros_1_names_and_rates_are_the_files() -> None:
+def test_ros_1_names_and_rates_are_those_of_the_file() -> None:
     names = {"commandTopic": "go", "odometryTopic": "where", "odometryFrame": "map", "robotBaseFrame": "body"}
     with ros_1(robotNamespace="one", updateRate=20, covariance_x=0.5, **names) as sim:
         assert "/tf" not in sim.topics()
@@ -125,8 +125,8 @@ def test_ros_1_names_and_rates_are_the_files() -> None:
     assert odometry.latest.pose.covariance[0] == 0.5
 
 
-def test_ros_1_wheels_are_named_by_where_they_are() -> None:
-    """A wheel each under another name; those that are not named go by Gazebo's default."""
+def test_ros_1_wheels_are_named_by_their_position() -> None:
+    """Each wheel has another name; missing names have Gazebo's default."""
     plugin = element(
         "plugin",
         {"leftFrontJoint": "left_front_joint", "rightRearJoint": "right_rear_joint", "torque": 20},

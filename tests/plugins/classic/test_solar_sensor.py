@@ -1,4 +1,4 @@
-"""The course's solar sensor: where the light stands, seen from a link."""
+"""Solar sensor of the course: the direction of the light, seen from a link."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ LAMP = "<light name='lamp' type='point'><pose>0 0 9 0 0 0</pose></light>"
 
 
 def station(pose: str = "0 0 1 0 0 0", **values: Any) -> str:
-    """A post that hangs on the world, with a head half a metre above its origin."""
+    """Return a post fixed to the world, with a head half a metre above its origin."""
     plugin = element("plugin", {"light_name": "sun", **values}, "name='solar' filename='libsolar_sensor.so'")
     return (
         f"<model name='station'><pose>{pose}</pose><link name='post'/>"
@@ -53,7 +53,7 @@ def test_the_x_axis_of_its_orientation_points_at_the_light() -> None:
     assert rpy_from_quat(quaternion(message))[0] == pytest.approx(0.0, abs=1e-9)
 
 
-def test_its_frame_is_the_named_link_and_else_the_first() -> None:
+def test_the_frame_is_the_named_link_or_else_the_canonical_one() -> None:
     for values, frame, height in (({"frame_name": "head"}, "head", 1.5), ({}, "post", 1.0)):
         with opened(**values) as sim:
             message = read(sim)[-1]
@@ -64,12 +64,12 @@ def test_its_frame_is_the_named_link_and_else_the_first() -> None:
         )
 
 
-def test_a_body_can_be_another_than_the_frame() -> None:
+def test_the_body_may_differ_from_the_frame() -> None:
     with opened(body_name="head", frame_name="compass") as sim:
         assert read(sim)[-1].header.frame_id == "compass"
 
 
-def test_it_comes_at_its_rate_and_without_one_at_every_step() -> None:
+def test_the_reading_has_the_update_rate_or_else_every_step() -> None:
     with opened(update_rate=30) as sim:
         found = stamps(read(sim, 1.0))
     assert len(found) == 30
@@ -85,19 +85,19 @@ def test_the_offset_is_added_to_the_unit_vector_in_the_links_axes() -> None:
     np.testing.assert_allclose(angles[1:], [math.asin(-z), math.atan2(y, x)], atol=1e-9)
 
 
-def test_an_offset_that_leaves_the_sphere_is_cut_off_at_the_zenith() -> None:
+def test_an_offset_beyond_the_unit_sphere_is_clamped_at_the_zenith() -> None:
     with opened(xyz_offset="0 0 5") as sim:
         assert rpy_from_quat(quaternion(read(sim)[-1]))[1] == pytest.approx(-math.pi / 2, abs=1e-6)
 
 
-def test_the_plural_names_are_taken_with_a_warning() -> None:
+def test_the_plural_names_are_read_with_a_warning() -> None:
     with opened(xyz_offsets="0.1 0.2 -0.3") as old, opened(xyz_offset="0.1 0.2 -0.3") as new:
         assert quaternion(read(old)[-1]) == quaternion(read(new)[-1])
         found = [(d.code, d.severity, d.hint) for d in old.diagnostics if "xyz_offsets" in d.message]
     assert found == [("SK-PARAM-004", "warning", "write <xyz_offset>")]
 
 
-def test_noise_has_the_named_deviation_and_its_square_on_the_covariance() -> None:
+def test_noise_has_the_given_deviation_and_its_square_on_the_covariance() -> None:
     with opened(gaussian_noise=0.01, update_rate=0) as sim:
         messages = read(sim, 2.0)
     np.testing.assert_allclose(
@@ -109,7 +109,7 @@ def test_noise_has_the_named_deviation_and_its_square_on_the_covariance() -> Non
     np.testing.assert_allclose(angles.mean(axis=0), [0, true_pitch, true_yaw], atol=1e-3)
 
 
-def test_noise_repeats_with_the_seed_and_does_not_depend_on_who_listened_before() -> None:
+def test_noise_repeats_with_the_seed_and_does_not_depend_on_subscribers() -> None:
     with opened(gaussian_noise=0.01) as early, opened(gaussian_noise=0.01) as late:
         first = read(early, 0.2)
         late.run(0.1)
@@ -119,7 +119,7 @@ def test_noise_repeats_with_the_seed_and_does_not_depend_on_who_listened_before(
         assert quaternion(read(other, 0.2)[-1]) != quaternion(first[-1])
 
 
-def test_it_follows_a_light_that_moves() -> None:
+def test_the_reading_follows_a_moving_light() -> None:
     with opened() as sim:
         sim.light("sun").set_pose(Pose((0, 100, 1)))
         angles = rpy_from_quat(quaternion(read(sim)[-1]))
@@ -147,7 +147,7 @@ def test_an_unknown_link_is_an_error() -> None:
         opened(frame_name="haed")
 
 
-def test_a_noise_whose_variance_leaves_the_numbers_is_refused() -> None:
+def test_a_noise_with_an_infinite_variance_is_refused() -> None:
     with pytest.raises(simkit.LoadError, match="SK-PARAM-002"):
         opened(gaussian_noise=1e308)
 
@@ -166,7 +166,7 @@ def newest(sim: simkit.Simulation, *names: str) -> list[Any]:
     return [s.latest.data for s in subscriptions]
 
 
-def test_without_elements_of_our_own_there_are_no_topics_of_our_own() -> None:
+def test_without_simkits_elements_there_are_no_further_topics() -> None:
     with opened() as sim:
         assert [t for t in sim.topics() if "sunloin" in t] == ["/sunloin_imu"]
 
@@ -183,7 +183,7 @@ def test_a_shadow_on_the_way_to_the_lights_position_makes_the_reading_invalid(pr
         assert read(sim)[-1].orientation_covariance[0] == pytest.approx(1e-4)
 
 
-def test_what_is_behind_the_lights_position_casts_no_shadow_unless_its_rays_are_parallel() -> None:
+def test_an_object_behind_the_light_casts_no_shadow_unless_rays_are_parallel() -> None:
     near = SUN.replace("30 40 50", "3 4 6")
     for towards, valid in (("position", True), ("direction", False)):
         down = near.replace("0 0 -1", "-30 -40 -50")
@@ -192,7 +192,7 @@ def test_what_is_behind_the_lights_position_casts_no_shadow_unless_its_rays_are_
             assert newest(sim, "valid") == [valid]
 
 
-def test_parallel_rays_give_the_same_direction_wherever_the_light_stands() -> None:
+def test_parallel_rays_give_the_same_direction_for_every_position_of_the_light() -> None:
     values = {"towards": "direction", "frame_name": "head"}
     with opened(pose="1 2 3 0.3 -0.2 0.7", **values) as sim:
         message = read(sim)[-1]
@@ -200,7 +200,7 @@ def test_parallel_rays_give_the_same_direction_wherever_the_light_stands() -> No
     np.testing.assert_allclose(quat_rotate(quaternion(message), (1, 0, 0)), up, atol=1e-12)
 
 
-def test_irradiance_and_power_come_on_topics_below_its_own() -> None:
+def test_irradiance_and_power_are_on_topics_below_the_orientation() -> None:
     panel = "<area>2</area><efficiency>0.25</efficiency>"
     with opened(irradiance=400, panel=panel) as sim:
         irradiance, power = newest(sim, "irradiance", "power")
@@ -210,7 +210,7 @@ def test_irradiance_and_power_come_on_topics_below_its_own() -> None:
     assert power == pytest.approx(400 * cosine * 2 * 0.25)
 
 
-def test_its_topics_go_with_a_remapping() -> None:
+def test_all_topics_follow_a_remapping() -> None:
     ros = "<remapping>sunloin_imu:=compass</remapping>"
     with opened(ros=ros, irradiance="light") as sim:
         assert {t for t in sim.topics() if "compass" in t} == {"/compass", "/compass/irradiance"}
@@ -228,7 +228,7 @@ def test_angular_noise_turns_the_direction_about_random_axes() -> None:
     np.testing.assert_allclose(np.cov(turns.T), told, atol=4 * sigma**2 * math.sqrt(2 / n))
 
 
-def test_it_goes_on_after_a_reset_and_a_restore_as_it_did() -> None:
+def test_reset_and_restore_repeat_the_readings() -> None:
     values = {"angular_noise": 0.01, "shadow": "true", "irradiance": 500}
     with simkit.load(world(GROUND, SUN, TOWER, station(**values))) as sim:
         sim.light("sun").set_pose(Pose((0, 100, 1)))

@@ -1,4 +1,4 @@
-"""Classic's TouchPlugin: whole numbers, named sensors, and nothing else may be touched."""
+"""Classic's TouchPlugin: integer messages, named sensors, and exclusive contact with the target."""
 
 from __future__ import annotations
 
@@ -35,25 +35,25 @@ def told(sim: Any, duration: float) -> list[tuple[int, int]]:
     return found
 
 
-def test_it_is_told_once_after_its_time_with_a_one() -> None:
+def test_a_touch_is_published_once_after_its_duration() -> None:
     with simkit.load(world()) as sim:
         assert sim.topics()["/probe/touched"] == "std_msgs/msg/Int32"
         assert told(sim, 0.5) == [(102, 1)]
 
 
-def test_it_looks_again_when_it_is_told_to() -> None:
+def test_the_detection_restarts_on_enable() -> None:
     with simkit.load(world(enabled=0)) as sim:
         assert told(sim, 0.3) == []
         sim.publish("/probe/enable", {"data": 1})
         assert [data for _, data in told(sim, 0.3)] == [1]
 
 
-def test_touching_anything_else_is_a_break() -> None:
+def test_touching_another_object_interrupts_the_touch() -> None:
     other = body("stone", "0.15 0 0.1 0 0 0", static=True)
     with simkit.load(world(other)) as sim:
         assert told(sim, 0.5) == []
 
 
-def test_a_sensor_that_is_not_there_is_an_error() -> None:
+def test_a_missing_sensor_is_an_error() -> None:
     with pytest.raises(LoadError, match="no contact sensor 'x'; it has: 's'"):
         simkit.load(world(sensor="x"))

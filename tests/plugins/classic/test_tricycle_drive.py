@@ -1,4 +1,4 @@
-"""Gazebo Classic's tricycle drive."""
+"""Tricycle drive of Gazebo Classic."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def joint(sim, name):
 
 
 def test_a_command_is_a_speed_of_the_wheel_and_an_angle_of_the_steering():
-    """It turns about the rear axle at v sin(angle) / base."""
+    """The base turns about the rear axle at v sin(angle) / base."""
     sim = simkit.load(world(tricycle(ROS_2.format(""))))
     command(sim, 0.4, 0.3)
     sim.run(1.5)
@@ -57,7 +57,7 @@ def test_odometry_is_the_truth_or_the_turns_of_the_rear_wheels():
         assert tf.messages
 
 
-def test_the_steering_keeps_to_a_speed():
+def test_the_steering_keeps_its_speed_limit():
     sim = simkit.load(world(tricycle(ROS_2.format("<max_steering_speed>0.5</max_steering_speed>"))))
     command(sim, 0.0, 0.6)
     sim.run(0.6)
@@ -82,7 +82,7 @@ def test_accelerations_limit_the_wheel():
     assert joint(sim, "front_wheel").velocity == pytest.approx(2.0, abs=0.3)
 
 
-def test_ros_1_has_its_own_spelling():
+def test_the_ros_1_spelling_is_supported():
     extra = (
         "<commandTopic>go</commandTopic><odometryTopic>where</odometryTopic><odometrySource>encoder</odometrySource>"
     )
@@ -95,7 +95,7 @@ def test_ros_1_has_its_own_spelling():
     assert list(states.messages[-1].name) == names
 
 
-def test_what_is_wrong_is_told_at_once():
+def test_all_errors_are_reported_in_one_pass():
     wrong = ROS_2.format("<steering_joint>stering</steering_joint><odometry_source>7</odometry_source>")
     with pytest.raises(simkit.LoadError) as caught:
         simkit.load(world(tricycle(wrong)))
@@ -103,7 +103,7 @@ def test_what_is_wrong_is_told_at_once():
         assert part in str(caught.value)
 
 
-def test_a_reset_brings_it_back():
+def test_a_reset_returns_to_the_start():
     sim = simkit.load(world(tricycle(ROS_2.format(""))))
     command(sim, 0.4, 0.3)
     sim.run(0.5)

@@ -1,4 +1,4 @@
-"""PAL's fingers: joints that follow one motor, each by its own factor."""
+"""PAL's fingers: joints that follow one motor, each with its own factor."""
 
 from __future__ import annotations
 
@@ -36,14 +36,14 @@ def turned(sim: simkit.Simulation, angle: float, seconds: float = 0.5) -> None:
 ROTORS = (rotor("motor"), rotor("a"), rotor("b", limit=LIMITED))
 
 
-def test_each_joint_is_where_the_motor_is_over_its_factor_and_within_its_limits() -> None:
+def test_each_joint_follows_the_motor_over_its_factor_within_its_limits() -> None:
     with load(*ROTORS, finger(virtual("j_a", -2.5), virtual("j_b", 3.0))) as sim:
         for angle, wanted in ((1.2, 0.4), (2.4, 0.5), (-0.6, 0.0), (0.3, 0.1)):
             turned(sim, angle)
             assert at(sim, "a", "b") == pytest.approx([-angle / 2.5, wanted], abs=1e-4)
 
 
-def test_the_motor_counts_anew_once_it_is_two_hundredths_away() -> None:
+def test_a_motor_position_is_used_beyond_the_deadband() -> None:
     with load(*ROTORS, finger(virtual("j_a", 2.0))) as sim:
         turned(sim, 0.019)
         assert at(sim, "a") == [0.0]
@@ -53,15 +53,15 @@ def test_the_motor_counts_anew_once_it_is_two_hundredths_away() -> None:
         assert at(sim, "a") == pytest.approx([0.0105], abs=1e-5)
 
 
-def test_a_finger_pulls_no_harder_than_its_effort_limit() -> None:
-    """A wanted angle far away: at its limit, effort/inertia; the servo's rotor adds to the inertia."""
+def test_a_finger_keeps_its_effort_limit() -> None:
+    """Far from the target the acceleration is effort/inertia; the servo's armature adds to the inertia."""
     weak = rotor("a", limit="<limit><effort>0.01</effort></limit>")
     with load(rotor("motor"), weak, finger(virtual("j_a", 0.5))) as sim:
         turned(sim, 1.0, 1.0)
         assert at(sim, "a")[0] == pytest.approx(0.5 * 0.01 / INERTIA, rel=0.03)
 
 
-def test_a_proportional_loop_swings_as_a_spring_does() -> None:
+def test_a_proportional_gain_acts_like_a_spring() -> None:
     """θ = target · (1 − cos √(p/I) t)."""
     gains = {"p": 5.0, "i": 0.0, "d": 0.0, "i_max": 1.0, "i_min": -1.0}
     with load(*ROTORS, finger(virtual("j_a", 2.0, gains))) as sim:
@@ -72,15 +72,15 @@ def test_a_proportional_loop_swings_as_a_spring_does() -> None:
 
 
 @pytest.mark.parametrize("step", [0.001, 0.002])
-def test_the_integral_pushes_no_more_than_its_bound_whatever_the_step(step: float) -> None:
-    """i · e · t up to i_max, then that: θ = ½ (i_max/I) (t − t₁)² and what the ramp to t₁ made."""
+def test_the_integral_keeps_its_bound_for_every_step_length(step: float) -> None:
+    """The effort is i · e · t up to i_max, so θ = ½ (i_max/I) (t − t₁)² plus the angle of the ramp to t₁."""
     gains = {"p": 0.0, "i": 10.0, "d": 0.0, "i_max": 0.02, "i_min": -0.02}
     with load(*ROTORS, finger(virtual("j_a", 0.01, gains)), step=step) as sim:  # 100 rad away: e hardly changes
         turned(sim, 1.0, 1.0)
         assert at(sim, "a")[0] == pytest.approx(0.5 * 0.02 / INERTIA, rel=0.01)
 
 
-def test_a_derivative_brakes_it() -> None:
+def test_a_derivative_gain_damps_the_joint() -> None:
     """θ = ω I/d (1 − exp(−t d/I))."""
     gains = {"p": 0.0, "i": 0.0, "d": 2.0, "i_max": 1.0, "i_min": -1.0}
     with load(*ROTORS, finger(virtual("j_a", 2.0, gains))) as sim:
@@ -91,7 +91,7 @@ def test_a_derivative_brakes_it() -> None:
             assert at(sim, "a")[0] == pytest.approx(1.5 * ratio * (1.0 - math.exp(-sim.time / ratio)), rel=0.01)
 
 
-def test_a_loop_that_lacks_a_gain_is_a_servo_and_told() -> None:
+def test_an_incomplete_set_of_gains_is_reported_and_a_servo_is_used() -> None:
     with load(*ROTORS, finger(virtual("j_a", 2.0, {"p": 1.0, "i": 0.0, "d": 0.0}))) as sim:
         (message,) = (d.message for d in sim.diagnostics if d.code == "SK-PLUGIN-047")
         assert "<i_max>, <i_min>" in message
@@ -99,7 +99,7 @@ def test_a_loop_that_lacks_a_gain_is_a_servo_and_told() -> None:
         assert at(sim, "a") == pytest.approx([0.2], abs=1e-4)
 
 
-def test_everything_that_is_wrong_is_told_at_once() -> None:
+def test_all_errors_are_reported_in_one_pass() -> None:
     with pytest.raises(LoadError) as raised:
         load(*ROTORS, finger(virtual("j_c", 0), virtual("j_a", "much"), "<virtualJoint/>", motor="j_moter"))
     messages = " ".join(d.message for d in raised.value.diagnostics if d.severity == "error")
@@ -109,7 +109,7 @@ def test_everything_that_is_wrong_is_told_at_once() -> None:
         load(*ROTORS, finger())
 
 
-def test_a_snapshot_and_a_spawn_leave_it_as_it_is() -> None:
+def test_a_snapshot_and_a_spawn_do_not_change_the_motion() -> None:
     loop = {"p": 5.0, "i": 2.0, "d": 0.1, "i_max": 1.0, "i_min": -1.0}
     with load(*ROTORS, finger(virtual("j_a", 2.0), virtual("j_b", 3.0, loop))) as sim:
         turned(sim, 0.8, 0.1)

@@ -1,4 +1,4 @@
-"""The vacuum gripper: what it takes hold of, carries and lets go."""
+"""Vacuum gripper: grasping, carrying and releasing."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def load(*parts: str) -> simkit.Simulation:
     return simkit.load(world(GROUND, *(parts or (crane(), box())), step=0.002))
 
 
-def test_it_lifts_what_is_near_holds_it_and_lets_it_fall() -> None:
+def test_a_near_link_is_lifted_held_and_dropped() -> None:
     sim = load()
     told = sim.subscribe("/arm/grasping")
     reach_down(sim)
@@ -70,7 +70,7 @@ def test_it_lifts_what_is_near_holds_it_and_lets_it_fall() -> None:
     assert changes == [True, False]
 
 
-def test_its_weight_is_on_the_arm() -> None:
+def test_the_arm_carries_the_weight_of_the_load() -> None:
     spring = """<axis><xyz>0 0 1</xyz><dynamics><damping>60</damping><spring_stiffness>1000</spring_stiffness>
       </dynamics></axis>"""
     sim = load(crane(driven=False).replace("<axis><xyz>0 0 1</xyz></axis>", spring))
@@ -81,7 +81,7 @@ def test_its_weight_is_on_the_arm() -> None:
     assert sim.joint("crane::slide").position == pytest.approx(-(2 + 3) * 9.8 / 1000, rel=2e-3)
 
 
-def test_what_comes_near_while_it_is_on_is_taken_and_what_is_far_is_not() -> None:
+def test_a_link_that_comes_near_is_grasped_and_a_far_one_is_not() -> None:
     sim = load(crane(), box(), box("far", x=0.15))
     sim.call(SWITCH, {"data": True})
     reach_down(sim)
@@ -90,7 +90,7 @@ def test_what_comes_near_while_it_is_on_is_taken_and_what_is_far_is_not() -> Non
     assert sim.model("far").pose.position[2] == pytest.approx(0.05, abs=1e-3)
 
 
-def test_the_robot_itself_what_cannot_move_and_what_is_exempt_is_not_held() -> None:
+def test_the_robot_itself_static_and_exempt_models_are_not_held() -> None:
     exempt = "<ros><namespace>arm</namespace></ros><link_name>cup</link_name><max_distance>5</max_distance>"
     still = box("post", x=0.4, more="<static>true</static>")
     sim = load(crane(f"{exempt}<fixed>box</fixed>"), box(), still)
@@ -103,7 +103,7 @@ def test_the_robot_itself_what_cannot_move_and_what_is_exempt_is_not_held() -> N
     assert not any(m.data for m in told.messages)
 
 
-def test_switched_twice_the_same_way_it_says_so() -> None:
+def test_switching_twice_in_the_same_way_is_reported() -> None:
     sim = load()
     assert not sim.call(SWITCH, {"data": False}).success
     assert sim.call(SWITCH, {"data": True}).success
@@ -111,7 +111,7 @@ def test_switched_twice_the_same_way_it_says_so() -> None:
     assert (answer.success, answer.message) == (False, "it is on already")
 
 
-def test_in_ros_1_it_has_two_services_and_a_topic() -> None:
+def test_in_ros_1_the_gripper_has_two_services_and_a_topic() -> None:
     inside = """<robotNamespace>arm</robotNamespace><bodyName>cup</bodyName><topicName>grip</topicName>
       <maxDistance>0.12</maxDistance><maxForce>20</maxForce>"""
     sim = load(crane(inside), box())
@@ -127,7 +127,7 @@ def test_in_ros_1_it_has_two_services_and_a_topic() -> None:
     assert sim.model("box").pose.position[2] < 0.5
 
 
-def test_removed_spawned_reset_and_restored() -> None:
+def test_remove_spawn_reset_and_restore_keep_the_grasp_consistent() -> None:
     sim = load()
     reach_down(sim)
     sim.call(SWITCH, {"data": True})
@@ -152,7 +152,7 @@ def test_removed_spawned_reset_and_restored() -> None:
     assert sim.model("box").pose.position[2] == pytest.approx(0.05, abs=1e-3)
 
 
-def test_a_link_that_is_not_there_is_an_error_with_its_neighbours() -> None:
+def test_a_missing_link_is_an_error_that_lists_the_links() -> None:
     with pytest.raises(simkit.InputError, match="did you mean 'cup'"):
         load(crane("<link_name>cap</link_name>"))
     with pytest.raises(simkit.InputError, match="link_name"):

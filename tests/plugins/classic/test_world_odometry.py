@@ -1,4 +1,4 @@
-"""PAL's true pose of a link, in the world."""
+"""PAL's ground truth pose of a link in the world."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def opened(seed: int = 0, **values: Any) -> simkit.Simulation:
     return sim
 
 
-def test_the_pose_is_that_in_the_world_under_the_frame_that_is_named() -> None:
+def test_the_pose_is_in_the_world_with_the_named_frame_id() -> None:
     with opened(frameName="base", topicName="floating_base_pose_simulated") as sim:
         odometry = sim.subscribe("/floating_base_pose_simulated")
         sim.run(0.1)
@@ -48,7 +48,7 @@ def test_linear_velocity_is_in_the_worlds_axes_and_angular_in_the_links() -> Non
         np.testing.assert_allclose(xyz(told.twist.twist.angular), (0, 0, 0.6), atol=1e-3)
 
 
-def test_offsets_may_be_set_while_it_runs() -> None:
+def test_offsets_may_change_during_a_run() -> None:
     with opened(bodyName="base", topicName="truth") as sim:
         odometry = sim.subscribe("/truth")
         (node,) = sim.communication.parameters
@@ -60,7 +60,7 @@ def test_offsets_may_be_set_while_it_runs() -> None:
     assert yaw(told.orientation) == pytest.approx(pose.rpy[2] + 0.25)
 
 
-def test_noise_walks_and_is_the_seeds() -> None:
+def test_noise_is_a_random_walk_fixed_by_the_seed() -> None:
     def ways(seed: int, listens: bool) -> np.ndarray[Any, Any]:
         with opened(seed, bodyName="base", topicName="truth", gaussian_noise=0.01) as sim:
             early = sim.subscribe("/truth") if listens else None
@@ -75,7 +75,7 @@ def test_noise_walks_and_is_the_seeds() -> None:
     assert not np.array_equal(first, ways(2, True))
 
 
-def test_a_link_that_is_not_there_is_an_error_that_names_the_closest() -> None:
+def test_a_missing_link_is_an_error_with_the_closest_name() -> None:
     with pytest.raises(simkit.LoadError, match=r"SK-PLUGIN-003.*'arn'") as caught:
         opened(bodyName="arn", topicName="truth")
     assert "arm" in str(caught.value)
@@ -83,7 +83,7 @@ def test_a_link_that_is_not_there_is_an_error_that_names_the_closest() -> None:
         opened(topicName="truth")
 
 
-def test_a_walk_that_was_set_goes_on_after_a_restore() -> None:
+def test_the_random_walk_continues_after_a_restore() -> None:
     with opened(1, bodyName="base", topicName="truth") as sim:
         (node,) = sim.communication.parameters
         sim.set_parameter(node, "gaussian_noise", 0.01)
@@ -103,7 +103,7 @@ def test_a_walk_that_was_set_goes_on_after_a_restore() -> None:
         np.testing.assert_array_equal(xyz(odometry.latest.pose.pose.position), first)
 
 
-def test_nothing_is_due_while_nobody_hears_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_callback_runs_without_subscribers(monkeypatch: pytest.MonkeyPatch) -> None:
     calls: list[int] = []
     monkeypatch.setattr(GazeboWorldOdometry, "tell", lambda self: calls.append(self.sim.tick))
     with opened(bodyName="base", topicName="truth") as sim:
