@@ -112,7 +112,7 @@ def test_parameters_have_the_types_that_the_world_shows(folder: Path) -> None:
         'self.axis: tuple[float, ...] = params.vector("axis", 3, (0.0, 0.0, 1.0))',
         'self.enabled: bool = params.boolean("enabled", False)',  # 0 here, true there
         'self.name_value: str = params.text("name", "big")',  # a plugin has a name already
-        'self.stop: list[str] = [one.text("stop", "red") for one in params.each("stop")]',
+        'self.stop: list[str] = [item.text("stop", "red") for item in params.each("stop")]',
         '"@type": params.block("noise").attribute("type", "gaussian"),',
         '"bias": params.block("noise").boolean("bias", False),',
     ):
@@ -121,7 +121,7 @@ def test_parameters_have_the_types_that_the_world_shows(folder: Path) -> None:
     assert "Named in world.sdf, line " in text
     assert "class Weather(WorldPlugin):" in (folder / "weather.py").read_text()
     assert 'names = ("acme::Weather",)' in (folder / "weather.py").read_text()
-    gusts = 'self.gusts: list[float] = [one.number("gusts", 0.5) for one in params.each("gusts")]'
+    gusts = 'self.gusts: list[float] = [item.number("gusts", 0.5) for item in params.each("gusts")]'
     assert gusts in (folder / "weather.py").read_text()
 
 

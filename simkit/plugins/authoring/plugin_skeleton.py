@@ -139,10 +139,10 @@ def _read(element: Element, owner: str) -> str:
     name = quote_text(element.name)
     if element.kind == "block":
         if element.repeated:
-            return f"[{_as_dict(element, 'one')} for one in {owner}.all({name})]"
+            return f"[{_as_dict(element, 'item')} for item in {owner}.all({name})]"
         return _as_dict(element, f"{owner}.block({name})")
     if element.repeated:
-        return f"[{_read_one(element, 'one')} for one in {owner}.each({name})]"
+        return f"[{_read_one(element, 'item')} for item in {owner}.each({name})]"
     return _read_one(element, owner)
 
 

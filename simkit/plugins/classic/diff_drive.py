@@ -1,10 +1,9 @@
 """Differential drive of Gazebo Classic: `libgazebo_ros_diff_drive.so`, with its ROS 2 and its ROS 1 spelling.
 
-ROS 1's skid steering with four wheels is `libgazebo_ros_skid_steer_drive.so`.
-
-Each wheel is a velocity servo limited to the wheel torque. Deliberate differences to Gazebo Classic: the acceleration
-ramp follows the commanded rim speed (Classic adds the speed error, which winds up while a wheel is blocked), and an
-encoder twist is negative when the robot drives backwards.
+ROS 1's skid steering with four wheels is `libgazebo_ros_skid_steer_drive.so`. Each wheel is a velocity servo limited to
+the wheel torque. Two differences to Gazebo Classic are deliberate. The acceleration ramp follows the commanded rim
+speed; Classic adds the speed error, which winds up while a wheel is blocked. An encoder twist is negative when the
+robot drives backwards.
 """
 
 from __future__ import annotations

@@ -45,9 +45,9 @@ class GazeboRosFtSensor(ModelPlugin):
     """Publishes on `wrench` (after `<remapping>`) the wrench in a joint, or the sum of all wrenches on a link.
 
     With `<joint_name>`: the wrench of the child link on the joint, about the joint's origin, in the child link's axes
-    and frame. With `<body_name>`: the sum of all wrenches on the link, including gravity (mass times acceleration of
-    its centre of mass, and the change of its angular momentum), in the world's axes and in the frame `<frame_name>`.
-    `<gaussian_noise>` is the standard deviation on each of the six numbers [N, N·m].
+    and frame. With `<body_name>`: the sum of all wrenches on the link, in the world's axes and in the frame
+    `<frame_name>`. The sum includes gravity: mass times acceleration of the centre of mass, and the change of angular
+    momentum. `<gaussian_noise>` is the standard deviation on each of the six numbers [N, N·m].
 
     Attributes:
         reads_contacts: keeps resting bodies awake, because a sleeping body would have no weight.

@@ -36,9 +36,9 @@ class GazeboRosJointPoseTrajectoryOptions(Options):
 class GazeboRosJointPoseTrajectory(ModelPlugin):
     """Sets joints to the positions of a `JointTrajectory`, one point after another; between points the joints are free.
 
-    Times are as in Gazebo: the first point is set at once (or at the time of the header, if that is later), and after
-    each point its `time_from_start` passes before the next. `<simkit:point_times>` from_start sets each point at its
-    own time instead. Points are set at `<update_rate>` (ROS 2, 100 Hz; 0: every step), one at a time.
+    Times are as in Gazebo. The first point is set at once, or at the time of the header if that is later. After each
+    point its `time_from_start` passes before the next. `<simkit:point_times>` from_start sets each point at its own
+    time instead. Points are set at `<update_rate>` (ROS 2, 100 Hz; 0: every step), one at a time.
 
     The header's `frame_id` is `world`, `map`, or a link whose pose is kept, of this model or another; the joints are
     then those of that link's model. ROS 2: on `set_joint_trajectory`. ROS 1: `<topicName>`, at every step. Gazebo on

@@ -40,7 +40,7 @@ class TimedWrench:
 def link_wrench(
     sim: Simulation, link_name: str, request: msgs.ApplyLinkWrench_Request | msgs.ApplyBodyWrench_Request
 ) -> TimedWrench | None:
-    """Return the wrench that a request asks for; None for a duration of zero.
+    """Return the wrench of a request; None for a duration of zero.
 
     In the world's frame the reference point is a lever from the link's centre of mass, as in Classic. In the frame of
     an entity it is a point of that frame, by default the frame's origin.
@@ -64,7 +64,7 @@ def link_wrench(
 
 
 def joint_effort(sim: Simulation, request: msgs.ApplyJointEffort_Request) -> TimedWrench | None:
-    """Return the effort that a request asks for; None for a duration of zero.
+    """Return the effort of a request; None for a duration of zero.
 
     Raises:
         RequestRefused: the joint does not exist or has not one degree of freedom, or the effort is NaN or infinite.

@@ -106,7 +106,7 @@ class WorldServices(WorldPlugin):
         time_ns = msgs.stamp_ns(control.run_to_sim_time)
         starts_over = bool(reset.all or reset.time_only)
         if time_ns and time_ns <= (0 if starts_over else sim.time_ns):
-            raise RequestRefused(f"run_to_sim_time {time_ns / 1e9:g} s lies in the past, it is {sim.time:g} s")
+            raise RequestRefused(f"run_to_sim_time {time_ns / 1e9:g} s is in the past; the time is {sim.time:g} s")
         if starts_over:
             sim.reset(seed or None)
         elif seed:
@@ -162,7 +162,7 @@ class WorldServices(WorldPlugin):
     def _spawn_arguments(
         self, factory: msgs.EntityFactory, waiting: Container[str] = ()
     ) -> tuple[str, str | None, Pose | None]:
-        """The source, name and pose of a model to be spawned, as `sim.spawn` takes them."""
+        """Return source, name and pose of a new model, as arguments of `sim.spawn`."""
         pose = self._requested_pose(factory)
         source, name = factory.sdf or factory.sdf_filename, factory.name or None
         if factory.allow_renaming:

@@ -69,7 +69,7 @@ def test_a_good_file_is_told_nothing_of(tmp_path: Path) -> None:
 
 
 def test_a_joint_that_is_named_twice_stops_the_load(tmp_path: Path) -> None:
-    with pytest.raises(simkit.LoadError, match=r"arm.yaml:11: error SK-PARAM-002: 'j1' comes twice in 'joints'"):
+    with pytest.raises(simkit.LoadError, match=r"arm.yaml:11: error SK-PARAM-002: 'j1' occurs twice in 'joints'"):
         opened(tmp_path, yaml=POSITIONS.replace("[j1, j2]", "[j1, j1]"))
 
 

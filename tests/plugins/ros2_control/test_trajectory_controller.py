@@ -300,7 +300,7 @@ def test_an_unknown_joint_among_the_tolerances_leaves_them_as_they_are() -> None
     ("values", "message"),
     [
         ({"joints": []}, "'joints' parameter is empty."),
-        ({"joints": ["a", "a"]}, "'a' comes twice in 'joints'"),
+        ({"joints": ["a", "a"]}, "'a' occurs twice in 'joints'"),
         ({"command_interfaces": []}, "'command_interfaces' parameter is empty."),
         ({"command_interfaces": ["velocity", "effort"]}, "'command_interfaces' are velocity, effort"),
         ({"state_interfaces": ["velocity"]}, "'state_interfaces' are velocity"),

@@ -49,7 +49,7 @@ def test_a_time_in_the_past_is_refused_and_nothing_changes(caplog: pytest.LogCap
         sim.run(0.5)
         assert not control(sim, run_to_sim_time={"nanosec": 100_000_000})
         assert (sim.time, sim.paused) == (0.5, False)
-        assert "run_to_sim_time 0.1 s lies in the past, it is 0.5 s" in caplog.text
+        assert "run_to_sim_time 0.1 s is in the past; the time is 0.5 s" in caplog.text
 
 
 def test_in_a_served_world_the_server_does_the_steps() -> None:
