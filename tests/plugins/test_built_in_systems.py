@@ -107,15 +107,15 @@ def notes(source: str) -> list[str]:
 
 def test_an_unneeded_system_is_a_note_and_changes_nothing() -> None:
     parts = list(SYSTEMS)[:7]
-    told = notes(world(*(plugin(part) for part in parts), GROUND, rover()))
-    assert [m.split("'")[1] for m in told] == [SYSTEMS[part] for part in parts]
-    assert all("is not needed" in m and "not used" not in m for m in told)
+    messages = notes(world(*(plugin(part) for part in parts), GROUND, rover()))
+    assert [m.split("'")[1] for m in messages] == [SYSTEMS[part] for part in parts]
+    assert all("is not needed" in m and "not used" not in m for m in messages)
 
 
 def test_the_note_lists_unused_parameters() -> None:
     engine = "<engine><filename>gz-physics-bullet-plugin</filename></engine><contacts/>"
-    (told,) = notes(world(plugin("physics", engine), GROUND))
-    assert told.endswith("; not used: <contacts>, <engine>")
+    (messages,) = notes(world(plugin("physics", engine), GROUND))
+    assert messages.endswith("; not used: <contacts>, <engine>")
 
 
 @pytest.mark.parametrize(
@@ -131,8 +131,8 @@ def test_the_empty_plugins_of_classics_sensors_are_not_needed(library: str, kind
     body = "<collision name='c'><geometry><sphere><radius>1</radius></sphere></geometry></collision>"
     sensor = f"<sensor name='s' type='{kind}'>{inner}<plugin name='p' filename='lib{library}.so'/></sensor>"
     source = world(f"<model name='m'><static>true</static><link name='l'>{body}{sensor}</link></model>")
-    (told,) = notes(source)
-    assert f"'lib{library}.so' is not needed" in told
+    (messages,) = notes(source)
+    assert f"'lib{library}.so' is not needed" in messages
     with simkit.load(source) as sim:
         assert sim.sensor("m::l::s").topic in sim.topics()
 

@@ -133,9 +133,9 @@ def test_plugins_from_python_run_after_the_file_and_spawned_ones_last(tmp_path: 
     with simkit.load(text, plugin_paths=[tmp_path], plugins=[Made("x"), Made("y")]) as sim:
         for name in ("z", "a"):
             sim.spawn(f"<sdf version='1.9'><model name='{name}'>{link('l')}{plugin(name)}</model></sdf>")
-        told = [p.name for p in sim.engine.structure.all_plugins() if type(p).__name__ in ("Tell", "Made")]
+        loaded_names = [p.name for p in sim.engine.structure.all_plugins() if type(p).__name__ in ("Tell", "Made")]
         sim.step()
-    assert told == ["m", "Made", "Made", "z", "a"]
+    assert loaded_names == ["m", "Made", "Made", "z", "a"]
     assert calls == ["x", "y"]
 
 
@@ -143,17 +143,19 @@ def test_reset_and_restore_keep_the_order(tmp_path: Path) -> None:
     (tmp_path / "tell.py").write_text(LOG)
     with simkit.load(WORLD, plugin_paths=[tmp_path]) as sim:
 
-        def told() -> list[str]:
+        def loaded_names() -> list[str]:
             return [p.name for p in sim.engine.structure.all_plugins() if type(p).__name__ == "Tell"]
 
         snapshot = sim.snapshot()
         sim.remove("a")
-        assert told() == [n for n in WRITTEN if n in ("world first", "world middle", "sensor r", "b", "world last")]
+        assert loaded_names() == [
+            n for n in WRITTEN if n in ("world first", "world middle", "sensor r", "b", "world last")
+        ]
         sim.restore(snapshot)
-        assert told() == WRITTEN
+        assert loaded_names() == WRITTEN
         sim.remove("b")
         sim.reset()
-        assert told() == WRITTEN
+        assert loaded_names() == WRITTEN
 
 
 def test_the_plugins_of_a_urdf_run_in_document_order(tmp_path: Path) -> None:

@@ -306,36 +306,36 @@ def closed(sim: Simulation) -> list[str]:
 def test_a_plugin_of_a_removed_model_is_closed_and_freed_once_no_snapshot_has_it(closer: Path) -> None:
     with simkit.load(world(GROUND), plugin_paths=[closer]) as sim:
         sim.spawn(with_closer("a"))
-        told = closed(sim)
-        kept = len(sim.contents.spawner.loaded_plugins)
+        closed_names = closed(sim)
+        loaded_count = len(sim.contents.spawner.loaded_plugins)
         plugin = weakref.ref(sim.contents.plugins["a::a"])
         snapshot = sim.snapshot()
         sim.remove("a")
-        assert told == []  # the snapshot has it
+        assert closed_names == []  # the snapshot has it
         sim.restore(snapshot)
         assert "/serve" in sim.communication.services.names()
         sim.remove("a")
         del snapshot
         sim.spawn(with_closer("b"))
         sim.remove("b")
-        assert told == ["a", "b"]
-        assert len(sim.contents.spawner.loaded_plugins) == kept - 1
+        assert closed_names == ["a", "b"]
+        assert len(sim.contents.spawner.loaded_plugins) == loaded_count - 1
         gc.collect()
         assert plugin() is None
         assert "/serve" not in sim.communication.services.names() and not sim.communication.parameters
-    assert told == ["a", "b"]
+    assert closed_names == ["a", "b"]
 
 
 def test_a_plugin_of_the_file_is_closed_once_at_the_end(closer: Path) -> None:
     sim = simkit.load(world(with_closer("m")[len("<sdf version='1.9'>") : -len("</sdf>")]), plugin_paths=[closer])
-    told = closed(sim)
+    closed_names = closed(sim)
     sim.remove("m")
     sim.step()
-    assert told == []
+    assert closed_names == []
     sim.reset()
     sim.close()
     sim.close()
-    assert told == ["m"]
+    assert closed_names == ["m"]
 
 
 def test_a_thousand_spawned_and_removed_models_leave_no_memory_behind(closer: Path) -> None:

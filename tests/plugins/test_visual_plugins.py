@@ -34,7 +34,7 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def thing(plugin: str, on_model: str = "", name: str = "m") -> str:
+def model_with_visual(plugin: str, on_model: str = "", name: str = "m") -> str:
     return (
         f'<model name="{name}"><pose>1 2 3 0 0 1.5707963267948966</pose><static>true</static><link name="l">'
         f'<pose>0 0 1 0 0 0</pose><visual name="v"><pose>1 0 0 0 0 0</pose>{SHAPE}{plugin}</visual>'
@@ -51,7 +51,7 @@ def plugin_of(sim: simkit.Simulation) -> object:
 
 
 def test_a_visual_plugin_gets_the_scene_in_prepare_and_a_handle_in_load(folder: Path) -> None:
-    with simkit.load(world(thing(PLUGIN)), plugin_paths=[folder]) as sim:
+    with simkit.load(world(model_with_visual(PLUGIN)), plugin_paths=[folder]) as sim:
         plugin = plugin_of(sim)
         assert plugin.told == ["m::l::v", "m::l::v", "m::l", 1, "blue"]  # type: ignore[attr-defined]
         assert plugin.scoped == "m::l::v"  # type: ignore[attr-defined]
@@ -59,7 +59,7 @@ def test_a_visual_plugin_gets_the_scene_in_prepare_and_a_handle_in_load(folder: 
 
 
 def test_the_pose_of_a_visual_follows_its_moved_model(folder: Path) -> None:
-    with simkit.load(world(thing(PLUGIN)), plugin_paths=[folder]) as sim:
+    with simkit.load(world(model_with_visual(PLUGIN)), plugin_paths=[folder]) as sim:
         visual = sim.visual("m::l::v")
         np.testing.assert_allclose(visual.pose.position, (1, 3, 4), atol=1e-12)
         sim.model("m").set_pose(simkit.Pose((5, 0, 0)))
@@ -71,36 +71,38 @@ def test_the_pose_of_a_visual_follows_its_moved_model(folder: Path) -> None:
 
 
 def test_an_unknown_visual_is_a_key_error_with_the_closest_name() -> None:
-    with simkit.load(world(thing(""))) as sim, pytest.raises(KeyError, match="did you mean 'm::l::v'"):
+    with simkit.load(world(model_with_visual(""))) as sim, pytest.raises(KeyError, match="did you mean 'm::l::v'"):
         sim.visual("m::l::vv")
 
 
 def test_a_spawned_model_brings_its_visual_plugin(folder: Path) -> None:
     with simkit.load(world(), plugin_paths=[folder]) as sim:
-        sim.spawn(f'<sdf version="1.9">{thing(PLUGIN, name="late")}</sdf>')
+        sim.spawn(f'<sdf version="1.9">{model_with_visual(PLUGIN, name="late")}</sdf>')
         assert plugin_of(sim).told[0] == "late::l::v"  # type: ignore[attr-defined]
 
 
 def test_a_visual_plugin_on_another_entity_is_ignored_with_a_warning(folder: Path) -> None:
-    found = simkit.check(world(thing("", on_model=PLUGIN)), plugin_paths=[folder])
+    found = simkit.check(world(model_with_visual("", on_model=PLUGIN)), plugin_paths=[folder])
     (warning,) = [d for d in found if d.code == "SK-PLUGIN-007"]
     assert "belongs on a visual, but is on a model" in warning.message
 
 
 def test_unread_elements_of_a_visual_plugin_are_reported(folder: Path) -> None:
-    text = thing(PLUGIN.replace("colour>", "color>"))
+    text = model_with_visual(PLUGIN.replace("colour>", "color>"))
     found = [d for d in simkit.check(world(text), plugin_paths=[folder]) if d.code == "SK-PARAM-003"]
     assert len(found) == 1
     assert "colour" in found[0].hint
 
 
 def test_set_changes_the_parameters_of_a_visual_plugin(folder: Path) -> None:
-    with simkit.load(world(thing(PLUGIN)), plugin_paths=[folder], overrides=["m::l::v::p.colour=green"]) as sim:
+    with simkit.load(
+        world(model_with_visual(PLUGIN)), plugin_paths=[folder], overrides=["m::l::v::p.colour=green"]
+    ) as sim:
         assert plugin_of(sim).told[-1] == "green"  # type: ignore[attr-defined]
 
 
 def test_a_converted_file_keeps_the_visual_plugin(folder: Path, tmp_path: Path) -> None:
-    (tmp_path / "in.sdf").write_text(world(thing(PLUGIN)))
+    (tmp_path / "in.sdf").write_text(world(model_with_visual(PLUGIN)))
     done = CliRunner().invoke(app, ["convert", str(tmp_path / "in.sdf"), "-o", str(tmp_path / "out.sdf")])
     assert done.exit_code == 0, done.output
     with simkit.load(tmp_path / "out.sdf", plugin_paths=[folder]) as sim:

@@ -105,9 +105,9 @@ def test_a_reading_shows_the_actor_of_its_own_time() -> None:
 def test_reset_and_restore_bring_actors_back() -> None:
     with simkit.load(world(ANNA)) as sim:
         sim.run(1.0)
-        kept, there = sim.snapshot(), sim.model("anna").pose
+        snapshot, there = sim.snapshot(), sim.model("anna").pose
         sim.run(0.7)
-        sim.restore(kept)
+        sim.restore(snapshot)
         assert sim.model("anna").pose == there
         sim.run(1.0)
         np.testing.assert_allclose(sim.model("anna").pose.position, (0, 0, 0), atol=1e-9)
@@ -241,8 +241,8 @@ def test_a_bone_without_matrices_is_reported_once(tmp_path: Path) -> None:
 
 
 def test_an_actor_with_the_name_of_a_model_is_ignored() -> None:
-    taken = '<model name="anna"><static>true</static><link name="l"/></model>'
-    with simkit.load(world(taken, ANNA)) as sim:
+    model = '<model name="anna"><static>true</static><link name="l"/></model>'
+    with simkit.load(world(model, ANNA)) as sim:
         assert codes(sim) == ["SK-ACTOR-002"]
         sim.run(0.1)
 

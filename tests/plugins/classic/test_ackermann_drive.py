@@ -50,8 +50,8 @@ def test_a_steering_angle_gives_a_circle():
     assert sim.link("car::base").angular_velocity[2] == pytest.approx(0.5 / radius, rel=0.1)
     assert angle.messages[-1].data == pytest.approx(sum(found) / 2, abs=1e-3)
     assert 1.4 < distance.messages[-1].data < 2.1
-    told, at = odometry.messages[-1].pose.pose.position, sim.model("car").pose.position
-    assert (told.x, told.y, told.z) == pytest.approx(tuple(at), abs=1e-6)
+    published, at = odometry.messages[-1].pose.pose.position, sim.model("car").pose.position
+    assert (published.x, published.y, published.z) == pytest.approx(tuple(at), abs=1e-6)
 
 
 def test_the_angle_is_reversed_when_driving_backwards_and_both_are_limited():

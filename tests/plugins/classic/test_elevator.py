@@ -67,8 +67,8 @@ def test_ros_names_and_bounds_apply_and_invalid_floors_are_reported() -> None:
         sim.publish("/hotel/elevator", {"data": text})
     sim.run(2.0)
     assert abs(sim.joint("lift_1::lift").position) < 0.06
-    said = [d.message for d in sim.diagnostics if d.code == "SK-PLUGIN-041"]
-    assert [any(word in m for m in said) for word in ("attic", "highest is 3", "lowest is -1")] == [True] * 3
+    messages = [d.message for d in sim.diagnostics if d.code == "SK-PLUGIN-041"]
+    assert [any(word in m for m in messages) for word in ("attic", "highest is 3", "lowest is -1")] == [True] * 3
     sim.publish("/hotel/elevator", {"data": "3"})
     sim.run(6.0)
     assert sim.joint("lift_1::lift").position == pytest.approx(3.0, abs=0.06)
@@ -87,13 +87,13 @@ def test_reset_returns_to_the_ground_floor_and_restore_continues() -> None:
     sim = load("<floor_height>3</floor_height><door_wait_time>1</door_wait_time>")
     sim.publish(TOPIC, {"data": "1"})
     sim.run(2.0)
-    kept = sim.snapshot()
+    snapshot = sim.snapshot()
     sim.run(3.0)
     door, lift = sim.joint("lift_1::door").position, sim.joint("lift_1::lift").position
     sim.reset()
     sim.run(3.0)
     assert abs(sim.joint("lift_1::lift").position) < 0.06
-    sim.restore(kept)
+    sim.restore(snapshot)
     sim.run(3.0)
     assert (sim.joint("lift_1::door").position, sim.joint("lift_1::lift").position) == (door, lift)
 

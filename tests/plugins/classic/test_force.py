@@ -43,10 +43,10 @@ def test_in_the_links_frame_the_force_rotates_with_the_link() -> None:
     sim.publish("/gazebo_ros_force", {"force": {"x": 3.0}})
     sim.run(0.5)  # its x is the world's y
     np.testing.assert_allclose(link.linear_velocity, [0.0, 0.75, 0.0], atol=1e-9)
-    kept = sim.snapshot()
+    snapshot = sim.snapshot()
     sim.run(0.5)
     end = link.linear_velocity
-    sim.restore(kept)
+    sim.restore(snapshot)
     sim.run(0.5)
     assert np.array_equal(link.linear_velocity, end)
     sim.reset()
@@ -66,10 +66,10 @@ def test_a_restore_brings_back_the_force() -> None:
     sim = load(BODY, push(LINK))
     sim.publish("/gazebo_ros_force", {"force": {"x": 2.0}})
     sim.run(0.1)
-    kept = sim.snapshot()
+    snapshot = sim.snapshot()
     sim.publish("/gazebo_ros_force", {"force": {"x": -50.0}})
     sim.run(0.1)
-    sim.restore(kept)
+    sim.restore(snapshot)
     sim.run(0.1)
     assert sim.link("m::body").linear_velocity[0] == pytest.approx(0.2, rel=1e-9)
 
@@ -97,11 +97,11 @@ def test_a_reset_ends_two_forces_and_a_restore_brings_both_back() -> None:
     for topic in ("/gazebo_ros_force", "/a/gazebo_ros_force"):
         sim.publish(topic, {"force": {"x": 2.0}})
     sim.run(0.1)
-    kept = sim.snapshot()
+    snapshot = sim.snapshot()
     sim.reset()
     sim.run(0.1)
     assert [sim.link(f"m::{n}").linear_velocity[0] for n in ("body", "other")] == [0.0, 0.0]
-    sim.restore(kept)
+    sim.restore(snapshot)
     sim.run(0.1)
     speeds = [sim.link(f"m::{n}").linear_velocity[0] for n in ("body", "other")]
     assert speeds == pytest.approx([0.2, 0.2], rel=1e-9)
@@ -112,11 +112,11 @@ def test_a_new_model_with_the_name_of_a_pushed_one_is_not_pushed() -> None:
     text = f'<sdf version="1.9"><model name="m">{BODY}{push(LINK)}</model></sdf>'
     sim.publish("/gazebo_ros_force", {"force": {"x": 2.0}})
     sim.run(0.1)
-    kept = sim.snapshot()
+    snapshot = sim.snapshot()
     sim.remove("m")
     sim.spawn(text, name="m")
     sim.run(0.1)
     assert not sim.link("m::body").linear_velocity.any()
-    sim.restore(kept)
+    sim.restore(snapshot)
     sim.run(0.1)
     assert sim.link("m::body").linear_velocity[0] == pytest.approx(0.2, rel=1e-9)

@@ -17,7 +17,7 @@ def ball(inside: str = "<link_name>body</link_name><frame_id>hog</frame_id>") ->
       <plugin name="hand" filename="libgazebo_ros_hand_of_god.so">{inside}</plugin></model>"""
 
 
-def told(frame: str, x: float = 0.0, yaw: float = 0.0, parent: str = "world") -> Any:
+def tf_message(frame: str, x: float = 0.0, yaw: float = 0.0, parent: str = "world") -> Any:
     turn = {"z": math.sin(yaw / 2), "w": math.cos(yaw / 2)}
     transform = {"translation": {"x": x, "z": 5.0 if parent == "world" else 0.0}, "rotation": turn}
     one = {"header": {"frame_id": parent}, "child_frame_id": frame, "transform": transform}
@@ -28,7 +28,7 @@ def test_the_weight_is_carried_and_the_link_is_pulled_without_overshoot() -> Non
     sim = simkit.load(world(ball()))
     sim.run(1.0)
     assert sim.model("ball").pose.position == pytest.approx((0, 0, 5), abs=1e-9)
-    sim.publish("/tf", told("hog_desired", 1.0))
+    sim.publish("/tf", tf_message("hog_desired", 1.0))
     sim.step()  # it is heard
     start = sim.time
     for _ in range(10):
@@ -40,8 +40,8 @@ def test_the_weight_is_carried_and_the_link_is_pulled_without_overshoot() -> Non
 def test_the_torque_uses_half_the_angle_and_the_pose_is_published() -> None:
     sim = simkit.load(world(ball("<linkName>body</linkName><frameId>hog</frameId><ka>50</ka>")))
     heard = sim.subscribe("/tf")
-    sim.publish("/tf", told("hand", 0.5, 0.2))
-    sim.publish("/tf", told("hog_desired", 0.0, 0.3, parent="hand"))
+    sim.publish("/tf", tf_message("hand", 0.5, 0.2))
+    sim.publish("/tf", tf_message("hog_desired", 0.0, 0.3, parent="hand"))
     link = sim.model("ball").link("body")
     sim.step()
     before = float(link.angular_velocity[2])
@@ -57,12 +57,12 @@ def test_the_torque_uses_half_the_angle_and_the_pose_is_published() -> None:
 
 def test_reset_and_restore_repeat_the_motion() -> None:
     sim = simkit.load(world(ball()))
-    sim.publish("/tf", told("hog_desired", 1.0))
+    sim.publish("/tf", tf_message("hog_desired", 1.0))
     sim.run(0.1)
-    kept = sim.snapshot()
+    snapshot = sim.snapshot()
     sim.run(0.1)
     place = sim.model("ball").pose.position.tolist()
-    sim.restore(kept)
+    sim.restore(snapshot)
     sim.run(0.1)
     assert sim.model("ball").pose.position.tolist() == place
     sim.reset()
@@ -72,9 +72,9 @@ def test_reset_and_restore_repeat_the_motion() -> None:
 
 def test_a_cycle_of_frames_and_a_nan_transform_do_not_pull() -> None:
     sim = simkit.load(world(ball()))
-    sim.publish("/tf", told("hog_desired", 1.0, parent="a"))
-    sim.publish("/tf", told("a", 1.0, parent="hog_desired"))
-    sim.publish("/tf", told("hog_desired", math.nan))
+    sim.publish("/tf", tf_message("hog_desired", 1.0, parent="a"))
+    sim.publish("/tf", tf_message("a", 1.0, parent="hog_desired"))
+    sim.publish("/tf", tf_message("hog_desired", math.nan))
     sim.run(0.2)
     assert sim.model("ball").pose.position == pytest.approx((0, 0, 5), abs=1e-9)
 
@@ -87,20 +87,20 @@ def test_a_missing_link_is_an_error() -> None:
 @pytest.mark.parametrize("size", [1e-320, 1e-200, 1e200, 1e308, math.nan])
 def test_an_invalid_rotation_is_ignored_and_reported(size: float) -> None:
     sim = simkit.load(world(ball()))
-    message = told("hog_desired", 1.0)
+    message = tf_message("hog_desired", 1.0)
     turn = message.transforms[0].transform.rotation
     turn.z, turn.w = size, size
     sim.publish("/tf", message)
     sim.run(0.1)
     assert sim.model("ball").pose.position == pytest.approx((0, 0, 5), abs=1e-9)
     assert [d.code for d in sim.diagnostics] == ["SK-PLUGIN-041"]
-    sim.publish("/tf", told("hog_desired", 1.0))
+    sim.publish("/tf", tf_message("hog_desired", 1.0))
     sim.run(2.0)
     assert sim.model("ball").pose.position[0] == pytest.approx(1.0, abs=0.01)
 
 
 def test_a_position_out_of_range_is_ignored() -> None:
     sim = simkit.load(world(ball()))
-    sim.publish("/tf", told("hog_desired", 1e200))
+    sim.publish("/tf", tf_message("hog_desired", 1e200))
     sim.run(0.1)
     assert sim.model("ball").pose.position == pytest.approx((0, 0, 5), abs=1e-9)

@@ -106,8 +106,8 @@ def test_the_truth_of_a_block_has_no_noise() -> None:
 
 def test_parameters_without_effect_in_gazebo_are_reported() -> None:
     with simkit.load(laser("block_laser", topicName="c", hokuyoMinIntensity=101, updateRate=5)) as sim:
-        told = [d.message for d in sim.diagnostics if d.code == "SK-PLUGIN-061"]
-        assert len(told) == 2
+        messages = [d.message for d in sim.diagnostics if d.code == "SK-PLUGIN-061"]
+        assert len(messages) == 2
         subscription = sim.subscribe("/c")
         sim.run(1.0)
         assert len(subscription.messages) == 11

@@ -224,8 +224,8 @@ def test_angular_noise_turns_the_direction_about_random_axes() -> None:
     turns = np.cross(true, found)
     squares = np.arcsin(np.linalg.norm(turns, axis=1)) ** 2
     assert squares.mean() == pytest.approx(2 * sigma**2, abs=4 * 2 * sigma**2 / math.sqrt(n))
-    told = np.mean([np.asarray(m.orientation_covariance).reshape(3, 3) for m in messages], axis=0)
-    np.testing.assert_allclose(np.cov(turns.T), told, atol=4 * sigma**2 * math.sqrt(2 / n))
+    published_covariance = np.mean([np.asarray(m.orientation_covariance).reshape(3, 3) for m in messages], axis=0)
+    np.testing.assert_allclose(np.cov(turns.T), published_covariance, atol=4 * sigma**2 * math.sqrt(2 / n))
 
 
 def test_reset_and_restore_repeat_the_readings() -> None:

@@ -27,7 +27,7 @@ def world(*more: str, sensor: str = "s", enabled: int = 1) -> str:
     </world></sdf>"""
 
 
-def told(sim: Any, duration: float) -> list[tuple[int, int]]:
+def touches_published(sim: Any, duration: float) -> list[tuple[int, int]]:
     found: list[tuple[int, int]] = []
     subscription = sim.subscribe("/probe/touched", lambda message: found.append((sim.tick, message.data)))
     sim.run(duration)
@@ -38,20 +38,20 @@ def told(sim: Any, duration: float) -> list[tuple[int, int]]:
 def test_a_touch_is_published_once_after_its_duration() -> None:
     with simkit.load(world()) as sim:
         assert sim.topics()["/probe/touched"] == "std_msgs/msg/Int32"
-        assert told(sim, 0.5) == [(102, 1)]
+        assert touches_published(sim, 0.5) == [(102, 1)]
 
 
 def test_the_detection_restarts_on_enable() -> None:
     with simkit.load(world(enabled=0)) as sim:
-        assert told(sim, 0.3) == []
+        assert touches_published(sim, 0.3) == []
         sim.publish("/probe/enable", {"data": 1})
-        assert [data for _, data in told(sim, 0.3)] == [1]
+        assert [data for _, data in touches_published(sim, 0.3)] == [1]
 
 
 def test_touching_another_object_interrupts_the_touch() -> None:
     other = body("stone", "0.15 0 0.1 0 0 0", static=True)
     with simkit.load(world(other)) as sim:
-        assert told(sim, 0.5) == []
+        assert touches_published(sim, 0.5) == []
 
 
 def test_a_missing_sensor_is_an_error() -> None:

@@ -45,12 +45,12 @@ def test_odometry_is_the_truth_or_the_turns_of_the_rear_wheels():
         command(sim, 0.4, 0.3)
         sim.run(3.0)
         message, pose = odometry.messages[-1], sim.model("trike").pose
-        told, turned = message.pose.pose.position, message.pose.pose.orientation
+        position, turned = message.pose.pose.position, message.pose.pose.orientation
         at = (pose.position[0], pose.position[1])
         if source == 0:  # of the middle of the rear axle
             yaw = pose.rpy[2]
             at = (at[0] + BASE / 2 * (1 - math.cos(yaw)), at[1] - BASE / 2 * math.sin(yaw))
-        assert (told.x, told.y) == pytest.approx(at, abs=expected)
+        assert (position.x, position.y) == pytest.approx(at, abs=expected)
         assert 2 * math.atan2(turned.z, turned.w) == pytest.approx(pose.rpy[2], abs=0.03)
         assert (message.header.frame_id, message.child_frame_id) == ("odom", "base_link")
         assert len(odometry.messages) == 300

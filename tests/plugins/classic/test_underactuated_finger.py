@@ -24,7 +24,7 @@ def finger(*joints: str, motor: str = "j_motor") -> str:
     return f'<plugin filename="libgazebo_underactuated_finger.so" name="finger">{content}</plugin>'
 
 
-def at(sim: simkit.Simulation, *joints: str) -> list[float]:
+def positions(sim: simkit.Simulation, *joints: str) -> list[float]:
     return [float(sim.joint(f"m::j_{joint}").position) for joint in joints]
 
 
@@ -40,17 +40,17 @@ def test_each_joint_follows_the_motor_over_its_factor_within_its_limits() -> Non
     with load(*ROTORS, finger(virtual("j_a", -2.5), virtual("j_b", 3.0))) as sim:
         for angle, wanted in ((1.2, 0.4), (2.4, 0.5), (-0.6, 0.0), (0.3, 0.1)):
             turned(sim, angle)
-            assert at(sim, "a", "b") == pytest.approx([-angle / 2.5, wanted], abs=1e-4)
+            assert positions(sim, "a", "b") == pytest.approx([-angle / 2.5, wanted], abs=1e-4)
 
 
 def test_a_motor_position_is_used_beyond_the_deadband() -> None:
     with load(*ROTORS, finger(virtual("j_a", 2.0))) as sim:
         turned(sim, 0.019)
-        assert at(sim, "a") == [0.0]
+        assert positions(sim, "a") == [0.0]
         turned(sim, 0.021)
-        assert at(sim, "a") == pytest.approx([0.0105], abs=1e-5)
+        assert positions(sim, "a") == pytest.approx([0.0105], abs=1e-5)
         turned(sim, 0.04)  # 0.019 away from the one that counts
-        assert at(sim, "a") == pytest.approx([0.0105], abs=1e-5)
+        assert positions(sim, "a") == pytest.approx([0.0105], abs=1e-5)
 
 
 def test_a_finger_keeps_its_effort_limit() -> None:
@@ -58,7 +58,7 @@ def test_a_finger_keeps_its_effort_limit() -> None:
     weak = rotor("a", limit="<limit><effort>0.01</effort></limit>")
     with load(rotor("motor"), weak, finger(virtual("j_a", 0.5))) as sim:
         turned(sim, 1.0, 1.0)
-        assert at(sim, "a")[0] == pytest.approx(0.5 * 0.01 / INERTIA, rel=0.03)
+        assert positions(sim, "a")[0] == pytest.approx(0.5 * 0.01 / INERTIA, rel=0.03)
 
 
 def test_a_proportional_gain_acts_like_a_spring() -> None:
@@ -68,7 +68,7 @@ def test_a_proportional_gain_acts_like_a_spring() -> None:
         for seconds in (0.2, 0.3, 0.5):
             turned(sim, 0.8, seconds)
             expected = 0.4 * (1.0 - math.cos(math.sqrt(5.0 / INERTIA) * sim.time))
-            assert at(sim, "a")[0] == pytest.approx(expected, abs=0.01)
+            assert positions(sim, "a")[0] == pytest.approx(expected, abs=0.01)
 
 
 @pytest.mark.parametrize("step", [0.001, 0.002])
@@ -77,7 +77,7 @@ def test_the_integral_keeps_its_bound_for_every_step_length(step: float) -> None
     gains = {"p": 0.0, "i": 10.0, "d": 0.0, "i_max": 0.02, "i_min": -0.02}
     with load(*ROTORS, finger(virtual("j_a", 0.01, gains)), step=step) as sim:  # 100 rad away: e hardly changes
         turned(sim, 1.0, 1.0)
-        assert at(sim, "a")[0] == pytest.approx(0.5 * 0.02 / INERTIA, rel=0.01)
+        assert positions(sim, "a")[0] == pytest.approx(0.5 * 0.02 / INERTIA, rel=0.01)
 
 
 def test_a_derivative_gain_damps_the_joint() -> None:
@@ -88,7 +88,7 @@ def test_a_derivative_gain_damps_the_joint() -> None:
         for seconds in (0.1, 0.9):
             sim.run(seconds)
             ratio = INERTIA / 2.0
-            assert at(sim, "a")[0] == pytest.approx(1.5 * ratio * (1.0 - math.exp(-sim.time / ratio)), rel=0.01)
+            assert positions(sim, "a")[0] == pytest.approx(1.5 * ratio * (1.0 - math.exp(-sim.time / ratio)), rel=0.01)
 
 
 def test_an_incomplete_set_of_gains_is_reported_and_a_servo_is_used() -> None:
@@ -96,7 +96,7 @@ def test_an_incomplete_set_of_gains_is_reported_and_a_servo_is_used() -> None:
         (message,) = (d.message for d in sim.diagnostics if d.code == "SK-PLUGIN-047")
         assert "<i_max>, <i_min>" in message
         turned(sim, 0.4)
-        assert at(sim, "a") == pytest.approx([0.2], abs=1e-4)
+        assert positions(sim, "a") == pytest.approx([0.2], abs=1e-4)
 
 
 def test_all_errors_are_reported_in_one_pass() -> None:
@@ -113,16 +113,16 @@ def test_a_snapshot_and_a_spawn_do_not_change_the_motion() -> None:
     loop = {"p": 5.0, "i": 2.0, "d": 0.1, "i_max": 1.0, "i_min": -1.0}
     with load(*ROTORS, finger(virtual("j_a", 2.0), virtual("j_b", 3.0, loop))) as sim:
         turned(sim, 0.8, 0.1)
-        kept = sim.snapshot()
+        snapshot = sim.snapshot()
         sim.run(0.3)
-        ends = at(sim, "motor", "a", "b")
-        sim.restore(kept)
+        ends = positions(sim, "motor", "a", "b")
+        sim.restore(snapshot)
         sim.run(0.3)
-        assert at(sim, "motor", "a", "b") == ends
-        sim.restore(kept)
+        assert positions(sim, "motor", "a", "b") == ends
+        sim.restore(snapshot)
         sim.spawn("<sdf version='1.9'><model name='x'><static>true</static><link name='l'/></model></sdf>")
         sim.run(0.3)
-        assert at(sim, "motor", "a", "b") == pytest.approx(ends, abs=1e-9)
+        assert positions(sim, "motor", "a", "b") == pytest.approx(ends, abs=1e-9)
         sim.reset()
         sim.run(0.1)
-        assert at(sim, "a") == [0.0]
+        assert positions(sim, "a") == [0.0]

@@ -53,7 +53,7 @@ def load(*parts: str) -> simkit.Simulation:
 
 def test_a_near_link_is_lifted_held_and_dropped() -> None:
     sim = load()
-    told = sim.subscribe("/arm/grasping")
+    grasping = sim.subscribe("/arm/grasping")
     reach_down(sim)
     assert sim.call(SWITCH, {"data": True}).success
     sim.run(0.05)
@@ -66,7 +66,7 @@ def test_a_near_link_is_lifted_held_and_dropped() -> None:
     height = float(sim.model("box").pose.position[2])
     sim.run(0.2)
     assert height - sim.model("box").pose.position[2] == pytest.approx(9.8 * 0.02, rel=0.03)
-    changes = [b.data for a, b in zip(told.messages, told.messages[1:], strict=False) if a.data != b.data]
+    changes = [b.data for a, b in zip(grasping.messages, grasping.messages[1:], strict=False) if a.data != b.data]
     assert changes == [True, False]
 
 
@@ -96,11 +96,11 @@ def test_the_robot_itself_static_and_exempt_models_are_not_held() -> None:
     sim = load(crane(f"{exempt}<fixed>box</fixed>"), box(), still)
     sim.call(SWITCH, {"data": True})
     sim.run(0.1)
-    told = sim.subscribe("/arm/grasping")
+    grasping = sim.subscribe("/arm/grasping")
     reach_down(sim, -0.5)
     assert sim.joint("crane::slide").position == pytest.approx(-0.5, abs=1e-3)
-    assert told.messages
-    assert not any(m.data for m in told.messages)
+    assert grasping.messages
+    assert not any(m.data for m in grasping.messages)
 
 
 def test_switching_twice_in_the_same_way_is_reported() -> None:
@@ -116,12 +116,12 @@ def test_in_ros_1_the_gripper_has_two_services_and_a_topic() -> None:
       <maxDistance>0.12</maxDistance><maxForce>20</maxForce>"""
     sim = load(crane(inside), box())
     assert "SK-PLUGIN-138" in [d.code for d in sim.diagnostics]
-    told = sim.subscribe("/arm/grip")
+    grasping = sim.subscribe("/arm/grip")
     reach_down(sim)
     sim.call("/arm/on", {})
     lift(sim)
     assert sim.model("box").pose.position[2] > 0.8
-    assert told.messages[-1].data
+    assert grasping.messages[-1].data
     sim.call("/arm/off", {})
     sim.run(0.5)
     assert sim.model("box").pose.position[2] < 0.5
@@ -132,18 +132,18 @@ def test_remove_spawn_reset_and_restore_keep_the_grasp_consistent() -> None:
     reach_down(sim)
     sim.call(SWITCH, {"data": True})
     sim.run(0.1)
-    kept = sim.snapshot()
+    snapshot = sim.snapshot()
     lift(sim)
     lifted = sim.model("box").pose.position.copy()
     sim.remove("box")
-    told = sim.subscribe("/arm/grasping")
+    grasping = sim.subscribe("/arm/grasping")
     sim.run(0.1)
-    assert not told.messages[-1].data
+    assert not grasping.messages[-1].data
     reach_down(sim)
     sim.spawn(f"<sdf version='1.9'>{box()}</sdf>")
     lift(sim)
     assert sim.model("box").pose.position[2] > 0.8
-    sim.restore(kept)
+    sim.restore(snapshot)
     lift(sim)
     np.testing.assert_allclose(sim.model("box").pose.position, lifted, atol=1e-9)
     sim.reset()

@@ -30,22 +30,22 @@ def test_the_pose_is_in_the_world_with_the_named_frame_id() -> None:
     with opened(frameName="base", topicName="floating_base_pose_simulated") as sim:
         odometry = sim.subscribe("/floating_base_pose_simulated")
         sim.run(0.1)
-        told, link = odometry.latest, sim.link("box::base")
+        published, link = odometry.latest, sim.link("box::base")
         assert len(odometry.messages) == 100
-        assert (told.header.frame_id, told.child_frame_id) == ("base", "base")
-        np.testing.assert_allclose(xyz(told.pose.pose.position), link.pose.position, atol=1e-12)
-        assert yaw(told.pose.pose.orientation) == pytest.approx(link.pose.rpy[2])
+        assert (published.header.frame_id, published.child_frame_id) == ("base", "base")
+        np.testing.assert_allclose(xyz(published.pose.pose.position), link.pose.position, atol=1e-12)
+        assert yaw(published.pose.pose.orientation) == pytest.approx(link.pose.rpy[2])
 
 
 def test_linear_velocity_is_in_the_worlds_axes_and_angular_in_the_links() -> None:
     with opened(bodyName="arm", topicName="truth", robotNamespace="pmb2", updateRate=100) as sim:
         odometry = sim.subscribe("/pmb2/truth")
         sim.run(0.1)
-        told = odometry.latest
+        published = odometry.latest
         np.testing.assert_array_equal(stamps(odometry.messages), np.arange(1, 11) * 10_000_000)
-        assert (told.header.frame_id, told.child_frame_id) == ("world", "arm")
-        np.testing.assert_allclose(xyz(told.twist.twist.linear), sim.link("box::arm").linear_velocity, atol=1e-12)
-        np.testing.assert_allclose(xyz(told.twist.twist.angular), (0, 0, 0.6), atol=1e-3)
+        assert (published.header.frame_id, published.child_frame_id) == ("world", "arm")
+        np.testing.assert_allclose(xyz(published.twist.twist.linear), sim.link("box::arm").linear_velocity, atol=1e-12)
+        np.testing.assert_allclose(xyz(published.twist.twist.angular), (0, 0, 0.6), atol=1e-3)
 
 
 def test_offsets_may_change_during_a_run() -> None:
@@ -55,9 +55,9 @@ def test_offsets_may_change_during_a_run() -> None:
         for name, value in (("x_offset", 1.0), ("y_offset", -2.0), ("yaw_offset", 0.25)):
             sim.set_parameter(node, name, value)
         sim.run(0.1)
-        told, pose = odometry.latest.pose.pose, sim.link("box::base").pose
-    np.testing.assert_allclose(xyz(told.position), pose.position + np.array((1, -2, 0)), atol=1e-12)
-    assert yaw(told.orientation) == pytest.approx(pose.rpy[2] + 0.25)
+        published, pose = odometry.latest.pose.pose, sim.link("box::base").pose
+    np.testing.assert_allclose(xyz(published.position), pose.position + np.array((1, -2, 0)), atol=1e-12)
+    assert yaw(published.orientation) == pytest.approx(pose.rpy[2] + 0.25)
 
 
 def test_noise_is_a_random_walk_fixed_by_the_seed() -> None:

@@ -27,7 +27,7 @@ def named(filename: str, name: str = "p") -> ScenePlugin:
     return ScenePlugin(name, filename, "robot", Params("plugin"))
 
 
-def said(plugin: ScenePlugin) -> list[tuple[str, str]]:
+def reported(plugin: ScenePlugin) -> list[tuple[str, str]]:
     return [(d.code, d.severity) for d in plugin.params.diagnostics]
 
 
@@ -96,7 +96,7 @@ def test_a_dissimilar_name_still_gets_the_closest_name() -> None:
 def test_an_unsupported_gazebo_plugin_is_reported_as_such() -> None:
     plugin = named("gz-sim-thruster-system", "gz::sim::systems::Thruster")
     assert find_plugin(plugin) is None
-    assert said(plugin) == [("SK-PLUGIN-002", "warning")]
+    assert reported(plugin) == [("SK-PLUGIN-002", "warning")]
 
 
 def test_a_plugin_on_the_wrong_kind_of_parent_is_ignored_with_the_right_kind() -> None:
@@ -115,7 +115,7 @@ def test_a_file_runs_only_from_an_allowed_folder(tmp_path: Path) -> None:
     (tmp_path / "hello.py").write_text(HELLO)
     refused = named("hello.py")
     assert find_plugin(refused) is None
-    assert said(refused) == [("SK-PLUGIN-001", "warning")]
+    assert reported(refused) == [("SK-PLUGIN-001", "warning")]
     found = find_plugin(named("hello.py"), [tmp_path])
     assert found is not None and found.__name__ == "Hello"
 
@@ -140,7 +140,7 @@ def test_a_module_and_class_run_only_from_an_allowed_folder(tmp_path: Path) -> N
     (tmp_path / "mine" / "hello.py").write_text(HELLO)
     refused = named("mine.hello:Hello")
     assert find_plugin(refused) is None
-    assert said(refused) == [("SK-PLUGIN-001", "warning")]
+    assert reported(refused) == [("SK-PLUGIN-001", "warning")]
     found = find_plugin(named("mine.hello:Hello"), [tmp_path])
     assert found is not None and found.__name__ == "Hello"
 
@@ -148,7 +148,7 @@ def test_a_module_and_class_run_only_from_an_allowed_folder(tmp_path: Path) -> N
 def test_an_importable_module_named_by_a_file_is_not_run() -> None:
     plugin = named("antigravity:Plugin")
     assert find_plugin(plugin) is None
-    assert said(plugin) == [("SK-PLUGIN-001", "warning")]
+    assert reported(plugin) == [("SK-PLUGIN-001", "warning")]
 
 
 def test_an_alias_is_found_in_allowed_folders(tmp_path: Path) -> None:
@@ -171,7 +171,7 @@ def test_a_class_that_is_not_a_plugin_is_an_error(tmp_path: Path) -> None:
     (tmp_path / "mine.py").write_text("class Thing: pass")
     plugin = named("mine:Thing")
     assert find_plugin(plugin, [tmp_path]) is None
-    assert said(plugin) == [("SK-PLUGIN-008", "error")]
+    assert reported(plugin) == [("SK-PLUGIN-008", "error")]
 
 
 # ------------------------------------------------------------------ the base class

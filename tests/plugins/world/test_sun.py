@@ -41,7 +41,7 @@ def world(*parts: str, step: float = 0.01, **values: Any) -> str:
     return f"<sdf version='1.9'><world name='w'>{physics}{LIGHT}{''.join(parts)}{plugin}</world></sdf>"
 
 
-def place(*, heading: float = 0.0, latitude: float = 50.08, longitude: float = 14.44) -> str:
+def location(*, heading: float = 0.0, latitude: float = 50.08, longitude: float = 14.44) -> str:
     return (
         "<spherical_coordinates><surface_model>EARTH_WGS84</surface_model>"
         f"<latitude_deg>{latitude}</latitude_deg><longitude_deg>{longitude}</longitude_deg>"
@@ -103,7 +103,7 @@ def test_interpolation_between_tabulated_times_matches_the_algorithm() -> None:
 def test_the_worlds_heading_rotates_the_sun(heading: float) -> None:
     """At noon in June the sun of Prague is in the south; the world's x axis points `heading` north of east."""
     values = {"start": "2024-06-21T11:04:00Z"}
-    with simkit.load(world(place(heading=heading), **values)) as sim:
+    with simkit.load(world(location(heading=heading), **values)) as sim:
         x, y, z = to_the_sun(sim)
     assert math.degrees(math.asin(z)) == pytest.approx(90 - 50.08 + 23.44, abs=0.05)
     south = math.degrees(math.atan2(y, x)) + heading
@@ -112,7 +112,7 @@ def test_the_worlds_heading_rotates_the_sun(heading: float) -> None:
 
 def test_the_plugins_location_overrides_the_worlds() -> None:
     values = {**NREL, "heading_deg": 0}
-    with simkit.load(world(place(heading=77), **values)) as sim:
+    with simkit.load(world(location(heading=77), **values)) as sim:
         zenith, azimuth = zenith_and_azimuth(to_the_sun(sim))
     assert (zenith, azimuth) == (pytest.approx(50.11162, abs=1e-5), pytest.approx(194.34024, abs=1e-5))
 
@@ -284,7 +284,7 @@ def test_invalid_values_are_errors() -> None:
 
 @pytest.mark.parametrize("elevation", [-1e9, 1e9])
 def test_a_world_with_an_extreme_elevation_needs_an_elevation_of_the_plugin(elevation: float) -> None:
-    high, start = place().replace("<elevation>200", f"<elevation>{elevation}"), "2024-06-21"
+    high, start = location().replace("<elevation>200", f"<elevation>{elevation}"), "2024-06-21"
     assert [code for code, _ in errors(world(high, start=start))] == ["SK-PARAM-002"]
     with simkit.load(world(high, start=start, elevation=0)) as sim:
         sim.step()
@@ -309,7 +309,7 @@ def test_without_pvlib_the_hint_is_the_install_command(monkeypatch: pytest.Monke
 
 
 def test_another_surface_model_still_has_the_sun_of_the_earth() -> None:
-    text = world(place().replace("EARTH_WGS84", "MOON_SCS"), start="2024-06-21T10:00:00Z")
+    text = world(location().replace("EARTH_WGS84", "MOON_SCS"), start="2024-06-21T10:00:00Z")
     with simkit.load(text) as sim:
         assert [d.code for d in sim.diagnostics if d.severity == "warning"] == ["SK-SENSOR-085"]
 

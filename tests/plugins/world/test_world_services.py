@@ -239,13 +239,13 @@ def test_snapshot_reset_and_spawn_handle_a_changed_light() -> None:
     with load() as sim:
         index = list(sim.contents.lights).index("lamp")
         ask(sim, "light_config", light={"name": "lamp", "diffuse": {"g": 0.75, "a": 1.0}})
-        taken = sim.snapshot()
+        snapshot = sim.snapshot()
         sim.spawn(model("one", "5 5 5 0 0 0"))
         assert sim.mj_model.light_diffuse[index] == pytest.approx((0, 0.75, 0))
         sim.reset()
         assert sim.light("lamp").scene.diffuse == (1, 1, 1, 1)
         assert sim.mj_model.light_diffuse[index] == pytest.approx((1, 1, 1))
-        sim.restore(taken)
+        sim.restore(snapshot)
         assert sim.light("lamp").scene.diffuse == (0, 0.75, 0, 1)
         assert sim.mj_model.light_diffuse[index] == pytest.approx((0, 0.75, 0))
 
@@ -338,11 +338,11 @@ def test_the_worlds_origin_moves_and_gps_receivers_follow() -> None:
             pytest.approx(-33.5, abs=1e-8),
             pytest.approx(10.5, abs=1e-3),
         )
-        taken = sim.snapshot()
+        snapshot = sim.snapshot()
         sim.reset()
         sim.step()
         assert gps.latest.latitude == pytest.approx(47.0, abs=1e-9)
-        sim.restore(taken)
+        sim.restore(snapshot)
         sim.step()
         assert gps.latest.latitude == pytest.approx(-33.5, abs=1e-8)
 

@@ -106,7 +106,7 @@ def test_the_clock_of_the_world_equals_the_ros_clock() -> None:
         assert len(own.messages) == 10
 
 
-def placed(message: Any) -> dict[str, tuple[str, tuple[float, ...]]]:
+def positions_by_frame(message: Any) -> dict[str, tuple[str, tuple[float, ...]]]:
     """Map each child frame to its parent frame and position."""
     found = {}
     for t in message.transforms:
@@ -121,7 +121,7 @@ def test_poses_of_all_entities_are_in_the_frames_of_their_parents() -> None:
         sim.joint("arm::hinge").set_position(0.5)
         sim.run(0.1)
         assert (len(every.messages), len(moving.messages)) == (6, 6)  # at k/60 s
-        found = placed(every.latest)
+        found = positions_by_frame(every.latest)
         assert found["box"] == ("w", pytest.approx((0, 0, 0.5), abs=1e-3))
         assert found["box::body"][0] == "box"
         assert found["box::body::skin"] == ("box::body", (0, 0, 0))
@@ -129,7 +129,7 @@ def test_poses_of_all_entities_are_in_the_frames_of_their_parents() -> None:
         assert found["lamp"] == ("w", (2, 0, 3))
         turn = next(t for t in every.latest.transforms if t.child_frame_id == "arm::tip").transform.rotation
         assert 2 * math.atan2(turn.z, turn.w) == pytest.approx(sim.joint("arm::hinge").position, abs=1e-9)
-        assert set(placed(moving.latest)) == {"box", "box::body", "arm", "arm::base", "arm::tip"}
+        assert set(positions_by_frame(moving.latest)) == {"box", "box::body", "arm", "arm::base", "arm::tip"}
 
 
 def test_poses_include_a_spawned_model() -> None:
@@ -137,7 +137,7 @@ def test_poses_include_a_spawned_model() -> None:
         moving = sim.subscribe("/world/w/dynamic_pose/info")
         sim.spawn(model("one", "4 0 0.5 0 0 0"))
         sim.run(0.1)
-        assert placed(moving.latest)["one"] == ("w", pytest.approx((4, 0, 0.5), abs=1e-3))
+        assert positions_by_frame(moving.latest)["one"] == ("w", pytest.approx((4, 0, 0.5), abs=1e-3))
 
 
 def recorded(path: Path, **options: Any) -> set[str]:
@@ -185,9 +185,9 @@ def test_wall_clock_time_is_not_part_of_the_state() -> None:
     with load() as sim:
         stats = sim.subscribe("/stats")
         sim.run(0.4)
-        before, taken = stats.messages, sim.snapshot()
+        before, snapshot = stats.messages, sim.snapshot()
         sim.run(0.4)
-        sim.restore(taken)
+        sim.restore(snapshot)
         sim.run(0.4)
         again = stats.messages
         assert [plain(m) for m in again[4:]] == [plain(m) for m in again[2:4]]
