@@ -1,7 +1,7 @@
-"""Scene: what a file means once resolved, as frozen data.
+"""Scene: the resolved content of a file, as frozen data.
 
-Loaders make it, and the compiler, the writers and `inspect` read it. Every pose is resolved, every default of the
-format is filled in, every list is a list. No XML, no MuJoCo, and nothing that runs.
+Loaders create the scene; the compiler, the writers and `inspect` read it. Every pose is resolved and every default of
+the format is filled in. The scene contains no XML, no MuJoCo objects and no running code.
 """
 
 from simkit.scene.actuation import Calibration, Safety, Transmission, TransmissionEnd

@@ -1,4 +1,4 @@
-"""What a robot's file tells its controllers: soft limits, calibration, transmissions. The physics does not use it."""
+"""Data for controllers in a robot's file: soft limits, calibration, transmissions. The physics does not use them."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from simkit.params import Params
 
 @dataclass(frozen=True, slots=True)
 class Safety:
-    """URDF's `<safety_controller>`: how a controller keeps a joint off its limits.
+    """URDF's `<safety_controller>`: limits with which a controller keeps a joint away from its hard limits.
 
     Attributes:
         lower, upper: soft limits [rad or m].
-        k_position: how fast the velocity bound closes near a soft limit [1/s].
-        k_velocity: how fast the effort bound closes near a velocity bound [N·m·s/rad or N·s/m].
+        k_position: rate at which the velocity bound decreases near a soft limit [1/s].
+        k_velocity: rate at which the effort bound decreases near a velocity bound [N·m·s/rad or N·s/m].
     """
 
     lower: float = 0.0
@@ -26,7 +26,7 @@ class Safety:
 
 @dataclass(frozen=True, slots=True)
 class Calibration:
-    """Positions [rad or m] at which a reference switch rises and falls; None where not given."""
+    """Positions [rad or m] at which a reference switch rises and falls; None if the file gives none."""
 
     rising: float | None = None
     falling: float | None = None
@@ -34,13 +34,13 @@ class Calibration:
 
 @dataclass(frozen=True, slots=True)
 class TransmissionEnd:
-    """A joint or an actuator of a transmission.
+    """Joint or actuator of a transmission.
 
     Attributes:
         name: plain name, as written.
-        reduction: actuator position over joint position.
-        offset: of the joint [rad or m].
-        role: `joint1`, `actuator2`, ...; empty where not given.
+        reduction: actuator position divided by joint position.
+        offset: offset of the joint position [rad or m].
+        role: `joint1`, `actuator2`, ...; empty if not given.
         interfaces: hardware interfaces, as written.
     """
 
@@ -53,13 +53,13 @@ class TransmissionEnd:
 
 @dataclass(frozen=True, slots=True)
 class Transmission:
-    """URDF's `<transmission>`: how actuators drive joints.
+    """URDF's `<transmission>`: coupling of actuators and joints.
 
     Attributes:
-        kind: simple, differential or four_bar_linkage; the type as written where it is none of them.
-        type: as written.
-        joints, actuators: in document order.
-        params: the whole element, for what is not a field here.
+        kind: simple, differential or four_bar_linkage; any other type as written.
+        type: type, as written.
+        joints, actuators: joints and actuators in document order.
+        params: the whole element, for content that has no field here.
     """
 
     name: str

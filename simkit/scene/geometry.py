@@ -1,4 +1,4 @@
-"""Shapes. Lengths in metres, in the shape's own frame (centred; axes along z; a plane's normal as given)."""
+"""Shapes. Lengths in metres, in the shape's own frame: centred, with the axis of symmetry along z."""
 
 from __future__ import annotations
 
@@ -10,30 +10,36 @@ Vec3 = tuple[float, float, float]
 
 
 def vec3(values: Iterable[float]) -> Vec3:
-    """Return three numbers, such as those of an array, as a tuple of Python's floats."""
+    """Return three numbers, such as the elements of an array, as a tuple of Python's floats."""
     x, y, z = (float(v) for v in values)
     return x, y, z
 
 
 @dataclass(frozen=True, slots=True)
 class Box:
+    """Box; `size` holds the full edge lengths along x, y, z [m]."""
+
     size: Vec3
 
 
 @dataclass(frozen=True, slots=True)
 class Sphere:
+    """Sphere; `radius` in metres."""
+
     radius: float
 
 
 @dataclass(frozen=True, slots=True)
 class Cylinder:
+    """Cylinder about z; `radius` and `length` in metres."""
+
     radius: float
     length: float
 
 
 @dataclass(frozen=True, slots=True)
 class Capsule:
-    """`length` is that of the cylindrical part, without the caps."""
+    """Cylinder with hemispherical caps; `length` is the length of the cylindrical part, without the caps."""
 
     radius: float
     length: float
@@ -41,7 +47,7 @@ class Capsule:
 
 @dataclass(frozen=True, slots=True)
 class Cone:
-    """Base at -length/2, tip at +length/2 on z."""
+    """Cone with its base at z = -length/2 and its tip at z = +length/2."""
 
     radius: float
     length: float
@@ -49,12 +55,14 @@ class Cone:
 
 @dataclass(frozen=True, slots=True)
 class Ellipsoid:
+    """Ellipsoid; `radii` holds the semi-axes along x, y, z [m]."""
+
     radii: Vec3
 
 
 @dataclass(frozen=True, slots=True)
 class Plane:
-    """Endless for collisions; `size` (x, y) bounds only what is drawn."""
+    """Plane, infinite for collisions; `size` (x, y) [m] limits only the drawn area."""
 
     normal: Vec3 = (0.0, 0.0, 1.0)
     size: tuple[float, float] = (1.0, 1.0)
@@ -62,18 +70,20 @@ class Plane:
 
 @dataclass(frozen=True, slots=True)
 class Mesh:
-    """A mesh file, found and readable at load time.
+    """Mesh file, located and readable at load time.
 
     Attributes:
         file: absolute path.
-        uri: as written in the file.
+        uri: URI, as written in the file.
+        scale: scale factors along x, y, z.
         submesh: name of the one sub-mesh to use, or empty for all.
-        center: whether that sub-mesh is moved to the origin.
-        missing: the file is not there; the shape is left out, and that has been said.
-        optimization: what a collision that is not convex becomes: "" (the compiler's choice), "convex_hull" or
+        center: true if that sub-mesh is moved to the origin.
+        missing: true if the file does not exist; the shape is then left out, and a diagnostic has been recorded.
+        optimization: treatment of a non-convex collision: "" (the compiler decides), "convex_hull" or
             "convex_decomposition".
-        max_hulls: pieces of a convex decomposition.
-        bone: only what this bone of the file's skeleton carries, in its frame and before the file's unit counts.
+        max_hulls: maximum number of pieces of a convex decomposition.
+        bone: name of one bone of the file's skeleton. Only the triangles of that bone are used, in the bone's frame and
+            before the file's unit is applied.
     """
 
     file: Path
@@ -93,9 +103,9 @@ class Heightmap:
 
     Attributes:
         file: absolute path.
-        uri: as written in the file.
+        uri: URI, as written in the file.
         size: extent in x and y, and the height of white [m].
-        position: of its centre, in the shape's frame [m].
+        position: position of its centre in the shape's frame [m].
     """
 
     file: Path
@@ -106,7 +116,7 @@ class Heightmap:
 
 @dataclass(frozen=True, slots=True)
 class Polyline:
-    """Closed outlines in x, y extruded from z = 0 to `height`."""
+    """Closed outlines in x and y [m], extruded from z = 0 to `height` [m]."""
 
     outlines: tuple[tuple[tuple[float, float], ...], ...]
     height: float
@@ -114,7 +124,7 @@ class Polyline:
 
 @dataclass(frozen=True, slots=True)
 class Empty:
-    """No shape."""
+    """Geometry without a shape."""
 
 
 Geometry = Box | Sphere | Cylinder | Capsule | Cone | Ellipsoid | Plane | Mesh | Heightmap | Polyline | Empty

@@ -1,4 +1,4 @@
-"""Models that MuJoCo's own format describes: beside what the scene says of them, the specification itself is kept."""
+"""Models in MuJoCo's own format. The scene describes them, and MuJoCo's specification is kept as well."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ Mass = tuple[float, tuple[float, ...], tuple[float, ...], tuple[float, ...]]
 
 @dataclass(frozen=True, slots=True)
 class MjcfGeom:
-    """Whose geom it is, and what for.
+    """Link and purpose of a geom.
 
     Attributes:
         link: scoped name of its link.
-        shape: scoped name of the collision, or of the visual where it only shows.
-        collides, drawn: what it does; a geom may do both, or neither (it then only weighs).
+        shape: scoped name of the collision, or of the visual if the geom is only drawn.
+        collides, drawn: uses of the geom; it can have both, or neither (the geom then only adds mass).
     """
 
     link: str
@@ -29,13 +29,13 @@ class MjcfGeom:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MjcfElements:
-    """Which of the file's elements are which of the scene's.
+    """Mapping between the elements of the scene and those of the MJCF file.
 
     Attributes:
-        bodies: scoped link -> body; `world` for the link that holds what the file has in its world body.
+        bodies: scoped link -> body; `world` for the link that holds the content of the file's world body.
         joints: scoped joint -> joint; empty for a fixed one.
         free: scoped link -> free joint.
-        geoms: geom -> its owner.
+        geoms: geom -> its link and purpose.
         lights: scoped light -> (light, its link or empty).
         masses: body -> mass [kg], centre of mass [m], axes of inertia as a quaternion, principal moments [kg·m²].
     """
@@ -50,15 +50,15 @@ class MjcfElements:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class MjcfSource(MjcfElements):
-    """Where the engine's own description of a model is, and which of its elements are which of the scene's.
+    """MuJoCo's own description of a model, with the mapping of its elements to those of the scene.
 
     Attributes:
-        document: makes a fresh specification of the whole file (an `mujoco.MjSpec`) in which every element has a name.
-        place: where the file's world stands in the world at load time.
-        prefix: of all names in the compiled world; empty for a file that is the world itself.
-        roots: names of the top-level bodies that are this model's, as in the file.
-        base: "auto" keeps the free joints of the file, "fixed" takes them away, "floating" adds what is missing.
-        settings: what the file says of the engine itself, by element (`option`, `visual`, ...), with its line.
+        document: returns a new specification of the whole file (an `mujoco.MjSpec`) in which every element has a name.
+        place: pose of the file's world in the world frame at load time.
+        prefix: prefix of all names in the compiled world; empty for a file that is the world itself.
+        roots: names, as in the file, of the top-level bodies that belong to this model.
+        base: "auto" keeps the free joints of the file, "fixed" removes them, "floating" adds missing ones.
+        settings: engine settings of the file by element (`option`, `visual`, ...), with their lines.
     """
 
     document: Callable[[], Any]

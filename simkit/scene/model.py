@@ -1,4 +1,4 @@
-"""Models and what is in them. Poses: `pose_world` at load time; `pose_link` in the link frame."""
+"""Models and their elements. `pose_world`: pose at load time in the world; `pose_link`: pose in the link frame."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Inertial:
     Attributes:
         com: centre of mass in the link frame [m].
         inertia: ixx, iyy, izz, ixy, ixz, iyz in **link axes**.
-        given: False where the file has no inertial and the format's default stands.
+        given: false if the file has no inertial and the format's default is used.
     """
 
     mass: float = 1.0
@@ -34,17 +34,17 @@ class Inertial:
 
 @dataclass(frozen=True, slots=True)
 class Surface:
-    """Contact properties; None where the file says nothing (the engine's world-wide setting stands).
+    """Contact properties; None if the file gives no value (the engine's setting for the whole world is then used).
 
     Attributes:
-        mu, mu2: sliding friction along and across `fdir1`.
-        torsional: torsional friction coefficient; None where not given.
+        mu, mu2: sliding friction coefficients along and across `fdir1`.
+        torsional: torsional friction coefficient; None if not given.
         kp, kd: contact stiffness [N/m] and damping [N·s/m].
-        patch_radius, surface_radius: of the torsional model [m]; the patch counts where `use_patch_radius`.
-        torsional_slip: slip of the torsional friction, for engines that have it.
-        rolling: coefficient of rolling friction (Bullet's); None where not given.
-        slip1, slip2: how fast a contact slips along and across `fdir1` [m/s/N].
-        fdir1_frame: the link that `fdir1` is given in; empty for the collision's own frame.
+        patch_radius, surface_radius: radii of the torsional model [m]; the patch is used if `use_patch_radius` is true.
+        torsional_slip: slip of the torsional friction, for engines that support it.
+        rolling: coefficient of rolling friction (Bullet's); None if not given.
+        slip1, slip2: slip velocity of a contact per force, along and across `fdir1` [m/s/N].
+        fdir1_frame: link in whose frame `fdir1` is given; empty for the collision's own frame.
     """
 
     mu: float = 1.0
@@ -75,16 +75,16 @@ class Surface:
 
 @dataclass(frozen=True, slots=True)
 class Material:
-    """How a visual looks; colours RGBA from 0 to 1.
+    """Appearance of a visual; colours are RGBA from 0 to 1.
 
     Attributes:
-        texture: the picture it wears; it counts times `diffuse`.
+        texture: image on the surface; it is multiplied by `diffuse`.
         script: name of the material script, or empty.
-        roughness: of a physically based material, from 0 (mirror) to 1; None where not given.
-        double_sided: whether faces are seen from behind as well.
-        texture_scale: size of the picture in parts of what wears it, across and up, about its middle; with 0.5 it is
-            there twice each way.
-        shininess: exponent of the gloss; None where not given.
+        roughness: roughness of a physically based material, from 0 (mirror) to 1; None if not given.
+        double_sided: true if faces are visible from behind as well.
+        texture_scale: size of the image relative to the surface, across and up, about its middle. With 0.5 the image
+            appears twice in each direction.
+        shininess: exponent of the specular highlight; None if not given.
     """
 
     ambient: Colour = (1.0, 1.0, 1.0, 1.0)
@@ -101,6 +101,8 @@ class Material:
 
 @dataclass(frozen=True, slots=True)
 class SceneCollision:
+    """Collision shape of a link."""
+
     name: str
     scoped: str
     pose_link: Pose
@@ -112,7 +114,7 @@ class SceneCollision:
 
 @dataclass(frozen=True, slots=True)
 class SceneVisual:
-    """`material` is None where the file names none (a mesh then keeps its own)."""
+    """Visible shape of a link; `material` is None if the file names none (a mesh then keeps its own materials)."""
 
     name: str
     scoped: str
@@ -129,7 +131,7 @@ class SceneVisual:
 
 @dataclass(frozen=True, slots=True)
 class ScenePlugin:
-    """A plugin as named in the file; `scoped` is the entity it hangs on (empty for the world)."""
+    """Plugin as named in the file; `scoped` is the name of the entity that it belongs to (empty for the world)."""
 
     name: str
     filename: str
@@ -140,15 +142,15 @@ class ScenePlugin:
 
 @dataclass(frozen=True, slots=True)
 class SceneSensor:
-    """A sensor as named in the file; its kind's own module reads `params` (the whole `<sensor>` element).
+    """Sensor as named in the file; the module of its kind reads `params` (the whole `<sensor>` element).
 
     Attributes:
-        kind: the file's type, as written (`imu`, `ray`, `camera`, ...); for `custom` its `gz:type`.
-        parent: scoped name of the link or joint it hangs on.
-        on_joint: whether `parent` is a joint.
-        pose_link: in the link frame (for a joint: in its child link's frame).
-        rate: update rate [Hz]; 0 is every step.
-        topic: as given, or empty.
+        kind: type of the sensor, as written (`imu`, `ray`, `camera`, ...); for `custom` its `gz:type`.
+        parent: scoped name of the link or joint that carries the sensor.
+        on_joint: true if `parent` is a joint.
+        pose_link: pose in the link frame (for a joint: in its child link's frame).
+        rate: update rate [Hz]; 0 updates at every step.
+        topic: topic, as given, or empty.
     """
 
     name: str
@@ -167,11 +169,11 @@ class SceneSensor:
 
 @dataclass(frozen=True, slots=True)
 class SceneLink:
-    """A rigid body.
+    """Link: a rigid body.
 
     Attributes:
-        velocity_decay: part of the linear and of the angular velocity that is lost at every step; 0 loses nothing.
-        enable_wind: whether the wind of the world pushes it.
+        velocity_decay: fraction of the linear and of the angular velocity that is lost at every step.
+        enable_wind: true if the wind of the world acts on the link.
     """
 
     name: str
@@ -193,7 +195,7 @@ class SceneLink:
 
 @dataclass(frozen=True, slots=True)
 class Mimic:
-    """position = multiplier · (leader − reference) + offset."""
+    """Coupling of a joint to a leader joint: position = multiplier · (leader − reference) + offset."""
 
     joint: str
     axis: int = 0
@@ -204,13 +206,13 @@ class Mimic:
 
 @dataclass(frozen=True, slots=True)
 class Axis:
-    """One degree of freedom; limits in rad or m (inf where none), effort N·m or N, velocity rad/s or m/s.
+    """Degree of freedom of a joint; limits in rad or m (inf if none), effort in N·m or N, velocity in rad/s or m/s.
 
     Attributes:
-        xyz_world: unit axis in the world at load time.
+        xyz_world: unit axis in the world frame at load time.
         xyz_joint: unit axis in the joint frame.
-        limit_stiffness, limit_dissipation: of the stop at a position limit [N·m/rad, N·m·s/rad, or per metre];
-            None where the file says nothing.
+        limit_stiffness, limit_dissipation: stiffness and dissipation of the stop at a position limit [N·m/rad,
+            N·m·s/rad, or per metre]; None if the file gives no value.
     """
 
     xyz_world: Vec3
@@ -230,15 +232,15 @@ class Axis:
 
 @dataclass(frozen=True, slots=True)
 class SceneJoint:
-    """A joint between two resolved links.
+    """Joint between two resolved links.
 
     Attributes:
         type: revolute, continuous, prismatic, fixed, ball, universal, revolute2, screw, gearbox, floating, planar.
-        parent_link, child_link: scoped link names; the parent may be `world`.
-        thread_pitch: screw: metres per turn (gz convention of the file already applied).
+        parent_link, child_link: scoped link names; the parent can be `world`.
+        axes: axes of the joint. A planar joint has the axes x and y of its plane, then the rotation about its normal.
+        thread_pitch: screw only: metres per turn (gz convention of the file already applied).
         gearbox_ratio, gearbox_reference: gearbox only; the reference is a scoped link name.
-        axes: planar: along x and y of its plane, then the turn about its normal.
-        safety, calibration: of a URDF joint, for controllers.
+        safety, calibration: data of a URDF joint, for controllers.
     """
 
     name: str
@@ -260,6 +262,8 @@ class SceneJoint:
 
 @dataclass(frozen=True, slots=True)
 class SceneFrame:
+    """Named frame; `attached_to` is the scoped name of the link or frame that the frame moves with."""
+
     name: str
     scoped: str
     pose_world: Pose
@@ -268,18 +272,18 @@ class SceneFrame:
 
 @dataclass(frozen=True, slots=True)
 class SceneModel:
-    """A model with its links, joints and nested models.
+    """Model with its links, joints and nested models.
 
     Attributes:
         scoped: name from the world down, joined with `::`.
-        canonical_link: scoped name of the link whose motion is the model's; empty where there is none.
-        declared_static: what the model's own element (or its include) says; `static` also follows the outer model.
+        canonical_link: scoped name of the link whose motion is the model's; empty if there is none.
+        declared_static: value in the model's own element (or its include); `static` also follows the outer model.
         base: "auto" (floating unless joined to the world), "fixed" or "floating".
-        allow_auto_disable: whether it may sleep while it rests.
-        transmissions: of a URDF robot.
-        controls: `<ros2_control>` elements as they stand in the file, for a plugin that reads them.
-        mjcf: the engine's own description of the model, which is then what is simulated.
-        moved_by: what puts the links of a static model elsewhere while it runs (an actor's script); None: nothing.
+        allow_auto_disable: true if the model may sleep while it is at rest.
+        transmissions: transmissions of a URDF robot.
+        controls: `<ros2_control>` elements as written in the file, for a plugin that reads them.
+        mjcf: MuJoCo's own description of the model; if present, this description is simulated.
+        moved_by: object that moves the links of a static model during the run (an actor's script), or None.
     """
 
     name: str
@@ -303,17 +307,19 @@ class SceneModel:
     moved_by: object | None = None
 
     def all_models(self) -> list[SceneModel]:
-        """This model and all nested ones, outermost first, in document order."""
+        """Return this model and all nested models, outermost first, in document order."""
         return [self, *(m for nested in self.models for m in nested.all_models())]
 
     def all_links(self) -> list[SceneLink]:
+        """Return the links of this model and of all nested models."""
         return [link for m in self.all_models() for link in m.links]
 
     def all_joints(self) -> list[SceneJoint]:
+        """Return the joints of this model and of all nested models."""
         return [joint for m in self.all_models() for joint in m.joints]
 
     def all_sensors(self) -> list[SceneSensor]:
-        """Every sensor on links and joints, in document order of the models."""
+        """Return every sensor on links and joints, in document order of the models."""
         found: list[SceneSensor] = []
         for model in self.all_models():
             for link in model.links:
@@ -325,16 +331,18 @@ class SceneModel:
 
 @dataclass(frozen=True, slots=True)
 class SceneLight:
-    """A light.
+    """Light source.
 
     Attributes:
         type: directional, point or spot.
-        pose_world: at load time; `link` names the link that carries it, or is empty.
+        pose_world: pose in the world frame at load time.
         direction: unit vector in the light's own frame.
-        direction_world: the same in the world at load time.
+        direction_world: unit vector in the world frame at load time.
+        link: scoped name of the link that carries the light, or empty.
         attenuation: range [m], constant, linear [1/m], quadratic [1/m²].
         spot: inner angle [rad], outer angle [rad], falloff.
-        irradiance: of a surface that faces it [W/m²], of a lamp at 1 m; None where the file says nothing.
+        irradiance: irradiance [W/m²] on a surface that faces the light, for a lamp at a distance of 1 m; None if the
+            file gives no value.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""`--set PATH=VALUE`: one value of a loaded scene replaced by another, before anything is built from it.
+"""`--set PATH=VALUE`: replacement of one value of a loaded scene, before anything is built from the scene.
 
 PATH is `physics`, `world`, `scene`, or a scoped entity, then element names with dots:
 `tb3::base_scan::lds.update_rate`, `tb3::base_scan::lds.ray.scan.horizontal.samples`, `physics.max_step_size`,
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 T = TypeVar("T", bound="DataclassInstance")
 _Entity = SceneModel | SceneLink | SceneJoint | SceneLight | SceneCollision | SceneSensor | SceneVisual | ScenePlugin
-_Tree = dict[str, "_Tree"]  # fields that hold entities, and the fields of those
+_Tree = dict[str, "_Tree"]  # field that holds entities -> such fields of these entities
 
 _SENSOR_TREE: _Tree = {"plugins": {}}
 _LINK_TREE: _Tree = {
@@ -47,7 +47,7 @@ _MODEL_TREE["models"] = _MODEL_TREE
 _WORLD_TREE: _Tree = {"models": _MODEL_TREE, "lights": {}, "joints": {}, "plugins": {}}
 
 _CODE = "SK-CLI-014"
-_PLACE = "--set "
+_SOURCE_PREFIX = "--set "
 
 _PHYSICS = ("max_step_size", "real_time_factor", "sleep", "contact_law")
 _WORLD = {"gravity": 3, "magnetic_field": 3}
@@ -75,37 +75,37 @@ _SURFACE = {
 
 
 def apply_overrides(scene: Scene, overrides: Sequence[str]) -> Scene:
-    """The scene with each `PATH=VALUE` put in, in their order.
+    """Return the scene with every `PATH=VALUE` applied, in the given order.
 
     Raises:
-        InputError: SK-CLI-014 no such entity or element (the closest is named), or a value that does not fit.
+        InputError: SK-CLI-014 no such entity or element (the closest is named), or an invalid value.
     """
     for text in overrides:
         path, equals, value = text.partition("=")
         if not equals or not path.strip():
-            raise _override_error(text, "allowed is PATH=VALUE, such as physics.max_step_size=0.002")
+            raise _override_error(text, "write PATH=VALUE, such as physics.max_step_size=0.002")
         scene = _Override(text, value.strip()).apply(scene, path.strip())
     return scene
 
 
 def check_used(diagnostics: Iterable[Diagnostic]) -> None:
-    """Raises for an override that nothing read: its element's name is unknown to the sensor or plugin.
+    """Raise an error if an override was not read, because the sensor or plugin has no element of that name.
 
     Raises:
         InputError: SK-CLI-014 with the closest name.
     """
     for found in diagnostics:
-        if found.code == "SK-PARAM-003" and (found.file or "").startswith(_PLACE):
+        if found.code == "SK-PARAM-003" and (found.file or "").startswith(_SOURCE_PREFIX):
             hint = f"; {found.hint}" if found.hint else ""
             raise InputError(f"{_CODE} {found.file}: {found.message}{hint}", _CODE)
 
 
 def _override_error(text: str, reason: str) -> InputError:
-    return InputError(f"{_CODE} {_PLACE}{text}: {reason}", _CODE)
+    return InputError(f"{_CODE} {_SOURCE_PREFIX}{text}: {reason}", _CODE)
 
 
 class _Override:
-    """One override on its way through a scene."""
+    """One override, which returns changed copies of the scene's elements."""
 
     def __init__(self, text: str, value: str) -> None:
         self.text, self.value = text, value
@@ -117,17 +117,17 @@ class _Override:
             if scene.model is not None and path.startswith("scene."):
                 return replace(scene, around=self._world(replace(scene.world, models=(), lights=()), path))
             if not scene.worlds:
-                raise _override_error(self.text, "the file is a bare model; it has no world")
+                raise _override_error(self.text, "the file is a bare model without a world")
             return replace(scene, worlds=(self._world(scene.worlds[0], path), *scene.worlds[1:]))
         names = sorted(_entities(scene), key=len, reverse=True)
         entity = next((n for n in names if path.startswith(n + ".")), None)
         if entity is None:
             outer, colons, last = path.rpartition("::")
-            asked = outer + colons + last.split(".")[0]
+            unknown = outer + colons + last.split(".")[0]
             if path in (*names, "physics", "world", "scene"):
                 raise _override_error(self.text, f"{path!r} needs an element, as in {path}.element=value")
-            hint = did_you_mean(asked, [*names, "physics", "world", "scene"])
-            raise _override_error(self.text, f"no entity {asked!r}; {hint or 'simkit inspect lists them'}")
+            hint = did_you_mean(unknown, [*names, "physics", "world", "scene"])
+            raise _override_error(self.text, f"no entity {unknown!r}; {hint or 'simkit inspect lists all entities'}")
         element = path[len(entity) + 1 :]
         worlds = tuple(self._inside(world, _WORLD_TREE, "", entity, element) for world in scene.worlds)
         model = scene.model
@@ -137,11 +137,14 @@ class _Override:
         return replace(scene, worlds=worlds, model=model)
 
     def _inside(self, holder: T, tree: _Tree, owner: str, entity: str, element: str) -> T:
-        """A copy of a world, a model, ... in which the entity has the value, wherever in it that is.
+        """Return a copy of a world, model or link in which the entity has the new value, at any depth.
 
         Args:
-            tree: the fields of the holder that are looked through.
+            holder: the world, model or link.
+            tree: the fields of the holder that are searched.
             owner: scoped name of the holder; empty for a world.
+            entity: scoped name of the entity to change.
+            element: path of the element to set, with dots.
         """
         changes: dict[str, object] = {}
         for field, below in tree.items():
@@ -173,8 +176,8 @@ class _Override:
     # ------------------------------------------------------------------ changing it
 
     def _world(self, world: SceneWorld, path: str) -> SceneWorld:
-        room, _, element = path.partition(".")
-        if room == "physics":
+        area, _, element = path.partition(".")
+        if area == "physics":
             self._known(element, _PHYSICS)
             if element == "sleep":
                 return replace(world, physics=replace(world.physics, sleep=self._boolean()))
@@ -183,13 +186,13 @@ class _Override:
             positive = element == "max_step_size"
             number = self._number(lambda v: math.isfinite(v) and (v > 0 if positive else v >= 0), "a positive number")
             return replace(world, physics=replace(world.physics, **_change_value(element, number)))
-        if room == "scene":
+        if area == "scene":
             return self._scene(world, element)
         self._known(element, _WORLD)
         return replace(world, **_change_value(element, self._vector(_WORLD[element])))
 
     def _scene(self, world: SceneWorld, element: str) -> SceneWorld:
-        """How pictures are drawn."""
+        """Return a copy of the world with a changed `<scene>` setting."""
         self._known(element, _SCENE)
         if element == "quality":
             return replace(world, quality=self._one_of(QUALITIES))
@@ -253,13 +256,13 @@ class _Override:
         return replace(sensor, params=self._params(sensor.params, element))
 
     def _params(self, params: Params, element: str) -> Params:
-        """A copy of the block in which the element has the value; one that is not there is added."""
+        """Return a copy of the block in which the element has the new value; a missing element is added."""
         head, _, rest = element.partition(".")
         block = copy.copy(params)
         block.children = list(params.children)
         at = next((i for i, c in enumerate(block.children) if c.name == head), None)
         if at is None:
-            old = Params(head, where=Where(_PLACE + self.text), diagnostics=params.diagnostics)
+            old = Params(head, where=Where(_SOURCE_PREFIX + self.text), diagnostics=params.diagnostics)
             at = len(block.children)
             block.children.append(old)
         old = block.children[at]
@@ -270,7 +273,7 @@ class _Override:
             inner = ", ".join(dict.fromkeys(c.name for c in old.children))
             raise _override_error(self.text, f"<{head}> holds elements; name one of them: {inner}")
         new = copy.copy(old)
-        new.value, new.where = self.value, Where(_PLACE + self.text)
+        new.value, new.where = self.value, Where(_SOURCE_PREFIX + self.text)
         block.children[at] = new
         return block
 
@@ -279,7 +282,7 @@ class _Override:
     def _known(self, element: str, allowed: Collection[str]) -> None:
         if element not in allowed:
             hint = did_you_mean(element, allowed) or "allowed are " + ", ".join(allowed)
-            raise _override_error(self.text, f"no element {element!r} to set here; {hint}")
+            raise _override_error(self.text, f"the element {element!r} cannot be set here; {hint}")
 
     def _number(self, fits: Callable[[float], bool], allowed: str) -> float:
         try:
@@ -319,14 +322,14 @@ def _change_value(name: str, value: object) -> dict[str, Any]:
 
 
 def _path_of(item: _Entity, owner: str) -> str:
-    """The name that `--set` begins with; empty for a visual, of which only the plugins can be set."""
+    """Return the name that `--set` begins with, or an empty name for a visual, of which only plugins can be set."""
     if isinstance(item, ScenePlugin):
         return f"{owner}::{item.name}" if owner else item.name
     return "" if isinstance(item, SceneVisual) else item.scoped
 
 
 def _entities(scene: Scene) -> set[str]:
-    """Every name that `--set` can begin with."""
+    """Return every name that `--set` can begin with."""
     found = {path for world in scene.worlds for path in _paths(world, _WORLD_TREE, "")}
     if scene.model is not None:
         found |= {scene.model.scoped, *_paths(scene.model, _MODEL_TREE, scene.model.scoped)}

@@ -1,7 +1,7 @@
-"""Elements of our own: what a file may say that SDF has no word for.
+"""simkit's own elements, for data that SDF has no element for.
 
-They are read by their plain name and with our prefix, `<latency>` and `<simkit:latency>`; written they are with the
-prefix, over which Gazebo passes without a word.
+They are read with their plain name and with simkit's prefix: `<latency>` and `<simkit:latency>`. Files are written
+with the prefix, because Gazebo ignores prefixed elements without a message.
 """
 
 from __future__ import annotations
@@ -32,9 +32,9 @@ OWN_ELEMENTS: Final[Mapping[str, frozenset[str]]] = MappingProxyType(
         ),
     }
 )
-"""Element of SDF -> names in it that are our own. What is inside one of our own, or of a plugin's, needs no prefix."""
+"""SDF element -> names of simkit's own elements in it. Elements inside these, or inside a plugin, need no prefix."""
 
 
 def written_name(name: str, parent: str) -> str:
-    """The name of an element as a file for Gazebo has it: with our prefix where it is our own."""
+    """Return the name of an element in a file for Gazebo: with simkit's prefix if the element is simkit's own."""
     return PREFIX + name if name in OWN_ELEMENTS.get(parent, ()) else name

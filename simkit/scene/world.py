@@ -16,12 +16,12 @@ CONTACT_LAWS = ("simkit", "mujoco")
 
 @dataclass(frozen=True, slots=True)
 class Physics:
-    """Step [s] and the wanted real-time factor (0: as fast as it goes).
+    """Physics settings: step size [s] and desired real-time factor (0: as fast as possible).
 
     Attributes:
-        max_contacts: of one pair of collisions; 20 where the file says nothing.
-        sleep: whether what rests may be left out of the physics until something reaches it.
-        contact_law: "simkit", or "mujoco" for contacts and integration as the engine alone has them.
+        max_contacts: maximum number of contacts of one pair of collisions; 20 if the file gives no value.
+        sleep: true if bodies at rest may be left out of the physics until another body reaches them.
+        contact_law: "simkit", or "mujoco" for MuJoCo's own contacts and integration.
     """
 
     max_step_size: float = 0.001
@@ -34,10 +34,10 @@ class Physics:
 
 @dataclass(frozen=True, slots=True)
 class SphericalCoordinates:
-    """Where on Earth (or the Moon, or an ellipsoid of its own) the world's origin lies; angles rad, elevation m.
+    """Position of the world's origin on Earth, on the Moon or on a custom ellipsoid; angles in rad, elevation in m.
 
     Attributes:
-        heading: from east to the world's x axis, counter-clockwise.
+        heading: angle from east to the world's x axis, counter-clockwise.
         surface: EARTH_WGS84, MOON_SCS or CUSTOM_SURFACE.
         equatorial, polar: semi-axes of that surface [m].
     """
@@ -54,12 +54,12 @@ class SphericalCoordinates:
 
 @dataclass(frozen=True, slots=True)
 class Atmosphere:
-    """The air at sea level, with a constant lapse rate.
+    """Air at sea level, with a constant lapse rate.
 
     Attributes:
-        temperature: [K].
-        temperature_gradient: [K/m].
-        pressure: [Pa].
+        temperature: temperature [K].
+        temperature_gradient: lapse rate [K/m].
+        pressure: pressure [Pa].
     """
 
     temperature: float = 288.15
@@ -70,7 +70,7 @@ class Atmosphere:
 
 @dataclass(frozen=True, slots=True)
 class Waypoint:
-    """Where an actor is at a time [s] of its script."""
+    """Pose of an actor at a time [s] of its script."""
 
     time: float
     pose: Pose
@@ -78,7 +78,12 @@ class Waypoint:
 
 @dataclass(frozen=True, slots=True)
 class Trajectory:
-    """A way of an actor; `type` names the animation that plays meanwhile, `tension` is that of the spline (0 to 1)."""
+    """Path of an actor.
+
+    Attributes:
+        type: name of the animation that plays along the path.
+        tension: tension of the spline, from 0 to 1.
+    """
 
     id: int
     type: str
@@ -88,7 +93,7 @@ class Trajectory:
 
 @dataclass(frozen=True, slots=True)
 class Animation:
-    """A skeleton animation of an actor."""
+    """Skeleton animation of an actor."""
 
     name: str
     uri: str
@@ -98,11 +103,11 @@ class Animation:
 
 @dataclass(frozen=True, slots=True)
 class PersonLook:
-    """How a person looks.
+    """Appearance of a person.
 
     Attributes:
-        height: [m]; None leaves it to the name.
-        colours: red, green, blue from 0 to 1 of shirt, trousers, skin and hair, as far as they are given.
+        height: height [m]; None derives the height from the name.
+        colours: colours of shirt, trousers, skin and hair (red, green, blue from 0 to 1), if given.
     """
 
     height: float | None = None
@@ -111,12 +116,12 @@ class PersonLook:
 
 @dataclass(frozen=True, slots=True)
 class SceneActor:
-    """A person or animal that follows a script.
+    """Person or animal that follows a script.
 
     Attributes:
-        skin: URI of the mesh; empty where there is none.
-        loop, delay_start, auto_start: how its script plays; the delay in seconds.
-        person: how a person of our own making looks who stands in for the skin; None leaves it to the name.
+        skin: URI of the mesh; empty if there is none.
+        loop, delay_start, auto_start: playback of its script; the delay in seconds.
+        person: appearance of simkit's own figure of a person, which replaces the skin; None derives it from the name.
     """
 
     name: str
@@ -134,12 +139,12 @@ class SceneActor:
 
 
 QUALITIES: Final = ("fast", "gazebo", "high")
-"""How pictures can be drawn: as fast as it goes, with Gazebo's shadows and smooth edges, or finer than that."""
+"""Rendering qualities: as fast as possible, with Gazebo's shadows and smooth edges, or finer than Gazebo's."""
 
 
 @dataclass(frozen=True, slots=True)
 class Fog:
-    """Mist that grows with the depth z [m] of a surface in a picture.
+    """Fog that increases with the depth z [m] of a surface in an image.
 
     Attributes:
         type: linear (none up to `start`, full from `end` [m] on), exp (1 - e^(-density z)) or exp2
@@ -155,11 +160,11 @@ class Fog:
 
 @dataclass(frozen=True, slots=True)
 class Surroundings:
-    """`<scene>`: colours RGBA from 0 to 1.
+    """Content of `<scene>`: colours RGBA from 0 to 1.
 
     Attributes:
-        sky: whether a sky is drawn in place of the background.
-        fog: None where the air is clear.
+        sky: true if a sky is drawn instead of the background.
+        fog: fog, or None for clear air.
     """
 
     ambient: Colour = (0.4, 0.4, 0.4, 1.0)
@@ -172,15 +177,15 @@ class Surroundings:
 
 @dataclass(frozen=True, slots=True)
 class SceneWorld:
-    """One world.
+    """World with its models, lights, plugins and settings.
 
     Attributes:
-        gravity: [m/s²] in the world frame.
-        magnetic_field: [T] in the world frame.
-        quality: renderer quality asked for: fast, gazebo or high.
-        gazebo_quirks: whether sensors err where Gazebo's are known to err (`<simkit:gazebo_quirks>`).
+        gravity: gravity [m/s²] in the world frame.
+        magnetic_field: magnetic field [T] in the world frame.
+        quality: requested rendering quality: fast, gazebo or high.
+        gazebo_quirks: true if sensors reproduce Gazebo's known errors (`<simkit:gazebo_quirks>`).
         wind: velocity of the air [m/s] in the world frame.
-        mjcf: for a world in MuJoCo's own format: makes a fresh specification, whose settings of the engine count.
+        mjcf: for a world in MuJoCo's own format: returns a new specification, whose engine settings are used.
     """
 
     name: str = "default"
@@ -203,15 +208,16 @@ class SceneWorld:
     mjcf: Callable[[], Any] | None = None
 
     def model(self, name: str) -> SceneModel | None:
+        """Return the model of that name, or None."""
         return next((m for m in self.models if m.name == name), None)
 
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """A loaded file: its worlds, or one bare model, or one bare light.
+    """Loaded file: its worlds, or one bare model, or one bare light.
 
     Attributes:
-        around: what a bare model's file says of the world that it is to stand in; None where it says nothing.
+        around: world that a bare model's file describes around the model; None if the file describes none.
     """
 
     worlds: tuple[SceneWorld, ...] = ()
@@ -222,7 +228,7 @@ class Scene:
 
     @property
     def world(self) -> SceneWorld:
-        """The world to run: the first of the file, or an empty one around the bare model or light."""
+        """World to run: the first of the file, or an empty world that holds the bare model or light."""
         if self.worlds:
             return self.worlds[0]
         if self.around is not None and self.model is not None:

@@ -83,8 +83,8 @@ def test_later_ones_win() -> None:
         ("arm::hinge.axis2.limit.upper=1", "has 1 axes"),
         ("arm::tip::imu.imu=3", "holds elements; name one of them: angular_velocity"),
         ("arm.static=maybe", "true, false, 1 or 0"),
-        ("nonsense", "allowed is PATH=VALUE"),
-        ("=3", "allowed is PATH=VALUE"),
+        ("nonsense", "write PATH=VALUE"),
+        ("=3", "write PATH=VALUE"),
     ],
 )
 def test_what_does_not_fit_is_said(override: str, reason: str) -> None:
