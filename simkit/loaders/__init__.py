@@ -1,9 +1,9 @@
-"""Loaders: files and XML text become a `Scene`.
+"""Loaders: convert model and world files, or XML text, into a `Scene`.
 
-A path, a bundled name or XML text enters, with a `Resolver` for what it names; a `Scene` leaves, and a diagnostic for
-every mistake. XML ends in this room. No loader imports MuJoCo, builds a model or raises for a user's mistake:
-MuJoCo's parser, which MJCF needs, and the reader of meshes are passed in. `sdf` knows no other format; `urdf` and
-`mjcf` use its readers, and all of them what is in `resources`.
+The input is a path, a bundled name or XML text, with a `Resolver` for the files that it refers to. The output is a
+`Scene` and one diagnostic for every mistake. XML is used in this package only. No loader imports MuJoCo, builds a
+model or raises an exception for a user's mistake. The caller passes MuJoCo's parser, which MJCF needs, and the reader
+of meshes. `sdf` knows no other format. `urdf` and `mjcf` use the readers of `sdf`, and all of them use `resources`.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ __all__ = ["Document", "LoadRequest", "Loader", "Resolver", "find_document", "lo
 
 @lru_cache(maxsize=1)
 def loader_kinds() -> Mapping[str, type[Loader]]:
-    """Every loader by the root element it reads."""
+    """Return every loader by the root element that it reads."""
     return Kinds("simkit.loaders", "simkit.loaders", Loader, lambda cls: cls.roots, ("roots",))  # type: ignore[type-abstract]
 
 
@@ -52,22 +52,22 @@ def load_scene(
     mesh_reader: MeshReader | None = None,
     mjcf_parser: Callable[[], MjcfParser] | None = None,
 ) -> Scene:
-    """Reads a file, or XML text, into a scene.
+    """Read a file or XML text into a scene.
 
     Args:
-        source: a path, the name of a bundled model or world, or XML text (it contains `<`).
-        resolver: finds what the file names.
+        source: a path, the name of a bundled model or world, or XML text (any text that contains `<`).
+        resolver: finds the files that the source refers to.
         diagnostics: receives every problem; a user's mistake never raises.
         xacro_args: arguments of a xacro file.
         base: "auto", "fixed" or "floating", for a bare model.
         name: replaces the name of a bare model.
-        pose: replaces the pose of a bare model [m], in the world.
-        as_model: one model is wanted, where a file could be a world as well.
-        mesh_reader: gives the triangles of a mesh, for automatic inertia; without it meshes have no volume.
-        mjcf_parser: gives MuJoCo's parser, which MJCF files need (`simkit.compiler.mjcf_parser.MjcfParser`).
+        pose: replaces the pose of a bare model [m], in the world frame.
+        as_model: reads the file as one model, even if the file could also be a world.
+        mesh_reader: returns the triangles of a mesh, for automatic inertia; without it a mesh has no volume.
+        mjcf_parser: returns MuJoCo's parser, which MJCF files need (`simkit.compiler.mjcf_parser.MjcfParser`).
 
     Returns:
-        What could be read; an empty scene when nothing could.
+        Everything that could be read; an empty scene if nothing could be read.
     """
     document, _ = find_document(source, resolver, diagnostics, xacro_args)
     if document is None:
@@ -77,7 +77,7 @@ def load_scene(
     if root.name not in kinds:
         known = ", ".join(f"<{kind}>" for kind in kinds)
         hint = foreign_root_hint(root.name) or did_you_mean(root.name, kinds) or ALLOWED_FORMATS
-        diagnostics.error("SK-LOAD-003", f"the root element is <{root.name}>, known are {known}", root.where, hint)
+        diagnostics.error("SK-LOAD-003", f"unknown root element <{root.name}>; known are {known}", root.where, hint)
         return Scene()
     request = LoadRequest(
         resolver=resolver,
@@ -100,7 +100,12 @@ def find_document(
     diagnostics: Diagnostics,
     xacro_args: Mapping[str, str] | None = None,
 ) -> tuple[Document | None, bool]:
-    """The parsed file that a source means, and whether it was expanded from xacro; None with an error recorded."""
+    """Parse the file that a source refers to, and expand it if it is xacro.
+
+    Returns:
+        The document, and true if it was expanded from xacro. The document is None, with an error recorded, if the
+        source cannot be read.
+    """
     document = _document(source, diagnostics)
     if document is None or not needs_expansion(document):
         return document, False
@@ -113,7 +118,7 @@ def _document(source: str | os.PathLike[str], diagnostics: Diagnostics) -> Docum
         return None if root is None else Document(root, None, source.encode())
     path = Path(source)
     if not str(source):
-        diagnostics.error("SK-LOAD-002", "the source is empty; it is a path or XML text")
+        diagnostics.error("SK-LOAD-002", "the source is empty", hint="give a path, a bundled name or XML text")
         return None
     if problem := access_problem(path):
         shown = str(path) if len(str(path)) < 200 else f"{str(path)[:200]}..."
@@ -123,7 +128,7 @@ def _document(source: str | os.PathLike[str], diagnostics: Diagnostics) -> Docum
         found = Diagnostics()
         model = model_file(path, Where(str(path)), found)
         if model is None and (bundled := find_bundled_world(str(source)) or find_bundled_model(str(source))):
-            return parse_file(bundled, diagnostics)  # a folder that happens to have the name, such as a golden run
+            return parse_file(bundled, diagnostics)  # the folder has the same name by chance, such as a reference run
         diagnostics.extend(found)
         return None if model is None else parse_file(model, diagnostics)
     if not path.exists():

@@ -1,6 +1,6 @@
-"""`docs/elements.md`: what each element of SDF and URDF becomes, written from the loaders' own tables.
+"""Generator of `docs/elements.md`, the list of all SDF and URDF elements and how simkit uses each one.
 
-`python -m simkit.loaders.elements_page > docs/elements.md` writes the page; a test compares it with the tables.
+`python -m simkit.loaders.elements_page > docs/elements.md` writes the page. A test compares the page with the tables.
 """
 
 from __future__ import annotations
@@ -14,33 +14,34 @@ from simkit.loaders.sdf.element_table import Row, Table, sdf_elements
 
 _INTRODUCTION = """# What each element becomes
 
-Written from the tables in `simkit/loaders`; do not edit. Attributes begin with `@`.
+This page is generated from the tables in `simkit/loaders`; do not edit it. Attributes begin with `@`.
 
-- **used**: it means what the format says.
-- **approximated**: it is read, and something near to it happens.
-- **ignored**: a setting of another engine or of Gazebo's windows; one note (`SK-SDF-010`) names all of a file.
-- **not simulated**: a warning (`SK-SDF-012`) for each.
+- **used**: has the meaning that the format defines.
+- **approximated**: is read, and simkit does something similar.
+- **ignored**: configures another engine or Gazebo's windows; one note (`SK-SDF-010`) lists all of a file.
+- **not simulated**: has no effect; each one causes a warning (`SK-SDF-012`).
 
-Anything else is not known: a warning with line and closest name (`SK-SDF-011` for an element, `SK-SDF-037` for an
-attribute, `SK-SDF-038` for text where elements belong). Names with a prefix (`gz:…`) belong to whoever asks for them.
+Every other name is unknown and causes a warning with line and closest name: `SK-SDF-011` for an element, `SK-SDF-037`
+for an attribute, `SK-SDF-038` for text where only elements are allowed. Names with a prefix (`gz:…`) belong to the
+plugin or sensor that reads them.
 """
 
 
 def page() -> str:
-    """The whole page as Markdown."""
+    """Return the whole page as Markdown."""
     return "\n".join([_INTRODUCTION, "## SDF 1.0 to 1.12", "", *_sdf(), *_urdf()])
 
 
 def _sdf() -> Iterator[str]:
-    for one in sdf_elements().tables:
-        yield from _section(one)
+    for table in sdf_elements().tables:
+        yield from _section(table)
 
 
-def _section(one: Table) -> Iterator[str]:
-    yield f"### `<{one.element}>`" if " " not in one.element else f"### {one.element.capitalize()}"
+def _section(table: Table) -> Iterator[str]:
+    yield f"### `<{table.element}>`" if " " not in table.element else f"### {table.element.capitalize()}"
     yield ""
     yield from _head("element", "is", "becomes")
-    for row in one.rows:
+    for row in table.rows:
         path = row.path.replace("#text", "(text)")
         yield f"| `{path}` | {row.use.value} | {_cell(row.becomes)}{_link(row)} |"
     yield ""
@@ -54,10 +55,10 @@ def _link(row: Row) -> str:
 
 
 def urdf_elements() -> list[tuple[str, str]]:
-    """URDF's own table: each path, and what it becomes.
+    """Return URDF's own table as pairs of element path and use.
 
-    A path is element names from `<robot>` down, `@name` an attribute. `gazebo[link]`, `gazebo[joint]` and
-    `gazebo[robot]` are the extensions whose reference names a link, a joint, or nothing.
+    A path lists element names from `<robot>` down; `@name` is an attribute. `gazebo[link]`, `gazebo[joint]` and
+    `gazebo[robot]` are the `<gazebo>` extensions that refer to a link, to a joint, or to nothing.
     """
     with Path(__file__).with_name("urdf").joinpath("elements.csv").open(encoding="utf-8", newline="") as file:
         return [(line["path"], line["becomes"]) for line in csv.DictReader(file)]

@@ -1,4 +1,4 @@
-"""Where the numbers of each inertia stand in a file, so that they can be changed and nothing else."""
+"""Byte positions of the inertia numbers in a file, so that they can be replaced without changing any other byte."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ _SDF_DEFAULTS = {"ixx": 1.0, "iyy": 1.0, "izz": 1.0, "ixy": 0.0, "ixz": 0.0, "iy
 
 @dataclass
 class WrittenInertia:
-    """The inertia of one link as it is written.
+    """Inertia of one link, as written in the file.
 
     Attributes:
         link: name of the link.
-        line: of its `<inertia>`.
-        mass: [kg]; 1 where the file gives none (SDF), 0 in URDF.
+        line: line number of its `<inertia>`.
+        mass: mass [kg]; 1 if the file gives none (SDF), 0 in URDF.
         values: ixx, iyy, izz, ixy, ixz, iyz [kg·m²] in the axes of its `<inertial>`.
-        spans: byte range of each number that is written.
-        end: where a number that is not written can be put in.
-        is_urdf: numbers are attributes, else elements.
+        spans: byte range of each number that the file contains.
+        end: byte position at which a missing number can be inserted.
+        is_urdf: true if the numbers are attributes (URDF), false if they are elements (SDF).
     """
 
     link: str
@@ -39,12 +39,13 @@ class WrittenInertia:
 
     @property
     def six(self) -> tuple[float, float, float, float, float, float]:
+        """Moments ixx, iyy, izz, ixy, ixz, iyz [kg·m²] in the axes of the `<inertial>`."""
         a, b, c, d, e, f = (self.values[k] for k in MOMENT_NAMES)
         return a, b, c, d, e, f
 
 
 class _InertiaFinder:
-    """Follows expat's events and notes byte offsets."""
+    """Handler of expat's events that records the byte positions of all inertias."""
 
     def __init__(self, data: bytes) -> None:
         self.data, self.stack = data, list[str]()
@@ -63,7 +64,7 @@ class _InertiaFinder:
         raise ValueError("the file declares an entity")
 
     def tag_end(self) -> int:
-        """The byte after the `>` of the start tag that is being read."""
+        """Return the byte position after the `>` of the current start tag."""
         position, quote = self.parser.CurrentByteIndex, 0
         while position < len(self.data):
             byte = self.data[position]
@@ -128,11 +129,14 @@ class _InertiaFinder:
 
 
 def find_inertias(path: Path) -> tuple[bytes, list[WrittenInertia]]:
-    """A file and every inertia in it, in document order.
+    """Read a file and find every inertia in it.
+
+    Returns:
+        The bytes of the file, and its inertias in document order.
 
     Raises:
-        OSError: it cannot be read.
-        ValueError: it is no XML in UTF-8 whose numbers can be read.
+        OSError: the file cannot be read.
+        ValueError: the file is not XML in UTF-8, or one of its numbers cannot be read.
     """
     data = read_bounded(path, MAX_BYTES)
     if len(data) > MAX_BYTES:
@@ -142,12 +146,17 @@ def find_inertias(path: Path) -> tuple[bytes, list[WrittenInertia]]:
     try:
         finder.parser.Parse(data, True)
     except expat.ExpatError as error:
-        raise ValueError(f"is broken XML: {error}") from None
+        raise ValueError(f"is not well-formed XML: {error}") from None
     return data, finder.found
 
 
 def replace_numbers(data: bytes, changes: Sequence[tuple[WrittenInertia, Mapping[str, str]]]) -> bytes:
-    """The file with the numbers of some inertias replaced (by key, as text) and every other byte as it was."""
+    """Return the file with the given numbers replaced or inserted; every other byte stays the same.
+
+    Args:
+        data: the bytes of the file.
+        changes: pairs of an inertia and its new numbers, as text by key (`ixx`, ...).
+    """
     edits: list[tuple[int, int, bytes]] = []
     for inertia, texts in changes:
         for key, text in texts.items():

@@ -1,4 +1,4 @@
-"""Models that come into a world as it is loaded: `--spawn MODEL:x,y,yaw[:name]`."""
+"""Additional models that are loaded into a world at start: `--spawn MODEL:x,y,yaw[:name]`."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ _COUNTS: Final = {3: "x,y,yaw", 4: "x,y,z,yaw", 6: "x,y,z,roll,pitch,yaw"}
 
 @dataclass(frozen=True, slots=True)
 class SpawnedModel:
-    """One model to come.
+    """One additional model.
 
     Attributes:
         source: a bare name, a file, or XML text.
-        place: x, y, yaw; or x, y, z, yaw; or x, y, z, roll, pitch, yaw [m, rad]. None leaves it to the file.
-        name: in place of the file's; None keeps that.
+        place: x, y, yaw; or x, y, z, yaw; or x, y, z, roll, pitch, yaw [m, rad]. None keeps the pose of the file.
+        name: replaces the name in the file; None keeps that name.
     """
 
     source: str | os.PathLike[str]
@@ -37,7 +37,11 @@ class SpawnedModel:
     name: str | None = None
 
     def pose(self, own: Pose) -> Pose | None:
-        """Where it is to stand, given where its file puts it; x, y, yaw keep its height and its tilt."""
+        """Return the pose in the world, or None to keep the pose of the file; x, y, yaw alone keep its height and tilt.
+
+        Args:
+            own: pose that the model's own file gives.
+        """
         if self.place is None:
             return None
         if len(self.place) == 6:
@@ -51,18 +55,18 @@ class SpawnedModel:
 
 
 def parse_spawn(text: str, diagnostics: Diagnostics) -> SpawnedModel | None:
-    """A text such as `tiago:1,0,1.57:robot`; None with an error recorded where it is none."""
+    """Parse a text such as `tiago:1,0,1.57:robot`; return None, with an error recorded, if the text is invalid."""
     found = _TEXT.fullmatch(text.strip())
     if found is None:
         if not text.strip() or _POSED.search(text):
-            diagnostics.error("SK-SPAWN-001", f"--spawn: found {text!r}, allowed is {_FORM}")
+            diagnostics.error("SK-SPAWN-001", f"--spawn: invalid value {text!r}", hint=f"write {_FORM}")
             return None
         return SpawnedModel(text.strip())
     numbers = tuple(float(v) for v in found["numbers"].split(","))
     if len(numbers) not in _COUNTS:
-        what = f"--spawn: {text!r} has {len(numbers)} number{'s' if len(numbers) > 1 else ''}"
-        forms = "; ".join(f"{count}: {form}" for count, form in _COUNTS.items())
-        diagnostics.error("SK-SPAWN-001", what, hint=f"what is allowed is {forms}")
+        message = f"--spawn: {text!r} has {len(numbers)} number{'s' if len(numbers) > 1 else ''}"
+        forms = "; ".join(f"{count} ({form})" for count, form in _COUNTS.items())
+        diagnostics.error("SK-SPAWN-001", message, hint=f"give {forms} numbers")
         return None
     return SpawnedModel(found["model"], numbers, found["name"])
 
@@ -75,30 +79,30 @@ def add_spawned_models(
     load_model: Callable[..., SceneModel | None],
     xacro_args: Mapping[str, str] | None = None,
 ) -> Scene:
-    """The scene with more models in its world; every problem is recorded.
+    """Return the scene with more models in its world.
 
     Args:
-        scene: what was loaded.
-        wanted: what is to come, in this order.
+        scene: the loaded scene.
+        wanted: the additional models, in this order.
         resolver: finds files.
-        diagnostics: gets every problem.
+        diagnostics: receives every problem.
         load_model: reads a model, given source, diagnostics, name and pose.
         xacro_args: arguments of xacro files.
     """
     world = scene.world
     models = list(world.models)
-    for one in wanted:
-        spawn = parse_spawn(one, diagnostics) if isinstance(one, str) else one
+    for item in wanted:
+        spawn = parse_spawn(item, diagnostics) if isinstance(item, str) else item
         if spawn is None:
             continue
         found = Diagnostics()
         own = _file_pose(spawn.source, resolver, xacro_args)
         model = load_model(spawn.source, found, name=spawn.name, pose=spawn.pose(own), xacro_args=xacro_args)
-        found.pass_on(diagnostics)  # also what its plugins find in their own parameters later
+        found.pass_on(diagnostics)  # also passes on what plugins later report about their own parameters
         if model is None:
             continue
         if model.name in {*(m.name for m in models), *(a.name for a in world.actors)}:
-            text = f"--spawn: the world has something named {model.name!r} already"
+            text = f"--spawn: the world already has a model or actor named {model.name!r}"
             diagnostics.error("SK-SPAWN-002", text, model.where, "give it another name: MODEL:x,y,yaw:NAME")
             continue
         models.append(model)
@@ -107,7 +111,7 @@ def add_spawned_models(
 
 
 def _file_pose(source: Any, resolver: Resolver, xacro_args: Mapping[str, str] | None) -> Pose:
-    """Where a model's own file puts it; the origin where it says nothing."""
+    """Return the pose that a model's own file gives, or the origin if the file gives none."""
     if not (isinstance(source, str) and "<" in source) and Path(source).suffix in (".urdf", ".xacro", ".xml"):
         return Pose()
     document, _ = find_document(source, resolver, Diagnostics(), xacro_args)

@@ -1,5 +1,5 @@
-"""Input files: where they are, and how they are read.
+"""Resources of input files: finding files and reading them.
 
-A URI, a ROS package or a bundled name enters; a path, or a file's content as `Params`, leaves. Everything is read
-within bounds and inside the resource folders; nothing is fetched from a network, and no format is interpreted here.
+The input is a URI, a ROS package or a bundled name; the output is a path, or a file's content as `Params`. Sizes are
+limited, and files are read only inside the resource folders. Nothing is downloaded, and no format is interpreted here.
 """

@@ -1,4 +1,4 @@
-"""Reading a file that somebody else wrote: never more than asked for, and never waiting for ever."""
+"""Reading of untrusted files, with a size limit and with a timeout for pipes."""
 
 from __future__ import annotations
 
@@ -8,16 +8,17 @@ import select
 import stat
 from pathlib import Path
 
-PIPE_TIMEOUT = 10.0  # [s] for whoever writes into a pipe
+PIPE_TIMEOUT = 10.0  # [s] without data from the writer of a pipe
 
 
 def read_bounded(path: Path, most: int) -> bytes:
-    """The content of a file, or of a pipe somebody writes into; one byte more than `most` where it has more.
+    """Return the content of a file or pipe, at most `most` + 1 bytes.
 
-    Sizes are not believed, because a file may grow or be sparse. A device (`/dev/zero`) is no file.
+    One byte more than `most` means that the file is larger. The reported file size is not used, because a file can grow
+    or be sparse. Devices (`/dev/zero`) are refused.
 
     Raises:
-        OSError: it cannot be read, is a folder or a device, or a pipe stays silent for 10 s.
+        OSError: the path cannot be read, is a folder or a device, or is a pipe without data for 10 s.
     """
     handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
     with os.fdopen(handle, "rb", buffering=0):

@@ -1,4 +1,4 @@
-"""Models and worlds that simkit brings: by bare name, the chosen TurtleBot3, the ground plane and the sun."""
+"""Models and worlds that are part of simkit: bundled files, the selected TurtleBot3, the ground plane and the sun."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ def _package_folder() -> Path:
 
 
 def bundled_folders(kind: str) -> list[Path]:
-    """The folders `assets` or `worlds` that travel with simkit, beside or inside the package."""
+    """Return the folders `assets` or `worlds` of simkit, inside the package and beside it."""
     package = _package_folder()
     return [folder for folder in (package / kind, package.parent / kind) if folder.is_dir()]
 
 
 def is_bare_name(name: str) -> bool:
-    """Whether a text may be the name of a bundled model or package: no path, no pattern."""
+    """Check whether a text can be the name of a bundled model or package: neither a path nor a pattern."""
     return 0 < len(name) < 200 and not set(name) & set("/\\*?[]<>:") and not name.startswith(".")
 
 
 def find_bundled_model(name: str) -> Path | None:
-    """The SDF or URDF file of a bundled model, by its bare name; None when there is none."""
+    """Return the SDF or URDF file of a bundled model by its bare name, or None if there is no such model."""
     if not is_bare_name(name):
         return None
     for bundle in bundled_folders("assets"):
@@ -41,52 +41,52 @@ def find_bundled_model(name: str) -> Path | None:
             if found is not None:
                 return found
         for suffix in ("sdf", "urdf", "xacro"):
-            spelt = name if name.endswith(f".{suffix}") else f"{name}.{suffix}"
-            below = [file for pattern in ("*", "*/urdf") for file in sorted(bundle.glob(f"{pattern}/{spelt}"))]
-            for file in (bundle / spelt, *below):
+            file_name = name if name.endswith(f".{suffix}") else f"{name}.{suffix}"
+            below = [file for pattern in ("*", "*/urdf") for file in sorted(bundle.glob(f"{pattern}/{file_name}"))]
+            for file in (bundle / file_name, *below):
                 if file.is_file():
                     return file
     return None
 
 
 def find_bundled_world(name: str) -> Path | None:
-    """The file of a bundled world, by its bare name; None when there is none."""
+    """Return the file of a bundled world by its bare name, or None if there is no such world."""
     if not is_bare_name(name):
         return None
     for bundle in bundled_folders("worlds"):
-        for spelt in (name, f"{name}.sdf", f"{name}.world"):
-            if (bundle / spelt).is_file():
-                return bundle / spelt
+        for file_name in (name, f"{name}.sdf", f"{name}.world"):
+            if (bundle / file_name).is_file():
+                return bundle / file_name
     return None
 
 
 def bundled_names() -> list[str]:
-    """Bare names of the worlds and models that simkit brings."""
+    """Return the bare names of the bundled worlds and models."""
     worlds = [p.stem for bundle in bundled_folders("worlds") for p in bundle.glob("*.sdf")]
     models = [p.parent.name for bundle in bundled_folders("assets") for p in bundle.glob("**/model.config")]
     return sorted({*worlds, *models})
 
 
 def turtlebot3_uri(uri: str, where: Where, diagnostics: Diagnostics) -> str | None:
-    """The URI, with `model://turtlebot3` made the robot that `TURTLEBOT3_MODEL` names.
+    """Replace the URI `model://turtlebot3` by that of the robot that `TURTLEBOT3_MODEL` names.
 
-    An unset variable means the waffle, with a note; an unknown robot is an error that lists the known ones.
+    An unset variable selects the waffle, with a note. An unknown robot is an error that lists the known ones.
     """
     if uri != _URI:
         return uri
     name = os.environ.get("TURTLEBOT3_MODEL", "").strip()
     if not name:
-        diagnostics.note("SK-URI-008", f"TURTLEBOT3_MODEL is not set: the robot is the {_DEFAULT}", where)
+        diagnostics.note("SK-URI-008", f"TURTLEBOT3_MODEL is not set; the robot is a {_DEFAULT}", where)
         name = _DEFAULT
     if name not in MODELS:
-        message = f"TURTLEBOT3_MODEL={name}: this robot is not here, allowed is {', '.join(MODELS)}"
+        message = f"TURTLEBOT3_MODEL={name}: unknown robot; known are {', '.join(MODELS)}"
         diagnostics.error("SK-URI-007", message, where, did_you_mean(name, MODELS) or "unset it")
         return None
     return f"{_URI}_{name}"
 
 
 def turtlebot3_name(name: str, diagnostics: Diagnostics) -> str | None:
-    """The bare name of a bundled model, with `turtlebot3` made the robot that `TURTLEBOT3_MODEL` names."""
+    """Replace the bare name `turtlebot3` by that of the robot that `TURTLEBOT3_MODEL` names."""
     if name != "turtlebot3":
         return name
     uri = turtlebot3_uri(_URI, Where(name), diagnostics)
@@ -110,7 +110,7 @@ _MODELS = {"ground_plane": _GROUND_PLANE, "ground plane": _GROUND_PLANE, "sun": 
 
 
 def builtin_model(uri: str) -> str | None:
-    """The text of the built-in model that a `model://` or Fuel URI names, or None."""
+    """Return the text of the built-in model that a `model://` or Fuel URI names, or None."""
     scheme, separator, rest = unquote(uri).partition("://")
     if not separator or scheme not in ("model", "http", "https"):
         return None

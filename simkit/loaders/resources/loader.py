@@ -1,4 +1,4 @@
-"""Base class of the loaders, and what a load is asked for."""
+"""Base class of the loaders, with the options of a load and the interfaces that the caller implements."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ MujocoObject = Any
 
 
 class Triangles(Protocol):
-    """A part of a mesh in metres: vertices of shape (n, 3) and the three vertex indices of each face."""
+    """Part of a mesh in metres: vertices of shape (n, 3) and the three vertex indices of each face."""
 
     @property
     def vertices(self) -> npt.NDArray[np.float64]: ...
@@ -38,17 +38,17 @@ MeshReader = Callable[[Mesh, Diagnostics, Where], Sequence[Triangles]]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MjcfText:
-    """An MJCF file with everything that it includes and names, in memory, as MuJoCo reads it.
+    """MJCF file in memory, with all the files that it includes or refers to, in the form that MuJoCo reads.
 
     Attributes:
-        root: the outermost element with every include in place.
-        text: what MuJoCo reads.
-        models: the models that it attaches, by the names that the text uses.
-        assets: its other files, likewise.
-        lines: the place in the user's files of every line of the text (and of the models it attaches).
-        origins: top-level body -> name of the model whose file it was included from.
-        files: name among the assets -> (file, as written).
-        file: the outermost file, or None for text.
+        root: the outermost element, with the content of every include.
+        text: the XML text for MuJoCo.
+        models: attached models, by the names that the text uses.
+        assets: all other files, by the names that the text uses.
+        lines: place in the user's files of every line of the text and of the models that it attaches.
+        origins: top-level body -> name of the model whose file the body was included from.
+        files: name among the assets -> (file, URI as written).
+        file: the outermost file, or None for XML given as text.
     """
 
     root: Params
@@ -61,18 +61,18 @@ class MjcfText:
     file: str | None
 
     def where(self, line: int) -> Where:
-        """The place of a line of the text."""
+        """Return the place in the user's files of a line of the text."""
         return self.lines[line - 1] if 0 < line <= len(self.lines) else self.root.where
 
 
 class CompiledMjcf(Protocol):
-    """What MuJoCo makes of one MJCF file; loaders do not know MuJoCo's own types.
+    """Result of compiling one MJCF file with MuJoCo; loaders do not import MuJoCo's own types.
 
     Attributes:
         spec: the `mujoco.MjSpec`, in which every element has a name.
-        model: the `mujoco.MjModel` that it compiles to.
-        data: a `mujoco.MjData` as the file stands, with the poses of all bodies.
-        document: makes a fresh `mujoco.MjSpec` of the same content.
+        model: the compiled `mujoco.MjModel`.
+        data: a `mujoco.MjData` in the initial state of the file, with the poses of all bodies.
+        document: returns a new `mujoco.MjSpec` of the same content.
     """
 
     @property
@@ -89,52 +89,54 @@ class CompiledMjcf(Protocol):
 
     @property
     def is_aligned(self) -> bool:
-        """Whether compiling turns a free body into the axes of its inertia."""
+        """True if compiling rotates the frame of a free body into its axes of inertia."""
         ...
 
     @property
     def has_gravity(self) -> bool:
-        """Whether the file's flags leave gravity on."""
+        """True if the file's flags keep gravity enabled."""
         ...
 
     @property
     def allows_sleep(self) -> bool:
-        """Whether the file's flags let sleep what rests."""
+        """True if the file's flags let bodies at rest sleep."""
         ...
 
     def name(self, kind: str, number: int) -> str:
-        """The name of an element; `kind` is MuJoCo's word (`BODY`, `JOINT`, ...)."""
+        """Return the name of an element; `kind` is MuJoCo's object type (`BODY`, `JOINT`, ...)."""
         ...
 
 
 class MjcfParser(Protocol):
-    """MuJoCo's own parser and compiler: they alone can say what an MJCF file means."""
+    """MuJoCo's own parser and compiler, which alone define the meaning of an MJCF file."""
 
     def compile(self, file: MjcfText, diagnostics: Diagnostics, in_axes_of_file: bool = False) -> CompiledMjcf | None:
-        """What a file compiles to on its own; None, with an error recorded, where it does not.
+        """Compile a file on its own; return None, with an error recorded, if MuJoCo refuses the file.
 
         Args:
-            in_axes_of_file: bodies with a free joint keep the frame that the file gives them, whatever it says of
-                aligning them with their inertia.
+            file: the file and everything that it refers to.
+            diagnostics: receives every problem.
+            in_axes_of_file: keeps the frame that the file gives to a body with a free joint, even if the file aligns
+                such bodies with their inertia.
         """
         ...
 
     def schema_text(self) -> str:
-        """MuJoCo's own table of elements and attributes."""
+        """Return MuJoCo's own table of elements and attributes."""
         ...
 
 
 @dataclass(frozen=True, slots=True)
 class LoadRequest:
-    """What the caller wants beside the file itself.
+    """Options of a load, besides the file itself.
 
     Attributes:
         base: "auto", "fixed" or "floating", for a bare model.
-        name, pose: replace those of a bare model.
-        as_model: one model is wanted, where a file could be a world as well.
-        mesh_reader: gives the triangles of a mesh, for automatic inertia; without it meshes have no volume.
-        mjcf_parser: gives MuJoCo's parser, which MJCF files need; it is called when there is such a file.
-        loaders: the loader of every root element, for what a file includes.
+        name, pose: replacements for the name and the pose of a bare model.
+        as_model: true to read the file as one model, even if the file could also be a world.
+        mesh_reader: returns the triangles of a mesh, for automatic inertia; without it a mesh has no volume.
+        mjcf_parser: returns MuJoCo's parser, which MJCF files need; called only for such a file.
+        loaders: loader of every root element, for included files.
     """
 
     resolver: Resolver
@@ -150,10 +152,10 @@ class LoadRequest:
 
 
 class Loader(abc.ABC):
-    """Turns one format into a `Scene`; `roots` are the names of its outermost element."""
+    """Loader of one format, which returns a `Scene`; `roots` lists the names of the root elements that it reads."""
 
     roots: ClassVar[tuple[str, ...]] = ()
 
     @abc.abstractmethod
     def load(self, document: Document, request: LoadRequest) -> Scene:
-        """Reads the document; a mistake in it is a diagnostic, never an exception."""
+        """Read the document; a mistake in the document is a diagnostic, never an exception."""

@@ -1,4 +1,4 @@
-"""The model file of a folder: what `model.config` lists, or the one robot in it."""
+"""Search for the model file of a folder: the file that `model.config` lists, or the one robot in the folder."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ NEWEST_SDF = (1, 12)
 
 
 def model_file(folder: Path, where: Where, diagnostics: Diagnostics) -> Path | None:
-    """The file of a model folder: the highest version up to 1.12 listed in `model.config`, else `model.sdf`.
+    """Return the file of a model folder: the highest version up to 1.12 listed in `model.config`, else `model.sdf`.
 
-    In a folder without either: its robot in URDF, or its one model in MuJoCo's own format.
+    A folder without either is searched for one robot in URDF, or one model in MJCF.
     """
     for manifest in (folder / "model.config", folder / "manifest.xml"):
         if not is_file(manifest):
@@ -38,13 +38,13 @@ def model_file(folder: Path, where: Where, diagnostics: Diagnostics) -> Path | N
     models = _mjcf_models(folder)
     if len(models) == 1:
         return models[0]
-    held = f"; of {', '.join(m.name for m in models[:8])} none is named {folder.name}.xml" if models else ""
-    diagnostics.error("SK-URI-005", f"the folder {folder} has neither model.config nor model.sdf{held}", where)
+    unnamed = f"; none of {', '.join(m.name for m in models[:8])} is named {folder.name}.xml" if models else ""
+    diagnostics.error("SK-URI-005", f"the folder {folder} has neither model.config nor model.sdf{unnamed}", where)
     return None
 
 
 def sdf_version(text: str) -> tuple[int, int] | None:
-    """`"1.6"` as (1, 6); None where it is no version."""
+    """Parse a version: `"1.6"` becomes (1, 6), and an invalid text becomes None."""
     parts = text.strip().split(".")
     if len(parts) < 2 or not all(is_small_integer(p) for p in parts[:2]):
         return None
@@ -61,7 +61,7 @@ def _listed_files(root: Params) -> list[tuple[tuple[int, int], str]]:
 
 
 def _mjcf_models(folder: Path) -> list[Path]:
-    """What may be the model of a folder in MuJoCo's own format: the one of its name, else all but the scenes."""
+    """Return the MJCF files that can be the model of a folder: the one with its name, else all but the scenes."""
     try:
         files = sorted(f for f in folder.glob("*.xml") if f.name not in ("package.xml", "manifest.xml") and is_file(f))
     except OSError:

@@ -1,4 +1,4 @@
-"""Find a ROS package without ROS: named by the user, around the file, or below a search path."""
+"""Search for a ROS package without ROS: in folders given by the user, around the file, and below the search paths."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from pathlib import Path
 from simkit.loaders.resources.bounded_file import read_bounded
 from simkit.loaders.resources.uris import is_file
 
-_PARENT_LEVELS = 6  # folders above a file in which its package.xml is looked for
-_SEARCH_DEPTH = 4  # folders below a search path
+_PARENT_LEVELS = 6  # folders above a file that are searched for its package.xml
+_SEARCH_DEPTH = 4  # levels of folders below a search path
 _MAX_FOLDERS = 20_000
 _NAME = re.compile(rb"<name>\s*([A-Za-z0-9_.-]+)\s*</name>")
 
@@ -24,18 +24,18 @@ def package_folders(
     below: dict[Path, dict[str, Path]],
     near: dict[tuple[str, Path], tuple[Path, ...]],
 ) -> Iterator[Path]:
-    """Folders that may be the package, the likeliest first; they need not exist.
+    """Yield folders that can be the package, the most likely first; they need not exist.
 
-    The order: what the user named; the package that the file lies in, its siblings, and packages beside those; the
-    search paths; packages further below the search paths.
+    The order: the folder given by the user; the package that contains the file, its siblings, and packages beside
+    those; the search paths; packages further below the search paths.
 
     Args:
-        name: of the package.
-        explicit: folders named by the user, by package name.
-        around: folders of the files that name it.
+        name: name of the package.
+        explicit: folders given by the user, by package name.
+        around: folders of the files that refer to the package.
         paths: folders to search.
-        below: the packages below each path as far as it has been searched; filled here.
-        near: the same of what lies around a folder, by name of the package and folder.
+        below: cache of the packages below each search path; this function fills it.
+        near: cache of the candidates around a folder, by package name and folder; this function fills it.
     """
     if not name or "/" in name or name in (".", ".."):
         return
@@ -58,7 +58,7 @@ def package_folders(
 
 
 def enclosing_package(folder: Path) -> Path | None:
-    """The package that a folder lies in: the nearest folder upwards with a `package.xml`."""
+    """Return the package that contains a folder: the nearest folder upwards with a `package.xml`."""
     for ancestor in (folder, *folder.parents[:_PARENT_LEVELS]):
         if is_file(ancestor / "package.xml"):
             return ancestor
@@ -66,7 +66,7 @@ def enclosing_package(folder: Path) -> Path | None:
 
 
 def package_name(folder: Path) -> str:
-    """The name that a folder's `package.xml` gives; empty where it has none."""
+    """Return the name in a folder's `package.xml`, or an empty text if there is none."""
     file = folder / "package.xml"
     try:
         found = _NAME.search(read_bounded(file, 65536))
@@ -76,7 +76,7 @@ def package_name(folder: Path) -> str:
 
 
 def _nearby_packages(name: str, folder: Path) -> Iterator[Path]:
-    """The package around a file, its siblings, and (only real packages) what lies beside those and further up."""
+    """Yield the package around a file, its siblings, and existing packages beside them and in the folders above."""
     home = enclosing_package(folder)
     if home is None:
         return
@@ -97,7 +97,7 @@ def _nearby_packages(name: str, folder: Path) -> Iterator[Path]:
 
 
 def _packages_below(path: Path) -> dict[str, Path]:
-    """Every package below a folder by its name, as ROS itself searches `ROS_PACKAGE_PATH`; the nearest one counts."""
+    """Return every package below a folder by its name, as ROS searches `ROS_PACKAGE_PATH`; the nearest one is used."""
     found: dict[str, Path] = {}
     level, seen = [path], 0
     for _ in range(_SEARCH_DEPTH):
@@ -113,9 +113,9 @@ def _packages_below(path: Path) -> dict[str, Path]:
                 if seen > _MAX_FOLDERS:
                     return found
                 if is_file(child / "package.xml"):
-                    for called in (package_name(child), child.name):
-                        if called:
-                            found.setdefault(called, child)
+                    for name in (package_name(child), child.name):
+                        if name:
+                            found.setdefault(name, child)
                 else:
                     below.append(child)
         level = below

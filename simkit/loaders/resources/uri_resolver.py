@@ -1,4 +1,4 @@
-"""Where a URI of an input file lies on this machine. Nothing is ever fetched from a network."""
+"""Resolver of URIs in input files to paths on this machine. Nothing is downloaded from a network."""
 
 from __future__ import annotations
 
@@ -38,20 +38,20 @@ _SEARCH_VARIABLES = (
 )
 _SCHEMES = ("model", "package", "file")
 _CACHE_VARIABLES = ("GZ_FUEL_CACHE_PATH", "IGN_FUEL_CACHE_PATH")
-_NOT_HERE = frozenset(("SK-URI-001", "SK-URI-002", "SK-URI-009"))
-_PATH_HINT = "name the folder that holds it with --resource-path or SIMKIT_RESOURCE_PATH"
+_NOT_FOUND_CODES = frozenset(("SK-URI-001", "SK-URI-002", "SK-URI-009"))
+_PATH_HINT = "add its folder with --resource-path or SIMKIT_RESOURCE_PATH"
 
 
 class Resolver:
-    """Finds files and folders by URI.
+    """Finder of files and folders by URI.
 
     Args:
         paths: folders for `model://`, `package://` and relative URIs, searched before those of the environment.
-        base: the folder of the file being loaded; searched last.
-        missing_meshes: whether any mesh that cannot be had is only a warning (to inspect a file without its meshes),
-            also one whose URI is refused.
+        base: folder of the loaded file; searched last.
+        missing_meshes: reports any unusable mesh as a warning only, even if its URI is refused. This setting allows
+            inspecting a file without its meshes.
         anywhere: lets absolute paths and `..` leave the folders named above.
-        package_paths: the folder of each ROS package that the caller knows; they come before every other place.
+        package_paths: folder of each ROS package that the caller knows; searched before all other folders.
     """
 
     def __init__(
@@ -75,7 +75,7 @@ class Resolver:
         self.paths: tuple[Path, ...] = tuple(dict.fromkeys(absolute_path(p) for p in found))
 
     def around(self, folder: Path | None) -> Resolver:
-        """The same, with the folder of the file being loaded where none was given."""
+        """Return a resolver with the folder of the loaded file as its base, unless this resolver already has a base."""
         if self.base is not None or folder is None:
             return self
         near = copy(self)
@@ -85,51 +85,51 @@ class Resolver:
     # ------------------------------------------------------------------ URIs
 
     def mesh(self, uri: str, where: Where, relative_to: Path | None) -> tuple[Path | None, list[Diagnostic]]:
-        """The mesh file that `uri` names, and what is to be said of it.
+        """Return the mesh file that `uri` names, and the diagnostics about it.
 
-        As in Gazebo a world goes on without a mesh that is not there, but that is a warning and so an error where
-        warnings are; a URI that is refused, because it leaves the resource folders or has an unknown scheme, is one
-        always. An absolute path of another machine, which leads nowhere on this one, is just not there.
+        A missing mesh is a warning, because Gazebo also continues without it. An absolute path of another machine,
+        which does not exist here, counts as a missing mesh. A refused URI, which leaves the resource folders or has
+        an unknown scheme, is always an error.
         """
         found = Diagnostics()
         path = self.resolve(uri, where, found, relative_to)
         if path is not None and path.is_dir():
-            found.error("SK-URI-001", f"{uri} is a folder ({path}), a mesh file is needed", where)
+            found.error("SK-URI-001", f"{uri} is a folder ({path}), not a mesh file", where)
             path = None
-        said = []
+        reported = []
         for problem in found:
-            is_missing = self.missing_meshes or problem.code in _NOT_HERE or is_path_of_other_machine(uri)
+            is_missing = self.missing_meshes or problem.code in _NOT_FOUND_CODES or is_path_of_other_machine(uri)
             if problem.severity == "error" and is_missing:
-                lost = "; what has this shape is neither drawn nor touched"
-                problem = replace(problem, severity="warning", message=problem.message + lost)
-            said.append(problem)
-        return path, said
+                effect = "; the shape is left out of drawing and contacts"
+                problem = replace(problem, severity="warning", message=problem.message + effect)
+            reported.append(problem)
+        return path, reported
 
     def resolve(self, uri: str, where: Where, diagnostics: Diagnostics, relative_to: Path | None) -> Path | None:
-        """The existing file or folder that `uri` names; None, with one error recorded, when there is none.
+        """Return the existing file or folder that `uri` names; None, with one error recorded, if there is none.
 
         Args:
             uri: `model://`, `package://`, `file://`, `https://` (local caches only), or a path.
-            where: the place in the input file, for the report.
-            diagnostics: where problems go.
-            relative_to: the folder of the file that names it.
+            where: place in the input file, for the report.
+            diagnostics: receives the problems.
+            relative_to: folder of the file that contains the URI.
         """
         found, places = self.search(uri, relative_to)
         if found is not None:
             if is_relocated(uri, found):
-                message = f"{uri} is not here under that name; {found} is used"
+                message = f"{uri} does not exist; {found} is used instead"
                 diagnostics.note("SK-URI-010", message, where)
             return found
         uri = package_uri(uri)
         scheme, _, rest = uri.partition("://")
         if uri.startswith(("http://", "https://")):
             message = f"{uri} is not on this machine and nothing is downloaded{format_searched(places)}"
-            hint = f"fetch it once with Gazebo (its cache is read), or {_PATH_HINT}"
+            hint = f"load it once in Gazebo (simkit reads Gazebo's cache), or {_PATH_HINT}"
             diagnostics.error("SK-URI-002", message, where, hint)
         elif places is None:
-            diagnostics.error("SK-URI-003", f"{uri} leaves the folders it may use", where, _PATH_HINT)
+            diagnostics.error("SK-URI-003", f"{uri} is outside the resource folders", where, _PATH_HINT)
         elif "://" in uri and scheme not in _SCHEMES:
-            message = f"{uri}: schemes known are model, package, file, https"
+            message = f"{uri}: unknown scheme; known are model, package, file, https"
             diagnostics.error("SK-URI-004", message, where, did_you_mean(scheme, (*_SCHEMES, "https")))
         else:
             name = rest.split("/")[0]
@@ -137,7 +137,7 @@ class Resolver:
             folder, tried = self.find_package(name, relative_to) if scheme == "package" else (None, [])
             if scheme == "package" and folder is None:
                 message = f"{uri}: the package {name!r} is not found{format_searched(tried)}"
-                hint = f"name its folder: --package-path {name}=DIR"
+                hint = f"give its folder: --package-path {name}=DIR"
                 diagnostics.error("SK-URI-009", message, where, f"{near} or {hint}" if near else hint)
             else:
                 message = f"{uri} is not found{format_searched(places)}"
@@ -145,7 +145,10 @@ class Resolver:
         return None
 
     def find_package(self, name: str, relative_to: Path | None) -> tuple[Path | None, list[Path]]:
-        """The folder of a ROS package, and every place looked in; what is found may be read from then on."""
+        """Return the folder of a ROS package, and every searched path.
+
+        Files in a package that was found may be read from then on.
+        """
         if not is_bare_name(name):
             return None, []
         around = [absolute_path(f) for f in (relative_to, self.base) if f is not None]
@@ -158,9 +161,9 @@ class Resolver:
         return folder, unique
 
     def search(self, uri: str, relative_to: Path | None) -> tuple[Path | None, list[Path] | None]:
-        """What `resolve` finds, and every place looked in (None where the URI leaves its folders)."""
+        """Return the path that `resolve` finds, and all searched paths (None for a URI outside the folders)."""
         if len(uri) > 4096 or "\0" in uri or any(len(part.encode(errors="replace")) > 255 for part in uri.split("/")):
-            return None, []  # no file has such a name
+            return None, []  # no file can have such a name
         if uri.startswith(("http://", "https://")):
             return first_existing(self._fuel_candidates(uri))
         uri = package_uri(uri)
@@ -184,7 +187,7 @@ class Resolver:
         return relative_to is not None and is_existing(relative_to / text)
 
     def _model_candidates(self, rest: str, relative_to: Path | None) -> Iterator[Path]:
-        """Candidates for `model://name/...`: in each folder, and a folder that itself has that name."""
+        """Yield candidates for `model://name/...`: below each folder, and in a folder that itself has that name."""
         name, _, inside = rest.strip("/").partition("/")
         for root in self.paths:
             yield root / name / inside
@@ -204,24 +207,24 @@ class Resolver:
             yield from sorted(bundle.glob(f"*/{name}/")) if not inside and name.replace("_", "").isalnum() else ()
 
     def _package_candidates(self, rest: str, relative_to: Path | None) -> Iterator[Path]:
-        """Candidates for `package://name/...` in the package of that name."""
+        """Yield candidates for `package://name/...` in the package of that name."""
         name, _, inside = rest.strip("/").partition("/")
         around = [absolute_path(f) for f in (relative_to, self.base) if f is not None]
-        for place in package_folders(name, self.packages, around, self.paths, self._below, self._near):
-            yield place / inside
+        for folder in package_folders(name, self.packages, around, self.paths, self._below, self._near):
+            yield folder / inside
 
     def _renamed_checkout_candidates(self, rest: str, relative_to: Path | None) -> Iterator[Path]:
-        """`package://name/a/b` below the folders above the file: a checkout whose folder has another name."""
+        """Yield candidates for `package://name/a/b` below the folders above the file, for a renamed checkout."""
         inside = rest.strip("/").partition("/")[2]
         if relative_to is None or "/" not in inside or enclosing_package(absolute_path(relative_to)) is not None:
-            return  # a file that lies in a package has its name from there
+            return  # the enclosing package already defines the name
         folder = absolute_path(relative_to)
         for ancestor in (folder, *folder.parents[:2]):
             if len(ancestor.parts) > 3 and ancestor != Path.home():
                 yield ancestor / inside
 
     def _find_relocated(self, path: Path, relative_to: Path | None) -> Path | None:
-        """An absolute path of another machine: its end below a package that is here."""
+        """Find an absolute path of another machine by its last components, below a package that exists here."""
         parts = path.parts
         for position in range(len(parts) - 2, 0, -1):
             name = parts[position]
@@ -232,9 +235,10 @@ class Resolver:
         return None
 
     def _search_path(self, text: str, relative_to: Path | None) -> tuple[Path | None, list[Path] | None]:
-        """A plain path: absolute, or relative to the file's folder, then to each resource folder.
+        """Search a plain path: absolute, or relative to the file's folder, then to each resource folder.
 
-        An absolute one that is not here, as `$(find pkg)` leaves them on another machine, is looked for in its package.
+        An absolute path that does not exist here is searched for in its package, because `$(find pkg)` leaves absolute
+        paths of the machine that expanded the file.
         """
         folders = [f for f in (relative_to, self.base) if f is not None] or [Path.cwd()]
         roots = [*folders, *self.paths]
@@ -257,7 +261,7 @@ class Resolver:
         return first_existing(candidates)
 
     def _fuel_candidates(self, uri: str) -> Iterator[Path]:
-        """Candidates for a Fuel URL in Gazebo's caches, then a folder of that name in the resource folders."""
+        """Yield candidates for a Fuel URL in Gazebo's caches, then a folder of that name in the resource folders."""
         server, _, rest = unquote(uri).partition("://")[2].partition("/")
         parts = [p for p in rest.split("/") if p]
         if parts and parts[0].replace(".", "").isdigit():
@@ -276,7 +280,7 @@ class Resolver:
                 if not versions:
                     yield folder / version / inside
         for root in self.paths:
-            yield from (root / spelt / inside for spelt in dict.fromkeys((name, name.replace(" ", "_").lower())))
+            yield from (root / folder / inside for folder in dict.fromkeys((name, name.replace(" ", "_").lower())))
 
     def _nearby_names(self, relative_to: Path | None) -> Iterable[str]:
         for root in (*self.paths, *([relative_to.parent] if relative_to else [])):

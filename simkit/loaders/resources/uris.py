@@ -1,4 +1,4 @@
-"""Questions about URIs and paths: what they name, whether they stay inside a folder, whether they exist."""
+"""Checks and conversions of URIs and paths: the names in them, their folders, and their existence."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from urllib.parse import unquote
 
 
 def package_uri(uri: str) -> str:
-    """`$(find pkg)/...`, alone or after `file://`, as `package://pkg/...`."""
+    """Convert `$(find pkg)/...`, alone or after `file://`, to `package://pkg/...`."""
     plain = uri.removeprefix("file://")
     if not plain.startswith("$(find"):
         return uri
@@ -21,7 +21,7 @@ def package_uri(uri: str) -> str:
 
 
 def is_relocated(uri: str, found: Path) -> bool:
-    """Whether an absolute path, or a package, was found under another name."""
+    """Check whether an absolute path, or a package, was found under another name."""
     scheme, _, rest = uri.partition("://")
     if scheme == "package":
         return rest.split("/")[0] not in found.parts
@@ -30,12 +30,12 @@ def is_relocated(uri: str, found: Path) -> bool:
 
 
 def absolute_path(path: Path) -> Path:
-    """Absolute, without `..`; links stay, because a workspace of links is a folder that the user chose."""
+    """Return the absolute path without `..`; links stay, because the user can choose a workspace of links."""
     return Path(os.path.abspath(path))  # noqa: PTH100 - resolve() would follow links
 
 
 def leaves_folder(rest: str) -> bool:
-    """Whether what follows `scheme://name` climbs out of that name."""
+    """Check whether the part after `scheme://name` leaves the folder of that name."""
     depth = 0
     for part in rest.split("/")[1:]:
         depth += {"..": -1, ".": 0, "": 0}.get(part, 1)
@@ -45,7 +45,7 @@ def leaves_folder(rest: str) -> bool:
 
 
 def first_existing(candidates: Iterable[Path]) -> tuple[Path | None, list[Path]]:
-    """The first place that is there, and every place looked at, once; none is thought of after the first."""
+    """Return the first candidate that exists, and the candidates that were checked; later ones are not generated."""
     looked: dict[Path, None] = {}
     for candidate in candidates:
         if candidate not in looked:
@@ -56,7 +56,7 @@ def first_existing(candidates: Iterable[Path]) -> tuple[Path | None, list[Path]]
 
 
 def is_existing(path: Path) -> bool:
-    """Whether a file or folder is there; a device or a pipe is neither, nor has a name that no file could have one."""
+    """Check whether a file or folder exists; a device, a pipe or an invalid name does not count."""
     try:
         mode = path.stat().st_mode
         return stat.S_ISREG(mode) or stat.S_ISDIR(mode)
@@ -65,16 +65,16 @@ def is_existing(path: Path) -> bool:
 
 
 def format_searched(places: list[Path] | None) -> str:
-    """The places looked in, for a message."""
+    """Format the searched paths for a message."""
     if not places:
         return ""
     shown = [str(p) for p in places[:8]]
     more = f" and {len(places) - 8} more" if len(places) > 8 else ""
-    return "; looked in " + ", ".join(shown) + more
+    return "; searched " + ", ".join(shown) + more
 
 
 def access_problem(path: Path) -> str:
-    """What keeps a path from being looked at, in words; empty where nothing does, or nothing is there."""
+    """Describe the error that prevents access to a path; empty if there is none or if nothing exists there."""
     try:
         path.stat()
     except (FileNotFoundError, NotADirectoryError):
@@ -87,7 +87,7 @@ def access_problem(path: Path) -> str:
 
 
 def sibling_names(path: Path) -> list[str]:
-    """Names in the folder of a path, as far as it may be listed, of a thousand at most."""
+    """Return at most 1000 names in the folder of a path, or none if the folder cannot be listed."""
     try:
         return [p.name for p in islice(path.parent.iterdir(), 1000)]
     except OSError:
@@ -95,21 +95,21 @@ def sibling_names(path: Path) -> list[str]:
 
 
 def is_file(path: Path) -> bool:
-    """Whether a file is there and may be seen; `Path.is_file` raises for one in a folder that is closed to us."""
+    """Check whether a file exists and is visible; `Path.is_file` raises an error in a folder without permission."""
     return os.path.isfile(path)  # noqa: PTH113
 
 
 def is_folder(path: Path) -> bool:
-    """The same for a folder."""
+    """Check whether a folder exists and is visible."""
     return os.path.isdir(path)  # noqa: PTH112
 
 
 def is_small_integer(text: str) -> bool:
-    """Whether a text is a whole number of a few digits (`int` takes neither `²` nor thousands of digits)."""
+    """Check whether a text is an integer of less than 10 digits (`int` accepts neither `²` nor thousands of digits)."""
     return text.isascii() and text.isdigit() and len(text) < 10
 
 
 def is_path_of_other_machine(uri: str) -> bool:
-    """Whether a URI is an absolute path that leads nowhere on this machine, as tools that export meshes write them."""
+    """Check whether a URI is an absolute path that does not exist here; mesh exporters write such paths."""
     path = Path(unquote(uri.removeprefix("file://")))
     return path.is_absolute() and not os.path.lexists(path)

@@ -1,4 +1,4 @@
-"""Files that are no world and no model: what each looks like, so that the message says more than a parser can."""
+"""Reader of XML files and texts, with limits and with messages for files of another format."""
 
 from __future__ import annotations
 
@@ -53,15 +53,15 @@ _FOREIGN_ROOTS: Final = {
 
 
 def report_foreign_format(data: bytes, where: Where, diagnostics: Diagnostics) -> bool:
-    """Whether a file cannot be XML at all; an error then says what it looks like and what is allowed."""
-    seems = _describe_content(data)
-    if seems:
-        diagnostics.error("SK-XML-005", f"this is not XML, it looks like {seems}", where, ALLOWED_FORMATS)
-    return bool(seems)
+    """Check whether a file cannot be XML, and record an error that names its likely format and the allowed ones."""
+    likely_format = _describe_content(data)
+    if likely_format:
+        diagnostics.error("SK-XML-005", f"this is not XML; it looks like {likely_format}", where, ALLOWED_FORMATS)
+    return bool(likely_format)
 
 
 def foreign_root_hint(name: str) -> str:
-    """What a file that begins with an element of another format is; empty where that is not known."""
+    """Describe a file by its root element of another format; empty if the format is unknown."""
     return _FOREIGN_ROOTS.get(name, "")
 
 
@@ -107,7 +107,7 @@ class Document:
     Attributes:
         root: the outermost element.
         path: the file, or None for XML given as text.
-        text: the bytes as read.
+        text: bytes of the file.
     """
 
     root: Params
@@ -116,7 +116,7 @@ class Document:
 
     @property
     def folder(self) -> Path | None:
-        """The folder that relative URIs of this file start from."""
+        """Folder that relative URIs of this file start from."""
         return None if self.path is None else self.path.parent
 
 
@@ -127,7 +127,7 @@ class _RefusedDocument(Exception):
 
 
 class _TreeBuilder:
-    """Builds the tree from expat's events and keeps the bounds."""
+    """Builder of the element tree from expat's events, with limits on size and depth."""
 
     def __init__(self, file: str | None, diagnostics: Diagnostics) -> None:
         self.file, self.offset, self.diagnostics = file, 0, diagnostics
@@ -137,16 +137,16 @@ class _TreeBuilder:
         self.parser.EndElementHandler = self.end
         self.parser.CharacterDataHandler = self.characters
         self.parser.EntityDeclHandler = self.entity
-        self.stack: list[tuple[Params, list[str]]] = []  # elements whose end tag has not come yet, and their texts
+        self.stack: list[tuple[Params, list[str]]] = []  # open elements and their texts
         self.root: Params | None = None
         self.count = 0
 
     def read(self, data: bytes) -> Params | None:
-        """Parses the whole text; white space before the declaration is passed over."""
+        """Parse the whole text; white space before the XML declaration is skipped."""
         body = data if data.startswith((b"\xff\xfe", b"\xfe\xff")) else data.lstrip()
         self.offset = data[: len(data) - len(body)].count(b"\n")
         self.parser.Parse(body, True)
-        # the parser and its reader hold each other: the tree is not to wait for the garbage collector with them
+        # the parser and this object refer to each other; without this, the tree would live until garbage collection
         root, self.root = self.root, None
         return root
 
@@ -156,7 +156,7 @@ class _TreeBuilder:
 
     @property
     def inside(self) -> str:
-        """The element that is open, for a message."""
+        """Description of the innermost open element, for a message."""
         if not self.stack:
             return ""
         element = self.stack[-1][0]
@@ -188,20 +188,20 @@ class _TreeBuilder:
             self.root = element
 
     def entity(self, name: str, *_rest: object) -> None:
-        raise _RefusedDocument("SK-XML-003", f"the file declares the entity {name!r}; entities are not read")
+        raise _RefusedDocument("SK-XML-003", f"the file declares the entity {name!r}; entities are not supported")
 
 
 def parse_text(text: str | bytes, diagnostics: Diagnostics, file: str | None = None) -> Params | None:
-    """The root element of an XML text; None, with an error recorded, when it cannot be read.
+    """Parse an XML text; return its root element, or None, with an error recorded, if it cannot be read.
 
     Args:
-        text: XML; bytes may be in any encoding that their declaration names.
-        diagnostics: where problems go.
-        file: name for `file:line`; None for text that came from no file.
+        text: XML; bytes can be in any encoding that their declaration names.
+        diagnostics: receives the problems.
+        file: name for `file:line`; None for text that is not from a file.
     """
     data = text.encode() if isinstance(text, str) else text
     if len(data) > MAX_BYTES:
-        diagnostics.error("SK-XML-002", f"the file has {len(data)} bytes, allowed are {MAX_BYTES}", Where(file))
+        diagnostics.error("SK-XML-002", f"the file has {len(data)} bytes; the limit is {MAX_BYTES}", Where(file))
         return None
     if isinstance(text, str) and data.lstrip().startswith(b"<?xml"):
         declaration, _, rest = data.lstrip().partition(b"?>")
@@ -211,13 +211,13 @@ def parse_text(text: str | bytes, diagnostics: Diagnostics, file: str | None = N
     try:
         return reader.read(data)
     except expat.ExpatError as error:
-        mended = _without_comments(data)
-        root = None if mended is None else _parse_without_comments(mended, file, diagnostics)
-        said, where = expat.ErrorString(error.code), Where(file, error.lineno + reader.offset)
+        stripped = _without_comments(data)
+        root = None if stripped is None else _parse_without_comments(stripped, file, diagnostics)
+        message, where = expat.ErrorString(error.code), Where(file, error.lineno + reader.offset)
         if root is not None:
-            diagnostics.warning("SK-XML-004", f"not strictly XML, read all the same: {said}", where)
+            diagnostics.warning("SK-XML-004", f"not strictly valid XML, but accepted: {message}", where)
             return root
-        diagnostics.error("SK-XML-001", f"broken XML: {said}{reader.inside}", where)
+        diagnostics.error("SK-XML-001", f"broken XML: {message}{reader.inside}", where)
     except _RefusedDocument as refused:
         diagnostics.error(refused.code, str(refused), Where(file, reader.line))
     except (LookupError, ValueError) as error:
@@ -226,7 +226,7 @@ def parse_text(text: str | bytes, diagnostics: Diagnostics, file: str | None = N
 
 
 def _without_comments(data: bytes) -> bytes | None:
-    """The text without comments and declaration, as lenient readers take it; None where it has neither."""
+    """Return the text without comments and declaration, as lenient readers parse it; None if it has neither."""
     plain = _COMMENT.sub(lambda m: b"\n" * m.group().count(b"\n"), data)
     plain = _DECLARATION.sub(lambda m: b"\n" * m.group().count(b"\n"), plain)
     return plain if plain != data else None
@@ -240,7 +240,7 @@ def _parse_without_comments(data: bytes, file: str | None, diagnostics: Diagnost
 
 
 def parse_file(path: Path, diagnostics: Diagnostics) -> Document | None:
-    """Reads one XML file; None, with an error recorded, when it cannot be read."""
+    """Read one XML file; return None, with an error recorded, if it cannot be read."""
     try:
         text = read_bounded(path, MAX_BYTES)
         if len(text) > MAX_BYTES:

@@ -49,7 +49,7 @@ def test_a_file_that_is_not_xml_is_called_what_it_looks_like(tmp_path: Path, con
     path.write_bytes(content)
     found = refused(path)
     assert (found.code, found.file) == ("SK-XML-005", str(path))
-    assert found.message == f"this is not XML, it looks like {seems}"
+    assert found.message == f"this is not XML; it looks like {seems}"
     assert "<sdf>, <robot> (URDF, xacro) or <mujoco> (MJCF)" in found.hint
 
 
