@@ -1,5 +1,6 @@
-"""MuJoCo's own format, MJCF.
+"""Loader of MuJoCo's own format, MJCF.
 
-A `<mujoco>` enters as `Params`; a world or a model of the scene leaves, with a way to make MuJoCo's specification
-again. The files that it names are gathered and checked here; the parser that says what they mean is passed in.
+The input is a `<mujoco>` element as `Params`; the output is a world or a model of the scene, with a function that
+creates MuJoCo's specification again. The files that it refers to are collected and checked here. MuJoCo's parser, which
+defines their meaning, is passed in.
 """

@@ -1,4 +1,4 @@
-"""Files that a model names: read once, within bounds, and looked at before MuJoCo's readers get them."""
+"""Asset files of a model: read once, with a size limit, and checked before MuJoCo reads them."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _PIXEL: Final = bytes.fromhex(
 
 
 def placeholder(kind: str) -> tuple[str, bytes]:
-    """Suffix and content of what stands for a file that is not there."""
+    """Return suffix and content of a small valid file that replaces a missing one."""
     if kind == "texture":
         return ".png", _PIXEL
     if kind == "hfield":
@@ -38,7 +38,7 @@ def placeholder(kind: str) -> tuple[str, bytes]:
 
 
 def read_asset(path: Path, kind: str, where: Where, diagnostics: Diagnostics) -> bytes:
-    """The bytes of a file; empty, with an error recorded, where it is unreadable, too large or none of its kind."""
+    """Read a file; return no bytes, with an error recorded, if it is unreadable, too large or of the wrong kind."""
     try:
         data = read_bounded(path, MAX_BYTES)
     except OSError as error:
@@ -52,14 +52,14 @@ def read_asset(path: Path, kind: str, where: Where, diagnostics: Diagnostics) ->
 
 
 def _asset_problem(data: bytes, suffix: str, kind: str) -> str:
-    """What keeps a file from being used; empty for nothing."""
+    """Describe the problem that makes a file unusable; empty if there is none."""
     if len(data) > MAX_BYTES:
         return f"larger than {MAX_BYTES >> 20} MiB"
     if not data:
         return "the file is empty"
     if suffix not in _KNOWN_SUFFIXES.get(kind, ()):
         known = ", ".join(sorted(_KNOWN_SUFFIXES.get(kind, ())))
-        return f"MuJoCo reads no {suffix or 'such'} file as a {kind}, known are {known}"
+        return f"MuJoCo cannot read a {suffix or 'file without suffix'} as a {kind}; supported are {known}"
     if data.startswith(b"\x89PNG"):
         return _png_problem(data)
     if suffix == ".stl":
@@ -73,37 +73,37 @@ def _asset_problem(data: bytes, suffix: str, kind: str) -> str:
 
 def _png_problem(data: bytes) -> str:
     if len(data) < 33:
-        return "a PNG file that ends in its header"
+        return "the PNG file ends inside its header"
     width, height = struct.unpack(">2I", data[16:24])
-    return f"{width} x {height} pixels, allowed are {MAX_PIXELS} in all" if width * height > MAX_PIXELS else ""
+    return f"{width} x {height} pixels; the limit is {MAX_PIXELS} pixels" if width * height > MAX_PIXELS else ""
 
 
 def _stl_problem(data: bytes) -> str:
     if len(data) < 84:
-        return "no binary STL file: too short"
+        return "not a binary STL file: too short"
     (count,) = struct.unpack("<I", data[80:84])
     if len(data) != 84 + 50 * count:
         if data.lstrip().startswith(b"solid"):
-            return "an ASCII STL file; MuJoCo reads binary ones"
-        return f"the STL header promises {count} triangles, the file has {(len(data) - 84) // 50}"
+            return "an ASCII STL file; MuJoCo only reads binary STL files"
+        return f"the STL header declares {count} triangles, but the file has {(len(data) - 84) // 50}"
     return ""
 
 
 def _msh_problem(data: bytes) -> str:
     if len(data) < 16:
-        return "a MSH file that ends in its header"
+        return "the MSH file ends inside its header"
     vertices, normals, coordinates, faces = struct.unpack("<4i", data[:16])
     if min(vertices, normals, coordinates, faces) < 0 or vertices == 0:
-        return f"its header counts {vertices} vertices, {normals} normals, {faces} faces"
-    wanted = 16 + 12 * vertices + 12 * normals + 8 * coordinates + 12 * faces
-    return "" if wanted == len(data) else f"its header promises {wanted} bytes, the file has {len(data)}"
+        return f"its header declares {vertices} vertices, {normals} normals, {faces} faces"
+    declared = 16 + 12 * vertices + 12 * normals + 8 * coordinates + 12 * faces
+    return "" if declared == len(data) else f"its header declares {declared} bytes, but the file has {len(data)}"
 
 
 def _hfield_problem(data: bytes) -> str:
     if len(data) < 8:
-        return "a height field that ends in its header"
+        return "the height field ends inside its header"
     rows, columns = struct.unpack("<2i", data[:8])
     if rows < 1 or columns < 1 or rows * columns > _MAX_CELLS:
-        return f"its header counts {rows} x {columns} heights"
-    wanted = 8 + 4 * rows * columns
-    return "" if wanted == len(data) else f"its header promises {wanted} bytes, the file has {len(data)}"
+        return f"its header declares {rows} x {columns} heights"
+    declared = 8 + 4 * rows * columns
+    return "" if declared == len(data) else f"its header declares {declared} bytes, but the file has {len(data)}"

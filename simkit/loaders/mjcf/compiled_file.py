@@ -1,4 +1,4 @@
-"""A compiled MJCF file: its elements by name and owner, which of them become one model, and where that model is."""
+"""Compiled MJCF file: its elements by name and owner, and the placement of a model that is read from it."""
 
 from __future__ import annotations
 
@@ -17,22 +17,22 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
 WORLD_LINK: Final = "worldbody"
-"""Name of the link that holds what a file puts into its world body."""
+"""Name of the link that holds the content of the file's world body."""
 
 _LINE: Final = re.compile(r"line (\d+)")
 
 
 @dataclass(frozen=True)
 class ModelPlacement:
-    """What becomes one model, and where.
+    """Bodies of a file that form one model, and the poses and names of this model.
 
     Attributes:
         roots: ids of its top-level bodies.
-        has_world: whether what stands in the world body is its too.
-        frame: the model frame in the file's world.
-        pose_world: the model frame in the world.
-        prefix: of its names in the compiled world.
-        strip: beginning of the file's names that is left out of the scene's.
+        has_world: true if the content of the world body belongs to the model.
+        frame: pose of the model frame in the file's world.
+        pose_world: pose of the model frame in the world.
+        prefix: prefix of its names in the compiled world.
+        strip: beginning of the file's names that is removed in the scene's names.
     """
 
     name: str
@@ -50,11 +50,11 @@ class ModelPlacement:
 
 
 class CompiledFile:
-    """A file, what MuJoCo compiles it to, and which elements belong to which body.
+    """MJCF file with MuJoCo's compiled model, and the elements of each body.
 
     Args:
         source: the file.
-        compiled: its specification, model and first state.
+        compiled: its specification, model and initial state.
     """
 
     def __init__(self, source: MjcfText, compiled: CompiledMjcf) -> None:
@@ -72,7 +72,7 @@ class CompiledFile:
         self.bodies_of = _ids_by_owner(model.body_rootid)
 
     def name(self, kind: str, number: int) -> str:
-        """The name of an element of the compiled model."""
+        """Return the name of an element of the compiled model."""
         return self.compiled.name(kind, number)
 
     @property
@@ -82,30 +82,30 @@ class CompiledFile:
 
     @property
     def has_world(self) -> bool:
-        """Whether anything solid stands in the world body itself."""
+        """True if the world body itself has geoms."""
         return bool(self.model.body_geomnum[0])
 
     def pose(self, body: int) -> Pose:
-        """Pose of a body in the file's world, as the file stands."""
+        """Return the pose of a body in the file's world, in the initial state."""
         return Pose(self.data.xpos[body], self.data.xquat[body])
 
     def where(self, kind: str, name: str) -> Where:
-        """The line of a named element."""
+        """Return the line of a named element."""
         element = getattr(self.spec, kind)(name)
         found = _LINE.search(element.info) if element is not None else None
         return self.source.where(int(found[1])) if found is not None else self.source.root.where
 
     def link_name(self, body: int, placed: ModelPlacement) -> str:
-        """What a body's link is called within its model."""
+        """Return the name of a body's link within its model."""
         return WORLD_LINK if body == 0 else self.name("BODY", body).removeprefix(placed.strip)
 
     def scoped_link(self, body: int, placed: ModelPlacement) -> str:
-        """The same from the world down."""
+        """Return the scoped name of a body's link, from the world down."""
         return f"{placed.scoped}::{self.link_name(body, placed)}"
 
 
 def _ids_by_owner(owners: npt.NDArray[np.int32]) -> dict[int, list[int]]:
-    """Numbers of elements by the number of what they belong to."""
+    """Group element ids by the id of their owner."""
     found: dict[int, list[int]] = {}
     for number, owner in enumerate(owners.tolist()):
         found.setdefault(owner, []).append(number)
@@ -113,7 +113,7 @@ def _ids_by_owner(owners: npt.NDArray[np.int32]) -> dict[int, list[int]]:
 
 
 def _engine_settings(source: MjcfText) -> dict[str, Where]:
-    """What the file itself says of the engine: option attributes and flags, and other global elements, with lines."""
+    """Return the engine settings in the file with their lines: options, flags and other global elements."""
     found: dict[str, Where] = {}
     for element in source.root.children:
         if element.name == "option":

@@ -1,7 +1,7 @@
-"""One MJCF file with everything it includes and names, in memory: MuJoCo then opens no file at all.
+"""Bundle of an MJCF file with all files that it includes or refers to, in memory, so that MuJoCo opens no file.
 
-Includes are put in place and asset files read here, within the resource folders; the text that MuJoCo gets has one
-element a line, so that a line in its messages is found again in the file it came from.
+Includes are replaced by their content, and asset files are read, only inside the resource folders. The text for MuJoCo
+has one element per line. A line number in MuJoCo's messages can therefore be converted to the user's file and line.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 from typing import Final
-from xml.sax.saxutils import quoteattr  # it brings the network's modules along, 30 ms
+from xml.sax.saxutils import quoteattr  # this import also loads Python's network modules (30 ms)
 
 from simkit.diagnostics import NOWHERE, Diagnostics, Where
 from simkit.loaders.mjcf.asset_files import placeholder, read_asset
@@ -34,7 +34,7 @@ _FILES: Final = ("file", "fileright", "fileleft", "fileup", "filedown", "filefro
 
 @dataclass
 class _SharedFiles:
-    """What the files of one load share."""
+    """State that is shared by all files of one load."""
 
     resolver: Resolver
     diagnostics: Diagnostics
@@ -47,12 +47,12 @@ class _SharedFiles:
 
 
 def gather_files(root: Params, path: Path | None, resolver: Resolver, diagnostics: Diagnostics) -> MjcfText:
-    """Everything that a file needs; what cannot be found or may not be read is an error in `diagnostics`."""
+    """Read a file and all files that it needs; a missing or refused file is an error in `diagnostics`."""
     return _FileGatherer(_SharedFiles(resolver, diagnostics), path).bundle(root)
 
 
 class _FileGatherer:
-    """Gathers one model file; those it attaches are gathered by others of the same `shared`."""
+    """Collector for one model file; attached models have their own collectors with the same `shared` state."""
 
     def __init__(self, shared: _SharedFiles, path: Path | None, chain: tuple[Path, ...] = ()) -> None:
         self.shared, self.path = shared, path
@@ -84,7 +84,7 @@ class _FileGatherer:
     # ------------------------------------------------------------------ includes
 
     def _with_includes(self, element: Params, folder: Path | None, depth: int) -> Params:
-        """A copy of an element with what it includes in place of the includes."""
+        """Return a copy of an element in which every include is replaced by its content."""
         children: list[Params] = []
         for child in element.children:
             if child.name == "include":
@@ -100,7 +100,7 @@ class _FileGatherer:
         diagnostics = self.shared.diagnostics
         name = include.attribute("file")
         if not name:
-            diagnostics.error("SK-MJCF-006", "<include> needs file='...'", include.where)
+            diagnostics.error("SK-MJCF-006", "<include> needs the attribute file='...'", include.where)
             return []
         if depth >= MAX_INCLUDE_DEPTH:
             diagnostics.error("SK-MJCF-006", f"includes are nested deeper than {MAX_INCLUDE_DEPTH}", include.where)
@@ -110,7 +110,7 @@ class _FileGatherer:
             return []
         if path.resolve() in self.included:
             hint = "use <asset><model .../></asset> and <attach .../> for several copies"
-            include.error("SK-MJCF-006", f"{name} is included a second time; MJCF takes a file once", hint)
+            include.error("SK-MJCF-006", f"{name} is included twice; MJCF allows this only once", hint)
             return []
         self.included.add(path.resolve())
         document = parse_file(path, diagnostics)
@@ -119,7 +119,7 @@ class _FileGatherer:
         whole = self._with_includes(document.root, path.parent, depth + 1)
         model = document.root.attribute("model") if document.root.name == "mujoco" else ""
         if not whole.children:
-            diagnostics.error("SK-MJCF-006", f"{name} holds nothing to include", include.where)
+            diagnostics.error("SK-MJCF-006", f"the included file {name} is empty", include.where)
         for section in whole.children if model else ():
             if section.name == "worldbody":
                 self._note_origins(section, model)
@@ -133,7 +133,7 @@ class _FileGatherer:
                 self._note_origins(child, model)
 
     def _search(self, name: str, where: Where, folders: tuple[Path | None, ...]) -> Path | None:
-        """A file beside the main file, else beside the one that names it; an error where it is in neither."""
+        """Find a file beside the main file, else beside the file that names it; otherwise record an error."""
         resolver = self.shared.resolver
         for folder in folders:
             path, _ = resolver.search(name, folder)
@@ -148,7 +148,7 @@ class _FileGatherer:
     # ------------------------------------------------------------------ files
 
     def _settings(self, root: Params) -> None:
-        """The folders of the assets, as the compiler elements say; they are left out of what MuJoCo reads."""
+        """Read the asset folders from the compiler elements, and remove these attributes from MuJoCo's text."""
         for element in root.children:
             if element.name != "compiler":
                 continue
@@ -169,7 +169,7 @@ class _FileGatherer:
             stack += reversed(element.children)
 
     def _asset(self, element: Params, attribute: str) -> None:
-        """Puts the file that an attribute names into memory, and its name there into the attribute."""
+        """Read the file that an attribute names into memory, and set the attribute to its name there."""
         written = element.attributes[attribute]
         if element.name == "model":
             self._model(element, written)
@@ -217,7 +217,7 @@ class _FileGatherer:
         return name
 
     def _model(self, element: Params, written: str) -> None:
-        """A model to be attached: gathered like the main file, and known to MuJoCo by its name in memory."""
+        """Read an attached model in the same way as the main file, and set its name in memory."""
         diagnostics = self.shared.diagnostics
         element.attributes["file"] = "missing.xml"
         path = self._search(written, element.where, (self.folder,))
@@ -230,7 +230,7 @@ class _FileGatherer:
         if document is None:
             return
         if document.root.name != "mujoco":
-            element.error("SK-MJCF-006", f"{written} begins with <{document.root.name}>; a model to attach is MJCF")
+            element.error("SK-MJCF-006", f"{written} begins with <{document.root.name}>, but must be MJCF")
             return
         below = _FileGatherer(self.shared, path, self.chain).bundle(document.root)
         if not element.attribute("name"):
@@ -243,8 +243,7 @@ class _FileGatherer:
     # ------------------------------------------------------------------ text
 
     def _write(self, root: Params, text: list[str]) -> None:
-        """The text of an element, one tag a line."""
-
+        """Write the text of an element, one tag per line."""
         stack: list[Params | str] = [root]
         while stack:
             item = stack.pop()

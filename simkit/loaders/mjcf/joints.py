@@ -1,4 +1,4 @@
-"""Joints of a compiled file."""
+"""Reader of the joints of a compiled file."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _TYPES: Final = {_BALL: "ball", _SLIDE: "prismatic"}
 def read_joints(
     file: CompiledFile, body: int, placed: ModelPlacement, place: Pose, found: MjcfElements
 ) -> list[SceneJoint]:
-    """The joints that carry a body; one that is rigidly held hangs on a fixed joint."""
+    """Return the joints that carry a body; a rigidly attached body gets a fixed joint."""
     model = file.model
     child, parent = file.scoped_link(body, placed), file.scoped_link(int(model.body_parentid[body]), placed)
     if int(model.body_parentid[body]) == 0:
@@ -86,7 +86,7 @@ def _axis(file: CompiledFile, j: int, body: Pose) -> Axis:
 
 
 def _mimic(file: CompiledFile, j: int) -> Mimic | None:
-    """The leader of a joint that an equality ties to another in a straight line."""
+    """Return the leader of a joint that follows another joint linearly through an equality constraint."""
     model = file.model
     for e in file.equalities_of.get(j, ()):
         data = model.eq_data[e]

@@ -1,4 +1,4 @@
-"""Lights of a compiled file."""
+"""Reader of the lights of a compiled file."""
 
 from __future__ import annotations
 
@@ -16,11 +16,14 @@ _TYPES: Final = {0: "spot", 1: "directional"}
 
 
 def read_lights(file: CompiledFile, body: int, link: str, pose: Pose, found: MjcfElements) -> tuple[SceneLight, ...]:
-    """The lights of a body.
+    """Return the lights of a body.
 
     Args:
-        link: its link's scoped name; empty for those of the world.
-        pose: of the body in the world.
+        file: the compiled file.
+        body: id of the body.
+        link: scoped name of its link; empty for the lights of the world.
+        pose: pose of the body in the world.
+        found: receives the names of the lights.
     """
     return tuple(_light(file, i, link, pose, found) for i in file.lights_of.get(body, ()))
 

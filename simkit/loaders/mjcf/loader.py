@@ -1,4 +1,4 @@
-"""The loader of MJCF: a world, one model, or a model that an SDF file includes."""
+"""Loader of MJCF: a world, one model, or a model that an SDF file includes."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ _UNNAMED = ("", "MuJoCo Model")
 
 @dataclass(frozen=True)
 class MjcfFile:
-    """A file that MuJoCo takes.
+    """MJCF file that MuJoCo accepted.
 
     Attributes:
-        content: what it compiles to.
-        name: of the model: its `model` attribute, else the name of the file.
+        content: the compiled file.
+        name: name of the model: its `model` attribute, else the name of the file.
     """
 
     content: CompiledFile
@@ -50,7 +50,7 @@ class MjcfFile:
         plugins: tuple[ScenePlugin, ...] = (),
         where: Where | None = None,
     ) -> SceneModel:
-        """The whole file as one model, its world at `pose_world`."""
+        """Return the whole file as one model, with the file's world at `pose_world`."""
         content = self.content
         placed = ModelPlacement(
             name,
@@ -68,7 +68,7 @@ class MjcfFile:
 
 
 class MjcfLoader(IncludableLoader):
-    """MuJoCo's own format."""
+    """Loader of MuJoCo's own format."""
 
     roots: ClassVar[tuple[str, ...]] = ("mujoco",)
 
@@ -87,7 +87,7 @@ class MjcfLoader(IncludableLoader):
             around = None if is_part else _surroundings_of(file, ())
             return Scene((), model, name, around=around)
         if request.base != "auto":
-            message = f"base={request.base!r} is for a bare model; {file.name!r} is a world"
+            message = f"base={request.base!r} is ignored: {file.name!r} is a world, not a bare model"
             document.root.note("SK-MJCF-012", message)
         return Scene((_surroundings_of(file, tuple(_world_models(file))),), None, name)
 
@@ -99,9 +99,9 @@ class MjcfLoader(IncludableLoader):
 
 @dataclass
 class IncludedMjcf(IncludedModel):
-    """A model in MuJoCo's own format that an SDF file includes: its names as frames, its content as it is."""
+    """Model in MuJoCo's own format that an SDF file includes; its names are frames, and its content is fixed."""
 
-    version: ClassVar[tuple[int, int]] = (1, 7)  # names with `::` inside are one name there
+    version: ClassVar[tuple[int, int]] = (1, 7)  # in SDF 1.7, a name that contains `::` is one name
     fixed_content: ClassVar[tuple[str, str, str]] = ("SK-MJCF-015", "a model in MuJoCo's own format", "")
     frames: Params
     file: MjcfFile
@@ -127,11 +127,7 @@ def _parser(mjcf_parser: Callable[[], MjcfParser] | None) -> MjcfParser:
 def _open_mjcf(
     document: Document, resolver: Resolver, diagnostics: Diagnostics, parser: MjcfParser, as_model: bool = True
 ) -> MjcfFile | None:
-    """Reads a file with all that it includes and names; None, with errors recorded, where it cannot be used.
-
-    Args:
-        as_model: it is wanted as a model, even where it could be a world.
-    """
+    """Read a file with all its included and asset files; return None, with errors recorded, if it is unusable."""
     found = Diagnostics()
     root, path = document.root, document.path
     gathered = gather_files(root, path, resolver, found)
@@ -154,7 +150,7 @@ def _open_mjcf(
 
 
 def _frames_document(file: MjcfFile, diagnostics: Diagnostics) -> Params:
-    """An `<sdf>` with a model of the file's name, links and sites, which poses and joints of the including file use."""
+    """Return an `<sdf>` with the file's links and sites as frames, for poses and joints of the including file."""
     scene = file.model(file.name, file.name)
     where = file.content.source.root.where
     seen = {link.name for link in scene.links}
@@ -178,12 +174,12 @@ def _frame_element(kind: str, name: str, pose: Pose, diagnostics: Diagnostics, *
 
 
 def _is_world(content: CompiledFile) -> bool:
-    """Whether a file is a world: it has something solid of its own beside a body, or not exactly one body."""
+    """Check whether a file is a world: its world body has geoms, or it has not exactly one top-level body."""
     return content.has_world or len(content.roots) != 1
 
 
 def _surroundings_of(file: MjcfFile, models: tuple[SceneModel, ...]) -> SceneWorld:
-    """The world that a file's options make."""
+    """Return the world that a file's options describe."""
     content, compiled = file.content, file.content.compiled
     option, spec = content.model.opt, content.spec
     r, g, b = (float(c) for c in spec.visual.headlight.ambient)
@@ -203,9 +199,10 @@ def _surroundings_of(file: MjcfFile, models: tuple[SceneModel, ...]) -> SceneWor
 
 
 def _world_models(file: MjcfFile) -> list[SceneModel]:
-    """What stands in the world body as one static model, and each top-level body as a model.
+    """Return the content of the world body as one static model, and each top-level body as a model.
 
-    Bodies of one included file are one model with that file's name; so are bodies whose names begin alike up to `::`.
+    Bodies of one included file form one model with that file's name. Bodies whose names have the same beginning up to
+    `::` also form one model.
     """
     content, origins = file.content, file.content.source.origins
     groups: dict[tuple[str, str], list[int]] = {}
@@ -238,22 +235,22 @@ def _free_name(name: str, taken: set[str]) -> str:
 
 
 def _report_base(model: SceneModel, request: LoadRequest) -> None:
-    """Says what a base that the caller chose changes."""
+    """Report the effect of the base that the caller selected."""
     if request.base == "fixed" and any(j.type == "fixed" and j.parent_link == "world" for j in model.joints):
-        message = f"model {model.name!r} stands fixed in the world, as asked for (base='fixed')"
+        message = f"model {model.name!r} is fixed to the world, because of base='fixed'"
         request.diagnostics.note("SK-MJCF-012", message, model.where)
     held = [j.name for j in model.joints if j.parent_link == "world"]
     if request.base == "floating" and held:
-        message = f"model {model.name!r} cannot float: it hangs on the world by {', '.join(held[:5])}"
+        message = f"model {model.name!r} cannot float: it is joined to the world by {', '.join(held[:5])}"
         request.diagnostics.warning("SK-MJCF-012", message, model.where)
 
 
 def _report_engine_elements(file: MjcfFile, diagnostics: Diagnostics) -> None:
-    """Says which of the file's elements are the engine's alone."""
+    """Report the elements of the file that only MuJoCo itself uses."""
     model, where = file.content.model, file.content.source.root.where
     counts = (model.nsensor, model.ncam, model.ntendon, model.nflex, model.nskin, model.nkey)
     kinds = ("sensors", "cameras", "tendons", "flexes", "skins", "keyframes")
     left = [f"{count} {kind}" for kind, count in zip(kinds, counts, strict=True) if count]
     if left:
-        message = f"{file.name}: {', '.join(left)} of the file work in MuJoCo alone; they are in mj_model and mj_data"
-        diagnostics.note("SK-MJCF-010", f"{message}, and publish nothing", where)
+        message = f"{file.name}: {', '.join(left)} publish nothing; read them from mj_model and mj_data"
+        diagnostics.note("SK-MJCF-010", message, where)

@@ -1,4 +1,4 @@
-"""What a compiled MJCF file says of its bodies, joints, geoms and lights, as a scene."""
+"""Reader of one model: converts the bodies, joints, geoms and lights of a compiled MJCF file to a scene."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ from simkit.scene.mjcf_source import MjcfGeom, MjcfSource
 
 _PLANE, _HFIELD, _SPHERE, _CAPSULE, _ELLIPSOID, _CYLINDER, _BOX, _MESH, _SDF = range(9)
 _SHOWN_GROUPS: Final = 3
-"""Geoms of the groups below this are drawn: MuJoCo's own viewers show those from the start."""
+"""Number of geom groups that are drawn: groups 0 to 2, which MuJoCo's own viewers show by default."""
 
 
 class ModelReader:
-    """Reads one model out of a compiled file.
+    """Reader of one model in a compiled file.
 
     Args:
         file: the compiled file.
-        placed: which of its bodies are the model's, and where they are.
+        placed: the bodies of the model and its poses.
     """
 
     def __init__(self, file: CompiledFile, placed: ModelPlacement) -> None:
@@ -43,7 +43,7 @@ class ModelReader:
         )
 
     def read(self) -> SceneModel:
-        """One model with its links, joints and frames."""
+        """Return the model with its links, joints and frames."""
         file, placed = self._file, self._placed
         bodies = sorted(b for root in placed.roots for b in file.bodies_of[root])
         own = [*((0,) if placed.has_world else ()), *bodies]
@@ -137,7 +137,7 @@ class ModelReader:
         return Material(ambient=(r, gr, b, a), diffuse=(r, gr, b, a))
 
     def _shape(self, g: int) -> tuple[Geometry, Pose]:
-        """The shape of a geom, and its pose in the link; a mesh's is that of its file's own axes."""
+        """Return the shape of a geom and its pose in the link; for a mesh, the pose of the axes in its file."""
         model = self._model
         pose = Pose(model.geom_pos[g], model.geom_quat[g])
         a, b, c = (float(s) for s in model.geom_size[g])
@@ -162,7 +162,7 @@ class ModelReader:
         return primitives.get(kind, shapes.Empty()), pose
 
     def _asset(self, kind: str, name: str) -> tuple[Path, str]:
-        """The user's file behind an asset; for one that is written in the model, that file and the asset's name."""
+        """Return the user's file of an asset; for an asset inside the model, the model's file and the asset's name."""
         source = self._file.source
         asset = getattr(self._file.spec, kind)(name)
         key = asset.file if asset is not None else ""

@@ -1,6 +1,6 @@
-"""Which elements and attributes MuJoCo's reader knows, so that every unknown one is told of in one pass.
+"""Check of element and attribute names against MuJoCo's own table, which reports all unknown names at once.
 
-The reader itself stops at the first. Its own table of the format is asked, so this cannot go stale.
+MuJoCo's reader stops at the first unknown name. The table comes from MuJoCo itself and is therefore always up to date.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ _PREPROCESSED: Final[dict[str, frozenset[str]]] = {
     "frame": frozenset(("name", "class", "childclass", "pos", "quat", "axisangle", "xyaxes", "zaxis", "euler")),
     "replicate": frozenset(("count", "offset", "euler", "sep", "prefix", "childclass")),
 }
-"""Elements that the reader takes apart before it looks at its table."""
+"""Elements that MuJoCo's reader processes before it uses its table."""
 
 
 @dataclass(slots=True)
@@ -33,7 +33,7 @@ class _ElementKind:
 
 @lru_cache(maxsize=1)
 def _schema_table(text: str) -> _ElementKind | None:
-    """The outermost element's kind; None where the engine's table has another form than it had."""
+    """Parse MuJoCo's table into the kind of the outermost element; None if its layout is unknown."""
     stack: list[tuple[int, _ElementKind]] = []
     root: _ElementKind | None = None
     for line in text.splitlines():
@@ -57,9 +57,10 @@ def _schema_table(text: str) -> _ElementKind | None:
 
 
 def check_names(root: Params, schema_text: str) -> None:
-    """Records an error for every element and attribute that MJCF does not have, with the closest name.
+    """Record an error for every element and attribute that MJCF does not have, with the closest name.
 
     Args:
+        root: the outermost element.
         schema_text: MuJoCo's own table of the format.
     """
     table = _schema_table(schema_text)
@@ -85,7 +86,7 @@ def _check_children(element: Params, kind: _ElementKind, table: _ElementKind) ->
 
 
 def _own_name(element: Params, name: str) -> str:
-    """The name by which an element that may hold others of its kind does so."""
+    """Return `body` or `default` if the element may contain its own kind under that name, else an empty name."""
     if name == "body" and element.name in ("worldbody", "body", *_PREPROCESSED):
         return "body"
     return "default" if name == "default" and element.name == "default" else ""
@@ -100,6 +101,6 @@ def _check_attributes(element: Params, known: Collection[str]) -> None:
 
 
 def _allowed_parents(name: str, table: _ElementKind) -> str:
-    """Where an element belongs that stands in the wrong place."""
+    """Describe the elements that may contain an element, for a hint; empty if there are none."""
     places = [f"<{p}>" for p, kind in table.children.items() if name in kind.children]
     return f"<{name}> belongs in {' or '.join(places[:3])}" if places else ""

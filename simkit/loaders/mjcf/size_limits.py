@@ -1,7 +1,7 @@
-"""What a file may ask for: numbers that are numbers, and counts within memory.
+"""Limits of an MJCF file: all numbers must be finite, and all counts must fit into memory.
 
-MuJoCo allocates whatever a count says, so a short file can ask for all memory there is; and it takes a NaN with no
-more than a message in a log file.
+MuJoCo allocates memory for every count, so a short file can request all available memory. MuJoCo also accepts a NaN,
+with only a message in a log file.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from typing import Final
 from simkit.params import Params
 
 MOST_ELEMENTS: Final = 100_000
-"""Elements after every replication."""
+"""Maximum number of elements after all replications."""
 
 _TEXTS: Final = frozenset((
     "name", "class", "childclass", "prefix", "model", "key", "value", "data", "file", "content_type", "mesh",
@@ -26,7 +26,7 @@ _TEXTS: Final = frozenset((
     "target", "objname", "refname", "objtype", "reftype", "instance", "plugin", "refsite", "cranksite",
     "slidersite", "sidesite", "jointinparent", "node", "type",
 ))  # fmt: skip
-"""Attributes that hold names, in which `nan` and `inf` are words like any other."""
+"""Attributes that hold names, in which `nan` and `inf` are ordinary words."""
 
 _SHORTEST_STEP: Final = 1e-3
 _LONGEST_STEP: Final = 100.0
@@ -34,19 +34,19 @@ _MEMORY_MOST: Final = 16 << 30
 
 
 def check_bounds(root: Params) -> None:
-    """Records an error for each number that is none, and for each count beyond what is allowed."""
+    """Record an error for each number that is NaN or infinite, and for each count above its limit."""
     counted = 0
     for element, times in _elements(root):
         counted += times
         if counted > MOST_ELEMENTS * 10 or times > MOST_ELEMENTS:
-            _report_excess(element, "count", f"{times} copies", f"{MOST_ELEMENTS} elements in all")
+            _report_excess(element, "count", f"{times} copies", f"at most {MOST_ELEMENTS} elements in total")
             return
         for name, text in element.attributes.items():
             _check(element, name, text)
 
 
 def _elements(root: Params) -> Iterator[tuple[Params, int]]:
-    """Every element and how often replication makes it."""
+    """Yield every element with the number of copies that replication makes of it."""
     stack = [(root, 1)]
     while stack:
         element, times = stack.pop()
@@ -77,7 +77,7 @@ def _check(element: Params, name: str, text: str) -> None:
     numbers = _numbers(text)
     if not all(map(math.isfinite, numbers)):
         message = f"<{element.name} {name}={text!r}>: every number must be finite"
-        element.error("SK-MJCF-004", message, "leave the attribute out where there is no limit")
+        element.error("SK-MJCF-004", message, "to set no limit, remove the attribute")
         return
     if (element.name, name) == ("lengthrange", "timestep") and numbers and numbers[0] < _SHORTEST_STEP:
         _report_excess(element, name, text, f"at least {_SHORTEST_STEP:g} s")
@@ -92,12 +92,12 @@ def _check(element: Params, name: str, text: str) -> None:
     elif most_product is not None:
         values = [*numbers, *_numbers(element.attribute({"nrow": "ncol", "width": "height"}.get(name, "")))]
         if math.prod(max(1.0, v) for v in values) > most_product:
-            _report_excess(element, name, " x ".join(f"{v:g}" for v in values), f"{most_product} in all")
+            _report_excess(element, name, " x ".join(f"{v:g}" for v in values), f"at most {most_product} in total")
 
 
 @functools.cache
 def _size_limits() -> dict[tuple[str, str], tuple[int, int | None]]:
-    """The largest number of each element's attribute (of `*`: any element's), and the largest product of its numbers.
+    """Return the limits by element (`*`: any element) and attribute: largest number, and largest product of numbers.
 
     A height field and a texture have the second number of the product in another attribute.
     """
