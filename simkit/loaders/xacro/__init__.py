@@ -1,7 +1,8 @@
-"""xacro: files with macros and expressions, expanded before any other loader sees them.
+"""xacro: expansion of files with macros and expressions, before any other loader reads them.
 
-A document enters; one of plain elements leaves, each with the file and line that it was written in. Expressions compute
-and do nothing else; every step, text, list and number is bounded, and files are read inside the resource folders alone.
+The input is a document; the output is a document of plain elements, each with its original file and line. Expressions
+can only compute values. Every step, text, list and number is limited, and files are read only inside the resource
+folders.
 """
 
 from __future__ import annotations
@@ -17,11 +18,11 @@ _COMMENT = re.compile(rb"<!--.*?-->", re.DOTALL)
 
 
 def needs_expansion(document: Document) -> bool:
-    """Whether a file is xacro: by its name, by its elements, or because it declares the name space and computes."""
+    """Check whether a file is xacro: by its name, by its elements, or by its name space together with expressions."""
     if document.path is not None and document.path.suffix == ".xacro":
         return True
     text = document.text
-    if b"$" in text and b"<![CDATA[" not in text:  # what xacro has written often says `${...}` in comments alone
+    if b"$" in text and b"<![CDATA[" not in text:  # output of xacro often contains `${...}` only in comments
         text = _COMMENT.sub(b"", text)
     computes = b"${" in text or b"$(" in text
     return b"<xacro:" in text or (computes and "xmlns:xacro" in document.root.attributes)

@@ -1,4 +1,4 @@
-"""Between `Params` and the document tree that xacro rewrites; every element keeps its file and line, copied or not."""
+"""Conversion between `Params` and the document tree that xacro rewrites; every element and copy keeps file and line."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _KEY = "where"
 
 
 class _PlaceKeeper:
-    """Hands an element's place on to its copies."""
+    """User data handler that copies an element's file and line to its copies."""
 
     def handle(self, _operation: int, key: str, data: object, _source: object, copy: Any) -> None:
         if copy is not None:
@@ -23,7 +23,7 @@ _KEEP = _PlaceKeeper()
 
 
 def to_document(root: Params) -> minidom.Document:
-    """A document tree with the place of every element."""
+    """Return a document tree with file and line of every element."""
     document = minidom.Document()
     top = _element(document, root)
     document.appendChild(top)
@@ -31,9 +31,9 @@ def to_document(root: Params) -> minidom.Document:
     while stack:
         params, node = stack.pop()
         for child in params.children:
-            made = _element(document, child)
-            node.appendChild(made)
-            stack.append((child, made))
+            child_node = _element(document, child)
+            node.appendChild(child_node)
+            stack.append((child, child_node))
     return document
 
 
@@ -48,13 +48,13 @@ def _element(document: minidom.Document, params: Params) -> minidom.Element:
 
 
 def place_of(node: minidom.Element | None) -> Where:
-    """Where an element stands in its file."""
+    """Return file and line of an element."""
     found = node.getUserData(_KEY) if node is not None else None
     return found if isinstance(found, Where) else NOWHERE
 
 
 def to_params(top: Any, diagnostics: Diagnostics) -> Params:
-    """The tree as `Params`; an element without a place of its own has that of its parent."""
+    """Convert the tree to `Params`; an element without its own file and line has those of its parent."""
     root = _params(top, place_of(top), diagnostics)
     stack: list[tuple[minidom.Element, Params]] = [(top, root)]
     while stack:
@@ -62,9 +62,9 @@ def to_params(top: Any, diagnostics: Diagnostics) -> Params:
         for child in node.childNodes:
             if child.nodeType == child.ELEMENT_NODE:
                 where = place_of(child)
-                made = _params(child, params.where if where is NOWHERE else where, diagnostics)
-                params.children.append(made)
-                stack.append((child, made))
+                child_params = _params(child, params.where if where is NOWHERE else where, diagnostics)
+                params.children.append(child_params)
+                stack.append((child, child_params))
     return root
 
 

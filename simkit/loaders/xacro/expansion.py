@@ -1,4 +1,4 @@
-"""Expands a xacro file into plain `Params`, every element with the file and line that it was written in."""
+"""Expansion of a xacro file into plain `Params`, in which every element keeps its original file and line."""
 
 from __future__ import annotations
 
@@ -20,32 +20,32 @@ from simkit.loaders.xacro.private_package import MACRO_ARGUMENT, XacroModule, im
 
 MAX_EXPANDED = 50_000
 MAX_COPIED = 300_000
-_CALL = 5  # what a macro call costs, in elements
+_CALL = 5  # cost of a macro call, counted in elements
 _TOKEN = re.compile(r"(?P<escaped>\$\$+[{(])|(?P<expression>\$\{[^}]*\})|(?P<command>\$\([^)]*\))|[^$]+|\$[^{($]+|\$$")
 
 
 def expand(
     document: Document, resolver: Resolver, arguments: Mapping[str, str], diagnostics: Diagnostics
 ) -> Document | None:
-    """The expanded file; None, with an error recorded, where it cannot be expanded.
+    """Expand a file; return None, with an error recorded, if it cannot be expanded.
 
     Args:
-        document: as parsed.
+        document: the parsed file.
         resolver: finds packages and included files.
         arguments: values of the file's `<xacro:arg>`.
-        diagnostics: where problems go; xacro stops at the first error.
+        diagnostics: receives the problems; xacro stops at the first error.
     """
     try:
         engine = import_private_xacro()
     except ImportError as error:
-        message = f"the file is xacro, and {error.name or error} is not installed"
+        message = f"the file is xacro, but {error.name or error} is not installed"
         diagnostics.error("SK-XACRO-006", message, document.root.where, "pip install xacro")
         return None
     return _Expansion(engine, document, resolver, arguments, diagnostics).run()
 
 
 class _Expansion:
-    """One run over one file."""
+    """One expansion of one file."""
 
     def __init__(
         self,
@@ -83,9 +83,9 @@ class _Expansion:
             self._fail("SK-XACRO-002", str(error), error.hint)
             return None
         except BoundError as error:
-            self._fail("SK-XACRO-003", f"the expansion is stopped: {error}")
+            self._fail("SK-XACRO-003", f"expansion stopped: {error}")
             return None
-        except Exception as error:  # noqa: BLE001 - xacro raises what Python raises; the place is known here
+        except Exception as error:  # noqa: BLE001 - xacro raises any exception of Python; only here the place is known
             inner = _inner_error(error)
             if isinstance(inner, (MissingError, BoundError)):
                 code = "SK-XACRO-002" if isinstance(inner, MissingError) else "SK-XACRO-003"
@@ -97,7 +97,7 @@ class _Expansion:
         return Document(to_params(top.documentElement, self.diagnostics), self.document.path, self.document.text)
 
     def _fail(self, code: str, message: str, hint: str = "") -> None:
-        """One error, at the element that was being expanded, with the macros that led there."""
+        """Record one error at the element that is being expanded, with the macro calls that led there."""
         trail = "".join(f"; in <xacro:{name}> of {where}" for name, where in reversed(self.calls[-4:]))
         self.diagnostics.error(code, f"xacro: {message}{trail}", self.where, hint)
 
@@ -108,18 +108,18 @@ class _Expansion:
             return did_you_mean(missing.group(1), self._known)
         unknown = re.search(r"unknown macro name: xacro:([\w.]+)", text)
         if unknown:
-            return did_you_mean(unknown.group(1), [*self._macros, *_WORDS])
+            return did_you_mean(unknown.group(1), [*self._macros, *_ELEMENT_NAMES])
         return ""
 
     def _report_unknown_arguments(self) -> None:
         for name in self.given:
             if name not in self.declared:
                 known = ", ".join(sorted(self.declared)) or "none"
-                message = f"the file has no argument {name!r} (it has: {known}); it has no effect"
+                message = f"the file has no argument {name!r}; it has {known}"
                 hint = did_you_mean(name, self.declared)
                 self.diagnostics.warning("SK-XACRO-004", message, self.document.root.where, hint)
 
-    # ------------------------------------------------------------------ what replaces xacro's own
+    # ------------------------------------------------------------------ replacements of xacro's own functions
 
     def _replace(self) -> None:
         engine = self.engine
@@ -149,7 +149,7 @@ class _Expansion:
         return call
 
     def _count_work(self, eval_all: Callable[..., None], handle_macro_call: Callable[..., bool]) -> None:
-        """Bounds on elements, and the place of each one that is being expanded."""
+        """Replace xacro's functions by ones that limit the number of elements and store the current file and line."""
 
         def visit(node: minidom.Element, macros: Names, symbols: Names) -> None:
             self._enter_element(node, 1)
@@ -174,10 +174,10 @@ class _Expansion:
         self.where = self.where if where is NOWHERE else where
         self.expanded += elements
         if self.expanded > MAX_EXPANDED:
-            raise BoundError(f"it makes more than {MAX_EXPANDED} elements")
+            raise BoundError(f"it creates more than {MAX_EXPANDED} elements")
 
     def _count_body(self, name: str, macros: Names, symbols: Names) -> None:
-        """A macro's body is copied whole at every call, whatever of it is kept."""
+        """Count a macro's body, which xacro copies as a whole at every call, even if conditions remove parts of it."""
         try:
             _, _, macro = self.engine.resolve_macro(name, macros, symbols)
         except KeyError:
@@ -186,16 +186,16 @@ class _Expansion:
             self.sizes[id(macro.body)] = len(macro.body.getElementsByTagName("*"))
         self.copied += self.sizes[id(macro.body)]
         if self.copied > MAX_COPIED:
-            raise BoundError(f"macros bring more than {MAX_COPIED} elements")
+            raise BoundError(f"macros copy more than {MAX_COPIED} elements")
 
     def _report_message(self, args: tuple[object, ...]) -> None:
-        """What the file, or xacro about the file, wants to tell."""
+        """Record a message of the file, or of xacro about the file, as a warning."""
         self.diagnostics.warning("SK-XACRO-005", "xacro: " + " ".join(map(str, args)), self.where)
 
     # ------------------------------------------------------------------ files
 
     def _current_folder(self) -> Path | None:
-        """The folder of the file that is being expanded."""
+        """Return the folder of the file that is being expanded."""
         return Path(self.engine.filestack[-1]).parent
 
     def _include_files(self, spec: str, symbols: Names) -> list[str]:
@@ -227,7 +227,7 @@ class _Expansion:
     # ------------------------------------------------------------------ texts
 
     def _text(self, text: str, symbols: Names) -> Value:
-        """A text with its `${...}` and `$(...)` replaced; the typed value where it is nothing else."""
+        """Replace `${...}` and `$(...)` in a text; a text that is one expression keeps the type of its value."""
         if "$" not in text:
             return text
         results: list[Value] = []
@@ -235,7 +235,7 @@ class _Expansion:
         while position < len(text):
             found = _TOKEN.match(text, position)
             if found is None:
-                raise ExpansionError(f"it cannot be read: {text[position : position + 60]}")
+                raise ExpansionError(f"invalid text: {text[position : position + 60]}")
             position = found.end()
             if found.lastgroup == "expression":
                 results.append(self._expression(found.group()[2:-1], symbols))
@@ -280,17 +280,17 @@ class _Expansion:
         if name == "eval" and rest:
             return Evaluator({**_literals(self.arguments), **self._global_names()}, self.budget).run(text[4:])
         known = ("find", "arg", "env", "optenv", "dirname", "cwd", "eval")
-        raise ExpansionError(f"$({text}) is not known, known are {', '.join(known)}")
+        raise ExpansionError(f"unknown substitution $({text}); known are {', '.join(known)}")
 
     def _argument(self, name: str) -> str:
         if name not in self.arguments:
             known = ", ".join(sorted(self.arguments)) or "none"
-            given = f"give it with --xacro-arg {name}=VALUE (Python: xacro_args)"
-            raise ExpansionError(f"the argument {name!r} has no value (there are: {known}); {given}")
+            remedy = f"set it with --xacro-arg {name}=VALUE (Python: xacro_args)"
+            raise ExpansionError(f"the argument {name!r} has no value (arguments with values: {known}); {remedy}")
         return self.arguments[name]
 
     def _global_names(self) -> dict[str, Value]:
-        """What every expression can use: xacro's own names."""
+        """Return xacro's own names, which every expression can use."""
         evaluator = Evaluator({}, self.budget)
         space = self.engine.NameSpace
         python, mathematics = python_functions(evaluator), math_functions()
@@ -304,8 +304,8 @@ class _Expansion:
             "fatal": Function(self._fatal),
             "print_location": Function(lambda: ""),
         }
-        for said in ("message", "warning", "error"):
-            own[said] = Function(self._print_message)
+        for function_name in ("message", "warning", "error"):
+            own[function_name] = Function(self._print_message)
         for name, table in (("python", python), ("math", mathematics), ("xacro", own)):
             dict.update(spaces[name], table)
         direct = {name: python[name] for name in DIRECT_NAMES}
@@ -326,7 +326,7 @@ class _Expansion:
 
 
 class _MissingFile(OSError):
-    """Tells xacro that an include is only missing, which `optional` forgives."""
+    """Error that marks an include as missing, so that xacro accepts this if the include is `optional`."""
 
     def __init__(self, error: MissingError) -> None:
         super().__init__(str(error))
@@ -334,7 +334,7 @@ class _MissingFile(OSError):
 
 
 def _inner_error(error: BaseException) -> BaseException:
-    """The expansion's own error inside xacro's."""
+    """Return the expansion's own error inside an exception of xacro."""
     inner: object = getattr(error, "exc", None)
     if isinstance(inner, _MissingFile):
         return inner.error
@@ -342,7 +342,7 @@ def _inner_error(error: BaseException) -> BaseException:
 
 
 def _table_names(symbols: object) -> set[str]:
-    """Names in a table of xacro and those around it."""
+    """Return the names in a table of xacro and in its parent tables."""
     found: set[str] = set()
     while isinstance(symbols, dict):
         found |= {str(k) for k in dict.keys(symbols)}
@@ -351,7 +351,7 @@ def _table_names(symbols: object) -> set[str]:
 
 
 def _literals(arguments: Mapping[str, str]) -> dict[str, Value]:
-    """Arguments as numbers and booleans where they are such, for `$(eval ...)`."""
+    """Return arguments as numbers and booleans if possible, for `$(eval ...)`."""
     found: dict[str, Value] = {}
     for name, text in arguments.items():
         value: Value = text
@@ -365,4 +365,4 @@ def _literals(arguments: Mapping[str, str]) -> dict[str, Value]:
     return found
 
 
-_WORDS = ("include", "property", "macro", "arg", "if", "unless", "insert_block", "call", "element", "attribute")
+_ELEMENT_NAMES = ("include", "property", "macro", "arg", "if", "unless", "insert_block", "call", "element", "attribute")

@@ -1,4 +1,4 @@
-"""What one expansion may cost: steps, sizes of values, depth. Files come from anywhere, and xacro computes."""
+"""Limits of one expansion: steps, sizes of values, depth. Files can be untrusted, and xacro evaluates expressions."""
 
 from __future__ import annotations
 
@@ -14,27 +14,27 @@ MAX_FILES_DEEP = 48
 
 
 class ExpansionError(Exception):
-    """An expression or element that cannot be expanded; the text is for the user."""
+    """Expression or element that cannot be expanded; the text is for the user."""
 
 
 class BoundError(ExpansionError):
-    """The expansion costs more than any robot's does."""
+    """Expansion that exceeds a limit, which lies far above the needs of any robot."""
 
 
 class Budget:
-    """Steps left of one expansion."""
+    """Remaining steps of one expansion."""
 
     def __init__(self, steps: int = MAX_STEPS) -> None:
         self.left = steps
 
     def spend(self, steps: int = 1) -> None:
-        """Takes steps; raises BoundError when none are left."""
+        """Subtract steps; raise BoundError if none are left."""
         self.left -= steps
         if self.left < 0:
             raise BoundError(f"it needs more than {MAX_STEPS} steps")
 
     def value(self, value: Value) -> Value:
-        """The same value, if its size is within bounds."""
+        """Return the same value if its size is within the limits, else raise BoundError."""
         if isinstance(value, str):
             if len(value) > MAX_TEXT:
                 raise BoundError(f"a text has more than {MAX_TEXT} characters")
@@ -46,17 +46,17 @@ class Budget:
         return value
 
     def weigh(self, *values: object) -> int:
-        """Everything inside nested lists and texts, counted as often as it stands there; spends as many steps."""
+        """Count all items and texts inside nested values, repeated ones repeatedly, and spend as many steps."""
         weight, stack = 0, list(values)
         while stack:
-            one = stack.pop()
-            weight += 1 + (len(one) // 16 if isinstance(one, str) else 0)
-            if isinstance(one, dict):
-                stack += [*dict.keys(one), *dict.values(one)]
-            elif isinstance(one, (list, tuple)):
-                stack += list.__iter__(one) if isinstance(one, list) else one
-            elif isinstance(one, (set, frozenset)):
-                stack += one
+            item = stack.pop()
+            weight += 1 + (len(item) // 16 if isinstance(item, str) else 0)
+            if isinstance(item, dict):
+                stack += [*dict.keys(item), *dict.values(item)]
+            elif isinstance(item, (list, tuple)):
+                stack += list.__iter__(item) if isinstance(item, list) else item
+            elif isinstance(item, (set, frozenset)):
+                stack += item
             if weight + len(stack) > 10 * MAX_ITEMS:
                 raise BoundError("a value is too large")
         self.spend(weight)

@@ -1,7 +1,7 @@
-"""Expressions of xacro (`${2 * length}`): Python's, walked by hand, so that a file can compute and do nothing else.
+"""Evaluator of xacro expressions (`${2 * length}`): Python expressions that can only compute values.
 
-No attribute of a Python object can be reached, nothing is called that is not in the table of functions, and every
-step, text, list and number is bounded.
+The evaluator walks Python's syntax tree itself. Attributes of Python objects cannot be read, only functions of the
+table can be called, and every step, text, list and number is limited.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from simkit.loaders.xacro.expansion_limits import MAX_BITS, MAX_ITEMS, MAX_TEXT,
 
 MAX_EXPRESSION = 20_000
 
-Value = Any  # a value of an expression has any type that Python has
+Value = Any  # an expression can have a value of any Python type
 Names = Mapping[str, Value]
 
 _BINARY: dict[type[ast.operator], Callable[[Value, Value], Value]] = {
@@ -62,31 +62,35 @@ METHODS: dict[type, frozenset[str]] = {
     set: frozenset(("add", "difference", "intersection", "issubset", "issuperset", "union")),
     float: frozenset(("is_integer",)),
 }
-_SPACES = ("Table", "NameSpace")  # of xacro: their names are not methods
+_SPACES = ("Table", "NameSpace")  # xacro's own dictionaries: their entries are names, not methods
 _WIDE = re.compile(r"\d{4,}|\*")
 _FIELD = re.compile(r"\{([^{}]*)\}")
 
 
 class Function:
-    """A function that expressions may call."""
+    """Function that expressions may call."""
 
     def __init__(self, call: Callable[..., Value], kind: type | None = None) -> None:
         self.call, self.kind = call, kind
 
 
 class Evaluator:
-    """Evaluates expressions over a table of names.
+    """Evaluator of expressions over a table of names.
 
     Args:
-        names: what a name stands for; a missing one raises KeyError.
-        budget: of the whole expansion.
+        names: values by name; a missing name raises KeyError.
+        budget: steps left of the whole expansion.
     """
 
     def __init__(self, names: Names, budget: Budget) -> None:
         self.names, self.budget = names, budget
 
     def run(self, text: str) -> Value:
-        """The value of an expression; raises ExpansionError with a text for the user."""
+        """Return the value of an expression.
+
+        Raises:
+            ExpansionError: the expression is invalid or exceeds a limit; the text is for the user.
+        """
         if len(text) > MAX_EXPRESSION:
             raise BoundError(f"an expression has more than {MAX_EXPRESSION} characters")
         try:
@@ -95,18 +99,18 @@ class Evaluator:
         except ExpansionError:
             raise
         except SyntaxError as error:
-            raise ExpansionError(f"it is not an expression: {error.msg}") from None
+            raise ExpansionError(f"invalid expression: {error.msg}") from None
         except RecursionError:
             raise BoundError("an expression is nested too deeply") from None
         except KeyError as error:
-            raise ExpansionError(f"there is no {error}") from None
+            raise ExpansionError(f"no entry {error}") from None
         except MemoryError:
             raise BoundError("an expression needs too much memory") from None
-        except Exception as error:  # noqa: BLE001 - whatever Python says of the file's own arithmetic
+        except Exception as error:  # noqa: BLE001 - arithmetic in the file can raise any exception of Python
             raise ExpansionError(f"{type(error).__name__}: {error}") from None
 
     def call(self, function: Value, *args: Value, **options: Value) -> Value:
-        """Calls a function of the table (or a lambda of the file) within bounds."""
+        """Call a function of the table (or a lambda of the file) within the limits."""
         if not isinstance(function, Function):
             raise ExpansionError("only functions can be called")
         self.budget.weigh(args, options)
@@ -122,7 +126,7 @@ class Evaluator:
         self.budget.spend()
         visit = _VISITORS.get(type(node))
         if visit is None:
-            raise ExpansionError(f"{type(node).__name__} has no place in an expression")
+            raise ExpansionError(f"{type(node).__name__} is not allowed in an expression")
         return self.budget.value(visit(self, node, local))
 
     def _constant(self, node: ast.Constant, local: Names) -> Value:
@@ -142,7 +146,7 @@ class Evaluator:
         a, b = self._visit(node.left, local), self._visit(node.right, local)
         apply = _BINARY.get(type(node.op))
         if apply is None:
-            raise ExpansionError("this operator has no place in an expression")
+            raise ExpansionError("this operator is not allowed in an expression")
         if isinstance(node.op, ast.Mult):
             for sequence, count in ((a, b), (b, a)):
                 if isinstance(sequence, (str, list, tuple)) and isinstance(count, int):
@@ -165,8 +169,8 @@ class Evaluator:
 
     def _logic(self, node: ast.BoolOp, local: Names) -> Value:
         value: Value = None
-        for one in node.values:
-            value = self._visit(one, local)
+        for operand in node.values:
+            value = self._visit(operand, local)
             if bool(value) is isinstance(node.op, ast.Or):
                 return value
         return value
@@ -187,11 +191,11 @@ class Evaluator:
 
     def _sequence(self, node: ast.List | ast.Tuple | ast.Set, local: Names) -> Value:
         values: list[Value] = []
-        for one in node.elts:
-            if isinstance(one, ast.Starred):
-                values += list(self._visit(one.value, local))
+        for item in node.elts:
+            if isinstance(item, ast.Starred):
+                values += list(self._visit(item.value, local))
             else:
-                values.append(self._visit(one, local))
+                values.append(self._visit(item, local))
         return {ast.List: list, ast.Tuple: tuple, ast.Set: set}[type(node)](values)
 
     def _dict(self, node: ast.Dict, local: Names) -> Value:
@@ -211,22 +215,22 @@ class Evaluator:
         return slice(*(None if end is None else self._visit(end, local) for end in ends))
 
     def _attribute(self, node: ast.Attribute, local: Names) -> Value:
-        """A name in a name space, or a key of a dictionary from a YAML file; never an attribute of a Python object."""
+        """Return a name of a name space, or a key of a YAML dictionary; never an attribute of a Python object."""
         owner = self._visit(node.value, local)
         if isinstance(owner, dict):
             try:
                 return owner[node.attr]
             except (KeyError, AttributeError):
-                raise ExpansionError(f"there is no {node.attr!r} in it") from None
-        raise ExpansionError(f"a {type(owner).__name__} has no {node.attr!r} that could be used here")
+                raise ExpansionError(f"no entry {node.attr!r}") from None
+        raise ExpansionError(f"{node.attr!r} of a {type(owner).__name__} cannot be used in an expression")
 
     def _call(self, node: ast.Call, local: Names) -> Value:
         args: list[Value] = []
-        for one in node.args:
-            if isinstance(one, ast.Starred):
-                args += list(self._visit(one.value, local))
+        for argument in node.args:
+            if isinstance(argument, ast.Starred):
+                args += list(self._visit(argument.value, local))
             else:
-                args.append(self._visit(one, local))
+                args.append(self._visit(argument, local))
         options = {k.arg: self._visit(k.value, local) for k in node.keywords if k.arg is not None}
         if isinstance(node.func, ast.Attribute):
             owner = self._visit(node.func.value, local)
@@ -240,8 +244,8 @@ class Evaluator:
         self.budget.weigh(owner, args, options)
         if isinstance(owner, str):
             if name == "join":
-                args = [[str(one) if not isinstance(one, str) else one for one in args[0]]] if args else args
-                if args and sum(len(one) + len(owner) for one in args[0]) > MAX_TEXT:
+                args = [[str(item) if not isinstance(item, str) else item for item in args[0]]] if args else args
+                if args and sum(len(item) + len(owner) for item in args[0]) > MAX_TEXT:
                     raise BoundError("a text is too long")
             elif name == "replace" and len(args) > 1:
                 if owner.count(str(args[0])) * len(str(args[1])) > MAX_TEXT:
@@ -262,7 +266,7 @@ class Evaluator:
 
         def call(*args: Value) -> Value:
             if len(args) != len(names):
-                raise ExpansionError(f"the lambda takes {len(names)} values, it was given {len(args)}")
+                raise ExpansionError(f"the lambda takes {len(names)} values, but is called with {len(args)}")
             return self._visit(node.body, {**local, **dict(zip(names, args, strict=True))})
 
         return Function(call)
@@ -270,7 +274,7 @@ class Evaluator:
     def _comprehension(self, node: Value, local: Names) -> Value:
         rows: list[Value] = []
 
-        def go(index: int, scope: dict[str, Value]) -> None:
+        def run_loop(index: int, scope: dict[str, Value]) -> None:
             if index == len(node.generators):
                 self.budget.spend()
                 if isinstance(node, ast.DictComp):
@@ -283,13 +287,13 @@ class Evaluator:
             for item in self._visit(generator.iter, scope):
                 inner = {**scope, **_loop_variables(generator.target, item)}
                 if all(self._visit(test, inner) for test in generator.ifs):
-                    go(index + 1, inner)
+                    run_loop(index + 1, inner)
 
-        go(0, dict(local))
+        run_loop(0, dict(local))
         return {ast.DictComp: dict, ast.SetComp: set}.get(type(node), list)(rows)
 
     def _text(self, node: ast.JoinedStr, local: Names) -> Value:
-        return "".join(str(self._visit(one, local)) for one in node.values)
+        return "".join(str(self._visit(part, local)) for part in node.values)
 
     def _formatted(self, node: ast.FormattedValue, local: Names) -> Value:
         value = self._visit(node.value, local)
@@ -301,22 +305,22 @@ class Evaluator:
 
 
 def _loop_variables(target: ast.expr, item: Value) -> dict[str, Value]:
-    """The names that a `for` of a comprehension binds."""
+    """Return the names that a `for` of a comprehension binds, with their values."""
     if isinstance(target, ast.Name):
         return {target.id: item}
     if isinstance(target, (ast.Tuple, ast.List)):
         items = list(item)
         if len(items) != len(target.elts):
-            raise ExpansionError(f"{len(target.elts)} names cannot hold {len(items)} values")
+            raise ExpansionError(f"cannot assign {len(items)} values to {len(target.elts)} names")
         bound: dict[str, Value] = {}
-        for one, value in zip(target.elts, items, strict=True):
-            bound.update(_loop_variables(one, value))
+        for name, value in zip(target.elts, items, strict=True):
+            bound.update(_loop_variables(name, value))
         return bound
-    raise ExpansionError("a 'for' binds names only")
+    raise ExpansionError("a 'for' can only assign to names")
 
 
 def _check_format(template: str) -> None:
-    """Only plain fields: no attributes, no indices, no wide paddings."""
+    """Raise an error if a format has attributes, indices, wide paddings or nested fields."""
     for field in _FIELD.findall(template):
         name, _, width = field.partition(":")
         if not re.fullmatch(r"\w*(![rs])?", name) or _WIDE.search(width):

@@ -1,4 +1,4 @@
-"""The functions that expressions of xacro may call, as xacro names them."""
+"""Functions that xacro expressions may call, by their names in xacro."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from simkit.loaders.xacro.expansion_limits import MAX_ITEMS, BoundError, Expansi
 from simkit.loaders.xacro.expression import Evaluator, Function, Value
 
 DIRECT_NAMES = ("list", "dict", "map", "len", "str", "float", "int", "bool", "min", "max", "round", "sorted", "range")
-"""The functions that need no `python.` before them."""
+"""Functions that can be called without the prefix `python.`."""
 
 _LARGEST_FACTORIAL = 1000
 
 
 def python_functions(evaluator: Evaluator) -> dict[str, Function]:
-    """Python's own functions by name: those of xacro's name space `python`."""
+    """Return Python's own functions by name: those of xacro's name space `python`."""
 
     def plain(function: Value) -> Value:
         return evaluator._callable(function) if isinstance(function, Function) else function
@@ -31,8 +31,8 @@ def python_functions(evaluator: Evaluator) -> dict[str, Function]:
         return [i for i in items if (i if function is None else evaluator.call(function, i))]
 
     def is_instance(value: Value, kinds: Value) -> bool:
-        wanted = kinds if isinstance(kinds, (tuple, list)) else (kinds,)
-        return isinstance(value, tuple(k.kind for k in wanted if isinstance(k, Function) and k.kind))
+        accepted = kinds if isinstance(kinds, (tuple, list)) else (kinds,)
+        return isinstance(value, tuple(k.kind for k in accepted if isinstance(k, Function) and k.kind))
 
     table: dict[str, Function] = {
         kind.__name__: Function(kind, kind)
@@ -57,7 +57,7 @@ def python_functions(evaluator: Evaluator) -> dict[str, Function]:
 
 
 def math_functions() -> dict[str, Value]:
-    """Everything in the module `math`."""
+    """Return all public names of the module `math`."""
     table: dict[str, Value] = {}
     for name, value in vars(math).items():
         if name.startswith("_"):
@@ -69,16 +69,16 @@ def math_functions() -> dict[str, Value]:
 
 
 def tokenize(text: str, sep: str = ",; ", skip_empty: bool = True) -> list[str]:
-    """The parts of a text between any of the characters of `sep`."""
+    """Split a text at any of the characters of `sep`."""
     parts = re.split("[" + re.escape(str(sep)) + "]", str(text)) if sep else [str(text)]
     return [p for p in parts if p] if skip_empty else parts
 
 
 def _range(*args: int) -> list[int]:
-    wanted = range(*args)
-    if len(wanted) > MAX_ITEMS:
+    numbers = range(*args)
+    if len(numbers) > MAX_ITEMS:
         raise BoundError(f"a range has more than {MAX_ITEMS} items")
-    return list(wanted)
+    return list(numbers)
 
 
 def _round(value: Value, digits: int | None = None) -> Value:

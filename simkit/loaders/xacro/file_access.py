@@ -1,4 +1,4 @@
-"""What a xacro file may read: included files, YAML files and packages, all inside the folders of the resolver."""
+"""File access of a xacro file: included files, YAML files and packages, all inside the resolver's folders."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _UNITS = {
 
 
 class MissingError(ExpansionError):
-    """A file that is not there, or may not be read."""
+    """File that does not exist or may not be read."""
 
     def __init__(self, message: str, hint: str = "") -> None:
         super().__init__(message)
@@ -35,12 +35,12 @@ class MissingError(ExpansionError):
 
 
 class FileAccess:
-    """Finds and reads files for one expansion.
+    """Finder and reader of files for one expansion.
 
     Args:
-        resolver: knows the folders.
-        diagnostics: receives what reading an included file has to say.
-        where: gives the place of the element that is being expanded.
+        resolver: finds files and packages.
+        diagnostics: receives the problems of included files.
+        where: returns the place of the element that is being expanded.
     """
 
     def __init__(self, resolver: Resolver, diagnostics: Diagnostics, where: Callable[[], Where]) -> None:
@@ -48,21 +48,29 @@ class FileAccess:
         self._packages: dict[str, str] = {}
 
     def find_file(self, text: str, folder: Path | None) -> Path:
-        """The file that a text names, seen from a folder."""
+        """Return the file that a text names, relative to a folder.
+
+        Raises:
+            MissingError: there is no such file.
+        """
         found = Diagnostics()
         path = self.resolver.resolve(text, self._where(), found, folder)
         if path is not None and path.is_file():
             return path
-        said = next(iter(found), None)
+        problem = next(iter(found), None)
         if path is not None:
-            raise MissingError(f"{text} is a folder, a file is needed")
-        raise MissingError(said.message if said else f"{text} is not found", said.hint if said else "")
+            raise MissingError(f"{text} is a folder, not a file")
+        raise MissingError(problem.message if problem else f"{text} is not found", problem.hint if problem else "")
 
     def find_pattern(self, pattern: str, folder: Path | None) -> list[str]:
-        """The files that a pattern (`*.xacro`) names, in order."""
+        """Return the files that a pattern (`*.xacro`) matches, sorted.
+
+        Raises:
+            MissingError: the folder does not exist, or the pattern is not allowed.
+        """
         head, _, last = pattern.rpartition("/")
         if any(c in head for c in "*?[") or (folder is None and not head):
-            raise MissingError(f"{pattern}: a pattern may be in the file's name only")
+            raise MissingError(f"{pattern}: wildcards are only allowed in the file's name")
         base = folder
         if head:
             base, _ = self.resolver.search(head, folder)
@@ -70,39 +78,51 @@ class FileAccess:
             raise MissingError(f"{pattern}: the folder {head} is not found")
         names = sorted(p for p in base.glob(last) if p.is_file())
         if len(names) > MAX_ITEMS:
-            raise MissingError(f"{pattern} names more than {MAX_ITEMS} files")
+            raise MissingError(f"{pattern} matches more than {MAX_ITEMS} files")
         return [str(self.find_file(str(name), folder)) for name in names]
 
     def read_xml(self, path: Path) -> Params:
-        """The root element of an included file."""
+        """Return the root element of an included file.
+
+        Raises:
+            ExpansionError: the file cannot be read.
+        """
         found = Diagnostics()
         document = parse_file(path, found)
         self.diagnostics.extend(d for d in found if d.severity != "error")
         if document is None:
-            said = next((d for d in found if d.severity == "error"), None)
-            place = "" if said is None or said.line is None else f":{said.line}"
-            raise ExpansionError(f"{path}{place}: {said.message if said else 'cannot be read'}")
+            problem = next((d for d in found if d.severity == "error"), None)
+            line = "" if problem is None or problem.line is None else f":{problem.line}"
+            raise ExpansionError(f"{path}{line}: {problem.message if problem else 'cannot be read'}")
         return document.root
 
     def package_folder(self, name: str, folder: Path | None) -> str:
-        """The folder of a package; where it is not here, `package://name`, with a note, for those who need no file."""
+        """Return the folder of a package, or `package://name` with a note if the package is not found.
+
+        Files that use the name without opening a file can then still be loaded.
+        """
         if name not in self._packages:
             found, tried = self.resolver.find_package(name, folder)
             self._packages[name] = f"package://{name}" if found is None else str(found)
             if found is None:
-                places = ", ".join(str(p) for p in tried[:6])
-                message = f"$(find {name}): the package is not found, it stands as package://{name}"
-                looked = f"; looked in {places}" if places else ""
-                hint = f"name its folder: --package-path {name}=DIR"
-                self.diagnostics.note("SK-XACRO-007", message + looked, self._where(), hint)
+                folders = ", ".join(str(p) for p in tried[:6])
+                message = f"$(find {name}): the package is not found; package://{name} is used"
+                searched = f"; searched {folders}" if folders else ""
+                hint = f"give its folder: --package-path {name}=DIR"
+                self.diagnostics.note("SK-XACRO-007", message + searched, self._where(), hint)
         return self._packages[name]
 
     def read_yaml(self, path: Path, evaluate: Callable[[str], Value], budget: Budget) -> Value:
-        """The content of a YAML file; `!degrees` and the like are understood, aliases are bounded."""
+        """Return the content of a YAML file; units such as `!degrees` are converted, and aliases are limited.
+
+        Raises:
+            MissingError: the file cannot be opened.
+            ExpansionError: the file is invalid or too large.
+        """
         import yaml
 
         class Reader(yaml.SafeLoader):
-            """Of its own, so that the constructors stay here."""
+            """Separate class, so that the added constructors do not change `yaml.SafeLoader`."""
 
         def with_unit(factor: float) -> Callable[[Any, Any], float]:
             return lambda loader, node: float(evaluate(str(loader.construct_scalar(node)))) * factor

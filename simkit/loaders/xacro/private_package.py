@@ -1,6 +1,7 @@
-"""The `xacro` package, a copy for every expansion: its state is in its modules, and here it belongs to one file alone.
+"""Private copies of the `xacro` package, one per expansion, because xacro keeps its state in module variables.
 
-The copy expands macros, conditions and properties. What reads files, evaluates expressions or prints is replaced.
+The copy expands macros, conditions and properties. Its functions that read files, evaluate expressions or print are
+replaced.
 """
 
 from __future__ import annotations
@@ -14,20 +15,20 @@ from typing import Any
 from xml.dom import minidom
 
 XacroModule = Any
-"""The module `xacro` with what this package replaces in it."""
+"""The module `xacro`, in which this package replaces functions."""
 
 _LOCK = threading.Lock()
 _COUNT = itertools.count()
 _DEFAULT = r"\$\{.*?\}|\$\(.*?\)|(?:'[^']*'|\"[^\"]*\"|[^\s'\"])+|"
 MACRO_ARGUMENT = re.compile(r"^\s*([^\s:=]+?)\s*:?=\s*(\^\|?)?(" + _DEFAULT + r")(?:\s+|$)(.*)", re.DOTALL)
-"""A macro's parameter with its default: xacro's own pattern, which takes exponential time on some texts, mended."""
+"""Pattern of a macro's parameter with its default: a corrected copy of xacro's, which can take exponential time."""
 
 
 def import_private_xacro() -> XacroModule:
-    """A fresh copy of xacro that nobody else sees.
+    """Import a new copy of xacro that no other code uses.
 
     Raises:
-        ImportError: xacro (or PyYAML, which it needs) is not installed.
+        ImportError: xacro (or PyYAML, which xacro needs) is not installed.
     """
     found = importlib.util.find_spec("xacro")
     if found is None or found.origin is None:
@@ -40,7 +41,7 @@ def import_private_xacro() -> XacroModule:
         raise ImportError("xacro")
     module = importlib.util.module_from_spec(spec)
     with _LOCK:
-        write = minidom.Element.writexml  # xacro puts its own in its place when it is imported
+        write = minidom.Element.writexml  # xacro replaces this method when it is imported
         sys.modules[name] = module
         try:
             spec.loader.exec_module(module)

@@ -199,7 +199,7 @@ def test_sdf_in_xacro_is_sdf(write, load):
         ('<xacro:macro name="wheel"><a/></xacro:macro>\n<xacro:weel/>', 2, "unknown macro name", "wheel"),
         ('\n\n<link name="$(arg side)"/>', 3, "the argument 'side' has no value", ""),
         ('<xacro:macro name="m" params="a"><a/></xacro:macro>\n<xacro:m/>', 2, "Undefined parameters [a]", ""),
-        ('\n<xacro:if value="${3 +}"><a/></xacro:if>', 2, "it is not an expression", ""),
+        ('\n<xacro:if value="${3 +}"><a/></xacro:if>', 2, "invalid expression", ""),
         (
             '<xacro:property name="x" value="${y}"/><xacro:property name="y" value="${x}"/>\n<a b="${x}"/>',
             2,
