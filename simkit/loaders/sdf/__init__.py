@@ -1,5 +1,5 @@
-"""SDF 1.0 to 1.12: one file for each concept of the format.
+"""Loader of SDF 1.0 to 1.12, with one module for each concept of the format.
 
-An `<sdf>` enters as `Params`; worlds, models and lights of the scene leave, every pose resolved. Models of other
-formats that a file includes come through the loaders that the request names: this folder knows none of them.
+The input is an `<sdf>` element as `Params`; the output is worlds, models and lights of the scene, with all poses
+resolved. Included models of other formats are read by the loaders in the request; this package knows no other format.
 """

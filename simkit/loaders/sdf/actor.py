@@ -1,4 +1,4 @@
-"""`<actor>`: a person or animal that follows a script."""
+"""Reader of `<actor>`: a person or animal that follows a script."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from simkit.scene import Animation, PersonLook, SceneActor, Trajectory, Waypoint
 
 
 def read_actor(element: Params, name: str, pose_world: Pose) -> SceneActor:
-    """An actor whose pose is resolved."""
+    """Return an actor whose pose is already resolved."""
     element.child("pose")
     skin, script = element.block("skin"), element.block("script")
     return SceneActor(

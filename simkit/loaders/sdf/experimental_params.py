@@ -1,7 +1,7 @@
-"""`<experimental:params>` of an include: what it adds to, changes in, or takes from the model that it brings.
+"""`<experimental:params>` of an include: elements that the include adds to, changes in or removes from its model.
 
-Source: the SDFormat proposal "Parameter passing". An element is found by its tag and the names on the way to it from
-the included model (`link::visual`); a wrong change is an error and the others are made all the same.
+Source: the SDFormat proposal "Parameter passing". A change finds its element by the tag and by the path of names from
+the included model (`link::visual`). An invalid change is an error, and the remaining changes are still made.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ IncludedName = Callable[[Params], str]
 
 
 def apply_changes(block: Params, entity: Params, name_of: IncludedName) -> None:
-    """Makes the changes of one block.
+    """Make the changes of one block.
 
     Args:
         block: the `<experimental:params>` element.
-        entity: the included model; it is changed, so it must be the caller's own copy.
-        name_of: the name that an `<include>` inside the model gives to what it brings.
+        entity: the included model; this function changes it, so it must be a copy that belongs to the caller.
+        name_of: returns the name of the model that an `<include>` inside the model loads.
     """
     for change in block.children:
         _apply_action(change, entity, name_of)
@@ -34,7 +34,7 @@ def apply_changes(block: Params, entity: Params, name_of: IncludedName) -> None:
 def _apply_action(change: Params, entity: Params, name_of: IncludedName) -> None:
     path = change.attributes.get("element_id")
     if path is None:
-        change.error(_CODE, f"<{change.name}> needs element_id=, the names on the way to what it changes")
+        change.error(_CODE, f"<{change.name}> needs element_id=, the path of names to the element that it changes")
         return
     if path.endswith("::"):
         change.error(_CODE, f"element_id={path!r} has no name after its last '::'")
@@ -44,7 +44,7 @@ def _apply_action(change: Params, entity: Params, name_of: IncludedName) -> None
         return
     adding = action == "add"
     if adding and not change.attribute("name").strip():
-        change.error(_CODE, f"<{change.name}> is to be added to {path or entity.attribute('name')!r} and needs a name")
+        change.error(_CODE, f"<{change.name}> is added to {path or entity.attribute('name')!r} and needs a name")
         return
     found = _find_element(entity, path, "" if adding else change.name, name_of)
     if found is None:
@@ -71,9 +71,9 @@ def _known_action(element: Params, action: str) -> bool:
 def _find_element(
     entity: Params, path: str, tag: str, name_of: IncludedName
 ) -> tuple[Params | None, Params, str | None] | None:
-    """The owner and the element of a path, and what of the path is left for a nested include to find.
+    """Return the owner and the element of a path, and the rest of the path inside a nested include.
 
-    A name may hold `::` itself (files before 1.8), so every name that the path begins with is tried, longest first.
+    A name can contain `::` itself (files before 1.8), so every name that the path begins with is tried, longest first.
     """
     if not path:
         return (None, entity, None) if tag in ("", entity.name) else None
@@ -101,7 +101,7 @@ def _name(element: Params, name_of: IncludedName) -> str:
 
 
 def _known_paths(entity: Params, name_of: IncludedName, prefix: str = "", depth: int = 3) -> list[str]:
-    """The ids that could have been written, some levels down."""
+    """Return the valid ids of the first levels, for a hint."""
     if depth == 0:
         return []
     found = []
@@ -113,7 +113,7 @@ def _known_paths(entity: Params, name_of: IncludedName, prefix: str = "", depth:
 
 
 def _forward_to_include(change: Params, include: Params, rest: str) -> None:
-    """Gives a change to the include that brings what it speaks of."""
+    """Move a change to the nested include whose model it changes."""
     passed = change.copied()
     passed.attributes["element_id"] = rest
     block = Params(BLOCK, "", None, [passed], change.where, change.diagnostics)
@@ -123,7 +123,7 @@ def _forward_to_include(change: Params, include: Params, rest: str) -> None:
 def _add(change: Params, target: Params) -> None:
     name = change.attributes.get("name")
     if any(c.name == change.name and c.attributes.get("name") == name for c in target.children):
-        change.error(_CODE, f"<{target.name}> has a <{change.name} name={name!r}> already; it cannot be added")
+        change.error(_CODE, f"cannot add <{change.name} name={name!r}>: <{target.name}> already has one")
         return
     target.children.append(_without_action_attributes(change))
 
@@ -139,7 +139,7 @@ def _change_element(action: str, change: Params, owner: Params | None, target: P
             if found is not None:
                 target.children.remove(found)
     elif owner is None:
-        change.error(_CODE, f"the included model itself cannot be the aim of action={action!r}")
+        change.error(_CODE, f"action={action!r} is not allowed for the included model itself")
     elif action == "remove":
         owner.children.remove(target)
     else:
@@ -147,11 +147,11 @@ def _change_element(action: str, change: Params, owner: Params | None, target: P
 
 
 def _child_actions(change: Params, target: Params) -> None:
-    """An element without an action: each of its children has one."""
+    """Apply an element without an action, each of whose children has its own action."""
     for child in change.children:
         action = child.attributes.get("action")
         if action is None:
-            child.error(_CODE, f"<{child.name}> needs action=, as the <{change.name}> around it has none")
+            child.error(_CODE, f"<{child.name}> needs action=, because the enclosing <{change.name}> has none")
         elif not _known_action(child, action):
             continue
         elif action == "add":
@@ -162,22 +162,22 @@ def _child_actions(change: Params, target: Params) -> None:
             _change_element(action, child, target, found)
 
 
-def _matching_child(wanted: Params, target: Params) -> Params | None:
-    """The child of that tag (and name, where given); None, with an error recorded."""
-    same = [c for c in target.children if c.name == wanted.name]
-    name = wanted.attributes.get("name")
+def _matching_child(change: Params, target: Params) -> Params | None:
+    """Return the child of the same tag (and name, if given); None, with an error recorded, if there is none."""
+    same = [c for c in target.children if c.name == change.name]
+    name = change.attributes.get("name")
     if name is not None:
         same = [c for c in same if c.attributes.get("name") == name]
     if not same:
-        what = f"<{wanted.name}>" if name is None else f"<{wanted.name} name={name!r}>"
-        near = did_you_mean(wanted.name, [c.name for c in target.children])
-        wanted.error(_CODE, f"<{target.name} name={target.attribute('name')!r}> has no {what} to change", near)
+        tag = f"<{change.name}>" if name is None else f"<{change.name} name={name!r}>"
+        near = did_you_mean(change.name, [c.name for c in target.children])
+        change.error(_CODE, f"<{target.name} name={target.attribute('name')!r}> has no {tag} to change", near)
         return None
     return same[0]
 
 
 def _modify(change: Params, target: Params) -> None:
-    """Values and attributes that the change names; everything else stays."""
+    """Set the values and attributes that the change gives; all others stay the same."""
     target.attributes.update({k: v for k, v in change.attributes.items() if k not in _ACTION_ATTRIBUTES})
     if change.value or not change.children:
         target.value, target.where = change.value, change.where

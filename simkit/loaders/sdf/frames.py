@@ -1,7 +1,8 @@
-"""The frames of a file: names, poses relative to one another, and which body each is attached to.
+"""Frames of a file: names, poses relative to other frames, and the link that each frame moves with.
 
-Every model (and the world) is a scope with its own names; a pose is resolved inside its scope, so that a nested model
-moves as one. Source: the SDFormat documentation, "Pose frame semantics" (1.7 and later; older files use the defaults).
+Every model (and the world) is a scope with its own names. Poses are resolved inside their scope, so a nested model
+moves as a whole. Source: the SDFormat documentation, "Pose frame semantics" (1.7 and later; older files use the
+defaults).
 """
 
 from __future__ import annotations
@@ -13,25 +14,25 @@ from simkit.params import Params
 from simkit.pose import IDENTITY, Pose
 
 WORLD = "world"
-_MOST_HINTS, _MOST_NAMES = 100, 1000  # beyond these the search for the closest name is left out
+_MOST_HINTS, _MOST_NAMES = 100, 1000  # above these limits, no closest name is searched
 MODEL = "__model__"
 
 
 @dataclass(eq=False)
 class Frame:
-    """One named frame.
+    """Named frame.
 
     Attributes:
         kind: world, model, link, joint or frame.
-        scope: where the names it uses are looked up; None for the root of a scope.
-        pose: as written, in `relative_to`.
-        relative_to: as written; empty for the default of its kind.
-        attached_to: what it moves with: a frame's `attached_to`, a joint's child; empty for the default.
-        inside: a model's own scope.
-        placement: a model's frame that its pose speaks of; empty for the model frame.
-        pose_where: the place of its pose in the file, where it has one.
-        carrier: the link (or the world) that it moves with, once that is known.
-        adrift: there is none, which has been reported.
+        scope: scope in which the frame's references are looked up; None for the root of a scope.
+        pose: pose relative to `relative_to`, as written.
+        relative_to: name of the base frame, as written; empty for the default of its kind.
+        attached_to: frame that it moves with: a frame's `attached_to`, a joint's child; empty for the default.
+        inside: scope of a model's own names.
+        placement: frame inside a model that the model's pose applies to; empty for the model frame.
+        pose_where: place of its pose in the file, if it has one.
+        carrier: link (or world) that it moves with, once this is known.
+        adrift: true if it moves with no link; this error has been reported.
     """
 
     name: str
@@ -51,17 +52,17 @@ class Frame:
 
     @property
     def default_base(self) -> str:
-        """The frame its pose speaks of when the file does not say."""
+        """Frame that the pose is relative to if the file does not name one."""
         return self.attached_to if self.kind in ("joint", "frame") else ""
 
 
 @dataclass(eq=False)
 class Scope:
-    """The names of one model or of the world.
+    """Names of one model or of the world.
 
     Attributes:
-        root: its own frame: the world, `__model__`, or what stands for that of a merged model.
-        names: frames by name; a merged model shares those of the model it is merged into.
+        root: its own frame: the world, `__model__`, or the frame that replaces `__model__` of a merged model.
+        names: frames by name; a merged model shares these with the model that it is merged into.
         canonical: name of the link that the root moves with.
         world: pose of the scope's coordinates in the world at load time.
     """
@@ -74,9 +75,9 @@ class Scope:
     hints: int = 0
 
     def chain(self, path: str) -> list[Frame] | None:
-        """The frames from this scope down to `a::b::c`; None when a name is unknown; empty for the root.
+        """Return the frames from this scope down to `a::b::c`; None if a name is unknown; empty for the root.
 
-        Files before 1.8 may have `::` inside one name, so the whole path is tried first.
+        Names in files before 1.8 can contain `::`, so the whole path is tried first.
         """
         scope: Scope = self
         found: list[Frame] = []
@@ -88,7 +89,7 @@ class Scope:
             own = WORLD if scope.root.kind == WORLD else MODEL
             if last and part in ("", own):
                 if scope is self and scope.root.scope is not None:
-                    found.append(scope.root)  # the frame that stands for a merged model's own
+                    found.append(scope.root)  # the frame that replaces `__model__` of a merged model
                 return found
             frame = scope.names.get(part)
             if frame is None:
@@ -100,12 +101,12 @@ class Scope:
                 scope = frame.inside
         return found
 
-    def pose_of(self, path: str, asker: Frame | None = None, where: Where = NOWHERE) -> Pose:
-        """The pose of a named frame in this scope's coordinates; an unknown name is an error."""
+    def pose_of(self, path: str, user: Frame | None = None, where: Where = NOWHERE) -> Pose:
+        """Return the pose of a named frame in this scope's coordinates; an unknown name is an error."""
         frames = self.chain(path)
         if frames is None:
-            owner = f"{asker.kind} {asker.name!r}: " if asker else ""
-            place = where if asker is None or where is not NOWHERE else asker.where
+            owner = f"{user.kind} {user.name!r}: " if user else ""
+            place = where if user is None or where is not NOWHERE else user.where
             self.report_unknown(path, owner + "the frame", place)
             return IDENTITY
         pose = IDENTITY
@@ -114,30 +115,30 @@ class Scope:
         return pose
 
     def resolve(self, frame: Frame) -> Pose:
-        """The pose of `frame` in the coordinates of the scope that names it.
+        """Return the pose of `frame` in the coordinates of the scope that contains its name.
 
-        What it depends on comes first, without recursion: a file may have a chain of any length.
+        The frames that it depends on are resolved first, without recursion, because a chain can have any length.
         """
         waiting = [(frame, False)]
         begun: set[int] = set()
         while waiting:
-            one, ready = waiting.pop()
-            if one.resolved is not None or one.scope is None:
+            current, ready = waiting.pop()
+            if current.resolved is not None or current.scope is None:
                 continue
             if ready:
-                one.resolved = self._resolved_pose(one)
-            elif id(one) in begun:
-                text = f"the pose of {one.kind} {one.scoped!r} depends on itself"
-                self.diagnostics.error("SK-SDF-005", text, one.pose_where or one.where)
-                one.resolved = IDENTITY
+                current.resolved = self._resolved_pose(current)
+            elif id(current) in begun:
+                text = f"the pose of {current.kind} {current.scoped!r} depends on itself"
+                self.diagnostics.error("SK-SDF-005", text, current.pose_where or current.where)
+                current.resolved = IDENTITY
             else:
-                begun.add(id(one))
-                waiting.append((one, True))
-                waiting.extend((needed, False) for needed in _required_frames(one))
+                begun.add(id(current))
+                waiting.append((current, True))
+                waiting.extend((required, False) for required in _required_frames(current))
         return frame.resolved or IDENTITY
 
     def _resolved_pose(self, frame: Frame) -> Pose:
-        """The pose of a frame whose every need is resolved."""
+        """Return the pose of a frame after all frames that it depends on are resolved."""
         assert frame.scope is not None
         base = frame.relative_to or frame.default_base
         pose = frame.pose
@@ -148,7 +149,7 @@ class Scope:
         return pose
 
     def body(self, path: str, where: Where, owner: str) -> Frame | None:
-        """The link (or the world) that a named frame moves with; None, with an error recorded, where there is none."""
+        """Return the link (or the world) that a named frame moves with; None, with an error recorded, without one."""
         seen: dict[int, Frame] = {}
         found = self._follow_attachment(path, where, owner, seen)
         for frame in seen.values():
@@ -156,7 +157,7 @@ class Scope:
         return found
 
     def _follow_attachment(self, path: str, where: Where, owner: str, seen: dict[int, Frame]) -> Frame | None:
-        """`body`, noting every frame on the way."""
+        """Search the link for `body`, and store every frame on the way in `seen`."""
         scope: Scope = self
         while True:
             frames = scope.chain(path)
@@ -188,40 +189,40 @@ class Scope:
                 seen[id(frame)] = frame
 
     def report_unknown(self, path: str, what: str, where: Where, code: str = "SK-SDF-004") -> None:
-        """Records that a name is unknown, with the closest one."""
+        """Record an error about an unknown name, with the closest name."""
         hint = ""
         if self.hints < _MOST_HINTS and len(self.names) <= _MOST_NAMES:
             self.hints += 1
             hint = did_you_mean(path, self.all_names())
         known = ", ".join(list(self.names)[:8]) or "none"
-        self.diagnostics.error(code, f"{what} {path!r} does not exist here (there are: {known})", where, hint)
+        self.diagnostics.error(code, f"{what} {path!r} does not exist here (known: {known})", where, hint)
 
     def all_names(self) -> list[str]:
-        """Names that can be used here, nested ones one level down included."""
+        """Return the names that can be used here, including nested names one level down."""
         nested = [f"{n}::{inner}" for n, f in self.names.items() if f.inside for inner in f.inside.names]
         return [*self.names, *nested]
 
 
 def _required_frames(frame: Frame) -> list[Frame]:
-    """The frames whose poses the pose of `frame` is made of."""
-    needed: list[Frame] = []
+    """Return the frames whose poses are needed to resolve the pose of `frame`."""
+    required: list[Frame] = []
     base = frame.relative_to or frame.default_base
     if frame.scope is not None and (base or frame.scope.root.scope is not None):
-        needed += frame.scope.chain(base) or ()
+        required += frame.scope.chain(base) or ()
     if frame.inside is not None and frame.placement:
-        needed += frame.inside.chain(frame.placement) or ()
-    return needed
+        required += frame.inside.chain(frame.placement) or ()
+    return required
 
 
 def world_pose(frame: Frame) -> Pose:
-    """The pose of a frame in the world at load time; its scope's place must be known."""
+    """Return the pose of a frame in the world at load time; the world pose of its scope must be known."""
     if frame.scope is None:
         return IDENTITY
     return frame.scope.world @ frame.scope.resolve(frame)
 
 
 def pose_base(pose: Params | None) -> str:
-    """The frame that a `<pose>` speaks of: `relative_to`, or `frame` before 1.7."""
+    """Return the frame that a `<pose>` is relative to: `relative_to`, or `frame` before 1.7."""
     if pose is None:
         return ""
     return pose.attribute("relative_to") or pose.attribute("frame")

@@ -1,4 +1,4 @@
-"""The material scripts that come with Gazebo: their colours, by name."""
+"""Colours of the material scripts that Gazebo provides, by name."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ _COLUMNS: Final = ("ambient", "diffuse", "specular", "emissive")
 
 @functools.cache
 def gazebo_materials() -> Mapping[str, Mapping[str, Colour]]:
-    """Ambient, diffuse, specular and emissive colour by the name behind `Gazebo/`, from `gazebo_materials.csv`.
+    """Return ambient, diffuse, specular and emissive colours by the name after `Gazebo/`, from `gazebo_materials.csv`.
 
-    Colours are RGBA from 0 to 1; the diffuse one carries the opacity. One number in a column stands for three equal
-    ones. Of a textured material the diffuse colour is the mean of its picture, which is not part of the table.
+    Colours are RGBA from 0 to 1; the diffuse colour contains the opacity. One number in a column means three equal
+    numbers. The diffuse colour of a textured material is the mean of its image, which the table does not contain.
     """
     table: dict[str, Mapping[str, Colour]] = {}
     with Path(__file__).with_name("gazebo_materials.csv").open(encoding="utf-8", newline="") as file:
@@ -36,5 +36,5 @@ def _opaque(column: str) -> Colour:
 
 
 def gazebo_colours(name: str) -> dict[str, Colour]:
-    """The colours of a material that comes with Gazebo, by its full name; empty where there is none."""
+    """Return the colours of one of Gazebo's materials by its full name; empty if the name is unknown."""
     return dict(gazebo_materials().get(name.removeprefix("Gazebo/"), {}))

@@ -1,4 +1,4 @@
-"""`<geometry>`: primitives, meshes, height maps and outlines."""
+"""Reader of `<geometry>`: primitives, meshes, height maps and outlines."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from simkit.params import Params
 from simkit.scene import geometry as shapes
 from simkit.scene.geometry import Geometry, Mesh, Vec3
 
-_LARGEST_SIZE = 1e15  # [m]; moments of larger shapes leave the numbers
+_LARGEST_SIZE = 1e15  # [m]; the moments of larger shapes overflow
 _OPTIMIZATIONS = ("convex_hull", "convex_decomposition")
 
 
 def read_geometry(owner: Params, file: SdfFile, workspace: Workspace, what: str) -> Geometry | None:
-    """The shape of a collision or visual; None, with an error recorded, where there is no usable one."""
+    """Return the shape of a collision or visual; None, with an error recorded, if there is no usable shape."""
     block = owner.child("geometry")
     if block is None:
         near = did_you_mean("geometry", [c.name for c in owner.children])
-        owner.warning("SK-SDF-009", f"{what} has no <geometry>, and so no shape", near)
+        owner.warning("SK-SDF-009", f"{what} has no <geometry> and therefore no shape", near)
         return shapes.Empty()
     held = [c for c in block.children if ":" not in c.name]
     for shape in held:
@@ -48,7 +48,7 @@ def _positive(element: Params, name: str, default: float) -> float:
     value = element.number(name, default)
     if not 0 < value <= _LARGEST_SIZE:
         allowed = "positive" if value <= 0 else f"at most {_LARGEST_SIZE:g}"
-        message = f"<{element.name}> has {name} {value:g}, it must be {allowed}"
+        message = f"<{element.name}> has {name} {value:g}; it must be {allowed}"
         element.child_or_self(name).error("SK-SDF-009", message)
         return default
     return value
@@ -59,7 +59,7 @@ def _sizes(element: Params, name: str) -> Vec3:
     if not all(0 < v <= _LARGEST_SIZE for v in values):
         text = " ".join(f"{v:g}" for v in values)
         allowed = "positive" if any(v <= 0 for v in values) else f"at most {_LARGEST_SIZE:g}"
-        message = f"<{element.name}> has {name} {text}, each must be {allowed}"
+        message = f"<{element.name}> has {name} {text}; each number must be {allowed}"
         element.child_or_self(name).error("SK-SDF-009", message)
         return (1.0, 1.0, 1.0)
     return values
@@ -95,23 +95,23 @@ def _mesh(element: Params, file: SdfFile, workspace: Workspace) -> Geometry | No
 
 
 def _optimization(element: Params) -> tuple[str, int]:
-    """What `<mesh optimization>` asks for, and into how many pieces."""
+    """Return the value of `<mesh optimization>` and the maximum number of convex pieces."""
     settings = element.block("convex_decomposition")
     most = settings.integer("max_convex_hulls", 16, minimum=1, maximum=1_000_000)
-    settings.child("voxel_resolution")  # of another algorithm, which fills the mesh with cubes
-    asked = element.attribute("optimization")
-    if asked in ("", *_OPTIMIZATIONS):
-        return asked, most
-    message = f"<mesh optimization={asked!r}> is not known, allowed are {', '.join(_OPTIMIZATIONS)}"
-    element.warning("SK-MESH-015", message, did_you_mean(asked, _OPTIMIZATIONS))
+    settings.child("voxel_resolution")  # setting of another algorithm, which fills the mesh with cubes
+    requested = element.attribute("optimization")
+    if requested in ("", *_OPTIMIZATIONS):
+        return requested, most
+    message = f"<mesh optimization={requested!r}> is unknown; allowed are {', '.join(_OPTIMIZATIONS)}"
+    element.warning("SK-MESH-015", message, did_you_mean(requested, _OPTIMIZATIONS))
     return "", most
 
 
 def _find_mesh(uri: str, place: Params, file: SdfFile, workspace: Workspace) -> Path | None:
-    """The mesh file that a URI names; what is to be said of it is said once, however often it is used."""
-    path, said = workspace.resolver.mesh(uri, place.where, file.folder)
+    """Return the mesh file that a URI names; problems are reported once, even if several elements use the URI."""
+    path, problems = workspace.resolver.mesh(uri, place.where, file.folder)
     if path is not None or uri not in workspace.reported:
-        workspace.diagnostics.extend(said)
+        workspace.diagnostics.extend(problems)
     if path is None:
         workspace.reported.add(uri)
     return path
@@ -129,7 +129,7 @@ def _heightmap(element: Params, file: SdfFile, workspace: Workspace) -> Geometry
 
 
 def _polylines(elements: list[Params]) -> Geometry | None:
-    """Several outlines are one shape; the height is that of the first."""
+    """Return one shape from several outlines; the height is that of the first outline."""
     outlines = [outline for element in elements if (outline := _outline(element)) is not None]
     height = _positive(elements[0], "height", 1.0)
     for element in elements[1:]:
@@ -149,7 +149,7 @@ def _outline(element: Params) -> tuple[tuple[float, float], ...] | None:
             continue
         points.append((x, y))
     if len(points) < 3:
-        element.error("SK-SDF-009", f"<polyline> has {len(points)} points, it needs at least 3")
+        element.error("SK-SDF-009", f"<polyline> has {len(points)} points; it needs at least 3")
         return None
     return tuple(points)
 

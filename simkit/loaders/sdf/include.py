@@ -1,4 +1,4 @@
-"""`<include>`: another file's model or light, renamed and placed."""
+"""Reader of `<include>`: a model, light or actor of another file, with its own name and pose."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _ENTITIES = ("model", "light", "actor")
 
 
 def read_inline_entity(element: Params, file: SdfFile, workspace: Workspace) -> EntitySource | None:
-    """A `<model>` or `<light>` that stands in the file itself; None where it has no name."""
+    """Return a `<model>` or `<light>` that the file itself contains; None if it has no name."""
     name = read_name(element, workspace.diagnostics, file.version)
     if not name:
         return None
@@ -27,13 +27,13 @@ def read_inline_entity(element: Params, file: SdfFile, workspace: Workspace) -> 
 
 
 def entity_source(element: Params, name: str, file: SdfFile) -> EntitySource:
-    """A named element of a file with its pose."""
+    """Return a named element of a file with its pose."""
     pose, base = read_pose(element)
     return EntitySource(name, element, file, pose, base, where=element.where)
 
 
 def read_include(include: Params, file: SdfFile, workspace: Workspace) -> EntitySource | None:
-    """What an `<include>` brings; None, with an error recorded, where it brings nothing usable."""
+    """Return the entity that an `<include>` loads; None, with an error recorded, if it is unusable."""
     uri = include.text("uri", required=True)
     name = include.text("name", "")
     fixed = include.boolean("static", False) if include.has("static") else None
@@ -57,9 +57,9 @@ def read_include(include: Params, file: SdfFile, workspace: Workspace) -> Entity
     if not own_name:
         return None
     if placement and not placed:
-        include.error("SK-SDF-016", "<placement_frame> of an include needs a <pose> beside it")
+        include.error("SK-SDF-016", "<placement_frame> of an include needs a <pose> in the same include")
     if merge and element.name != "model":
-        include.error("SK-SDF-016", f"only a model can be merged, {uri} holds a <{element.name}>")
+        include.error("SK-SDF-016", f"only a model can be merged, but {uri} contains a <{element.name}>")
         return None
     return EntitySource(
         name=own_name,
@@ -77,7 +77,7 @@ def read_include(include: Params, file: SdfFile, workspace: Workspace) -> Entity
 
 
 def _with_changes(include: Params, element: Params, file: SdfFile, workspace: Workspace) -> Params:
-    """The included model with the changes that the include makes; without any, the model itself."""
+    """Return a copy of the included model with the include's changes; without changes, the model itself."""
     blocks = include.all(BLOCK)
     if not blocks:
         return element
@@ -90,7 +90,7 @@ def _with_changes(include: Params, element: Params, file: SdfFile, workspace: Wo
 
 
 def _included_name(include: Params, file: SdfFile, workspace: Workspace) -> str:
-    """The name of what an include brings, without a word about its mistakes: reading it in earnest says them."""
+    """Return the name of an include's model, without diagnostics, because the later reading reports all problems."""
     name = include.text("name", "")
     uri = include.text("uri", "")
     if name or not uri:
@@ -124,13 +124,13 @@ def _open_include(uri: str, include: Params, file: SdfFile, workspace: Workspace
 
 
 def _only_entity(file: SdfFile, uri: str, include: Params, workspace: Workspace) -> Params | None:
-    """The one model, light or actor of an included file."""
+    """Return the one model, light or actor of an included file."""
     entities = [c for name in _ENTITIES for c in file.root.all(name)]
     if len(entities) != 1:
-        held = ", ".join(f"<{e.name}>" for e in entities) or "none"
-        has_world = "; it holds a <world>" if file.root.has("world") else ""
+        contained = ", ".join(f"<{e.name}>" for e in entities) or "none"
+        world = "; it also contains a <world>" if file.root.has("world") else ""
         near = did_you_mean("model", [c.name for c in file.root.children]) if not entities else ""
-        message = f"{uri} must hold exactly one model, light or actor, it holds {held}{has_world}"
+        message = f"{uri} must contain exactly one model, light or actor; it contains {contained}{world}"
         workspace.diagnostics.error("SK-SDF-016", message, include.where, near)
         return None
     return entities[0]

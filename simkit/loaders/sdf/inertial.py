@@ -1,4 +1,4 @@
-"""`<inertial>`: mass properties given, defaulted, or computed from the collisions."""
+"""Reader of `<inertial>`: mass properties from the file, from the format's defaults, or from the collisions."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ Moments = tuple[float, float, float, float, float, float]
 """ixx, iyy, izz, ixy, ixz, iyz [kg·m²]."""
 
 MOMENT_NAMES = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
-_WATER = 1000.0
-_MAX_MOMENT = 1e15  # kg and kg·m²: the products of larger ones leave the numbers
+_WATER = 1000.0  # density [kg/m³], the default of the format
+_MAX_MOMENT = 1e15  # [kg] and [kg·m²]; products of larger numbers overflow
 
 
 def read_inertial(
@@ -31,12 +31,15 @@ def read_inertial(
     static: bool,
     mesh_reader: MeshReader | None = None,
 ) -> Inertial:
-    """The mass properties of a link in link axes, about its centre of mass.
+    """Return the mass properties of a link in link axes, about its centre of mass.
 
     Args:
-        densities: of each collision [kg/m³], None where not given.
-        static: faults are only warnings, because nothing static moves.
-        mesh_reader: gives the triangles of meshes; without it they have no volume.
+        link: the `<link>` element.
+        name: name of the link, for messages.
+        collisions: collisions of the link.
+        densities: density of each collision [kg/m³]; None if not given.
+        static: reports faults only as warnings, because static models do not move.
+        mesh_reader: returns the triangles of meshes; without it a mesh has no volume.
     """
     block = link.child("inertial")
     if block is None:
@@ -52,7 +55,7 @@ def read_inertial(
 
 
 def turned_moments(values: Sequence[float], pose: Pose) -> Moments:
-    """Moments and products of inertia in the axes of a pose, seen from the frame that the pose is given in."""
+    """Convert moments and products of inertia from the axes of a pose to the frame in which the pose is given."""
     if pose.quaternion[0] != 1.0:
         turn = pose.matrix
         return moments_of(turn @ _matrix(values) @ turn.T)
@@ -65,17 +68,17 @@ def _matrix(v: Sequence[float]) -> Matrix:
 
 
 def moments_of(m: Matrix) -> Moments:
-    """ixx, iyy, izz, ixy, ixz and iyz of a matrix of inertia."""
+    """Return ixx, iyy, izz, ixy, ixz and iyz of an inertia matrix."""
     return float(m[0, 0]), float(m[1, 1]), float(m[2, 2]), float(m[0, 1]), float(m[0, 2]), float(m[1, 2])
 
 
 def _check(name: str, mass: float, values: Sequence[float], block: Params, static: bool) -> None:
     place = block.child_or_self("mass")
     if mass < 0:
-        say = place.warning if static else place.error
-        say("SK-SDF-013", f"link {name!r} has mass {mass:g} kg, it must be positive")
+        report = place.warning if static else place.error
+        report("SK-SDF-013", f"link {name!r} has mass {mass:g} kg; it must be positive")
     elif mass == 0:
-        place.warning("SK-SDF-029", f"link {name!r} has mass 0; nothing without mass can move by itself")
+        place.warning("SK-SDF-029", f"link {name!r} has mass 0; a link without mass cannot move by itself")
     if any(values[3:]):
         small, middle, large = (float(v) for v in np.linalg.eigvalsh(_matrix(values)))
     else:
@@ -83,13 +86,13 @@ def _check(name: str, mass: float, values: Sequence[float], block: Params, stati
     place = block.child_or_self("inertia")
     shown = ", ".join(f"{v:.4g}" for v in (small, middle, large))
     if small <= 0:
-        text = f"link {name!r} has an impossible inertia: principal moments {shown}, all must be positive"
-        # a moment left at zero is common in the wild and Gazebo runs such files; a negative one is a mistake
+        text = f"link {name!r} has an impossible inertia: principal moments {shown}; all must be positive"
+        # moments of zero are common in published files, and Gazebo runs them; a negative moment is a mistake
         is_mistake = small < -1e-12 * max(1.0, large) and not static
         (place.error if is_mistake else place.warning)("SK-SDF-013", text)
     elif small + middle < large * (1 - 1e-6):
-        text = f"link {name!r} has an inertia that no solid has: of its principal moments {shown}"
-        place.warning("SK-SDF-014", f"{text} two must add up to more than the third")
+        text = f"link {name!r} has an impossible inertia: principal moments {shown}"
+        place.warning("SK-SDF-014", f"{text}; the sum of any two must be at least the third")
 
 
 def _automatic(
@@ -99,7 +102,7 @@ def _automatic(
     densities: Sequence[float | None],
     mesh_reader: MeshReader | None,
 ) -> Inertial:
-    """Mass properties of the collision solids; a given mass scales them."""
+    """Return the mass properties of the collision solids; a mass in the file scales them."""
     common = block.number("density", _WATER, minimum=0, maximum=_MAX_MOMENT)
     parts = []
     for collision, density in zip(collisions, densities, strict=True):
@@ -114,7 +117,7 @@ def _automatic(
         parts.append((mass, collision.pose_link.transform(centre), turn @ moments @ turn.T * (mass / volume)))
     total = sum(mass for mass, _, _ in parts)
     if total <= 0:
-        block.warning("SK-SDF-022", f"link {name!r} has no collision to compute its inertia from; 1 kg is used")
+        block.warning("SK-SDF-022", f"link {name!r} has no collision for automatic inertia; 1 kg is used")
         return Inertial()
     com = sum((mass * at for mass, at, _ in parts), np.zeros(3)) / total
     inertia = np.zeros((3, 3))
@@ -123,18 +126,18 @@ def _automatic(
         inertia += moments + mass * (float(d @ d) * np.eye(3) - np.outer(d, d))
     given = block.number("mass", total, maximum=_MAX_MOMENT)
     if not (total <= _MAX_MOMENT and np.abs(inertia).max() <= _MAX_MOMENT):
-        weight = f"link {name!r} weighs {total:g} kg by its collisions"
+        weight = f"link {name!r} has mass {total:g} kg from its collisions"
         block.error("SK-SDF-013", f"{weight}; at most {_MAX_MOMENT:g} kg and kg·m² can be simulated")
         return Inertial()
     if given <= 0:
-        message = f"link {name!r} has mass {given:g} kg, it must be positive"
+        message = f"link {name!r} has mass {given:g} kg; it must be positive"
         block.child_or_self("mass").error("SK-SDF-013", message)
         given = total
     return Inertial(given, vec3(com), moments_of(inertia * (given / total)), True)
 
 
 def _solid(collision: SceneCollision, mesh_reader: MeshReader | None, block: Params) -> Solid | None:
-    """What a collision encloses; a mesh is read, which reports what is wrong with its file."""
+    """Return the solid of a collision; a mesh is read, which also reports problems of its file."""
     shape = collision.geometry
     if not isinstance(shape, Mesh):
         return solid_of(shape)

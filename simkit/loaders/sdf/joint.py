@@ -1,4 +1,4 @@
-"""`<joint>` of a model or a world: its links, frame and axes."""
+"""Reader of `<joint>` in a model or a world: its links, frame and axes."""
 
 from __future__ import annotations
 
@@ -31,15 +31,16 @@ _NO_LIMIT = 1e15
 
 
 def joint_link_name(joint: Params, name: str) -> str:
-    """The text of `<parent>` or `<child>`; before 1.2 it was an attribute."""
+    """Return the text of `<parent>` or `<child>`; before 1.2 the name was an attribute."""
     found = joint.child(name)
     return "" if found is None else found.value or found.attribute("link").strip()
 
 
 def read_joints(parts: Iterable[NamedElement], model: str) -> tuple[SceneJoint, ...]:
-    """Joints whose frames are known; those that join nothing are left out, with errors recorded.
+    """Return the joints whose frames are known; a joint without two valid links is an error and is left out.
 
     Args:
+        parts: named joint elements.
         model: scoped name of their model; empty in a world.
     """
     return tuple(joint for part in parts if (joint := _joint(part, model)) is not None)
@@ -51,10 +52,10 @@ def _joint(part: NamedElement, model: str) -> SceneJoint | None:
     kind = element.attribute("type").strip()
     parent, child = _joint_link(part, "parent"), _joint_link(part, "child")
     if kind not in AXES:
-        message = f"joint {part.name!r} has type {kind!r}, known are {', '.join(AXES)}"
+        message = f"joint {part.name!r} has unknown type {kind!r}; known are {', '.join(AXES)}"
         element.error("SK-SDF-008", message, did_you_mean(kind, AXES))
     elif parent is None and child is not None:
-        _axes(part, kind, IDENTITY)  # for what is wrong with them
+        _axes(part, kind, IDENTITY)  # only to report problems of the axes
     elif parent is not None and parent is child:
         element.error("SK-SDF-007", f"joint {part.name!r} joins link {child.scoped!r} with itself")
     if kind not in AXES or parent is None or child is None or parent is child:
@@ -80,7 +81,7 @@ def _joint(part: NamedElement, model: str) -> SceneJoint | None:
 
 
 def _joint_link(part: NamedElement, which: str) -> Frame | None:
-    """The link at one end; the parent may be the world."""
+    """Return the parent or child link of a joint; the parent can be the world."""
     element = part.element
     name = joint_link_name(element, which)
     place = element.child_or_self(which)
@@ -91,7 +92,7 @@ def _joint_link(part: NamedElement, which: str) -> Frame | None:
         return None
     if name == WORLD:
         if which == "child":
-            place.error("SK-SDF-004", f"{what} cannot be the world", "exchange parent and child")
+            place.error("SK-SDF-004", f"{what} cannot be the world", "swap <parent> and <child>")
             return None
         return Frame(WORLD, WORLD, WORLD)
     frames = part.scope.chain(name)
@@ -109,7 +110,7 @@ def _axes(part: NamedElement, kind: str, pose_world: Pose) -> tuple[Axis, ...]:
     for index, name in enumerate(("axis", "axis2")):
         has_axis = part.element.has(name)
         if index >= AXES[kind] or (kind == "gearbox" and index == 1 and not has_axis):
-            continue  # one that has no meaning for this kind is named by the report on unused elements
+            continue  # the report on unused elements lists an axis without meaning for this joint type
         if not has_axis:
             part.element.warning("SK-SDF-026", f"{kind} joint {part.name!r} has no <{name}>; 0 0 1 is used")
         axes.append(_axis(part, part.element.block(name), kind, pose_world))
@@ -125,7 +126,7 @@ def _axis(part: NamedElement, element: Params, kind: str, pose_world: Pose) -> A
         lower, upper = -math.inf, math.inf
     if lower > upper:
         message = f"joint {part.name!r} has a lower limit {lower:g} above its upper limit {upper:g}"
-        limit.child_or_self("lower").warning("SK-SDF-027", f"{message}; it is read as unlimited")
+        limit.child_or_self("lower").warning("SK-SDF-027", f"{message}; the joint is unlimited")
         lower, upper = -math.inf, math.inf
     return Axis(
         xyz_world=vec3(pose_world.rotate(direction)),
@@ -145,12 +146,12 @@ def _axis(part: NamedElement, element: Params, kind: str, pose_world: Pose) -> A
 
 
 def _optional_non_negative(block: Params, name: str) -> float | None:
-    """A number that is not negative, where the file gives one."""
+    """Return a number that is not negative, or None if the file gives none."""
     return block.number(name, 0.0, minimum=0.0) if block.has(name) else None
 
 
 def _direction(part: NamedElement, element: Params) -> Vec3:
-    """The unit axis in the joint frame; it is given there, in `expressed_in`, or (before 1.5) in the model frame."""
+    """Return the unit axis in the joint frame; `expressed_in` can name another frame, before 1.5 the model frame."""
     x, y, z = element.vector3("xyz", (0.0, 0.0, 1.0))
     xyz = element.child_or_self("xyz")
     length = math.hypot(x, y, z)
@@ -171,13 +172,13 @@ def _direction(part: NamedElement, element: Params) -> Vec3:
 
 
 def _position_limit(limit: Params, name: str, none: float) -> float:
-    """A position limit; from 1e15 on it means none."""
+    """Return a position limit; an absolute value of at least 1e15 means no limit."""
     value = limit.number(name, none, finite=False)
     return math.copysign(math.inf, value) if abs(value) >= _NO_LIMIT else value
 
 
 def _unsigned_limit(limit: Params, name: str) -> float:
-    """An effort or velocity limit; negative means none."""
+    """Return an effort or velocity limit; a negative value means no limit."""
     value = limit.number(name, -1.0, finite=False)
     return math.inf if value < 0 or value >= _NO_LIMIT else value
 
@@ -201,7 +202,7 @@ def _mimic(part: NamedElement, element: Params) -> Mimic | None:
 
 
 def _thread_pitch(element: Params) -> float:
-    """Metres per turn: `screw_thread_pitch`, or the older `thread_pitch` [rad/m], which is left-handed."""
+    """Return metres per turn from `screw_thread_pitch`, or from the older left-handed `thread_pitch` [rad/m]."""
     old = element.number("thread_pitch", 1.0)
     if element.has("screw_thread_pitch"):
         return element.number("screw_thread_pitch", 1.0)

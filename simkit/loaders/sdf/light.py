@@ -1,4 +1,4 @@
-"""`<light>` of a world or a link."""
+"""Reader of `<light>` in a world or a link."""
 
 from __future__ import annotations
 
@@ -17,9 +17,10 @@ _TYPES = ("point", "spot", "directional")
 
 
 def read_lights(part: NamedElement, link: str, link_world: Pose) -> tuple[SceneLight, ...]:
-    """The lights of a link.
+    """Return the lights of a link.
 
     Args:
+        part: the link.
         link: scoped name of the link.
         link_world: pose of the link in the world.
     """
@@ -29,14 +30,14 @@ def read_lights(part: NamedElement, link: str, link_world: Pose) -> tuple[SceneL
 
 
 def read_light(element: Params, name: str, pose_world: Pose, link: str = "") -> SceneLight:
-    """A light whose pose is resolved already; `link` is the scoped name of what carries it."""
+    """Return a light with an already resolved pose; `link` is the scoped name of the link that carries it."""
     kind = element.attribute("type")
     if not kind:
-        message = f"<light name={name!r}> needs type= ({', '.join(_TYPES)}); it is taken as a point"
+        message = f"<light name={name!r}> needs type= ({', '.join(_TYPES)}); it is read as a point light"
         element.warning("SK-SDF-039", message)
         kind = "point"
     if kind not in _TYPES:
-        message = f"light {name!r} has type {kind!r}, known are {', '.join(_TYPES)}"
+        message = f"light {name!r} has unknown type {kind!r}; known are {', '.join(_TYPES)}"
         element.error("SK-SDF-025", message, did_you_mean(kind, _TYPES))
         kind = "point"
     element.child("pose")

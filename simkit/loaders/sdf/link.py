@@ -1,4 +1,4 @@
-"""`<link>`: collisions, visuals, sensors, lights and mass."""
+"""Reader of `<link>`: collisions, visuals, sensors, lights and mass."""
 
 from __future__ import annotations
 
@@ -21,12 +21,14 @@ from simkit.scene.geometry import vec3
 
 
 def read_link(part: NamedElement, model: str, static: bool, windy: bool, workspace: Workspace) -> SceneLink:
-    """A link whose frame is known.
+    """Return a link whose frame is known.
 
     Args:
+        part: the named `<link>` element.
         model: scoped name of its model.
-        static: whether the model is static.
-        windy: whether the wind pushes the links of the model that do not say it themselves.
+        static: true if the model is static.
+        windy: true if wind acts on links of the model that have no `<enable_wind>` of their own.
+        workspace: state of the load.
     """
     element = part.element
     own = scoped(model, part.name)
@@ -56,7 +58,7 @@ def read_link(part: NamedElement, model: str, static: bool, windy: bool, workspa
 
 
 def _velocity_decay(element: Params) -> tuple[float, float]:
-    """The part of the linear and of the angular velocity lost at every step."""
+    """Return the fractions of the linear and of the angular velocity that are lost at every step."""
     block = element.block("velocity_decay")
     return block.number("linear", 0.0, minimum=0.0, maximum=1.0), block.number("angular", 0.0, minimum=0.0, maximum=1.0)
 
@@ -64,7 +66,7 @@ def _velocity_decay(element: Params) -> tuple[float, float]:
 def _collision(
     part: NamedElement, element: Params, name: str, link: str, workspace: Workspace
 ) -> tuple[SceneCollision | None, float | None]:
-    """A collision and its density [kg/m³], None where not given."""
+    """Return a collision and its density [kg/m³]; the density is None if not given."""
     what = f"collision {name!r} of link {part.name!r}"
     shape = read_geometry(element, part.file, workspace, what)
     density = element.number("density", 1000.0, minimum=0, maximum=1e15) if element.has("density") else None
@@ -85,7 +87,7 @@ def _collision(
 
 
 def _with_friction_frame(surface: Surface, part: NamedElement, element: Params, link: str) -> Surface:
-    """A surface whose `<fdir1>` is told in a link: in the one that the frame moves with that the file names."""
+    """Return the surface with `<fdir1>` in a link's frame: the link that the frame named in the file moves with."""
     name = surface.fdir1_frame
     if not name:
         return surface
@@ -97,7 +99,7 @@ def _with_friction_frame(surface: Surface, part: NamedElement, element: Params, 
     body = None if frames is None else scope.body(name, found.where, owner)
     if body is None or body.kind != "link":
         if frames is None:
-            message = f"{owner} is told in {name!r}, which is no frame here; it is taken in the collision's own"
+            message = f"{owner} is given in the unknown frame {name!r}; the collision's own frame is used"
             found.warning("SK-SDF-040", message, did_you_mean(name, scope.all_names()))
         return replace(surface, fdir1_frame="")
     turned = world_pose(body).inverse().rotate((scope.world @ scope.pose_of(name)).rotate(surface.fdir1))

@@ -1,4 +1,4 @@
-"""State that one load shares, and drafts: elements with their names, frames and files, before any pose is resolved."""
+"""State of one load, and drafts: elements with names, frames and files, before any pose is resolved."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ MAX_MODELS = 20_000
 
 
 class IncludedModel(abc.ABC):
-    """A model of another format that an SDF file includes.
+    """Model of another format that an SDF file includes.
 
     Attributes:
-        version: of SDF, in which `frames` is written.
-        frames: an `<sdf>` with the model's links, joints and frames, which poses and joints of the including file use.
-        fixed_content: code, reason and hint of the error that such a model can be neither merged nor changed.
+        version: SDF version of `frames`.
+        frames: an `<sdf>` with the model's links, joints and frames, for references of the including file.
+        fixed_content: code, reason and hint of the error that such a model cannot be merged or changed.
     """
 
     version: ClassVar[tuple[int, int]]
@@ -39,29 +39,31 @@ class IncludedModel(abc.ABC):
 
     @abc.abstractmethod
     def build(self, draft: ModelDraft, static: bool, workspace: Workspace, base: str) -> SceneModel:
-        """The model as the including file has named and placed it.
+        """Return the model with the name and the pose from the including file.
 
         Args:
-            static: whether it, or what it lies in, is static.
+            draft: the model with its name and frame.
+            static: true if the model, or a model around it, is static.
+            workspace: state of the load.
             base: "auto", "fixed" or "floating".
         """
 
 
 class IncludableLoader(Loader):
-    """A loader of another format whose models an SDF file may include."""
+    """Loader of another format whose models can be included in an SDF file."""
 
     @abc.abstractmethod
     def open_included(self, document: Document, workspace: Workspace) -> IncludedModel | None:
-        """The model of an included file; None, with errors recorded, where it is none."""
+        """Return the model of an included file; None, with errors recorded, if the file has no usable model."""
 
 
 @dataclass(frozen=True, slots=True)
 class SdfFile:
-    """One SDF file (or text): its root, version and folder.
+    """SDF file (or text): its root, version and folder.
 
     Attributes:
-        chain: the files that include one another down to this one.
-        included: the model of another format that the root stands for.
+        chain: files that include one another, from the outermost file to this one.
+        included: model of another format that the root describes.
     """
 
     root: Params
@@ -76,11 +78,11 @@ class Workspace:
     """State of one load.
 
     Attributes:
-        roots: the root element of every file read, for the report on unused elements.
-        reported: what is said once however often it is met: missing pictures and meshes.
-        changed: models that an include has changed, for the same report.
-        places: the files that URIs named so far, by the folder of the file that names them.
-        loaders, mjcf_parser: as in the `LoadRequest`.
+        roots: root element of every file that was read, for the report on unused elements.
+        reported: names of missing textures and meshes that have been reported, because each is reported once.
+        changed: models that an include has changed, for the report on unused elements.
+        places: files found so far, by URI and by the folder of the file that names them.
+        loaders, mjcf_parser: the same as in the `LoadRequest`.
     """
 
     resolver: Resolver
@@ -99,7 +101,7 @@ class Workspace:
 
     @classmethod
     def of(cls, request: LoadRequest, resolver: Resolver) -> Workspace:
-        """The workspace of a load that begins."""
+        """Create the workspace for a new load."""
         return cls(
             resolver,
             request.diagnostics,
@@ -109,15 +111,15 @@ class Workspace:
         )
 
     def quiet(self) -> Workspace:
-        """A workspace to look ahead in: what it finds is said when the same is read in earnest."""
+        """Return a workspace for a preliminary read, whose diagnostics are discarded."""
         return Workspace(self.resolver, Diagnostics(), loaders=self.loaders, mjcf_parser=self.mjcf_parser)
 
     def open(self, path: Path, where: Where, chain: tuple[str, ...]) -> SdfFile | None:
-        """Reads an included SDF file, once however often it is included; None with an error recorded."""
+        """Read an included file, only once even if it is included repeatedly; return None with an error recorded."""
         key = str(path.resolve())
         if key in chain:
             trail = " -> ".join(Path(p).name for p in (*chain[chain.index(key) :], key))
-            self.diagnostics.error("SK-SDF-016", f"the include goes round in a circle: {trail}", where)
+            self.diagnostics.error("SK-SDF-016", f"the files include one another in a circle: {trail}", where)
             return None
         if len(chain) >= MAX_INCLUDE_DEPTH:
             self.diagnostics.error("SK-SDF-016", f"includes are nested deeper than {MAX_INCLUDE_DEPTH}", where)
@@ -131,7 +133,7 @@ class Workspace:
             return self.file(document.root, path.parent, (*chain, key))
         loader = self.loaders.get(document.root.name)
         if loader is None or not issubclass(loader, IncludableLoader):
-            message = f"{path} begins with <{document.root.name}>, an included file begins with <sdf>"
+            message = f"{path} begins with <{document.root.name}>; an included file must begin with <sdf>"
             self.diagnostics.error("SK-SDF-016", message, where)
             return None
         if path not in self._included:
@@ -142,20 +144,21 @@ class Workspace:
         return SdfFile(included.frames, included.version, path.parent, (*chain, key), included)
 
     def file(self, root: Params, folder: Path | None, chain: tuple[str, ...]) -> SdfFile:
-        """Notes a root element for the final report and reads its version."""
+        """Register a root element for the final report and read its version."""
         text = root.attribute("version")
         version = sdf_version(text)
         if version is None:
-            said = f"version {text!r}" if text else "no version"
+            found = f"the invalid version {text!r}" if text else "no version"
             text = "1.6"
-            self.diagnostics.warning("SK-LOAD-004", f"<{root.name}> has {said}; it is read as 1.6", root.where)
+            self.diagnostics.warning("SK-LOAD-004", f"<{root.name}> has {found}; it is read as 1.6", root.where)
             version = (1, 6)
         elif version > NEWEST_SDF:
             newest = ".".join(str(n) for n in NEWEST_SDF)
-            self.diagnostics.warning("SK-LOAD-004", f"SDF {text} is newer than {newest}, the newest known", root.where)
+            message = f"SDF {text} is newer than {newest}, the newest supported version"
+            self.diagnostics.warning("SK-LOAD-004", message, root.where)
         key = chain[-1] if chain else ""
         if version < (1, 2) and key not in self.roots:
-            message = f"SDF {text} is from 2012; it is read in today's spelling"
+            message = f"SDF {text} is from 2012; it is converted to the current spelling"
             self.diagnostics.warning("SK-LOAD-004", message, root.where)
         if key not in self.roots:
             self.roots[key] = nest_flattened_models(modernise(root, version), version)
@@ -163,7 +166,7 @@ class Workspace:
         return SdfFile(root, version, folder, chain)
 
     def count_model(self, where: Where) -> bool:
-        """Whether one more model is within bounds."""
+        """Count one more model and check whether the limit is kept."""
         self.models += 1
         if self.models == MAX_MODELS + 1:
             self.diagnostics.error("SK-SDF-016", f"more than {MAX_MODELS} models", where)
@@ -172,7 +175,7 @@ class Workspace:
 
 @dataclass(frozen=True)
 class NamedElement:
-    """One named element of a model: `scope` is where the names it uses are looked up."""
+    """Named element of a model; `scope` is the scope in which its references are looked up."""
 
     name: str
     element: Params
@@ -181,12 +184,15 @@ class NamedElement:
     file: SdfFile
 
     def named(self, kind: str) -> list[tuple[str, Params]]:
-        """The elements of a kind in it, with their names; a bad or a repeated name is an error."""
+        """Return the children of a kind with their names; an invalid or repeated name is an error."""
         owner = f"{self.frame.kind} {self.name!r}"
         return named_elements(self.element.all(kind), owner, self.element.diagnostics, self.file.version)
 
     def pose_of(self, inner: Params, what: str) -> Pose:
-        """The pose of something inside a link (or joint) in that link's frame; `relative_to` may name another frame."""
+        """Return the pose of an element inside a link (or joint) in that link's frame.
+
+        Its `relative_to` can name another frame.
+        """
         pose, base = read_pose(inner)
         if not base:
             return pose
@@ -198,16 +204,16 @@ class NamedElement:
 
 @dataclass(frozen=True)
 class EntitySource:
-    """A model or light, written in place or included.
+    """Model or light, written in the file or included.
 
     Attributes:
-        pose, relative_to: where it stands, as written by whoever has the last word.
-        static: forced by an include; None where it says nothing.
-        placement: frame of the model that the pose speaks of; empty for the model frame.
-        plugins: those that the include adds.
-        merge: whether its content becomes part of the including model.
-        where: the place of the model, or of the include.
-        pose_where: the place of its pose.
+        pose, relative_to: pose and its base frame, as written in the include or else in the element itself.
+        static: value that an include sets; None if the include sets none.
+        placement: frame of the model that the pose applies to; empty for the model frame.
+        plugins: plugins that the include adds.
+        merge: true if its content becomes part of the including model.
+        where: place of the model or of the include.
+        pose_where: place of its pose.
     """
 
     name: str
@@ -225,10 +231,10 @@ class EntitySource:
 
 @dataclass
 class ModelDraft:
-    """A model whose names are known and whose poses are not resolved yet.
+    """Model whose names are known and whose poses are not yet resolved.
 
     Attributes:
-        saved_links: what a saved state of the world says of its links.
+        saved_links: elements of its links in a saved state of the world.
     """
 
     source: EntitySource
@@ -246,10 +252,10 @@ class ModelDraft:
 
 
 def read_pose(element: Params, name: str = "pose") -> tuple[Pose, str]:
-    """The `<pose>` of an element and the frame it speaks of (empty for the default)."""
+    """Return the `<pose>` of an element and its base frame (empty for the default)."""
     return element.pose(name), pose_base(element.child(name))
 
 
 def pose_location(element: Params) -> Where:
-    """The line of an element's pose, or its own."""
+    """Return the line of an element's pose, or of the element itself."""
     return element.child_or_self("pose").where

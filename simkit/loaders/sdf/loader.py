@@ -1,4 +1,4 @@
-"""The outermost `<sdf>`: worlds, or one bare model."""
+"""Reader of the outermost `<sdf>`: worlds, or one bare model."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from simkit.scene import Scene, SceneModel
 
 
 class SdfLoader(Loader):
-    """Gazebo's format, versions 1.0 to 1.12."""
+    """Loader of Gazebo's format, versions 1.0 to 1.12."""
 
     roots: ClassVar[tuple[str, ...]] = ("sdf", "gazebo")
 
@@ -46,7 +46,7 @@ def _read(file: SdfFile, document: Document, request: LoadRequest, workspace: Wo
             workspace.diagnostics.error("SK-SDF-002", f"the file has two worlds named {world.name!r}", world.where)
         seen.add(world.name)
     if len(worlds) > 1:
-        message = f"the file has {len(worlds)} worlds; the first, {worlds[0].name!r}, is the one that runs"
+        message = f"the file has {len(worlds)} worlds; only the first, {worlds[0].name!r}, runs"
         workspace.diagnostics.note("SK-SDF-031", message, worlds[1].where)
     if worlds:
         return Scene(worlds, None, name)
@@ -59,7 +59,7 @@ def _read(file: SdfFile, document: Document, request: LoadRequest, workspace: Wo
 
 
 def _bare(file: SdfFile, workspace: Workspace) -> EntitySource | None:
-    """The one model (or light) of a file without a world."""
+    """Return the one model (or light) of a file without a world."""
     root = file.root
     found = [*root.all("model"), *root.all("light")]
     actors = root.all("actor")
@@ -72,12 +72,12 @@ def _bare(file: SdfFile, workspace: Workspace) -> EntitySource | None:
     if not found:
         if not actors:
             near = next((h for c in root.children if (h := did_you_mean(c.name, ("world", "model", "light")))), "")
-            root.error("SK-SDF-026", f"<{root.name}> holds neither a world nor a model", near)
+            root.error("SK-SDF-026", f"<{root.name}> contains neither a world nor a model", near)
         return None
-    for other in found[1:]:
-        other.mark_all_read()
-        message = f"a file without a world holds one model; <{other.name} name={other.attribute('name')!r}> is one more"
-        other.error("SK-SDF-028", message, "put them into a <world>")
+    for extra in found[1:]:
+        extra.mark_all_read()
+        element = f"<{extra.name} name={extra.attribute('name')!r}>"
+        extra.error("SK-SDF-028", f"{element}: a file without a world can have only one model", "add a <world>")
     return read_inline_entity(found[0], file, workspace)
 
 

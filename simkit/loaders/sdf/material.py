@@ -1,4 +1,4 @@
-"""`<material>`: colours, Gazebo's material scripts and those of other models, and albedo textures."""
+"""Reader of `<material>`: colours, Gazebo's material scripts and those of other models, and albedo textures."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ _BLACK: Colour = (0.0, 0.0, 0.0, 1.0)
 
 
 def read_material(visual: Params, file: SdfFile, workspace: Workspace) -> Material | None:
-    """How a visual looks; None where it says nothing.
+    """Return the appearance of a visual; None if the visual has no `<material>`.
 
-    What is written in the element itself wins over its script.
+    Values in the element itself take precedence over those of its script.
     """
     block = visual.child("material")
     if block is None:
@@ -63,8 +63,8 @@ def _has_content(block: Params, name: str) -> bool:
 def _script_material(
     name: str, script: Params, file: SdfFile, workspace: Workspace
 ) -> tuple[OgreMaterial | None, list[Path]]:
-    """The material of that name in the scripts that the file points to, and the places it points to."""
-    # Gazebo's own are known by name
+    """Return the material of that name in the script files that the visual refers to, and their paths."""
+    # Gazebo's own scripts are identified by name, in the table of gazebo_materials.py
     uris = [e.value for e in script.all("uri") if e.value and "media/materials" not in e.value]
     places = [place for uri in uris if (place := workspace.resolver.search(uri, file.folder)[0]) is not None]
     return (find_material(name, places) if name and places else None), places
@@ -80,16 +80,16 @@ def _script_colours(name: str, ogre: OgreMaterial | None) -> dict[str, Colour]:
 
 
 def _report_unknown_script(name: str, script: Params, workspace: Workspace) -> None:
-    """One note for each name, however often it is used."""
+    """Record one note for each unknown name, even if several visuals use it."""
     if name not in workspace.unknown_materials:
         workspace.unknown_materials.add(name)
         near = closest(name.removeprefix("Gazebo/"), gazebo_materials())
         hint = did_you_mean(name, [f"Gazebo/{near}"]) if near else ""
-        workspace.diagnostics.note("SK-SDF-021", f"material {name!r} is not known and drawn white", script.where, hint)
+        workspace.diagnostics.note("SK-SDF-021", f"unknown material {name!r}; it is drawn white", script.where, hint)
 
 
 def read_colour(block: Params, name: str, default: Colour) -> Colour:
-    """The colour of a child element, each channel clamped to 0..1; a bad text is an error."""
+    """Return the colour of a child element, with each channel limited to 0..1; an invalid text is an error."""
     found = block.child(name)
     if found is None or not found.value:
         return default
@@ -105,11 +105,11 @@ def read_colour(block: Params, name: str, default: Colour) -> Colour:
 
 
 def _workflow(block: Params) -> Params:
-    """The block of `<pbr>` that says most: metal before specular, one with a picture before one without."""
+    """Return the most complete block of `<pbr>`: with a texture before without, metal before specular."""
     pbr = block.block("pbr")
     workflows = [*pbr.all("metal"), *pbr.all("specular")]
-    with_picture = [w for w in workflows if _has_content(w, "albedo_map")]
-    return (with_picture or workflows or [Params("metal", where=block.where, diagnostics=block.diagnostics)])[0]
+    with_texture = [w for w in workflows if _has_content(w, "albedo_map")]
+    return (with_texture or workflows or [Params("metal", where=block.where, diagnostics=block.diagnostics)])[0]
 
 
 def _texture(workflow: Params, file: SdfFile, workspace: Workspace) -> Path | None:
@@ -124,7 +124,7 @@ def _texture(workflow: Params, file: SdfFile, workspace: Workspace) -> Path | No
 
 
 def _report_missing_texture(what: str, element: Params, workspace: Workspace) -> None:
-    """One warning for each picture, however often it is used."""
+    """Record one warning for each missing texture, even if several visuals use it."""
     if what not in workspace.reported:
         workspace.reported.add(what)
         workspace.diagnostics.warning("SK-URI-006", f"{what} is not found; drawn without it", element.where)

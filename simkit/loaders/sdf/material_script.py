@@ -1,6 +1,6 @@
-"""OGRE material scripts (`.material`) found through a visual's `<script><uri>`: colours, texture, inheritance.
+"""Reader of OGRE material scripts (`.material`) named in a visual's `<script><uri>`: colours, texture, inheritance.
 
-Of a script's techniques and passes the first value of each kind counts; shaders, animations and blending do not.
+The first value of each kind in a script's techniques and passes is used. Shaders, animations and blending are ignored.
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ _TOKEN: Final = re.compile(r'//[^\n]*|/\*.*?(?:\*/|\Z)|"[^"\n]*"|[{}]|[^\s{}"]+|
 
 @dataclass(frozen=True)
 class OgreMaterial:
-    """What a script says; colours None where it says nothing.
+    """Material of a script; `colours` has only the colours that the script gives.
 
     Attributes:
-        parent: name of the material it begins as.
-        texture: name of a picture.
-        folder: of the script.
-        is_transparent: whether it blends by alpha.
-        scale: size of the picture, across and up; None where the script gives none.
+        parent: name of the material that it inherits from.
+        texture: file name of an image.
+        folder: folder of the script.
+        is_transparent: true if it uses alpha blending.
+        scale: size of the image, across and up; None if the script gives none.
     """
 
     name: str
@@ -46,7 +46,7 @@ class OgreMaterial:
 
 
 def find_material(name: str, places: Sequence[Path]) -> OgreMaterial | None:
-    """The material of that name in script files and folders, with what it inherits; None where there is none."""
+    """Return the material of that name in script files and folders, with inherited values; None if there is none."""
     known: dict[str, OgreMaterial] = {}
     for script in _scripts(places):
         for material in _materials(script):
@@ -71,7 +71,7 @@ def find_material(name: str, places: Sequence[Path]) -> OgreMaterial | None:
 
 
 def find_texture(material: OgreMaterial, places: Sequence[Path]) -> Path | None:
-    """The picture that a material names: in the folders given, beside its script, or in `textures` beside that."""
+    """Return the image that a material names: in the given folders, beside its script, or in `../textures`."""
     folders = [p if p.is_dir() else p.parent for p in places]
     folders += [material.folder, material.folder.parent / "textures"]
     name = material.texture.replace("\\", "/")
@@ -110,7 +110,7 @@ def _parsed(file: Path, _version: int) -> tuple[OgreMaterial, ...]:
 
 
 def _lines(text: str) -> Iterator[list[str]]:
-    """The script's words, line by line; braces stand in lines of their own."""
+    """Yield the words of the script line by line; each brace is a line of its own."""
     line: list[str] = []
     for match in _TOKEN.finditer(text):
         word = match.group()
@@ -149,7 +149,7 @@ def _read(lines: list[list[str]], folder: Path) -> Iterator[OgreMaterial]:
 
 
 def _header(words: list[str], folder: Path) -> OgreMaterial | None:
-    """`[abstract] material NAME [: PARENT]`."""
+    """Parse `[abstract] material NAME [: PARENT]`."""
     words = words[1:] if words[0] == "abstract" else words
     if words[0] != "material" or len(words) < 2:
         return None
@@ -184,7 +184,7 @@ def _scale(values: list[str]) -> tuple[float, float] | None:
 
 
 def _colour(values: list[str], most: int) -> Colour | None:
-    """Three or four numbers; of a specular colour the last of four is its shininess."""
+    """Parse three or four numbers; the last of four numbers of a specular colour is its shininess."""
     try:
         numbers = [min(1.0, max(0.0, float(v))) for v in values[:most]]
     except ValueError:

@@ -1,4 +1,4 @@
-"""`<model>`: first its names (nested and merged models included), then, once every pose can be resolved, its scene."""
+"""Reader of `<model>` in two steps: first all names (nested and merged models included), then poses and scene."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _MODEL_SETTINGS = ("static", "self_collide", "enable_wind", "allow_auto_disable"
 
 
 def declare_model(source: EntitySource, outer: Scope, outer_scoped: str, workspace: Workspace) -> ModelDraft | None:
-    """Enters a model and everything named in it; None when it is one too many."""
+    """Register a model and all named elements in it; return None if the limit of models is exceeded."""
     if not workspace.count_model(source.where):
         return None
     own = scoped(outer_scoped, source.name)
@@ -42,16 +42,16 @@ def declare_model(source: EntitySource, outer: Scope, outer_scoped: str, workspa
 
 
 def register_frame(frame: Frame, scope: Scope, version: tuple[int, int]) -> None:
-    """Gives a name to a frame; from 1.7 on all siblings of any kind share one set of names."""
-    taken = scope.names.setdefault(frame.name, frame)
-    if taken is frame:
+    """Register a frame under its name; from 1.7 on, siblings of all kinds share one set of names."""
+    existing = scope.names.setdefault(frame.name, frame)
+    if existing is frame:
         return
-    line = taken.where.line
-    text = f"{frame.kind} {frame.name!r} has the name of a {taken.kind} (line {line})"
-    if taken.kind == frame.kind or version >= (1, 7):
+    line = existing.where.line
+    text = f"{frame.kind} {frame.name!r} has the same name as a {existing.kind} (line {line})"
+    if existing.kind == frame.kind or version >= (1, 7):
         scope.diagnostics.error("SK-SDF-002", f"{text}; siblings need different names", frame.where)
     else:
-        scope.diagnostics.warning("SK-SDF-024", f"{text}; the name means the {taken.kind}", frame.where)
+        scope.diagnostics.warning("SK-SDF-024", f"{text}; the name refers to the {existing.kind}", frame.where)
 
 
 def _declare_content(draft: ModelDraft, element: Params, file: SdfFile, scope: Scope, workspace: Workspace) -> None:
@@ -73,7 +73,7 @@ def _declare_content(draft: ModelDraft, element: Params, file: SdfFile, scope: S
 
 
 def model_sources(element: Params, file: SdfFile, workspace: Workspace) -> Iterable[EntitySource]:
-    """The models written in an element and those it includes, in document order."""
+    """Yield the models written in an element and those that it includes, in document order."""
     written, included = set(map(id, element.all("model"))), set(map(id, element.all("include")))
     for child in element.children:
         if id(child) in written:
@@ -89,11 +89,15 @@ def model_sources(element: Params, file: SdfFile, workspace: Workspace) -> Itera
 def declare_elements(
     element: Params, kind: str, owner: str, outer: str, file: SdfFile, scope: Scope
 ) -> list[NamedElement]:
-    """Enters the links, joints or frames of a model (or a world) in its names.
+    """Register the links, joints or frames of a model (or a world) under their names.
 
     Args:
-        owner: the model, for messages.
-        outer: its scoped name; empty for a world.
+        element: the `<model>` or `<world>`.
+        kind: link, joint or frame.
+        owner: the model or the world, for messages.
+        outer: scoped name of the model; empty for a world.
+        file: file of the element.
+        scope: scope that receives the names.
     """
     parts = []
     for name, found in named_elements(element.all(kind), owner, scope.diagnostics, file.version):
@@ -120,10 +124,14 @@ def _report_non_model(source: EntitySource, workspace: Workspace) -> None:
 
 
 def merge_model(draft: ModelDraft, source: EntitySource, scope: Scope, workspace: Workspace, base: str = MODEL) -> None:
-    """Puts the content of an included model into `draft`; a frame that stands where it was placed is its root.
+    """Add the content of an included model to `draft`; a new frame at the included model's pose is its root.
 
     Args:
-        base: the frame that its pose speaks of where the include does not say.
+        draft: the including model.
+        source: the included model.
+        scope: scope of the including model.
+        workspace: state of the load.
+        base: frame that its pose is relative to if the include names none.
     """
     name = f"_merged__{source.name}__{MODEL}"
     pose = source.pose
@@ -136,8 +144,8 @@ def merge_model(draft: ModelDraft, source: EntitySource, scope: Scope, workspace
     inner = Scope(proxy, workspace.diagnostics, scope.names)
     first, models = len(draft.links), len(draft.models)
     _declare_content(draft, source.element, source.file, inner, workspace)
-    wanted = source.element.attribute("canonical_link")
-    proxy.attached_to = wanted or (draft.links[first].name if len(draft.links) > first else "")
+    canonical = source.element.attribute("canonical_link")
+    proxy.attached_to = canonical or (draft.links[first].name if len(draft.links) > first else "")
     for nested in draft.models[models:]:
         if not proxy.attached_to and nested.scope.canonical:
             proxy.attached_to = f"{nested.source.name}::{nested.scope.canonical}"
@@ -148,36 +156,36 @@ def merge_model(draft: ModelDraft, source: EntitySource, scope: Scope, workspace
 
 
 def _report_lost(source: EntitySource, workspace: Workspace) -> None:
-    """Says which settings of a merged model are lost: there is no model left to have them."""
+    """Report the settings of a merged model that are lost, because the merged model no longer exists."""
     lost = [name for name in _MODEL_SETTINGS if source.element.child(name) is not None]
     if source.static is not None and "static" not in lost:
         lost.insert(0, "static")
     source.element.child("pose")
     if lost:
         listed = ", ".join(f"<{name}>" for name in lost)
-        message = f"{listed} of the merged model {source.name!r} is lost in the merge"
+        message = f"the merge drops {listed} of the merged model {source.name!r}"
         workspace.diagnostics.note("SK-SDF-035", message, source.where)
 
 
 def _choose_canonical(draft: ModelDraft, element: Params, workspace: Workspace) -> None:
-    """The link that stands for the model: the named one, else the first link, else that of the first nested model."""
+    """Select the canonical link: the named one, else the first link, else that of the first nested model."""
     scope = draft.scope
-    wanted = element.attribute("canonical_link")
-    frames = scope.chain(wanted) if wanted else None
-    if wanted and (not frames or frames[-1].kind != "link"):
-        scope.report_unknown(wanted, f"model {draft.source.name!r}: the canonical link", element.where)
-    elif wanted:
-        scope.canonical = wanted
+    canonical = element.attribute("canonical_link")
+    frames = scope.chain(canonical) if canonical else None
+    if canonical and (not frames or frames[-1].kind != "link"):
+        scope.report_unknown(canonical, f"model {draft.source.name!r}: the canonical link", element.where)
+    elif canonical:
+        scope.canonical = canonical
     if not scope.canonical and draft.links:
         scope.canonical = draft.links[0].name
     for nested in draft.models if not scope.canonical else ():
         if nested.scope.canonical:
             scope.canonical = f"{nested.source.name}::{nested.scope.canonical}"
             break
-    still = _is_static(draft.source)
-    if not draft.links and not draft.models and not still:
-        held = dict.fromkeys(c.name for c in element.children)
-        hint = f"it has only <{'>, <'.join(held)}>" if held else "give it a <link>"
+    static = _is_static(draft.source)
+    if not draft.links and not draft.models and not static:
+        contained = dict.fromkeys(c.name for c in element.children)
+        hint = f"it has only <{'>, <'.join(contained)}>" if contained else "add a <link>"
         workspace.diagnostics.error("SK-SDF-006", f"model {draft.source.name!r} has no link", element.where, hint)
 
 
@@ -187,7 +195,7 @@ def _is_static(source: EntitySource) -> bool:
 
 
 def place_model(draft: ModelDraft) -> None:
-    """Fixes where a model and its nested ones stand in the world."""
+    """Set the world poses of a model and its nested models."""
     draft.scope.world = world_pose(draft.frame)
     for merged in draft.merged:
         merged.world = draft.scope.world
@@ -196,23 +204,23 @@ def place_model(draft: ModelDraft) -> None:
 
 
 def build_model(draft: ModelDraft, static: bool, workspace: Workspace, base: str = "auto") -> SceneModel:
-    """The scene of a placed model; a nested model of a static one is static."""
+    """Return the scene of a placed model; nested models of a static model are static."""
     source, element = draft.source, draft.source.element
     declared = _is_static(source)
-    still = declared or static
+    is_static = declared or static
     if source.file.included is not None:
-        return source.file.included.build(draft, still, workspace, base)
+        return source.file.included.build(draft, is_static, workspace, base)
     element.child("pose")
     windy = element.boolean("enable_wind", False)
-    links = tuple(read_link(part, draft.scoped, still, windy, workspace) for part in draft.links)
-    _report_defaults(draft, [link.name for link in links if not link.inertial.given], still)
+    links = tuple(read_link(part, draft.scoped, is_static, windy, workspace) for part in draft.links)
+    _report_defaults(draft, [link.name for link in links if not link.inertial.given], is_static)
     joints = read_joints(draft.joints, draft.scoped)
     canonical = draft.scope.chain(draft.scope.canonical) if draft.scope.canonical else None
     return SceneModel(
         name=source.name,
         scoped=draft.scoped,
         pose_world=draft.scope.world,
-        static=still,
+        static=is_static,
         declared_static=declared,
         self_collide=element.boolean("self_collide", False),
         canonical_link=canonical[-1].scoped if canonical else "",
@@ -220,7 +228,7 @@ def build_model(draft: ModelDraft, static: bool, workspace: Workspace, base: str
         links=links,
         joints=joints,
         frames=(*read_frames(draft.frames), *(SceneFrame(p.name, p.scoped, world_pose(p)) for p in draft.proxies)),
-        models=tuple(build_model(nested, still, workspace) for nested in draft.models),
+        models=tuple(build_model(nested, is_static, workspace) for nested in draft.models),
         plugins=read_plugins(draft.plugins, draft.scoped),
         where=source.where,
         allow_auto_disable=element.boolean("allow_auto_disable", True),
@@ -228,7 +236,7 @@ def build_model(draft: ModelDraft, static: bool, workspace: Workspace, base: str
 
 
 def read_frames(parts: Iterable[NamedElement]) -> tuple[SceneFrame, ...]:
-    """Frames with the body each is attached to; one attached to nothing is an error."""
+    """Return the frames with the link that each is attached to; a frame without a link is an error."""
     frames = []
     for part in parts:
         body = part.scope.body(part.name, part.element.where, f"frame {part.name!r}")

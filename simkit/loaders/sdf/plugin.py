@@ -1,4 +1,4 @@
-"""`<plugin>`: name, file name and the block of parameters."""
+"""Reader of `<plugin>`: name, file name and the block of parameters."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from simkit.scene import ScenePlugin
 
 
 def read_plugins(elements: Sequence[Params], scoped: str) -> tuple[ScenePlugin, ...]:
-    """Plugins in document order; one without a file name is an error."""
+    """Return the plugins in document order; a plugin without a file name is an error."""
     plugins = []
     for element in elements:
         filename = element.attribute("filename").strip()

@@ -1,7 +1,7 @@
 """`<population>`: many copies of one model, placed by a rule, as Gazebo Classic expands it.
 
-The places at random come from a stream of their own, named by the world and the population, so that the same file gives
-the same places in every process and one population never moves another.
+Random positions come from a separate stream, whose seed is the names of the world and the population. The same file
+therefore gives the same positions in every process, and one population never changes another.
 """
 
 from __future__ import annotations
@@ -22,20 +22,20 @@ from simkit.pose import Pose
 Points = npt.NDArray[np.float64]
 DISTRIBUTIONS = ("random", "uniform", "grid", "linear-x", "linear-y", "linear-z")
 _CODE = "SK-SDF-033"
-_WIDEST = 1e12  # [m] of a region and of the steps of a grid
+_WIDEST = 1e12  # [m], limit for a region and for the steps of a grid
 _SAMPLES = 10_000
 _ROUNDS = 100
 
 
 @dataclass(frozen=True, slots=True)
 class _Region:
-    """Where the copies may stand, in the population's own axes: a box from 0 to `size`, or a cylinder about z."""
+    """Region of the copies, in the population's own axes: a box from 0 to `size`, or a cylinder about z."""
 
     kind: str
     size: tuple[float, float, float]
 
     def random_points(self, count: int, stream: np.random.Generator) -> Points:
-        """Points at random; in a cylinder as many near the axis as far from it, which is Gazebo's rule."""
+        """Return random points; a cylinder's radii are uniform, so it is denser near the axis, as in Gazebo."""
         numbers: Points = stream.random((count, 3))
         if self.kind == "box":
             return np.asarray(numbers * np.array(self.size))
@@ -44,16 +44,16 @@ class _Region:
 
 
 def population_sources(population: Params, world: str, file: SdfFile, workspace: Workspace) -> list[EntitySource]:
-    """The copies, named `model_clone_0`, `model_clone_1`, ...; none, with errors recorded, where it says no place.
+    """Return the copies, named `model_clone_0`, `model_clone_1`, ...; none, with errors, without a valid region.
 
-    A copy stands upright at its point: like Gazebo, what the model's own `<pose>` says does not count.
+    A copy stands upright at its point. As in Gazebo, the model's own `<pose>` is ignored.
     """
     diagnostics = workspace.diagnostics
     name = read_name(population, diagnostics, file.version)
     models = population.all("model")
     pose, base = read_pose(population)
     if len(models) != 1:
-        population.error(_CODE, f"population {name!r} needs one <model>, it has {len(models)}")
+        population.error(_CODE, f"population {name!r} needs one <model>; it has {len(models)}")
         return []
     model = read_name(models[0], diagnostics, file.version)
     models[0].child("pose")
@@ -68,7 +68,7 @@ def population_sources(population: Params, world: str, file: SdfFile, workspace:
 
 
 def _points(population: Params, name: str, stream: str, pose: Pose) -> Points | None:
-    """Where the copies stand, in the frame that the population's pose speaks of."""
+    """Return the positions of the copies, in the base frame of the population's pose."""
     rule = population.block("distribution")
     kind = rule.text("type", "random")
     if kind not in DISTRIBUTIONS:
@@ -80,7 +80,7 @@ def _points(population: Params, name: str, stream: str, pose: Pose) -> Points | 
         return _turn_points(_grid(population, rule, name), pose, np.zeros(3))
     count = population.integer("model_count", 1, minimum=1)
     if count > MAX_MODELS:
-        population.error(_CODE, f"population {name!r} has {count} models, allowed are {MAX_MODELS}")
+        population.error(_CODE, f"population {name!r} has {count} models; the limit is {MAX_MODELS}")
         return None
     region = _region(population, name)
     if region is None:
@@ -97,7 +97,7 @@ def _points(population: Params, name: str, stream: str, pose: Pose) -> Points | 
 
 
 def _turn_points(points: Points | None, pose: Pose, corner: Points) -> Points | None:
-    """Points turned about the population's pose, which is the middle of a box (Gazebo does not turn the half size)."""
+    """Rotate points about the population's pose, the middle of a box (Gazebo does not rotate the half size)."""
     if points is None:
         return None
     return points @ pose.matrix.T + (np.asarray(pose.position) - corner)
@@ -112,23 +112,23 @@ def _region(population: Params, name: str) -> _Region | None:
         radius = cylinder.number("radius", 1.0)
         region = _Region("cylinder", (radius, radius, cylinder.number("length", 1.0)))
     else:
-        population.error(_CODE, f"population {name!r} needs a <box> or a <cylinder> to stand in")
+        population.error(_CODE, f"population {name!r} needs a <box> or a <cylinder> as its region")
         return None
     if min(region.size) <= 0:
-        (box or cylinder or population).error(_CODE, f"population {name!r} stands in a {region.kind} without a volume")
+        (box or cylinder or population).error(_CODE, f"population {name!r} has a {region.kind} without a volume")
         return None
     if max(region.size) > _WIDEST:
-        message = f"population {name!r} stands in a {region.kind} that is larger than {_WIDEST:g} m"
+        message = f"population {name!r} has a {region.kind} that is larger than {_WIDEST:g} m"
         (box or cylinder or population).error(_CODE, message)
         return None
     return region
 
 
 def _grid(population: Params, rule: Params, name: str) -> Points | None:
-    """Rows along y, columns along x, the middle of the grid at the population's pose."""
+    """Return grid points: rows along y, columns along x, the middle of the grid at the population's pose."""
     rows, cols = rule.integer("rows", 1, minimum=1), rule.integer("cols", 1, minimum=1)
     if rows * cols > MAX_MODELS:
-        population.error(_CODE, f"population {name!r} has {rows * cols} models, allowed are {MAX_MODELS}")
+        population.error(_CODE, f"population {name!r} has {rows * cols} models; the limit is {MAX_MODELS}")
         return None
     step = np.array(rule.vector3("step", (1.0, 1.0, 0.0)))
     if np.abs(step).max() > _WIDEST:
@@ -139,17 +139,17 @@ def _grid(population: Params, rule: Params, name: str) -> Points | None:
 
 
 def _line(size: tuple[float, float, float], count: int, axis: int) -> Points:
-    """Equal distances from one end of the box, in the middle of it otherwise."""
+    """Return points at equal distances along one axis of the box, in the middle of its other axes."""
     points = np.tile(np.array(size) / 2, (count, 1))
     points[:, axis] = size[axis] * np.arange(count) / count
     return points
 
 
 def _evenly_spread(region: _Region, count: int, stream: np.random.Generator) -> Points:
-    """Evenly spread places: the means of as many clusters of points drawn from the region (Lloyd's algorithm)."""
+    """Return evenly spread points: the means of as many clusters of random points of the region (Lloyd's algorithm)."""
     cloud = region.random_points(max(_SAMPLES, 4 * count), stream)
     centres = cloud[:count].copy()
-    if count > 500:  # clusters of four points say no more than the points do
+    if count > 500:  # more centres make clusters of few points, whose means are not spread better than the points
         return centres
     nearest: npt.NDArray[np.intp] | None = None
     for _ in range(_ROUNDS):
@@ -165,7 +165,10 @@ def _evenly_spread(region: _Region, count: int, stream: np.random.Generator) -> 
 
 
 def _nearest(cloud: Points, centres: Points) -> npt.NDArray[np.intp]:
-    """The nearest centre of each point; sums of squares, not a product of matrices, whose bits depend on threads."""
+    """Return the index of the nearest centre of each point.
+
+    Sums of squares are used, because the last bits of a matrix product depend on the number of threads.
+    """
     best = np.full(len(cloud), np.inf)
     index = np.zeros(len(cloud), dtype=np.intp)
     for i, centre in enumerate(centres):
@@ -176,6 +179,6 @@ def _nearest(cloud: Points, centres: Points) -> npt.NDArray[np.intp]:
 
 
 def _random_stream(name: str) -> np.random.Generator:
-    """A stream of random numbers that depends on its name alone."""
+    """Return a stream of random numbers that depends only on its name."""
     words = np.frombuffer(hashlib.sha256(name.encode()).digest(), dtype="<u4")
     return np.random.Generator(np.random.PCG64(np.random.SeedSequence([int(w) for w in words])))

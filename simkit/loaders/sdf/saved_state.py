@@ -1,7 +1,7 @@
-"""`<state>` of a world: what Gazebo Classic saved of where everything stood when somebody stopped it.
+"""`<state>` of a world: poses that Gazebo Classic saved when the user saved the running world.
 
-Its poses (of models and of links) are in the world. Those of models and lights are applied, and those of links where no
-joint holds them; what a joint's position would have to bring about is reported.
+The saved poses of models and links are in the world frame. Poses of models and lights are applied, and those of links
+in models without joints. A pose that needs another joint position is reported and not applied.
 """
 
 from __future__ import annotations
@@ -16,43 +16,43 @@ from simkit.params import Params
 from simkit.pose import Pose
 
 _CODE = "SK-SDF-034"
-_SAME_POSE = 1e-3  # metres and radians: saved numbers have six digits, and what rests has settled a little
+_SAME_POSE = 1e-3  # [m] and [rad]; saved numbers have six digits, and bodies at rest have settled slightly
 _UNAPPLIED = ("velocity", "acceleration", "wrench")
 
 
 def saved_states(world: Params, name: str) -> list[Params]:
-    """The states that speak of this world; another one is reported."""
+    """Return the states of this world; a state of another world is reported."""
     found = []
     for state in world.all("state"):
-        of = state.attribute("world_name").strip()
-        for quiet in ("sim_time", "wall_time", "real_time", "iterations"):
-            state.child(quiet)
-        if of in ("", name):
+        world_name = state.attribute("world_name").strip()
+        for clock in ("sim_time", "wall_time", "real_time", "iterations"):
+            state.child(clock)
+        if world_name in ("", name):
             found.append(state)
             continue
         state.mark_all_read()
-        message = f"the saved state of world {of!r} is not applied to {name!r}"
-        state.warning(_CODE, message, did_you_mean(of, (name,)))
+        message = f"the saved state of world {world_name!r} is not applied to {name!r}"
+        state.warning(_CODE, message, did_you_mean(world_name, (name,)))
     return found
 
 
 def _all_saved(block: Params, kind: str) -> list[Params]:
-    """What a block says of entities of a kind, as `<model>` or as `<model_state>`."""
+    """Return the entities of a kind in a block, written as `<model>` or as `<model_state>`."""
     return [*block.all(kind), *block.all(f"{kind}_state")]
 
 
 def deleted_names(states: Iterable[Params]) -> set[str]:
-    """Names of models and lights that were gone when the state was saved."""
+    """Return the names of models and lights that had been deleted when the state was saved."""
     return {name.value for state in states for gone in state.all("deletions") for name in gone.all("name")}
 
 
 def inserted_blocks(states: Iterable[Params]) -> list[Params]:
-    """Blocks with models and lights that had come in."""
+    """Return the blocks with models and lights that had been inserted."""
     return [block for state in states for block in state.all("insertions")]
 
 
 def saved_light_poses(states: Iterable[Params]) -> dict[str, Pose]:
-    """Poses of lights in the world by name."""
+    """Return the poses of lights in the world by name."""
     return {
         light.attribute("name"): light.pose("pose")
         for state in states
@@ -62,7 +62,7 @@ def saved_light_poses(states: Iterable[Params]) -> dict[str, Pose]:
 
 
 def apply_saved_poses(states: Iterable[Params], drafts: Iterable[ModelDraft]) -> None:
-    """Moves models to where a state has them, before anything is resolved."""
+    """Move models to their saved poses, before any pose is resolved."""
     known = {draft.source.name: draft for draft in drafts}
     for state in states:
         for saved in _all_saved(state, "model"):
@@ -76,7 +76,7 @@ def _apply_saved_pose(saved: Params, known: dict[str, ModelDraft], outer: Pose) 
     name = saved.attribute("name").strip()
     draft = known.get(name)
     if draft is None:
-        message = f"the saved state speaks of model {name!r}, which is not in the file"
+        message = f"the saved state has model {name!r}, which is not in the file"
         saved.warning(_CODE, message, did_you_mean(name, known))
         saved.mark_all_read()
         return
@@ -107,16 +107,16 @@ def _match_elements(draft: ModelDraft) -> list[tuple[Params, Frame]]:
 
 
 def report_unapplied(draft: ModelDraft) -> None:
-    """Says what of a placed model's saved state is not applied: joint positions and velocities."""
+    """Report the parts of a placed model's saved state that are not applied: joint positions and velocities."""
     matched, owner = _match_elements(draft), f"model {draft.scoped!r}"
     moved = [e for e, frame in matched if e.has("pose") and _is_different(e.pose("pose"), world_pose(frame))]
     if moved:
         names = ", ".join(link.attribute("name") for link in moved[:5])
-        message = f"{owner}: the saved poses of {names} need other joint positions; its joints start at zero"
+        message = f"{owner}: the saved poses of {names} are not applied; its joints start at zero"
         moved[0].warning(_CODE, message)
-    fast = [link for link, _ in matched if _has_motion(link)]
-    if fast:
-        fast[0].warning(_CODE, f"{owner}: saved velocities are not applied; it starts at rest")
+    moving = [link for link, _ in matched if _has_motion(link)]
+    if moving:
+        moving[0].warning(_CODE, f"{owner}: saved velocities are not applied; the model starts at rest")
     for nested in draft.models:
         report_unapplied(nested)
 

@@ -1,4 +1,4 @@
-"""`<sensor>`: what all kinds share; the rest stays in its block of parameters for the kind's own module."""
+"""Reader of `<sensor>`: elements that all kinds share. All others stay in the parameters for the kind's own module."""
 
 from __future__ import annotations
 
@@ -13,9 +13,10 @@ from simkit.scene import SceneSensor
 def read_sensors(
     part: NamedElement, scoped: str, link_world: Pose, in_link: Pose = IDENTITY
 ) -> tuple[SceneSensor, ...]:
-    """The sensors of a link or joint.
+    """Return the sensors of a link or joint.
 
     Args:
+        part: the link or joint.
         scoped: name of the link or joint from the world down.
         link_world: pose in the world of the link, or of the joint's child link.
         in_link: pose of the joint's frame in its child link.
@@ -55,9 +56,9 @@ def _sensor(element: Params, name: str, parent: str, on_joint: bool, pose_link: 
 
 
 def _rate(params: Params, sensor: str) -> float:
-    """[Hz]; what is below zero is every step, as in Gazebo."""
+    """Return the update rate [Hz]; a negative rate becomes 0, which means every step, as in Gazebo."""
     rate = params.number("update_rate", 0.0)
     if rate < 0:
-        message = f"sensor {sensor!r}: <update_rate>{rate:g}</update_rate> is every step, as 0 is"
+        message = f"sensor {sensor!r}: <update_rate>{rate:g}</update_rate> means every step, the same as 0"
         params.block("update_rate").note("SK-SENSOR-029", message)
     return max(rate, 0.0)

@@ -17,7 +17,10 @@ Outline = Sequence[tuple[float, float]]
 
 
 def solid_of(shape: Geometry) -> Solid | None:
-    """Volume [m³], centroid [m] and moments [m⁵] about the centroid, in the shape's frame; None for what has none."""
+    """Return volume [m³], centroid [m] and moments [m⁵] about the centroid, in the shape's frame.
+
+    A shape without volume returns None.
+    """
     centre = np.zeros(3)
     match shape:
         case Box(size=(x, y, z)):
@@ -51,10 +54,10 @@ def _capsule(r: float, h: float) -> Solid:
 
 
 def solid_of_triangles(parts: Iterable[Triangles]) -> Solid | None:
-    """Of closed surfaces: the signed sum over tetrahedra from the origin; None where they enclose nothing.
+    """Return the solid inside closed surfaces, as a signed sum over tetrahedra; None if they enclose no volume.
 
-    Source: Tonon, "Explicit exact formulas for the 3-D tetrahedron inertia tensor", 2004. The sum's sign is that of the
-    way the faces are turned, which does not matter here.
+    All tetrahedra have one corner at the origin. The sign of the sum depends on the orientation of the faces and is
+    ignored. Source: Tonon, "Explicit exact formulas for the 3-D tetrahedron inertia tensor", 2004.
     """
     volume, first, second = 0.0, np.zeros(3), np.zeros((3, 3))
     for part in parts:
@@ -72,19 +75,19 @@ def solid_of_triangles(parts: Iterable[Triangles]) -> Solid | None:
 
 
 def _about_centroid(volume: float, centre: Floats, second: Floats) -> Solid:
-    """From the integral of position times position, both of the sign of the volume."""
+    """Convert the integral of position times position, which has the sign of the volume, to moments."""
     sign = math.copysign(1.0, volume)
     inner = sign * (second - volume * np.outer(centre, centre))
     return abs(volume), centre, np.trace(inner) * np.eye(3) - inner
 
 
 def _extruded(outlines: Sequence[Outline], height: float) -> Solid | None:
-    """Of outlines in x and y from z = 0 to `height`; one inside another is a hole in it."""
+    """Return the solid of outlines in x and y from z = 0 to `height`; an outline inside another is a hole."""
     area, first, second = 0.0, np.zeros(2), np.zeros((2, 2))
     for i, outline in enumerate(outlines):
-        holes = sum(_is_inside(outline[0], other) for j, other in enumerate(outlines) if j != i)
+        nesting = sum(_is_inside(outline[0], other) for j, other in enumerate(outlines) if j != i)
         a, f, s = _polygon(outline)
-        sign = math.copysign(1.0, a) * (-1.0) ** holes
+        sign = math.copysign(1.0, a) * (-1.0) ** nesting
         area, first, second = area + sign * a, first + sign * f, second + sign * s
     if not 1e-15 <= area < math.inf:
         return None
@@ -97,7 +100,7 @@ def _extruded(outlines: Sequence[Outline], height: float) -> Solid | None:
 
 
 def _polygon(outline: Outline) -> tuple[float, Floats, Floats]:
-    """Signed area and the integrals of position, and of position times position (Green's theorem)."""
+    """Return the signed area, and the integrals of position and of position times position (Green's theorem)."""
     p = np.asarray(outline, float)
     q = np.roll(p, -1, axis=0)
     cross = p[:, 0] * q[:, 1] - q[:, 0] * p[:, 1]

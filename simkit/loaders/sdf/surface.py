@@ -1,4 +1,4 @@
-"""`<surface>`: friction, bounce, contact stiffness and masks."""
+"""Reader of `<surface>`: friction, bounce, contact stiffness and masks."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from simkit.scene import Surface
 
 
 def read_surface(collision: Params) -> Surface:
-    """The contact properties of a collision; the format's defaults where it has no `<surface>`."""
+    """Return the contact properties of a collision; the format's defaults if it has no `<surface>`."""
     block = collision.child("surface")
     if block is None:
         return Surface()
@@ -47,35 +47,35 @@ def read_surface(collision: Params) -> Surface:
 
 
 def _direction_frame(ode: Params) -> str:
-    """The link that `<fdir1>` is given in, as Gazebo's own attribute says."""
+    """Return the link in whose frame `<fdir1>` is given, from Gazebo's own attribute."""
     found = ode.block("fdir1")
     return found.attribute("gz:expressed_in") or found.attribute("ignition:expressed_in")
 
 
 def _friction(block: Params, name: str, default: float) -> float:
-    """A coefficient; old files write a negative one where they mean the default."""
+    """Return a coefficient; old files use a negative number for the default."""
     return _non_negative(block, name, default, finite=False)
 
 
 def _non_negative(block: Params, name: str, default: float, *, finite: bool = True) -> float:
-    """A number; the default, with a warning, for a negative one."""
+    """Return a number; a negative one is replaced by the default, with a warning."""
     value = block.number(name, default, finite=finite)
     if value >= 0:
         return value
-    message = f"<{name}> is {value:g}, it cannot be negative; {default:g} is used"
+    message = f"<{name}> is {value:g} and cannot be negative; {default:g} is used"
     block.child_or_self(name).warning("SK-SDF-030", message)
     return default
 
 
 def _optional_number(block: Params | None, name: str) -> float | None:
-    """A number where the file gives one."""
+    """Return a number, or None if the file gives none."""
     if block is None or not block.has(name):
         return None
     return block.number(name, 0.0, finite=False)
 
 
 def _mask(contact: Params, name: str) -> int:
-    """A 16-bit mask, decimal or 0x..; all ones where not given."""
+    """Return a 16-bit mask, written as decimal or 0x..; all bits are set if the file gives none."""
     found = contact.child(name)
     if found is None:
         return 0xFFFF

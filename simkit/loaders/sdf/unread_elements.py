@@ -1,6 +1,6 @@
-"""What of a file has no effect: names that the format does not have, and those that mean nothing here.
+"""Report on elements without effect: names that the format does not have, and elements without effect in simkit.
 
-What is known, and what becomes of it, is the tables' (`simkit.loaders.sdf.element_table`) to say.
+The tables in `simkit.loaders.sdf.element_table` define the known names and their use.
 """
 
 from __future__ import annotations
@@ -13,52 +13,53 @@ from simkit.diagnostics import Diagnostics, Where, did_you_mean
 from simkit.loaders.sdf.element_table import Use, sdf_elements
 from simkit.params import Params
 
-# Programs that write SDF give every joint axes; that of a fixed or ball joint says nothing about it.
+# Programs that write SDF give axes to every joint; the axis of a fixed or ball joint has no effect.
 _LEFT_OVER = frozenset(("axis", "axis2"))
 _MAX_REPORTED = 500
 
 
 def report_unread(root: Params, place: str = "sdf") -> None:
-    """Says what in a tree has no effect: a warning for each unknown name, one note for Gazebo's own settings.
+    """Report the elements of a tree without effect: a warning for each unknown name, one note for Gazebo's settings.
 
     Args:
-        place: the table that describes the tree's root.
+        root: root of the tree.
+        place: table that describes the root.
     """
     report = _UnreadReport(root.diagnostics)
     report.visit(root, place, ())
     quiet = sorted(report.quiet.items(), key=lambda item: item[1].line or 0)
     if quiet:
         listed = ", ".join(f"<{name}> (line {where.line})" for name, where in quiet)
-        message = f"settings of Gazebo's without effect here: {listed}"
+        message = f"Gazebo's own settings, without effect in simkit: {listed}"
         root.diagnostics.note("SK-SDF-010", message, Where(quiet[0][1].file))
 
 
 @dataclass
 class _UnreadReport:
-    """One walk over a tree; `quiet` keeps the first place of each setting without effect."""
+    """Report on one tree; `quiet` holds the first place of each setting without effect."""
 
     diagnostics: Diagnostics
     quiet: dict[str, Where] = field(default_factory=dict)
-    said: int = 0
+    count: int = 0
 
-    def warn(self, code: str, where: Where, say: Callable[[], tuple[str, str]]) -> None:
-        """One warning, its text and hint; a file with more of them than anybody reads is told so once."""
-        self.said += 1
-        if self.said <= _MAX_REPORTED:
-            text, hint = say()
+    def warn(self, code: str, where: Where, make_message: Callable[[], tuple[str, str]]) -> None:
+        """Record one warning with text and hint; above the limit, one last warning replaces all others."""
+        self.count += 1
+        if self.count <= _MAX_REPORTED:
+            text, hint = make_message()
             self.diagnostics.warning(code, text, where, hint)
-        elif self.said == _MAX_REPORTED + 1:
-            text = f"more than {_MAX_REPORTED} names without effect; the rest of the file's are not listed"
+        elif self.count == _MAX_REPORTED + 1:
+            text = f"more than {_MAX_REPORTED} names without effect; the others are not listed"
             self.diagnostics.warning("SK-SDF-011", text, where)
 
     def visit(self, element: Params, place: str, above: tuple[str, ...]) -> None:
-        """Everything inside an element that a reader has read."""
+        """Check everything inside an element that a reader has read."""
         elements = sdf_elements()
         if not elements.is_open(place):
             if element.attributes:
                 self._attributes(element, place)
             if element.value and elements.elements(place) and not elements.has_text(place):
-                self.warn("SK-SDF-038", element.where, partial(_of_text, element, place))
+                self.warn("SK-SDF-038", element.where, partial(_text_message, element, place))
         read, inside = elements.read_elements(place), (*above, place)
         for child in element.children:
             known = read.get(child.name)
@@ -68,14 +69,14 @@ class _UnreadReport:
             elif ":" not in child.name:
                 self._child(child, element, place, above)
             elif child.name.endswith(":include"):
-                self.warn("SK-SDF-011", child.where, partial(_of_xinclude, child))
+                self.warn("SK-SDF-011", child.where, partial(_xinclude_message, child))
 
     def _child(self, child: Params, element: Params, place: str, above: tuple[str, ...]) -> None:
-        """An element that nobody has read."""
+        """Report an element that was not read."""
         row = sdf_elements().row(place, child.name)
         if row is None:
             if not sdf_elements().is_open(place):
-                self.warn("SK-SDF-011", child.where, partial(_of_unknown, child, element, place, above))
+                self.warn("SK-SDF-011", child.where, partial(_unknown_message, child, element, place, above))
         elif row.use is Use.IGNORED:
             self.quiet.setdefault(child.name, child.where)
         elif row.use is Use.NOT_SIMULATED:
@@ -83,63 +84,63 @@ class _UnreadReport:
         elif child.name in _LEFT_OVER:
             self.quiet.setdefault(child.name, child.where)
         else:
-            self.warn("SK-SDF-011", child.where, partial(_of_unused, child, element))
+            self.warn("SK-SDF-011", child.where, partial(_unused_message, child, element))
 
     def _attributes(self, element: Params, place: str) -> None:
         for name in element.attributes:
             if ":" not in name and name != "xmlns" and sdf_elements().row(place, f"@{name}") is None:
-                self.warn("SK-SDF-037", element.where, partial(_of_attribute, name, element, place))
+                self.warn("SK-SDF-037", element.where, partial(_attribute_message, name, element, place))
 
 
-def _of_unknown(child: Params, element: Params, place: str, above: tuple[str, ...]) -> tuple[str, str]:
-    return f"<{child.name}> is not known in <{element.name}> and not used", _hint(child, element, place, above)
+def _unknown_message(child: Params, element: Params, place: str, above: tuple[str, ...]) -> tuple[str, str]:
+    return f"<{element.name}> has no element <{child.name}>; it is ignored", _hint(child, element, place, above)
 
 
-def _of_unused(child: Params, element: Params) -> tuple[str, str]:
-    """An element that has a meaning, though not here."""
+def _unused_message(child: Params, element: Params) -> tuple[str, str]:
+    """Return text and hint for an element of the format that has no effect in this place."""
     first = next(c for c in element.children if c.name == child.name)
     if first is not child and first.was_read:
-        return f"<{element.name}> has another <{child.name}> (line {first.where.line}); this one is not used", ""
-    return f"<{child.name}> has no meaning in this <{element.name}> and is not used", ""
+        return f"<{element.name}> already has a <{child.name}> (line {first.where.line}); this one is ignored", ""
+    return f"<{child.name}> has no effect in this <{element.name}>", ""
 
 
-def _of_attribute(name: str, element: Params, place: str) -> tuple[str, str]:
+def _attribute_message(name: str, element: Params, place: str) -> tuple[str, str]:
     hint = did_you_mean(name, sdf_elements().attributes(place))
     if name in sdf_elements().elements(place):
-        hint = f"it is an element: <{name}>{element.attributes[name]}</{name}>"
-    return f"{name}= of <{element.name}> is not known and not used", hint
+        hint = f"write it as an element: <{name}>{element.attributes[name]}</{name}>"
+    return f"<{element.name}> has no attribute {name}=; it is ignored", hint
 
 
-def _of_text(element: Params, place: str) -> tuple[str, str]:
-    """Text between elements, where a file means a value and nobody reads one."""
+def _text_message(element: Params, place: str) -> tuple[str, str]:
+    """Return text and hint for text between elements, which is not read."""
     shown = element.value if len(element.value) <= 40 else element.value[:40] + "..."
     names = ", ".join(f"<{name}>" for name in sdf_elements().elements(place)[:6])
-    return f"the text {shown!r} in <{element.name}> is not used", f"it holds elements: {names}, ..."
+    return f"the text {shown!r} in <{element.name}> is ignored", f"put it into one of its elements: {names}, ..."
 
 
-def _of_xinclude(child: Params) -> tuple[str, str]:
-    return f"<{child.name}> is not read: another file comes in by <include>, as SDF has it", ""
+def _xinclude_message(child: Params) -> tuple[str, str]:
+    return f"<{child.name}> is not supported", "use SDF's own <include>"
 
 
 def _hint(child: Params, element: Params, place: str, above: Iterable[str]) -> str:
-    """Where an unknown element belongs, or which name was meant."""
+    """Suggest the place of an unknown element, or the closest name."""
     if child.name in sdf_elements().attributes(place):
-        return f"it is an attribute: <{element.name} {child.name}={child.value!r}>"
-    homes = [
-        h for h in sdf_elements().places_with(child.name) if (row := sdf_elements().row(h, child.name)) and row.use.read
+        return f"write it as an attribute: <{element.name} {child.name}={child.value!r}>"
+    places = [
+        p for p in sdf_elements().places_with(child.name) if (row := sdf_elements().row(p, child.name)) and row.use.read
     ]
-    inside = [home for home in homes if home.rpartition("/")[0] == place or home in _content(place)]
-    outside = [home for home in homes if home in above]
-    for home in (*inside, *reversed(outside)):
-        return f"move it inside <{_tag(home)}>"
+    inside = [p for p in places if p.rpartition("/")[0] == place or p in _content(place)]
+    outside = [p for p in places if p in above]
+    for parent in (*inside, *reversed(outside)):
+        return f"move it inside <{_tag(parent)}>"
     near = did_you_mean(child.name, sdf_elements().elements(place))
-    if near or not homes or len(homes) > 6:
+    if near or not places or len(places) > 6:
         return near
-    return "it belongs inside " + " or ".join(f"<{_tag(home)}>" for home in homes[:3])
+    return "move it inside " + " or ".join(f"<{_tag(parent)}>" for parent in places[:3])
 
 
 def _content(place: str) -> set[str]:
-    """The tables that describe an element's children."""
+    """Return the tables that describe an element's children."""
     rows = (sdf_elements().row(place, name) for name in sdf_elements().elements(place))
     return {row.like for row in rows if row is not None and row.like}
 

@@ -1,4 +1,4 @@
-"""Files of older SDF versions in the spelling of today: values as attributes, noise of all axes, flattened models."""
+"""Conversion of older SDF versions to the current spelling: values in attributes, IMU noise, flattened models."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _REFERENCES = {"pose": "relative_to", "xyz": "expressed_in"}
 
 
 def nest_flattened_models(root: Params, version: tuple[int, int]) -> Params:
-    """Makes the groups of every model nested, in place; newer files stay as they are."""
+    """Convert the name groups of every model to nested models, in place; newer files stay the same."""
     if version < FIRST_NESTED:
         for element in (root, *(c for c in root.children if c.name == "world")):
             for child in element.children:
@@ -45,7 +45,7 @@ def _unflatten(model: Params) -> None:
 
 
 def _use_model_frame(frame: Params, name: str, model: Params) -> None:
-    """The frame that stood for the model's own says where it is and which link it moves with."""
+    """Use the frame that replaced the group's own model frame: its pose and the link that it moves with."""
     attached = frame.attributes.get("attached_to", "").removeprefix(f"{name}::")
     if attached:
         model.attributes["canonical_link"] = attached
@@ -56,7 +56,7 @@ def _use_model_frame(frame: Params, name: str, model: Params) -> None:
 
 
 def _strip_group_name(element: Params, prefix: str) -> None:
-    """Takes the group's name off every reference into the group."""
+    """Remove the group's name from every reference into the group."""
     for key in ("attached_to", _REFERENCES.get(element.name, "")):
         if key and key in element.attributes:
             element.attributes[key] = element.attributes[key].removeprefix(prefix)
@@ -83,7 +83,7 @@ _NOISE_OF = {"rate": "angular_velocity", "accel": "linear_acceleration"}
 
 
 def modernise(root: Params, version: tuple[int, int]) -> Params:
-    """The tree in the spelling of SDF 1.6 and later; newer files come back as they are."""
+    """Return the tree in the spelling of SDF 1.6 and later; newer files stay the same."""
     if version < _ATTRIBUTE_VERSION:
         root = _element(root)
     if version < _NOISE_VERSION:
@@ -92,7 +92,7 @@ def modernise(root: Params, version: tuple[int, int]) -> Params:
 
 
 def _spread_imu_noise(element: Params) -> None:
-    """Gives each axis of every IMU within the noise that is written once for all; what an axis says itself stays."""
+    """Copy the shared noise of every IMU to each of its axes; axes with their own noise keep it."""
     for child in element.children:
         if child.name == "imu" and element.name == "sensor":
             _spread_noise(child)
@@ -102,10 +102,10 @@ def _spread_imu_noise(element: Params) -> None:
 
 def _spread_noise(imu: Params) -> None:
     noise = next((c for c in imu.children if c.name == "noise"), None)
-    said = {c.name for c in imu.children}
+    own_names = {c.name for c in imu.children}
     kind = next((c.value for c in noise.children if c.name == "type"), "gaussian") if noise is not None else ""
     for part in noise.children if noise is not None else ():
-        if part.name in _NOISE_OF and _NOISE_OF[part.name] not in said:
+        if part.name in _NOISE_OF and _NOISE_OF[part.name] not in own_names:
             values = [_make_element(c.name, c.value, c) for c in part.children]
             own = Params("noise", "", {"type": kind}, values, part.where, part.diagnostics)
             imu.children.append(_make_element(_NOISE_OF[part.name], "", part, [own]))

@@ -1,4 +1,4 @@
-"""`<world>`: its models, lights, frames, joints and surroundings."""
+"""Reader of `<world>`: its models, lights, frames, joints and surroundings."""
 
 from __future__ import annotations
 
@@ -46,13 +46,13 @@ _MAGNETIC = (5.5645e-6, 22.8758e-6, -42.3884e-6)
 
 
 def world_scope(workspace: Workspace) -> Scope:
-    """An empty world's names."""
+    """Return the scope of an empty world."""
     return Scope(Frame(WORLD, WORLD, WORLD), workspace.diagnostics)
 
 
 @dataclass
 class _WorldContent:
-    """What stands in a world, before any pose is resolved."""
+    """Content of a world, before any pose is resolved."""
 
     scope: Scope
     drafts: list[ModelDraft] = field(default_factory=list)
@@ -65,7 +65,7 @@ class _WorldContent:
 
 
 def read_world(element: Params, file: SdfFile, workspace: Workspace) -> SceneWorld:
-    """A world with everything in it resolved."""
+    """Return a world with all its content resolved."""
     diagnostics = workspace.diagnostics
     name = read_name(element, diagnostics, file.version) or "default"
     states = saved_states(element, name)
@@ -80,14 +80,14 @@ def read_world(element: Params, file: SdfFile, workspace: Workspace) -> SceneWor
         place_model(draft)
         report_unapplied(draft)
     physics, gravity = read_physics(element)
-    stood = saved_light_poses(states)
+    light_poses = saved_light_poses(states)
     return SceneWorld(
         name=name,
         gravity=gravity,
         magnetic_field=element.vector3("magnetic_field", _MAGNETIC),
         physics=physics,
         models=tuple(build_model(draft, False, workspace) for draft in content.drafts),
-        lights=tuple(_light(source, content.scope, stood.get(source.name)) for source in content.lights),
+        lights=tuple(_light(source, content.scope, light_poses.get(source.name)) for source in content.lights),
         frames=(*read_frames(content.frames), *(_proxy_frame(p, content.scope) for p in content.proxies)),
         joints=read_joints(content.joints, ""),
         plugins=read_plugins(content.plugins, ""),
@@ -105,7 +105,7 @@ def read_world(element: Params, file: SdfFile, workspace: Workspace) -> SceneWor
 def _entity_sources(
     element: Params, world: str, states: list[Params], file: SdfFile, workspace: Workspace
 ) -> list[EntitySource]:
-    """Models, lights and actors: those written, included and populated, and what a saved state adds and removes."""
+    """Return models, lights and actors: written, included, populated, and added or removed by a saved state."""
     diagnostics = workspace.diagnostics
     found: list[EntitySource] = []
     for kind in ("light", "actor"):
@@ -118,15 +118,15 @@ def _entity_sources(
         found += model_sources(block, file, workspace)
         named = named_elements(block.all("light"), "the saved state", diagnostics, file.version)
         found += [entity_source(e, name, file) for name, e in named]
-    gone = deleted_names(states)
+    deleted = deleted_names(states)
     for source in found:
-        if source.name in gone:
+        if source.name in deleted:
             source.element.mark_all_read()
-    return [source for source in found if source.name not in gone]
+    return [source for source in found if source.name not in deleted]
 
 
 def _add_entity(source: EntitySource, content: _WorldContent, workspace: Workspace) -> None:
-    """Enters one entity in the world's names."""
+    """Register one entity under its name in the world."""
     kind = source.element.name
     if kind != "model":
         others = content.lights if kind == "light" else content.actors
@@ -147,7 +147,7 @@ def _add_entity(source: EntitySource, content: _WorldContent, workspace: Workspa
 
 
 def _merge_into_world(source: EntitySource, content: _WorldContent, workspace: Workspace) -> None:
-    """Puts what an included model holds into the world, which has neither links nor grippers of its own."""
+    """Add the content of an included model to the world, which can have no links or grippers of its own."""
     for kind in ("link", "gripper"):
         for part in source.element.all(kind):
             part.mark_all_read()

@@ -1,4 +1,4 @@
-"""Settings of a world: physics, gravity, scene, atmosphere, spherical coordinates."""
+"""Readers of a world's settings: physics, gravity, scene, atmosphere, spherical coordinates."""
 
 from __future__ import annotations
 
@@ -12,27 +12,27 @@ from simkit.scene.geometry import Vec3
 from simkit.scene.world import CONTACT_LAWS, QUALITIES, Fog
 
 _GRAVITY: Vec3 = (0.0, 0.0, -9.8)
-_SHORTEST = 1e-9  # seconds of one step
-_LONGEST = 100.0  # seconds of one step; nobody means more
+_SHORTEST = 1e-9  # shortest step [s]
+_LONGEST = 100.0  # longest step [s]; larger numbers are mistakes
 
 
 def read_physics(world: Params) -> tuple[Physics, Vec3]:
-    """The default physics profile, and gravity [m/s²] from the world or (before 1.6) from that profile."""
+    """Return the default physics profile, and gravity [m/s²] from the world or (before 1.6) from that profile."""
     profiles = world.all("physics")
     chosen = next((p for p in profiles if p.attribute("default", "false").lower() in ("true", "1")), None)
     if chosen is None and profiles:
         chosen = profiles[0]
-    for other in profiles:
-        name = other.attribute("name")
-        if other is not chosen:
-            other.mark_all_read()
-            other.note("SK-SDF-023", f"physics profile {name!r} is not the default and not used")
+    for profile in profiles:
+        name = profile.attribute("name")
+        if profile is not chosen:
+            profile.mark_all_read()
+            profile.note("SK-SDF-023", f"physics profile {name!r} is not the default and is ignored")
     block = chosen or Params("physics", where=world.where, diagnostics=world.diagnostics)
     inside = block.vector3("gravity", _GRAVITY)
     gravity = world.vector3("gravity", inside)
     step = block.number("max_step_size", _old_step(block), maximum=_LONGEST)
     if step < _SHORTEST:
-        allowed = "it must be positive" if step <= 0 else f"time is counted in nanoseconds: at least {_SHORTEST:g} s"
+        allowed = "it must be positive" if step <= 0 else f"it must be at least {_SHORTEST:g} s (time has nanoseconds)"
         block.error("SK-PARAM-002", f"found <max_step_size>{step:g}</max_step_size>, {allowed}")
         step = 0.001
     law = block.choice("contact_law", CONTACT_LAWS, "simkit")
@@ -41,20 +41,20 @@ def read_physics(world: Params) -> tuple[Physics, Vec3]:
 
 
 def _contacts(block: Params) -> int:
-    """Contacts of one pair: 20, as Gazebo has it; -1 in a file means no limit of its own."""
+    """Return the maximum number of contacts of one pair: 20 as in Gazebo, also if the file has -1."""
     count = block.integer("max_contacts", 20, minimum=-1)
     return 20 if count < 0 else count
 
 
 def _real_time_factor(block: Params, step: float) -> float:
-    """The factor asked for; a file that has only the steps per second of wall time says it with those."""
+    """Return the real-time factor; a file with only an update rate gives it as update rate times step."""
     rate = block.number("real_time_update_rate", block.number("update_rate", 0.0, minimum=0.0), minimum=0.0)
-    said = block.has("real_time_update_rate") or block.has("update_rate")
-    return block.number("real_time_factor", rate * step if said else 1.0)
+    has_rate = block.has("real_time_update_rate") or block.has("update_rate")
+    return block.number("real_time_factor", rate * step if has_rate else 1.0)
 
 
 def _old_step(block: Params) -> float:
-    """The step as it was written before 1.4."""
+    """Return the step [s] in the spelling before 1.4."""
     for engine in block.children:
         for holder in (engine, *engine.children):
             if engine.name in ("ode", "bullet") and any(c.name == "dt" for c in holder.children):
@@ -62,15 +62,15 @@ def _old_step(block: Params) -> float:
     return 0.001
 
 
-# Semi-axes [m] of the surfaces that have a name: WGS84 (NIMA TR8350.2) and the Moon's mean sphere.
+# Semi-axes [m] of the named surfaces: WGS84 (NIMA TR8350.2) and the Moon's mean sphere.
 SURFACES = {"EARTH_WGS84": (6378137.0, 6356752.314245), "MOON_SCS": (1737400.0, 1737400.0), "CUSTOM_SURFACE": None}
 
 _FOGS = ("linear", "exp", "exp2")
-_FOG_HINT = "Gazebo Classic draws none for the format's own constant and quadratic either"
+_FOG_HINT = "the format's own types constant and quadratic have no effect in Gazebo Classic either"
 
 
 def read_surroundings(world: Params) -> Surroundings:
-    """Colours and shadows of the `<scene>`."""
+    """Return colours, shadows, sky and fog of the `<scene>`."""
     scene = world.block("scene")
     return Surroundings(
         ambient=read_colour(scene, "ambient", (0.4, 0.4, 0.4, 1.0)),
@@ -83,7 +83,7 @@ def read_surroundings(world: Params) -> Surroundings:
 
 
 def _fog(scene: Params) -> Fog | None:
-    """`<fog>` as Gazebo Classic draws it, which knows three types by other names than the format lists."""
+    """Return `<fog>` as Gazebo Classic draws it: its three types have other names than those in the format."""
     block = scene.child("fog")
     if block is None:
         return None
@@ -98,23 +98,23 @@ def _fog(scene: Params) -> Fog | None:
     if kind == "none":
         return None
     if kind not in _FOGS:
-        message = f"found <type>{kind}</type> of a fog, allowed is one of none, {', '.join(_FOGS)}; there is no fog"
+        message = f"found <type>{kind}</type> of a fog, allowed is one of none, {', '.join(_FOGS)}; no fog is drawn"
         block.child_or_self("type").warning("SK-RENDER-010", message, did_you_mean(kind, _FOGS) or _FOG_HINT)
         return None
     return fog
 
 
 def read_quality(world: Params) -> str:
-    """`<quality>` of the scene, an element of our own: fast, gazebo or high."""
+    """Return `<quality>` of the scene, simkit's own element: fast, gazebo or high."""
     return world.block("scene").choice("quality", QUALITIES, "fast")
 
 
 def read_atmosphere(world: Params) -> Atmosphere:
-    """The air at the origin; only the adiabatic kind is known to the format."""
+    """Return the air at the origin; the format has only the adiabatic kind."""
     block = world.block("atmosphere")
     kind = block.attribute("type", "adiabatic") or "adiabatic"
     if kind != "adiabatic":
-        message = f"<atmosphere type={kind!r}>: the one type is adiabatic"
+        message = f"<atmosphere type={kind!r}>: unknown type; the only type is adiabatic"
         block.error("SK-SDF-036", message, did_you_mean(kind, ("adiabatic",)))
     return Atmosphere(
         temperature=block.number("temperature", 288.15, minimum=0.0),
@@ -125,13 +125,13 @@ def read_atmosphere(world: Params) -> Atmosphere:
 
 
 def read_spherical_coordinates(world: Params) -> SphericalCoordinates | None:
-    """Where on a planet the origin lies; angles are degrees in the file."""
+    """Return the position of the origin on a planet; angles are degrees in the file."""
     block = world.child("spherical_coordinates")
     if block is None:
         return None
     orientation = block.text("world_frame_orientation", "ENU")
     if orientation != "ENU":
-        message = f"<world_frame_orientation> is {orientation!r}; the one that exists is ENU, which is used"
+        message = f"<world_frame_orientation> {orientation!r} is not supported; ENU is used"
         block.child_or_self("world_frame_orientation").warning("SK-SDF-012", message)
     equatorial, polar = _surface(block)
     return SphericalCoordinates(
@@ -147,7 +147,7 @@ def read_spherical_coordinates(world: Params) -> SphericalCoordinates | None:
 
 
 def _surface(block: Params) -> tuple[float, float]:
-    """Semi-axes [m] of the surface; a custom one says its own."""
+    """Return the semi-axes [m] of the surface; a custom surface gives its own."""
     name = block.text("surface_model", "EARTH_WGS84")
     custom = name == "CUSTOM_SURFACE"
     axes = tuple(block.number(f"surface_axis_{a}", 0.0, required=custom) for a in ("equatorial", "polar"))
@@ -158,6 +158,6 @@ def _surface(block: Params) -> tuple[float, float]:
     if not custom:
         return SURFACES.get(name) or SURFACES["EARTH_WGS84"] or (0.0, 0.0)
     if min(axes) <= 0:
-        message = f"CUSTOM_SURFACE has the semi-axes {axes[0]:g} and {axes[1]:g} m, both must be positive"
+        message = f"CUSTOM_SURFACE has the semi-axes {axes[0]:g} and {axes[1]:g} m; both must be positive"
         place.error("SK-SDF-036", message)
     return axes[0], axes[1]

@@ -151,4 +151,7 @@ def test_a_missing_mesh_is_a_warning_that_lists_where_it_was_looked_for(load, wr
     _, found = load(path)
     (missing,) = [d for d in found if d.severity == "warning"]
     assert (missing.code, missing.file, missing.line) == ("SK-URI-001", str(path), 2)
-    assert str(path.parent / "meshes" / "x.dae") in missing.message and "neither drawn nor touched" in missing.message
+    assert (
+        str(path.parent / "meshes" / "x.dae") in missing.message
+        and "the shape is left out of drawing and contacts" in missing.message
+    )

@@ -207,4 +207,4 @@ def test_a_slip_below_zero_is_reported_and_none(load):
     assert (surface.slip1, surface.slip2) == (0.0, 0.2)
     told = [d for d in found if d.code == "SK-SDF-030"]
     assert [(d.severity, d.line) for d in told] == [("warning", 2)]
-    assert "<slip1> is -0.1, it cannot be negative; 0 is used" in told[0].message
+    assert "<slip1> is -0.1 and cannot be negative; 0 is used" in told[0].message

@@ -142,10 +142,13 @@ def test_an_empty_text_is_not_a_value(load, name):
         ("<link name='l'/><physics/>", "move it inside <world>"),
         ("<link name='l'><joint name='j' type='fixed'/></link>", "move it inside <model>"),
         ("<link name='l'/><jiont name='j'/>", "did you mean 'joint'?"),
-        ("<link name='l'><inertial mass='3'/></link>", "it is an element: <mass>3</mass>"),
-        ("<link name='l'><inertial><auto>true</auto></inertial></link>", "it is an attribute: <inertial auto='true'>"),
+        ("<link name='l'><inertial mass='3'/></link>", "write it as an element: <mass>3</mass>"),
+        (
+            "<link name='l'><inertial><auto>true</auto></inertial></link>",
+            "write it as an attribute: <inertial auto='true'>",
+        ),
         ("<link name='l' nmae='x'/>", "did you mean 'name'?"),
-        ("<link name='l'>0 0 1 0 0 0</link>", "it holds elements: <pose>"),
+        ("<link name='l'>0 0 1 0 0 0</link>", "put it into one of its elements: <pose>"),
     ],
 )
 def test_the_hint_says_where_an_element_belongs(load, text, hint):
