@@ -1,5 +1,5 @@
-"""URDF with Gazebo's extensions: one file for each concept of the format.
+"""Loader of URDF with Gazebo's extensions, with one module for each concept of the format.
 
-A `<robot>` enters as `Params`; one model of the scene leaves. What stands in `<gazebo>` is read by the readers of
-SDF.
+The input is a `<robot>` element as `Params`; the output is one model of the scene. The readers of SDF read the content
+of `<gazebo>`.
 """

@@ -1,4 +1,4 @@
-"""Attributes of URDF elements: numbers, vectors, texts and poses, each bad one an error with its place."""
+"""Readers of attributes of URDF elements: numbers, vectors, texts and poses; an invalid value is an error."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from simkit.params import LARGEST, Params
 from simkit.pose import IDENTITY, Pose
 from simkit.scene.geometry import Vec3, vec3
 
-FARTHEST = 1e15  # metres; beyond it sums of poses would leave the numbers
-_XACRO_HINT = "the file looks like xacro that was not expanded: load the .xacro file itself"
+FARTHEST = 1e15  # [m]; sums of larger poses overflow
+_XACRO_HINT = "this looks like unexpanded xacro: load the .xacro file itself"
 
 
 def report_bad_value(element: Params, attribute: str, allowed: str) -> None:
-    """Records a value that cannot be used."""
+    """Record an error for an invalid value."""
     text = element.attributes.get(attribute, "")
     shown = text if len(text) <= 60 else text[:57] + "..."
     hint = _XACRO_HINT if "${" in text or "$(" in text else ""
@@ -23,19 +23,19 @@ def report_bad_value(element: Params, attribute: str, allowed: str) -> None:
 
 
 def report_missing(element: Params, attribute: str, allowed: str, owner: str = "") -> None:
-    """Records an attribute that is not there."""
+    """Record an error for a missing attribute."""
     near = did_you_mean(attribute, element.attributes)
-    what = f"{owner}: " if owner else ""
-    element.error("SK-URDF-001", f"{what}<{element.name}> needs {attribute}= ({allowed})", near)
+    prefix = f"{owner}: " if owner else ""
+    element.error("SK-URDF-001", f"{prefix}<{element.name}> needs {attribute}= ({allowed})", near)
 
 
 def report_substitute(element: Params, found: str, instead: str, hint: str = "") -> None:
-    """Records what urdfdom leaves out with a message of its own, and what stands for it here."""
+    """Record a warning for content that urdfdom rejects with a message, and the value that simkit uses instead."""
     element.warning("SK-URDF-031", f"{found}; {instead}", hint)
 
 
 def skip_element(element: Params) -> None:
-    """Leaves out an element whose fault is said: of what is in it nothing more is."""
+    """Skip an element whose error has been reported; nothing inside it is reported."""
     element.mark_all_read()
     stack = [element]
     while stack:
@@ -46,7 +46,7 @@ def skip_element(element: Params) -> None:
 
 
 def text_attribute(element: Params, attribute: str) -> str:
-    """An attribute without surrounding white space; empty where absent."""
+    """Return an attribute without surrounding white space; empty if missing."""
     return element.attribute(attribute).strip()
 
 
@@ -58,7 +58,10 @@ def number_attribute(
     finite: bool = True,
     owner: str = "",
 ) -> float:
-    """A number; without a default it must be there. Too small, NaN, or infinite where `finite`, is an error."""
+    """Return a number; without a default the attribute is required.
+
+    NaN, a number below the minimum, or with `finite` an infinite number is an error.
+    """
     allowed = "a number" + ("" if minimum is None else f" of at least {minimum:g}")
     found = text_attribute(element, attribute)
     if attribute not in element.attributes:
@@ -73,7 +76,7 @@ def number_attribute(
 
 
 def parse_number(found: str) -> float | None:
-    """The number that a text is; None where it is none or NaN."""
+    """Parse a number; return None for any other text and for NaN."""
     if "_" in found or not found.isascii():
         return None
     try:
@@ -84,7 +87,7 @@ def parse_number(found: str) -> float | None:
 
 
 def numbers_attribute(element: Params, attribute: str, count: int, allowed: str = "") -> tuple[float, ...] | None:
-    """`count` finite numbers separated by white space; None, with an error recorded where it is there but bad."""
+    """Return `count` finite numbers separated by white space; None if missing or, with an error, if invalid."""
     if attribute not in element.attributes:
         element.attribute(attribute)
         return None
@@ -96,29 +99,29 @@ def numbers_attribute(element: Params, attribute: str, count: int, allowed: str 
 
 
 def vector3_attribute(element: Params, attribute: str, default: Vec3 = (0.0, 0.0, 0.0)) -> Vec3:
-    """Three finite numbers."""
+    """Return three finite numbers."""
     found = numbers_attribute(element, attribute, 3)
     return default if found is None else vec3(found)
 
 
 def leading_numbers(element: Params, attribute: str, count: int, allowed: str = "") -> tuple[float, ...] | None:
-    """As `numbers_attribute`; of more than `count` numbers the first are used, with a warning."""
+    """Return the first `count` numbers, with a warning if there are more; otherwise like `numbers_attribute`."""
     parts = text_attribute(element, attribute).split()
     if len(parts) > count and all(parse_number(part) is not None for part in parts):
-        said = f'<{element.name} {attribute}="{" ".join(parts[:8])}"> has {len(parts)} numbers'
-        report_substitute(element, said, f"the first {count} are used", f"allowed is {allowed or f'{count} numbers'}")
+        found = f'<{element.name} {attribute}="{" ".join(parts[:8])}"> has {len(parts)} numbers'
+        report_substitute(element, found, f"the first {count} are used", f"allowed is {allowed or f'{count} numbers'}")
         element.attributes[attribute] = " ".join(parts[:count])
     return numbers_attribute(element, attribute, count, allowed)
 
 
 def read_origin(owner: Params) -> Pose:
-    """The `<origin>` of an element: `xyz` [m] and `rpy` [rad], or `quat_xyzw` (URDF 1.2)."""
+    """Return the `<origin>` of an element: `xyz` [m] and `rpy` [rad], or `quat_xyzw` (URDF 1.2)."""
     element = owner.child("origin")
     if element is None:
         return IDENTITY
     xyz = vector3_attribute(element, "xyz")
     if any(abs(v) > FARTHEST for v in xyz):
-        report_bad_value(element, "xyz", "numbers that are a place in a world")
+        report_bad_value(element, "xyz", f"numbers of at most {FARTHEST:g} m")
         xyz = (0.0, 0.0, 0.0)
     if "quat_xyzw" in element.attributes:
         quat = numbers_attribute(element, "quat_xyzw", 4)
@@ -126,17 +129,17 @@ def read_origin(owner: Params) -> Pose:
         if quat is not None and 1e-6 < math.hypot(*quat) < FARTHEST:
             return Pose(xyz, (quat[3], quat[0], quat[1], quat[2]))
         if quat is not None:
-            report_bad_value(element, "quat_xyzw", "a quaternion, which has a length of 1")
+            report_bad_value(element, "quat_xyzw", "a quaternion of length 1")
     return Pose.from_rpy(*xyz, *vector3_attribute(element, "rpy"))
 
 
 def extension_text(element: Params) -> str:
-    """The value of a Gazebo extension: its text, or its `value=`."""
+    """Return the value of a Gazebo extension: its text, or its `value=`."""
     return element.value or text_attribute(element, "value")
 
 
 def extension_boolean(element: Params) -> bool:
-    """true, yes, 1 or false, no, 0; anything else is an error."""
+    """Return the value of true, yes, 1 or false, no, 0; any other text is an error."""
     found = extension_text(element).lower()
     if found not in ("true", "yes", "1", "false", "no", "0"):
         element.error("SK-URDF-013", f"<{element.name}> is {extension_text(element)!r}, allowed is true or false")
@@ -144,12 +147,12 @@ def extension_boolean(element: Params) -> bool:
 
 
 def extension_numbers(element: Params, count: int) -> Sequence[float] | None:
-    """The numbers of a Gazebo extension; None, with an error recorded, where they are not `count` finite ones."""
+    """Return the numbers of a Gazebo extension; None, with an error recorded, if not `count` finite numbers."""
     parts = [parse_number(part) for part in extension_text(element).split()]
     kept = [p for p in parts if p is not None and math.isfinite(p)]
     if len(kept) == len(parts) == count:
         return kept
-    what = "a number" if count == 1 else f"{count} numbers"
+    allowed = "a number" if count == 1 else f"{count} numbers"
     hint = _XACRO_HINT if "${" in extension_text(element) else ""
-    element.error("SK-URDF-013", f"<{element.name}> is {extension_text(element)!r}, allowed is {what}", hint)
+    element.error("SK-URDF-013", f"<{element.name}> is {extension_text(element)!r}, allowed is {allowed}", hint)
     return None

@@ -1,4 +1,4 @@
-"""`<gazebo>`: what the robot's file says to Gazebo about links, joints and the whole robot."""
+"""`<gazebo>`: Gazebo's settings of links, joints and the whole robot."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from simkit.scene.geometry import Vec3, vec3
 
 
 class GazeboExtensions:
-    """All `<gazebo>` blocks of a robot; those with one reference count as one, in document order.
+    """All `<gazebo>` blocks of a robot; blocks with the same reference are joined in document order.
 
     Attributes:
-        merged: each reference's blocks as one.
-        robot: the blocks without a reference, as one.
-        kinds: what each reference names, "link" or "joint", once that is known.
+        merged: joined blocks by reference.
+        robot: joined blocks without a reference.
+        kinds: kind of each referenced element, "link" or "joint", once this is known.
     """
 
     def __init__(self, robot: Params, diagnostics: Diagnostics) -> None:
@@ -29,18 +29,18 @@ class GazeboExtensions:
         self.kinds: dict[str, str] = {}
 
     def of(self, name: str) -> Params:
-        """What is said about a link or joint; an empty block where nothing is."""
+        """Return the block of a link or joint; an empty block if there is none."""
         return self.merged.get(name) or Params("gazebo", diagnostics=self.diagnostics)
 
     def report_unknown(self, links: Iterable[str], joints: Iterable[str]) -> None:
-        """Warns about each reference to nothing; Gazebo passes over it in silence."""
+        """Warn about each reference to an unknown name; Gazebo ignores them without a message."""
         self.kinds = {**dict.fromkeys(joints, "joint"), **dict.fromkeys(links, "link")}
         names = list(self.kinds)
         for name, blocks in self._blocks.items():
             if name and name not in names:
                 for block in blocks:
                     block.mark_all_read()
-                message = f"<gazebo reference={name!r}>: there is no link or joint of that name; it has no effect"
+                message = f"<gazebo reference={name!r}>: no link or joint has this name; it has no effect"
                 blocks[0].warning("SK-URDF-021", message, did_you_mean(name, names))
 
 
@@ -51,31 +51,31 @@ def _merge_blocks(blocks: list[Params]) -> Params:
 
 
 def last_child(block: Params, *names: str) -> Params | None:
-    """The last child of one of these names: of several blocks the later has the last word."""
+    """Return the last child with one of these names, because a later block overrides an earlier one."""
     found = [child for name in names for child in block.all(name)]
     return max(found, key=lambda c: c.where.line or 0) if found else None
 
 
 def read_flag(block: Params, *names: str) -> bool | None:
-    """A true or false; None where nothing is said."""
+    """Return a boolean, or None if the file gives none."""
     found = last_child(block, *names)
     return None if found is None else extension_boolean(found)
 
 
 def read_number(block: Params, *names: str, minimum: float | None = None) -> float | None:
-    """A number; None where nothing (or, with an error recorded, nothing usable) is said."""
+    """Return a number; None if the file gives none or, with an error recorded, an invalid one."""
     found = last_child(block, *names)
     values = None if found is None else extension_numbers(found, 1)
     if found is None or values is None:
         return None
     if minimum is not None and values[0] < minimum:
-        found.error("SK-URDF-013", f"<{found.name}> is {values[0]:g}, it must be at least {minimum:g}")
+        found.error("SK-URDF-013", f"<{found.name}> is {values[0]:g}; it must be at least {minimum:g}")
         return None
     return values[0]
 
 
 def read_vector(block: Params, name: str) -> Vec3 | None:
-    """Three numbers; None where nothing usable is said."""
+    """Return three numbers; None if the file gives none or, with an error recorded, invalid ones."""
     found = last_child(block, name)
     values = None if found is None else extension_numbers(found, 3)
     return None if values is None else vec3(values)

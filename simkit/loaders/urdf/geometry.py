@@ -1,4 +1,4 @@
-"""`<geometry>`: box, cylinder, sphere, capsule, mesh, and PyBullet's plane."""
+"""Reader of `<geometry>`: box, cylinder, sphere, capsule, mesh, and PyBullet's plane."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ from simkit.params import Params
 from simkit.scene import Box, Capsule, Cylinder, Geometry, Mesh, Plane, Sphere
 from simkit.scene.geometry import Vec3
 
-THINNEST = 1e-4
+THINNEST = 1e-4  # [m], replaces a size of 0
 
 
 def read_geometry(owner: Params, draft: RobotDraft, what: str) -> Geometry | None:
-    """The shape of a collision or visual; None, with an error recorded, where there is no usable one."""
+    """Return the shape of a collision or visual; None, with an error recorded, if there is no usable shape."""
     block = owner.child("geometry")
     if block is None:
         near = did_you_mean("geometry", [c.name for c in owner.children])
@@ -43,10 +43,10 @@ def read_geometry(owner: Params, draft: RobotDraft, what: str) -> Geometry | Non
             return _mesh(shape, draft, what)
     known = ", ".join(f"<{name}>" for name in _SHAPES)
     if not shapes:
-        block.error("SK-URDF-009", f"{what} has an empty <geometry>, known are {known}")
+        block.error("SK-URDF-009", f"{what} has an empty <geometry>; known shapes are {known}")
         return None
     hint = did_you_mean(shapes[0].name, _SHAPES)
-    message = f"{what} has a <{shapes[0].name}>, known are {known}"
+    message = f"{what} has the unknown shape <{shapes[0].name}>; known are {known}"
     if hint:
         shapes[0].error("SK-URDF-009", message, hint)
     else:
@@ -60,17 +60,17 @@ def _positive(element: Params, attribute: str, what: str) -> float:
 
 
 def _sizes(element: Params, attribute: str, what: str, sizes: tuple[float, ...]) -> tuple[float, ...]:
-    """Sizes [m] as they can be simulated: nothing negative, and what is flat gets a tenth of a millimetre."""
+    """Return sizes [m] that can be simulated: a negative size is an error, and 0 becomes 0.1 mm."""
     if attribute not in element.attributes or all(0 < v <= FARTHEST for v in sizes):
         return tuple(v or 1.0 for v in sizes)
     shown = f"{what}: <{element.name}> has {attribute} {' '.join(f'{v:g}' for v in sizes)}"
     if any(v < 0 for v in sizes):
-        element.error("SK-URDF-009", f"{shown}, it must be positive")
+        element.error("SK-URDF-009", f"{shown}; it must be positive")
         return tuple(abs(v) or THINNEST for v in sizes)
     if any(v > FARTHEST for v in sizes):
-        element.error("SK-URDF-009", f"{shown}, it must be at most {FARTHEST:g}")
+        element.error("SK-URDF-009", f"{shown}; it must be at most {FARTHEST:g}")
         return tuple(1.0 for _ in sizes)
-    message = f"{shown}; what has no size is made {THINNEST * 1000:g} mm"
+    message = f"{shown}; {THINNEST * 1000:g} mm is used instead of 0"
     element.diagnostics.warning("SK-URDF-028", message, element.where)
     return tuple(v or THINNEST for v in sizes)
 
@@ -99,7 +99,7 @@ def _mesh(element: Params, draft: RobotDraft, what: str) -> Geometry | None:
 
 
 def _scale(element: Params) -> Vec3:
-    """Three factors; one alone stands for all three."""
+    """Return three scale factors; one number alone is used for all three."""
     written = text_attribute(element, "scale").split()
     if len(written) == 1 and parse_number(written[0]) is not None:
         report_substitute(element, f'<mesh scale="{written[0]}"> has one number', "it is used for x, y and z")
@@ -109,8 +109,8 @@ def _scale(element: Params) -> Vec3:
 
 
 def _plane(element: Params, what: str) -> Geometry:
-    """PyBullet's: an endless plane through the origin of its frame."""
-    report_substitute(element, f"{what}: <plane> is PyBullet's word", "it is an endless plane, as there")
+    """Return PyBullet's plane: infinite, through the origin of its frame."""
+    report_substitute(element, f"{what}: <plane> is PyBullet's element", "it is read as an infinite plane")
     return Plane(vector3_attribute(element, "normal", (0.0, 0.0, 1.0)))
 
 

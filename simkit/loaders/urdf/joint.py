@@ -1,4 +1,4 @@
-"""`<joint>`: axes, limits, dynamics, mimic, and what `<gazebo>` adds to them."""
+"""Reader of `<joint>`: axes, limits, dynamics, mimic, and the joint's `<gazebo>` extensions."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ from simkit.scene.geometry import Vec3, vec3
 
 _NO_LIMIT = 1e15
 _NO_MIMIC = ("fixed", "floating", "planar")
-_FIXED_DEFAULTS = ("preserveFixedJoint", "disableFixedJointLumping")  # every link stays a link here
+_FIXED_DEFAULTS = ("preserveFixedJoint", "disableFixedJointLumping")  # no effect: simkit never merges links
 
 
 def read_joint(draft: RobotDraft, joint: JointDraft) -> SceneJoint:
-    """A joint whose ends have their places."""
+    """Return a joint whose links have poses."""
     element, name = joint.element, joint.name
     extension = draft.extensions.of(name)
     pose = draft.links_world[joint.child]
-    for said in _FIXED_DEFAULTS:
-        extension.all(said)
+    for setting in _FIXED_DEFAULTS:
+        extension.all(setting)
     own = draft.own(name)
     return SceneJoint(
         name=name,
@@ -54,7 +54,7 @@ def read_joint(draft: RobotDraft, joint: JointDraft) -> SceneJoint:
 
 
 def _axes(draft: RobotDraft, joint: JointDraft, pose: Pose, extension: Params) -> tuple[Axis, ...]:
-    """One axis; for a planar joint x and y of its plane and the normal; none for fixed and floating."""
+    """Return one axis; for a planar joint x and y of its plane and the normal; none for fixed and floating joints."""
     element = joint.element
     mimic = _mimic(draft, joint)
     if joint.type in ("fixed", "floating"):
@@ -92,7 +92,7 @@ def _axes(draft: RobotDraft, joint: JointDraft, pose: Pose, extension: Params) -
 
 
 def _direction(joint: JointDraft) -> Vec3:
-    """The unit axis in the joint frame; x where none is given, as URDF has it."""
+    """Return the unit axis in the joint frame; without `<axis>` it is x, as URDF defines."""
     element = joint.element.child("axis")
     if element is None:
         return (1.0, 0.0, 0.0)
@@ -107,7 +107,7 @@ def _direction(joint: JointDraft) -> Vec3:
 
 
 def _plane_axes(normal: Vec3) -> tuple[Vec3, Vec3]:
-    """Two unit vectors that with the normal make a right-handed frame: x and y for a normal along z."""
+    """Return two unit vectors that form a right-handed frame with the normal: x and y for a normal along z."""
     main = max(range(3), key=lambda i: abs(normal[i]))
     seed = [0.0, 0.0, 0.0]
     seed[(main + 1) % 3] = 1.0
@@ -123,14 +123,14 @@ def _plane_axes(normal: Vec3) -> tuple[Vec3, Vec3]:
 
 
 def _limits(joint: JointDraft) -> tuple[float, float, float, float]:
-    """Lower, upper, effort, velocity; infinite where there is none."""
+    """Return lower, upper, effort and velocity limits; a missing limit is infinite."""
     element, name = joint.element, joint.name
     limit = element.child("limit")
     bounded = joint.type in ("revolute", "prismatic")
     if limit is None:
         if bounded:
-            hint = "make it continuous" if joint.type == "revolute" else "give it <limit lower= upper= ...>"
-            message = f"{joint.type} joint {name!r} has no <limit>, which URDF requires; it is read as unlimited"
+            hint = 'use type="continuous"' if joint.type == "revolute" else "add <limit lower= upper= ...>"
+            message = f"{joint.type} joint {name!r} has no <limit>, which URDF requires; the joint is unlimited"
             element.warning("SK-URDF-020", message, hint)
         return (-math.inf, math.inf, math.inf, math.inf)
     effort, velocity = _unsigned_limit(joint, limit, "effort"), _unsigned_limit(joint, limit, "velocity")
@@ -138,10 +138,10 @@ def _limits(joint: JointDraft) -> tuple[float, float, float, float]:
     if not bounded:
         return (-math.inf, math.inf, effort, velocity)
     if "lower" not in limit.attributes and "upper" not in limit.attributes:
-        message = f"{joint.type} joint {name!r}: <limit> has neither lower nor upper; both are 0, it cannot move"
+        message = f"{joint.type} joint {name!r}: <limit> has no lower= and no upper=; both are 0, so it cannot move"
         limit.warning("SK-URDF-020", message)
     if lower > upper:
-        message = f"joint {name!r} has lower {lower:g} above upper {upper:g}; it is read as unlimited"
+        message = f"joint {name!r} has a lower limit {lower:g} above its upper limit {upper:g}; the joint is unlimited"
         limit.warning("SK-URDF-019", message)
         return (-math.inf, math.inf, effort, velocity)
     return (lower, upper, effort, velocity)
@@ -153,16 +153,16 @@ def _position_limit(limit: Params, attribute: str) -> float:
 
 
 def _unsigned_limit(joint: JointDraft, limit: Params, attribute: str) -> float:
-    """An effort or velocity limit; negative or none means unlimited, and so does a velocity of 0."""
+    """Return an effort or velocity limit; a missing or negative limit, or a velocity of 0, means unlimited."""
     if attribute not in limit.attributes:
         limit.attribute(attribute)
         if joint.type in ("revolute", "prismatic"):
-            message = f"joint {joint.name!r}: <limit> has no {attribute}, which URDF requires; it is read as unlimited"
+            message = f"joint {joint.name!r}: <limit> has no {attribute}=, which URDF requires; it is unlimited"
             limit.warning("SK-URDF-020", message)
         return math.inf
     value = number_attribute(limit, attribute, -1.0, finite=False)
     if value == 0 and attribute == "velocity":
-        message = f"joint {joint.name!r} has a velocity limit of 0, under which it could never move; read as unlimited"
+        message = f"joint {joint.name!r} has a velocity limit of 0 and could never move; its velocity is unlimited"
         limit.warning("SK-URDF-019", message)
         return math.inf
     return math.inf if value < 0 or value >= _NO_LIMIT else value
@@ -172,21 +172,21 @@ def _unsigned_limit(joint: JointDraft, limit: Params, attribute: str) -> float:
 
 
 def _mimic(draft: RobotDraft, joint: JointDraft) -> Mimic | None:
-    """position = multiplier · leader + offset."""
+    """Return the coupling position = multiplier · leader + offset; None if there is no valid `<mimic>`."""
     element = joint.element.child("mimic")
     if element is None:
         return None
     leader = text_attribute(element, "joint")
     multiplier, offset = number_attribute(element, "multiplier", 1.0), number_attribute(element, "offset", 0.0)
-    message, said = "", element.error
+    message, report = "", element.error
     if not leader:
         report_missing(element, "joint", "the name of a joint", f"joint {joint.name!r}")
         return None
     if leader not in draft.joints:
         message = f"joint {joint.name!r} mimics {leader!r}, which does not exist; it moves freely"
-        said = element.warning
+        report = element.warning
     elif draft.joints[leader].type in _NO_MIMIC:
-        message = f"joint {joint.name!r} mimics {leader!r}, which is {draft.joints[leader].type}"
+        message = f"joint {joint.name!r} mimics {leader!r}, which is a {draft.joints[leader].type} joint"
     elif joint.type in _NO_MIMIC:
         element.warning("SK-URDF-015", f"{joint.type} joint {joint.name!r}: <mimic> has no effect")
         return None
@@ -194,7 +194,7 @@ def _mimic(draft: RobotDraft, joint: JointDraft) -> Mimic | None:
         message = f"joint {joint.name!r} mimics itself"
     if message:
         moving = [n for n, j in draft.joints.items() if j.type not in _NO_MIMIC]
-        said("SK-URDF-015", message, did_you_mean(leader, moving))
+        report("SK-URDF-015", message, did_you_mean(leader, moving))
         return None
     return Mimic(draft.own(leader), 0, multiplier, offset)
 

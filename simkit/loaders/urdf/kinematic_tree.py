@@ -1,4 +1,4 @@
-"""Links and joints of a robot: their names, that they make one tree, and where each link stands."""
+"""Links and joints of a robot: their names, the check that they form one tree, and the pose of each link."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ TYPES = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
 
 
 def declare_tree(draft: RobotDraft) -> None:
-    """Enters every link and joint by name and checks that they make one tree; fills `links`, `joints` and `root`."""
+    """Register every link and joint, check that they form one tree, and fill `links`, `joints` and `root`."""
     draft.links = _elements_by_name(draft, "link")
     if not draft.links:
         near = ", ".join(f"<{name}>" for name in dict.fromkeys(c.name for c in draft.element.children))
-        hint = f"it has only {near}" if near else "give it a <link>"
+        hint = f"it has only {near}" if near else "add a <link>"
         draft.diagnostics.error("SK-URDF-008", f"robot {draft.name!r} has no link", draft.element.where, hint)
     for name, element in _elements_by_name(draft, "joint").items():
         joint = _joint(draft, name, element)
@@ -27,7 +27,7 @@ def declare_tree(draft: RobotDraft) -> None:
 
 
 def place_links(draft: RobotDraft) -> None:
-    """Where each link stands, joints at zero; enters links and joints in the scope of the extensions."""
+    """Compute the pose of each link with all joints at zero, and register links and joints in the draft's scope."""
     below: dict[str, list[JointDraft]] = {}
     for joint in draft.joints.values():
         below.setdefault(joint.parent, []).append(joint)
@@ -53,7 +53,7 @@ def place_links(draft: RobotDraft) -> None:
 
 
 def _elements_by_name(draft: RobotDraft, kind: str) -> dict[str, Params]:
-    """Elements by name; one without a name, with a bad one, or with that of another is an error."""
+    """Return elements by name; a missing, invalid or repeated name is an error."""
     found: dict[str, Params] = {}
     for element in draft.element.all(kind):
         name = text_attribute(element, "name")
@@ -61,24 +61,24 @@ def _elements_by_name(draft: RobotDraft, kind: str) -> dict[str, Params]:
             report_missing(element, "name", "a text")
             element.mark_all_read()
         elif name in found:
-            message = f"two {kind}s are named {name!r}: the other is at line {found[name].where.line}"
-            draft.diagnostics.error("SK-URDF-002", message, element.where, "give one of them another name")
+            message = f"two {kind}s are named {name!r} (the other at line {found[name].where.line})"
+            draft.diagnostics.error("SK-URDF-002", message, element.where, "rename one of them")
             skip_element(element)
         else:
             if "::" in name:
-                message = f"{kind} {name!r}: '::' separates names and cannot be in one"
+                message = f"{kind} {name!r}: a name cannot contain '::', which separates names"
                 draft.diagnostics.error("SK-URDF-002", message, element.where)
             found[name] = element
     return found
 
 
 def _joint(draft: RobotDraft, name: str, element: Params) -> JointDraft | None:
-    """A joint with both ends; None, with every error of its recorded, where it joins nothing."""
+    """Return a joint with both links; None, with its errors recorded, if it joins no two links."""
     kind = text_attribute(element, "type")
     if kind not in TYPES:
         hint = did_you_mean(kind, TYPES)
-        said = f"has type {kind!r}" if kind else "needs type="
-        message = f"joint {name!r} {said}, known are {', '.join(TYPES)}"
+        problem = f"has unknown type {kind!r}" if kind else "needs type="
+        message = f"joint {name!r} {problem}; known are {', '.join(TYPES)}"
         draft.diagnostics.error("SK-URDF-004", message, element.where, hint)
     parent, child = _joint_link(draft, name, element, "parent"), _joint_link(draft, name, element, "child")
     pose = read_origin(element)
@@ -93,7 +93,7 @@ def _joint(draft: RobotDraft, name: str, element: Params) -> JointDraft | None:
 
 
 def _joint_link(draft: RobotDraft, name: str, joint: Params, which: str) -> str:
-    """The link at one end of a joint; empty, with an error recorded, where there is none."""
+    """Return the parent or child link of a joint; empty, with an error recorded, if there is none."""
     element = joint.child(which)
     if element is None:
         near = did_you_mean(which, [c.name for c in joint.children])
@@ -114,7 +114,7 @@ def _joint_link(draft: RobotDraft, name: str, joint: Params, which: str) -> str:
 
 
 def _check_tree(draft: RobotDraft) -> None:
-    """One root, one way to each link; anything else is an error. Chooses the root."""
+    """Check that there is one root and one path to each link, and select the root."""
     above: dict[str, JointDraft] = {}
     for joint in list(draft.joints.values()):
         other = above.get(joint.child)
@@ -122,34 +122,34 @@ def _check_tree(draft: RobotDraft) -> None:
             above[joint.child] = joint
             continue
         first = f"{other.name!r} (line {other.element.where.line})"
-        message = f"link {joint.child!r} hangs on two joints, {first} and {joint.name!r}; a URDF is a tree"
-        hint = "close a loop with <gazebo><joint ...> in SDF's words"
+        message = f"link {joint.child!r} is the child of two joints, {first} and {joint.name!r}; a URDF is a tree"
+        hint = "close a loop with an SDF <joint> inside <gazebo>"
         draft.diagnostics.error("SK-URDF-005", message, joint.element.where, hint)
-    joined_badly = {
+    children_of_bad_joints = {
         text_attribute(e, "link") for j in draft.element.all("joint") for e in (j.child("child"),) if e is not None
     } - set(above)
     roots = [name for name in draft.links if name not in above]
     draft.root = next(iter(roots), next(iter(draft.links), ""))
-    lonely = [name for name in roots if name not in joined_badly]
-    if len(lonely) > 1:
-        listed = ", ".join(f"{name!r} (line {draft.links[name].where.line})" for name in lonely[:8])
-        more = f" and {len(lonely) - 8} more" if len(lonely) > 8 else ""
-        message = f"robot {draft.name!r} has {len(lonely)} root links: {listed}{more}; each but one must be a child"
-        draft.diagnostics.error("SK-URDF-006", message, draft.links[lonely[1]].where, "join them with a <joint>")
+    unjoined = [name for name in roots if name not in children_of_bad_joints]
+    if len(unjoined) > 1:
+        listed = ", ".join(f"{name!r} (line {draft.links[name].where.line})" for name in unjoined[:8])
+        more = f" and {len(unjoined) - 8} more" if len(unjoined) > 8 else ""
+        message = f"robot {draft.name!r} has {len(unjoined)} root links, but can have only one: {listed}{more}"
+        draft.diagnostics.error("SK-URDF-006", message, draft.links[unjoined[1]].where, "join them with a <joint>")
     _report_rings(draft, above)
 
 
 def _report_rings(draft: RobotDraft, above: dict[str, JointDraft]) -> None:
-    """Reports links that hang below themselves, each ring once."""
+    """Report each ring of joints once."""
     done: set[str] = set()
     for start in draft.links:
-        way: list[str] = []
+        path: list[str] = []
         name = start
         while name in above and name not in done:
             done.add(name)
-            way.append(name)
+            path.append(name)
             name = above[name].parent
-        if name in way:
-            ring = way[way.index(name) :]
-            message = f"joints go round in a circle: {' <- '.join([*ring[:8], ring[0]])}"
+        if name in path:
+            ring = path[path.index(name) :]
+            message = f"joints form a ring: {' <- '.join([*ring[:8], ring[0]])}"
             draft.diagnostics.error("SK-URDF-007", message, above[ring[0]].element.where)

@@ -1,4 +1,4 @@
-"""`<link>`: mass, collisions and visuals, and what `<gazebo>` adds to them."""
+"""Reader of `<link>`: mass, collisions and visuals, and the link's `<gazebo>` extensions."""
 
 from __future__ import annotations
 
@@ -21,16 +21,24 @@ from simkit.params import Params
 from simkit.scene import Inertial, SceneCollision, SceneLink, SceneSensor, SceneVisual, Surface
 from simkit.scene.geometry import vec3
 
-HEAVIEST = 1e15  # kg and kg m2: the products of larger ones leave the numbers
-_CONTACT_WORDS = {
+HEAVIEST = 1e15  # [kg] and [kg·m²]; products of larger numbers overflow
+_CONTACT_ELEMENTS = {
     "kp": "kp", "kd": "kd", "min_depth": "minDepth", "max_vel": "maxVel", "soft_cfm": "softCfm", "soft_erp": "softErp",
 }  # fmt: skip
-_SENSORS_VERSION = (1, 4)  # of SDF, as which Gazebo read URDF when robots wrote one <noise> for a whole IMU
+# Gazebo read the sensors of URDF files as SDF 1.4 when robots wrote one <noise> for a whole IMU.
+_SENSORS_VERSION = (1, 4)
 NO_MASS = Inertial(0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0, 0.0, 0.0), given=False)
 
 
 def read_link(draft: RobotDraft, name: str, materials: Materials, windy: bool) -> SceneLink:
-    """A link whose place is known; `windy`: whether the wind pushes the links that do not say it themselves."""
+    """Return a link whose pose is known.
+
+    Args:
+        draft: the robot.
+        name: name of the link.
+        materials: named materials of the robot.
+        windy: true if wind acts on links that have no `<enable_wind>` of their own.
+    """
     element, extension = draft.links[name], draft.extensions.of(name)
     decay = read_number(extension, "dampingFactor", minimum=0.0)
     block = extension.block("velocity_decay")
@@ -59,7 +67,7 @@ def read_link(draft: RobotDraft, name: str, materials: Materials, windy: bool) -
 
 
 def _inertial(name: str, link: Params) -> Inertial:
-    """Mass properties in link axes; a link without them is a frame without mass."""
+    """Return mass properties in link axes; a link without `<inertial>` is a frame without mass."""
     block = link.child("inertial")
     if block is None:
         return NO_MASS
@@ -70,11 +78,11 @@ def _inertial(name: str, link: Params) -> Inertial:
         block.mark_all_read()
         return NO_MASS
     if inertia is None:
-        said = f"link {name!r}: <inertial> has no <inertia ixx= iyy= izz= ixy= ixz= iyz=...>"
-        report_substitute(block, said, "its mass is at one point", "give it the moments of its shape")
+        found = f"link {name!r}: <inertial> has no <inertia ixx= iyy= izz= ixy= ixz= iyz=...>"
+        report_substitute(block, found, "its mass is at one point", "add the moments of its shape")
     kilograms = attribute_number(mass, "value", owner=f"link {name!r}")
     if kilograms < 0:
-        mass.error("SK-URDF-016", f"link {name!r} has mass {kilograms:g} kg, it cannot be negative")
+        mass.error("SK-URDF-016", f"link {name!r} has mass {kilograms:g} kg; it cannot be negative")
     if kilograms > HEAVIEST:
         report_bad_value(mass, "value", f"at most {HEAVIEST:g} kg")
         kilograms = 1.0
@@ -83,7 +91,7 @@ def _inertial(name: str, link: Params) -> Inertial:
 
 
 def _moment(inertia: Params, key: str, link: str) -> float:
-    """A moment; the products of inertia may be left out."""
+    """Return a moment; the products of inertia are optional."""
     default = 0.0 if key[1] != key[2] else None
     value = attribute_number(inertia, key, default, owner=f"link {link!r}")
     if abs(value) > HEAVIEST:
@@ -96,15 +104,18 @@ def _moment(inertia: Params, key: str, link: str) -> float:
 
 
 def unique_names(elements: list[Params], link: str, kind: str) -> list[str]:
-    """Names of a link's collisions or visuals: as written, else `<link>_<kind>`, `<link>_<kind>_1`, ... as Gazebo's."""
+    """Return the names of a link's collisions or visuals, as Gazebo generates them.
+
+    An unnamed one is called `<link>_<kind>`, `<link>_<kind>_1`, ...
+    """
     written = [text_attribute(element, "name") for element in elements]
-    taken = {name for name in written if name}
+    reserved = {name for name in written if name}
     names: list[str] = []
     used: set[str] = set()
     for index, name in enumerate(written):
         stem = name or (f"{link}_{kind}" if index == 0 else f"{link}_{kind}_{index}")
         count, free = 0, stem
-        while free in used or (not name and free in taken):
+        while free in used or (not name and free in reserved):
             count += 1
             free = f"{stem}_{count}"
         used.add(free)
@@ -127,25 +138,25 @@ def _collisions(draft: RobotDraft, link: str, element: Params, extension: Params
 
 
 def _surface(extension: Params) -> Surface:
-    """Contact properties: SDF's words in `<collision>`, then Gazebo's short ones."""
+    """Return contact properties: first SDF's elements in `<collision>`, then Gazebo's short elements."""
     surface = Surface()
-    for blob in extension.all("collision"):
-        surface = read_surface(blob)
-        blob.child("max_contacts")
-    given = {
+    for block in extension.all("collision"):
+        surface = read_surface(block)
+        block.child("max_contacts")
+    settings = {
         "mu": read_number(extension, "mu1", minimum=0.0),
         "mu2": read_number(extension, "mu2", minimum=0.0),
         "fdir1": read_vector(extension, "fdir1"),
-        **{field: read_number(extension, word) for field, word in _CONTACT_WORDS.items()},
+        **{field: read_number(extension, element) for field, element in _CONTACT_ELEMENTS.items()},
     }
-    known = {key: value for key, value in given.items() if value is not None}
+    known = {key: value for key, value in settings.items() if value is not None}
     return replace(surface, **known, where=extension.where) if known else surface  # type: ignore[arg-type]
 
 
 def _visuals(
     draft: RobotDraft, link: str, element: Params, extension: Params, materials: Materials
 ) -> tuple[SceneVisual, ...]:
-    elements, blobs = element.all("visual"), extension.all("visual")
+    elements, blocks = element.all("visual"), extension.all("visual")
     retro = read_number(extension, "laserRetro")
     found = []
     for name, visual in zip(unique_names(elements, link, "visual"), elements, strict=True):
@@ -154,7 +165,7 @@ def _visuals(
         material = materials.of(visual)
         if shape is None:
             continue
-        seen = SceneVisual(
+        scene_visual = SceneVisual(
             name=name,
             scoped=draft.own(link, name),
             pose_link=pose,
@@ -163,20 +174,20 @@ def _visuals(
             laser_retro=retro or 0.0,
             where=visual.where,
         )
-        for blob in blobs:
-            seen = replace(
-                seen,
-                transparency=blob.number("transparency", seen.transparency, minimum=0.0, maximum=1.0),
-                cast_shadows=blob.boolean("cast_shadows", seen.cast_shadows),
-                visibility_flags=blob.integer("visibility_flags", seen.visibility_flags) & 0xFFFFFFFF,
-                laser_retro=blob.number("laser_retro", seen.laser_retro),
-                plugins=(*seen.plugins, *read_plugins(blob.all("plugin"), seen.scoped)),
+        for block in blocks:
+            scene_visual = replace(
+                scene_visual,
+                transparency=block.number("transparency", scene_visual.transparency, minimum=0.0, maximum=1.0),
+                cast_shadows=block.boolean("cast_shadows", scene_visual.cast_shadows),
+                visibility_flags=block.integer("visibility_flags", scene_visual.visibility_flags) & 0xFFFFFFFF,
+                laser_retro=block.number("laser_retro", scene_visual.laser_retro),
+                plugins=(*scene_visual.plugins, *read_plugins(block.all("plugin"), scene_visual.scoped)),
             )
-        found.append(seen)
+        found.append(scene_visual)
     return tuple(found)
 
 
-# ---------------------------------------------------------------------- what hangs on the link
+# ---------------------------------------------------------------------- sensors
 
 
 def _sensors(draft: RobotDraft, link: str, extension: Params) -> tuple[SceneSensor, ...]:
@@ -186,15 +197,15 @@ def _sensors(draft: RobotDraft, link: str, extension: Params) -> tuple[SceneSens
 
 
 def _without_duplicates(sensors: list[Params], link: str) -> list[Params]:
-    """Sensors without those that are named like an earlier one, as robots have them whose xacro is included twice."""
+    """Return the sensors without repeated names, which occur in robots that include a xacro file twice."""
     first: dict[str, Params] = {}
     kept = []
     for element in sensors:
         name = element.attribute("name").strip()
         known = first.setdefault(name, element)
         if name and known is not element:
-            message = f"link {link!r} has two sensors named {name!r}; that of line {known.where.line} is used"
-            element.warning("SK-URDF-030", message, "give one of them another name")
+            message = f"link {link!r} has two sensors named {name!r}; the one at line {known.where.line} is used"
+            element.warning("SK-URDF-030", message, "rename one of them")
             element.mark_all_read()
         else:
             kept.append(element)
@@ -202,5 +213,5 @@ def _without_duplicates(sensors: list[Params], link: str) -> list[Params]:
 
 
 def is_massless(link: SceneLink) -> bool:
-    """Whether a link is only a frame."""
+    """Check whether a link is a frame without mass."""
     return not link.inertial.given or math.isclose(link.inertial.mass, 0.0, abs_tol=0.0)

@@ -1,4 +1,4 @@
-"""The loader of URDF, for a file of its own and for a robot that an SDF file includes."""
+"""Loader of URDF, for a separate file and for a robot that an SDF file includes."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from simkit.params import Params
 from simkit.pose import Pose
 from simkit.scene import Scene, SceneModel
 
-_SDF_VERSION = (1, 11)  # of the words in <gazebo>
+_SDF_VERSION = (1, 11)  # SDF version of the elements in <gazebo>
 
 
 class UrdfLoader(IncludableLoader):
-    """The Unified Robot Description Format, with Gazebo's extensions."""
+    """Loader of the Unified Robot Description Format, with Gazebo's extensions."""
 
     roots: ClassVar[tuple[str, ...]] = ("robot",)
 
@@ -50,13 +50,13 @@ class UrdfLoader(IncludableLoader):
 
 @dataclass
 class IncludedRobot(IncludedModel):
-    """A robot that an SDF file includes: its names for the SDF readers, then its model where they placed it."""
+    """Robot that an SDF file includes: its names as frames for the SDF readers, and later its model at their pose."""
 
     version: ClassVar[tuple[int, int]] = _SDF_VERSION
     fixed_content: ClassVar[tuple[str, str, str]] = (
         "SK-URDF-029",
         "a robot in URDF",
-        "convert it once (simkit convert ROBOT.urdf -o model.sdf) and include that, or include it as it is",
+        "include it without merge and changes, or convert it first: simkit convert ROBOT.urdf -o model.sdf",
     )
     frames: Params
     robot: Params
@@ -72,9 +72,9 @@ class IncludedRobot(IncludedModel):
 
 
 def _frames_document(robot: SdfFile, workspace: Workspace) -> Params:
-    """An SDF document with the robot's links and joints as frames, so that poses and joints of the world can name them.
+    """Return an SDF document with the robot's links and joints as frames, for poses and joints of the world.
 
-    Says nothing about mistakes: reading the robot in earnest says them.
+    Mistakes are not reported here, because the later reading of the robot reports them.
     """
     draft = declare_robot(robot, workspace.quiet(), workspace.resolver)
     place_links(draft)

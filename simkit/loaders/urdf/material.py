@@ -1,4 +1,4 @@
-"""`<material>`: colours and textures by name, Gazebo's own names and its `<visual>` extensions."""
+"""Reader of `<material>`: colours and textures by name, Gazebo's own names and `<visual>` extensions."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from simkit.scene.model import Colour
 
 @dataclass
 class Materials:
-    """The named materials of one robot: those of the robot itself, and those that a visual defines in place."""
+    """Named materials of one robot: those of the robot itself, and those that a visual defines."""
 
     draft: RobotDraft
     named: dict[str, Material] = field(default_factory=dict)
@@ -36,7 +36,7 @@ class Materials:
             if not name:
                 report_missing(element, "name", "a text")
             elif name in self._lines:
-                message = f"two materials are named {name!r}: the other is at line {self._lines[name]}, which is used"
+                message = f"two materials are named {name!r}; the one at line {self._lines[name]} is used"
                 element.warning("SK-URDF-026", message)
                 element.mark_all_read()
                 continue
@@ -50,7 +50,7 @@ class Materials:
                         self._define(name, inside)
 
     def of(self, visual: Params) -> Material | None:
-        """How a visual looks; None where it says nothing (a mesh then keeps its own colours)."""
+        """Return the material of a visual; None if it has none (a mesh then keeps its own colours)."""
         element = visual.child("material")
         if element is None:
             return None
@@ -75,7 +75,7 @@ class Materials:
             self.named[name] = found
 
     def _read(self, element: Params) -> Material | None:
-        """The colour and texture written in an element; None where it has neither."""
+        """Return the colour and texture in an element; None if it has neither."""
         colour, texture = element.child("color"), element.child("texture")
         rgba: Colour | None = None
         if colour is not None:
@@ -85,8 +85,8 @@ class Materials:
             if found is not None:
                 clamped = [min(1.0, max(0.0, v)) for v in found]
                 if clamped != list(found):
-                    said = f'<color rgba="{text_attribute(colour, "rgba")[:60]}"> leaves the range from 0 to 1'
-                    report_substitute(colour, said, "each number is brought back to its nearer end")
+                    text = f'<color rgba="{text_attribute(colour, "rgba")[:60]}"> has numbers outside 0 to 1'
+                    report_substitute(colour, text, "they are limited to this range")
                 rgba = (clamped[0], clamped[1], clamped[2], clamped[3])
         path = None
         if texture is not None:
@@ -101,19 +101,19 @@ class Materials:
 
 
 def extended_material(extension: Params, own: Material | None, draft: RobotDraft) -> Material | None:
-    """A visual's material after `<gazebo>` had its say: a script name, or SDF's words in `<visual>`."""
+    """Return a visual's material with its `<gazebo>` extensions: a script name, or SDF elements in `<visual>`."""
     script = last_child(extension, "material")
     if script is not None:
         element = _as_sdf(script) if not script.children else Params("visual", children=[script])
         element.diagnostics = script.diagnostics
         own = read_material(element, draft.file, draft.workspace) or own
-    for blob in extension.all("visual"):
-        own = read_material(blob, draft.file, draft.workspace) or own
+    for block in extension.all("visual"):
+        own = read_material(block, draft.file, draft.workspace) or own
     return own
 
 
 def _as_sdf(element: Params) -> Params:
-    """`<material>Gazebo/Red</material>` in SDF's words."""
+    """Convert `<material>Gazebo/Red</material>` to SDF."""
     inner = Params("name", extension_text(element), where=element.where, diagnostics=element.diagnostics)
     for name in ("script", "material", "visual"):
         inner = Params(name, children=[inner], where=element.where, diagnostics=element.diagnostics)

@@ -1,4 +1,4 @@
-"""`<robot>`: a URDF file into one bare model."""
+"""Reader of `<robot>`: converts a URDF file to one bare model."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ from simkit.scene import SceneJoint, SceneLink, SceneModel
 
 
 def _added_elements(draft: RobotDraft, kind: str) -> list[NamedElement]:
-    """What the `<gazebo>` blocks without a reference add of a kind; its names are entered in the robot's scope."""
+    """Return the elements that `<gazebo>` blocks without a reference add, and register their names."""
     parts = []
     elements, owner = draft.extensions.robot.all(kind), f"robot {draft.name!r}"
     for name, element in named_elements(elements, owner, draft.diagnostics, draft.file.version):
-        taken = draft.scope.names.get(name)
-        if taken is not None:
-            message = f"<gazebo>: {kind} {name!r} has the name of a {taken.kind} (line {taken.where.line})"
+        existing = draft.scope.names.get(name)
+        if existing is not None:
+            message = f"<gazebo>: {kind} {name!r} has the same name as a {existing.kind} (line {existing.where.line})"
             element.error("SK-URDF-002", message)
             continue
         pose, base = read_pose(element)
@@ -47,12 +47,12 @@ WORLD = "world"
 
 
 def declare_robot(file: SdfFile, workspace: Workspace, resolver: Resolver) -> RobotDraft:
-    """The names in a robot's file; every mistake in its structure is recorded."""
+    """Register the names in a robot's file; every mistake in its structure is recorded."""
     element, diagnostics = file.root, workspace.diagnostics
     name = text_attribute(element, "name")
     if not name:
         name = Path(file.chain[-1]).name.partition(".")[0] or "robot"
-        message = f"<robot> has no name, URDF requires one; it is called {name!r}"
+        message = f"<robot> has no name=, which URDF requires; the name {name!r} is used"
         diagnostics.warning("SK-URDF-027", message, element.where)
     draft = RobotDraft(
         name=name,
@@ -76,14 +76,15 @@ def build_robot(
     static: bool | None = None,
     is_included: bool = False,
 ) -> SceneModel:
-    """The model of a robot.
+    """Return the model of a robot.
 
     Args:
-        outer: scoped name of the model that it lies in; empty at the top.
-        pose: of its root link in the world; None for the one that its file gives, or the origin.
+        draft: the robot.
+        outer: scoped name of the model that contains it; empty at the top.
+        pose: pose of its root link in the world; None for the pose in its file, or the origin.
         base: "auto", "fixed" or "floating".
-        static: whether it is static; None for what its file says.
-        is_included: whether an SDF file includes it, whose joints may fix it to the world.
+        static: true if it is static; None for the value in its file.
+        is_included: true if an SDF file includes it, whose joints can fix it to the world.
     """
     robot = draft.extensions.robot
     draft.scoped = scoped(outer, draft.name)
@@ -102,16 +103,16 @@ def build_robot(
     draft.extensions.report_unknown(draft.links, draft.joints)
     _check_force_sensors(links, joints)
     declared = bool(read_flag(robot, "static"))
-    still = declared if static is None else static
+    is_static = declared if static is None else static
     model = SceneModel(
         name=draft.name,
         scoped=draft.scoped,
         pose_world=draft.pose,
-        static=still,
+        static=is_static,
         declared_static=declared,
         self_collide=bool(read_flag(robot, "self_collide", "selfCollide")),
         canonical_link=draft.own(draft.root) if draft.root else "",
-        base=base if still else _choose_base(draft, base, is_included, _fixed_base_reason(draft, links, joints)),
+        base=base if is_static else _choose_base(draft, base, is_included, _fixed_base_reason(draft, links, joints)),
         links=links,
         joints=joints,
         frames=read_frames(frames),
@@ -128,7 +129,10 @@ def build_robot(
 
 
 def _fixed_base_reason(draft: RobotDraft, links: tuple[SceneLink, ...], joints: tuple[SceneJoint, ...]) -> str:
-    """Why the base cannot float; empty where it can. Gazebo drops such links, PyBullet holds the first kind as well."""
+    """Return the reason why the base cannot float; empty if it can.
+
+    Gazebo removes such links. PyBullet also fixes the base of a robot without mass.
+    """
     heavy = {link.scoped for link in links if link.inertial.mass > 0}
     if not heavy:
         return "no link has mass"
@@ -145,30 +149,30 @@ def _fixed_base_reason(draft: RobotDraft, links: tuple[SceneLink, ...], joints: 
                 ground.add(joint.child_link)
                 stack.append(joint.child_link)
     if kinds and kinds <= {"planar", "floating"} and not ground & heavy:
-        return f"its root link {draft.root!r} has no mass and stands for the ground under a moving base"
+        return f"its root link {draft.root!r} has no mass and represents the ground under a moving base"
     return ""
 
 
-def _choose_base(draft: RobotDraft, base: str, is_included: bool, held: str) -> str:
-    """Gazebo's rule: a robot whose root link is named `world` is fixed to it; any other floats.
+def _choose_base(draft: RobotDraft, base: str, is_included: bool, fixed_reason: str) -> str:
+    """Apply Gazebo's rule: a robot whose root link is named `world` is fixed to the world; any other floats.
 
-    One that cannot float, for the reason in `held`, is fixed.
+    A robot that cannot float, because of `fixed_reason`, is fixed.
     """
     element, owner = draft.element, f"robot {draft.name!r}"
     if draft.root == WORLD:
         if base == "floating":
-            message = f"{owner} has the root link 'world', which is the world: its base stays fixed"
-            element.warning("SK-URDF-018", message, "take the link 'world' out of the file")
+            message = f"{owner}: its root link is 'world', so its base stays fixed"
+            element.warning("SK-URDF-018", message, "remove the link 'world' from the file")
         elif base == "auto" and not is_included:
             element.note("SK-URDF-017", f"{owner}: base is fixed, because its root link is named 'world'")
         return "fixed"
-    if base == "auto" and held and draft.root:
-        hint = "give its links an <inertial> if it is to move"
-        element.warning("SK-URDF-032", f"{owner}: {held}, so its base is fixed", hint)
+    if base == "auto" and fixed_reason and draft.root:
+        hint = "to let it move, add an <inertial> to its links"
+        element.warning("SK-URDF-032", f"{owner}: {fixed_reason}, so its base is fixed", hint)
         return "fixed"
     if base == "auto" and not is_included:
         message = f"{owner}: base is floating, because no link is named 'world'"
-        element.note("SK-URDF-017", message, "base='fixed' holds it where it is")
+        element.note("SK-URDF-017", message, "to fix it in the world, use base='fixed'")
     return base
 
 
@@ -181,7 +185,7 @@ def _report_frames(draft: RobotDraft, links: tuple[SceneLink, ...]) -> None:
 
 
 def _check_force_sensors(links: tuple[SceneLink, ...], joints: tuple[SceneJoint, ...]) -> None:
-    """A force_torque sensor on a joint that carries neither mass nor collision would read zero for ever."""
+    """Report a force_torque sensor on a joint without mass and collisions below it, which would always read zero."""
     by_name = {link.scoped: link for link in links}
     below: dict[str, list[str]] = {}
     for joint in joints:
@@ -200,7 +204,7 @@ def _check_force_sensors(links: tuple[SceneLink, ...], joints: tuple[SceneJoint,
         if loaded and all(is_massless(link) and not link.collisions for link in loaded):
             message = (
                 f"sensor {sensors[0].name!r} measures the force on joint {joint.name!r}, which carries only frames "
-                f"without mass ({', '.join(sorted(link.name for link in loaded)[:6])}): it could never read anything"
+                f"without mass ({', '.join(sorted(link.name for link in loaded)[:6])}); it would always read zero"
             )
-            hint = "give the link an <inertial>, or put the sensor on a joint that carries something"
+            hint = "add an <inertial> to the link, or move the sensor to a joint that carries mass"
             sensors[0].params.error("SK-URDF-023", message, hint)

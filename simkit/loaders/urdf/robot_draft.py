@@ -1,4 +1,4 @@
-"""State that the reading of one robot shares: its names, frames and files."""
+"""State of reading one robot: its names, frames and files."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from simkit.pose import IDENTITY, Pose
 
 @dataclass
 class RobotFiles:
-    """Finds files for one robot.
+    """Finder of the files of one robot.
 
     Attributes:
-        folder: of the robot's file.
+        folder: folder of the robot's file.
     """
 
     resolver: Resolver
@@ -30,12 +30,12 @@ class RobotFiles:
     _packages: dict[str, list[Diagnostic]] = field(default_factory=dict)
 
     def mesh(self, uri: str, place: Params) -> Path | None:
-        """A mesh file; one that is missing is a warning."""
+        """Return a mesh file; a missing one is a warning."""
         if uri in self._found:
             return self._found[uri]
-        path, said = self.resolver.mesh(uri, place.where, self.folder)
+        path, problems = self.resolver.mesh(uri, place.where, self.folder)
         self._found[uri] = path = path if path is None else path.absolute()
-        for problem in said:
+        for problem in problems:
             if problem.code == "SK-URI-009":
                 package = uri.partition("://")[2].split("/")[0]
                 self._packages.setdefault(package, []).append(problem)
@@ -44,7 +44,7 @@ class RobotFiles:
         return path
 
     def texture(self, uri: str, place: Params) -> Path | None:
-        """An image file; a missing one is a warning."""
+        """Return an image file; a missing one is a warning."""
         key = f"texture {uri}"
         if key not in self._found:
             found = Diagnostics()
@@ -56,7 +56,7 @@ class RobotFiles:
         return self._found[key]
 
     def report_packages(self) -> None:
-        """Each package that is not here, once, with the lines that need it."""
+        """Report each missing package once, with the lines that refer to it."""
         for problems in self._packages.values():
             first = problems[0]
             if len(problems) > 1:
@@ -68,7 +68,7 @@ class RobotFiles:
 
 @dataclass(frozen=True, slots=True)
 class JointDraft:
-    """A joint whose ends are known: plain link names, and its origin in the parent link's frame."""
+    """Joint with known links: plain link names, and its origin in the parent link's frame."""
 
     name: str
     element: Params
@@ -80,13 +80,13 @@ class JointDraft:
 
 @dataclass
 class RobotDraft:
-    """A robot while it is read.
+    """Robot during reading.
 
     Attributes:
         scoped: name from the world down.
-        pose: of the robot (its root link) in the world.
+        pose: pose of the robot (its root link) in the world.
         scope: names that the SDF readers of the extensions look up: links, joints, frames.
-        links, joints: by plain name, in document order.
+        links, joints: elements and joints by plain name, in document order.
         links_world: pose of each link in the world.
     """
 
@@ -109,11 +109,11 @@ class RobotDraft:
         return self.workspace.diagnostics
 
     def own(self, *names: str) -> str:
-        """A scoped name inside the robot."""
+        """Return a scoped name inside the robot."""
         return scoped(self.scoped, *names)
 
     def part(self, link: str, extension: Params, joint: str = "") -> NamedElement:
-        """The extension of a link, or of a joint whose child link is named, as the SDF readers take elements."""
+        """Return the extension of a link, or of a joint with this child link, in the form for the SDF readers."""
         frame = self.scope.names[link]
         frame = replace(frame, kind="joint") if joint else frame
         return NamedElement(joint or link, extension, frame, self.scope, self.file)

@@ -1,4 +1,4 @@
-"""`<transmission>` and `<ros2_control>`: kept for the controllers that read them."""
+"""Readers of `<transmission>` and `<ros2_control>`, which are stored for controllers."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ _KINDS = {
 
 
 def read_transmissions(draft: RobotDraft) -> tuple[Transmission, ...]:
-    """Every transmission, in document order."""
+    """Return every transmission in document order."""
     return tuple(_transmission(draft, element) for element in draft.element.all("transmission"))
 
 
 def read_controls(draft: RobotDraft) -> tuple[Params, ...]:
-    """The `<ros2_control>` blocks as they stand; a joint that they name and that does not exist is reported."""
+    """Return the `<ros2_control>` blocks unchanged; a reference to an unknown joint is reported."""
     blocks = draft.element.all("ros2_control")
     for block in blocks:
         block.mark_all_read()
@@ -65,7 +65,7 @@ def _transmission(draft: RobotDraft, element: Params) -> Transmission:
 
 
 def _kind(written: str) -> str:
-    """`transmission_interface/SimpleTransmission` is simple."""
+    """Return the kind of a transmission type: `transmission_interface/SimpleTransmission` is simple."""
     plain = written.rpartition("/")[2].rpartition("::")[2].lower()
     for kind, starts in _KINDS.items():
         if plain.startswith(starts):
@@ -87,7 +87,7 @@ def _transmission_end(element: Params, reduction: float) -> TransmissionEnd:
 def _reduction(element: Params, default: float) -> float:
     found = _number(element, "mechanicalReduction", default)
     if found == 0:
-        element.child_or_self("mechanicalReduction").error("SK-URDF-013", "<mechanicalReduction> is 0, it cannot be")
+        element.child_or_self("mechanicalReduction").error("SK-URDF-013", "<mechanicalReduction> cannot be 0")
         return default
     return found
 
@@ -106,4 +106,4 @@ def _number(element: Params, name: str, default: float) -> float:
 def _is_known_joint(draft: RobotDraft, joint: Params, owner: str) -> None:
     name = text_attribute(joint, "name")
     if name not in draft.joints:
-        joint.warning("SK-URDF-025", f"{owner}: there is no joint {name!r}", did_you_mean(name, draft.joints))
+        joint.warning("SK-URDF-025", f"{owner}: the robot has no joint {name!r}", did_you_mean(name, draft.joints))

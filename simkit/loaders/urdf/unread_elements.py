@@ -1,4 +1,4 @@
-"""What of a robot's file has no effect: unknown elements and attributes, and those of other tools."""
+"""Report on parts of a robot's file without effect: unknown elements and attributes, and those of other tools."""
 
 from __future__ import annotations
 
@@ -12,99 +12,99 @@ from simkit.loaders.urdf.gazebo_extensions import GazeboExtensions
 from simkit.params import Params
 
 _Places = defaultdict[str, list[Where]]
-_Loud = defaultdict[tuple[str, str, str], list[Where]]  # (message, code, hint) -> places
-_TOOLS_WORDS = """
+_Warnings = defaultdict[tuple[str, str, str], list[Where]]  # (message, code, hint) -> places
+_TOOLS_ELEMENTS = """
     contact self_collision_checking joint_properties frame collision_checking verbose gravity kinematic
     sensor simulated_actuated_joint compliance gear_ratio rotor_inertia saturationLower saturationUpper deadBandUpper
     deadBandLower ignoreTransmissionAbsoluteEncoder robotNamespace hardwareInterface leftActuator rightActuator
     flexJoint rollJoint gap_joint passive_joint use_simulated_gripper_joint simulated_reduction collision_filter_group
     loop_joint parent2 child2 origin actuator_frame force_element bushing
 """
-_OF_OTHER_TOOLS = frozenset(_TOOLS_WORDS.split())
-# Bullet, Drake, OpenRAVE, PR2: elements and attributes that Gazebo ignores as well.
+# Elements and attributes of Bullet, Drake, OpenRAVE and PR2, which Gazebo ignores as well.
+_OF_OTHER_TOOLS = frozenset(_TOOLS_ELEMENTS.split())
 _TOOLS_ATTRIBUTES = "version concave current command_effort gear_velocity acceleration jerk D K mu_coulomb mu_viscous"
 _ATTRIBUTES_OF_OTHER_TOOLS = frozenset(_TOOLS_ATTRIBUTES.split())
-_GAZEBO_WORDS = "provideFeedback implicitSpringDamper cfmDamping stopCfm stopErp fudgeFactor maxContacts physics"
-_SETTINGS_OF_GAZEBO = frozenset(_GAZEBO_WORDS.split())
+_GAZEBO_ELEMENTS = "provideFeedback implicitSpringDamper cfmDamping stopCfm stopErp fudgeFactor maxContacts physics"
+_SETTINGS_OF_GAZEBO = frozenset(_GAZEBO_ELEMENTS.split())
 _SHORT = """
 mu1 mu2 fdir1 kp kd minDepth maxVel softCfm softErp laserRetro selfCollide turnGravityOff dampingFactor material
 visual collision springStiffness springReference preserveFixedJoint disableFixedJointLumping
 """
-_SHORT_WORDS = frozenset(_SHORT.split())  # of <gazebo>, which SDF has under other names
+_SHORT_ELEMENTS = frozenset(_SHORT.split())  # elements of <gazebo> that have other names in SDF
 _KEPT = frozenset(("transmission", "ros2_control", "gazebo"))
 
 
 def report_unread(robot: Params, extensions: GazeboExtensions) -> None:
-    """A warning for each unknown element or attribute; one note for those of other tools; Gazebo's as in SDF."""
-    quiet: _Places = defaultdict(list)
-    loud: _Loud = defaultdict(list)
+    """Report a warning for each unknown element or attribute, one note for other tools, and Gazebo's as for SDF."""
+    notes: _Places = defaultdict(list)
+    warnings: _Warnings = defaultdict(list)
     for element in _read_elements(robot):
         for child in element.children:
             if ":" in child.name or child.was_read or (element is robot and child.name in _KEPT):
                 continue
-            text = f"<{child.name}> in <{element.name}>"
             if child.name in _OF_OTHER_TOOLS or (child.name, element.name) == ("material", "collision"):
-                quiet[text].append(child.where)
+                notes[f"<{child.name}> in <{element.name}>"].append(child.where)
                 continue
             hint = did_you_mean(child.name, element.asked)
-            loud[f"{text} is not known and not used", "SK-URDF-010", hint].append(child.where)
+            message = f"<{element.name}> has no element <{child.name}>; it is ignored"
+            warnings[message, "SK-URDF-010", hint].append(child.where)
         for name in element.attributes:
             if ":" in name or name.startswith("xmlns") or name in element.attributes_asked:
                 continue
-            text = f"{name}= of <{element.name}>"
             if name in _ATTRIBUTES_OF_OTHER_TOOLS:
-                quiet[text].append(element.where)
+                notes[f"{name}= of <{element.name}>"].append(element.where)
                 continue
             hint = did_you_mean(name, element.attributes_asked)
-            loud[f"{text} is not known and not used", "SK-URDF-012", hint].append(element.where)
-    _report_extensions(robot, extensions, loud)
-    for (message, code, hint), places in loud.items():
+            message = f"<{element.name}> has no attribute {name}=; it is ignored"
+            warnings[message, "SK-URDF-012", hint].append(element.where)
+    _report_extensions(robot, extensions, warnings)
+    for (message, code, hint), places in warnings.items():
         robot.diagnostics.warning(code, message + _repeated(places), places[0], hint)
-    _note_all("SK-URDF-011", "words of other tools, without effect here and in Gazebo", quiet, robot)
+    _note_all("SK-URDF-011", "elements of other tools, without effect in simkit and in Gazebo", notes, robot)
 
 
 def _note_all(code: str, message: str, found: _Places, robot: Params) -> None:
-    """One note that lists what was found, with lines; none where nothing was."""
+    """Record one note that lists the found names with lines; none if the list is empty."""
     if found:
-        counts = {what: f", {len(places)} times" if len(places) > 1 else "" for what, places in found.items()}
-        listed = ", ".join(f"{what} (line {places[0].line}{counts[what]})" for what, places in found.items())
+        counts = {name: f", {len(places)} times" if len(places) > 1 else "" for name, places in found.items()}
+        listed = ", ".join(f"{name} (line {places[0].line}{counts[name]})" for name, places in found.items())
         first = min((p for places in found.values() for p in places), key=lambda w: w.line or 0)
         robot.diagnostics.note(code, f"{message}: {listed}", first)
 
 
-def _report_extensions(robot: Params, extensions: GazeboExtensions, loud: _Loud) -> None:
-    """One note for Gazebo's settings of solvers; the rest as in an SDF model."""
+def _report_extensions(robot: Params, extensions: GazeboExtensions, warnings: _Warnings) -> None:
+    """Record one note for the settings of Gazebo's solvers; report all others as in an SDF model."""
     settings: _Places = defaultdict(list)
     parts: list[Params] = []
     for name, block in extensions.merged.items():
         kind = extensions.kinds.get(name, "")
         if name and not kind:
-            continue  # a reference to nothing is reported already
+            continue  # the reference to an unknown name is already reported
         place = kind or "model"
         kept = []
         for child in block.children:
             if child.name in _SETTINGS_OF_GAZEBO:
                 settings[f"<{child.name}>"].append(child.where)
-            elif child.name in _SHORT_WORDS or ":" in child.name:
+            elif child.name in _SHORT_ELEMENTS or ":" in child.name:
                 if not child.was_read and ":" not in child.name:
-                    message = f"<{child.name}> has no meaning for a {place if name else 'robot'} and is not used"
-                    loud[message, "SK-URDF-010", ""].append(child.where)
+                    message = f"<{child.name}> has no effect on a {place if name else 'robot'}"
+                    warnings[message, "SK-URDF-010", ""].append(child.where)
             elif sdf_elements().row(place, child.name) is None:
                 hint = did_you_mean(child.name, [*block.asked, *sdf_elements().elements(place)])
-                message = f"<{child.name}> in <gazebo> is not known and not used"
-                loud[message, "SK-URDF-010", hint].append(child.where)
+                message = f"<gazebo> has no element <{child.name}>; it is ignored"
+                warnings[message, "SK-URDF-010", hint].append(child.where)
             else:
                 kept.append(child)
         parts += [Params(place, "", {}, kept, block.where, robot.diagnostics)] if name else kept
     model = Params("model", "", {}, parts, robot.where, robot.diagnostics)
     for part in ("link", "joint"):
         model.all(part)
-    _note_all("SK-URDF-022", "settings of Gazebo's without effect here", settings, robot)
+    _note_all("SK-URDF-022", "Gazebo's own settings, without effect in simkit", settings, robot)
     report_sdf(model, "model")
 
 
 def _read_elements(robot: Params) -> Iterator[Params]:
-    """Every element that was read, outermost first, but not what is kept whole for others."""
+    """Yield every element that was read, outermost first, except inside blocks that are stored as a whole."""
     stack = [robot]
     while stack:
         element = stack.pop()
