@@ -65,7 +65,7 @@ def test_diagnostics_of_plugins_are_printed_with_the_errors_of_the_file(here: Pa
 def test_a_consequence_of_an_error_is_not_reported_again(here: Path) -> None:
     messages = [d.message for d in simkit.check(TWO_FAULTS) if d.code == "SK-PLUGIN-003"]
     assert not [m for m in messages if "no joint 'rj'" in m]
-    earlier = [Diagnostic("SK-SDF-008", "error", "joint 'rj' has type 'revolut', known are revolute")]
+    earlier = [Diagnostic("SK-SDF-008", "error", "joint 'rj' has unknown type 'revolut'; known are revolute")]
     assert follows_from(Diagnostic("SK-PLUGIN-003", "error", "model 'm' has no joint 'rj'; it has: 'lj'"), earlier)
     assert not follows_from(Diagnostic("SK-PLUGIN-003", "error", "model 'm' has no joint 'lj'; it has: 'rj'"), earlier)
 

@@ -177,7 +177,7 @@ def simkit_explain(*arguments: str) -> tuple[int, str, str]:
 def test_a_code_is_explained_with_its_example() -> None:
     status, text, _ = simkit_explain("sdf-004")
     assert status == 0
-    for part in ("SK-SDF-004 (error)", "help: the closest name is given", "<parent>bsae</parent>"):
+    for part in ("SK-SDF-004 (error)", "help: the message suggests the closest name", "<parent>bsae</parent>"):
         assert part in text
 
 
