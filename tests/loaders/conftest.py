@@ -1,4 +1,4 @@
-"""Loading of small inline texts."""
+"""Fixtures that load small inline texts."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Load = Callable[..., tuple[Scene, list[Diagnostic]]]
 
 @pytest.fixture
 def load() -> Load:
-    """load(source, paths=()) -> the scene and its diagnostics."""
+    """Return a function load(source, paths=()) that returns the scene and its diagnostics."""
 
     def _load(source: str | Path, paths: tuple[Path, ...] = (), **options: object) -> tuple[Scene, list[Diagnostic]]:
         diagnostics = Diagnostics()
@@ -32,7 +32,7 @@ def load() -> Load:
 
 @pytest.fixture
 def write(tmp_path: Path) -> Callable[[str, str], Path]:
-    """write("folder/file.sdf", text) -> the file, under a folder of this test."""
+    """Return a function write("folder/file.sdf", text) that writes a file under a folder of this test."""
 
     def _write(name: str, text: str) -> Path:
         path = tmp_path / name

@@ -1,4 +1,4 @@
-"""The tables of elements: they know exactly the names that the readers ask for, and the page says what they say."""
+"""Tables of elements: they list exactly the names that the readers read, and the page is generated from them."""
 
 from __future__ import annotations
 
@@ -18,24 +18,24 @@ DOCS = Path(__file__).parents[2] / "docs"
 
 
 @pytest.fixture
-def asked(load, write, monkeypatch) -> dict[str, set[str]]:
-    """Place in the tables -> names of elements and attributes that a reader asked for there."""
+def read_names(load, write, monkeypatch) -> dict[str, set[str]]:
+    """Return the names of elements and attributes that a reader read, by place in the tables."""
     roots: list[Params] = []
-    read = SdfLoader.load
+    original_load = SdfLoader.load
 
-    def spy(self, document, request):
-        seen = Workspace.file
+    def load_and_record_roots(self, document, request):
+        original_file = Workspace.file
 
-        def note(workspace, *args):
-            file = seen(workspace, *args)
+        def record_root(workspace, *args):
+            file = original_file(workspace, *args)
             roots.append(file.root)
             return file
 
         with monkeypatch.context() as patch:
-            patch.setattr(Workspace, "file", note)
-            return read(self, document, request)
+            patch.setattr(Workspace, "file", record_root)
+            return original_load(self, document, request)
 
-    monkeypatch.setattr(SdfLoader, "load", spy)
+    monkeypatch.setattr(SdfLoader, "load", load_and_record_roots)
     folder = write("models/box/model.sdf", BOX).parents[1]
     for text in (WORLD, BARE, BARE_INCLUDE):
         load(text, (folder,))
@@ -53,30 +53,30 @@ def asked(load, write, monkeypatch) -> dict[str, set[str]]:
 
 
 @pytest.mark.parametrize("table", ELEMENTS.tables, ids=lambda t: t.element)
-def test_a_table_has_the_names_that_its_readers_ask_for(asked, table):
-    for place in [p for p in {table.element, *asked} if p.split("/")[0] == table.element]:
+def test_a_table_lists_exactly_the_names_that_its_readers_read(read_names, table):
+    for place in [p for p in {table.element, *read_names} if p.split("/")[0] == table.element]:
         rows = {*ELEMENTS.elements(place), *(f"@{a}" for a in ELEMENTS.attributes(place))}
         used = {name for name in rows if ELEMENTS.row(place, name).use.read}
         if table.open:
-            assert {n for n in used if not n.startswith("@")} <= asked[place] | {"plugin"}
+            assert {n for n in used if not n.startswith("@")} <= read_names[place] | {"plugin"}
         else:
-            assert asked[place] - rows == set(), f"{place}: read, and not in the table"
-            assert used - asked[place] == set(), f"{place}: in the table, and never read"
+            assert read_names[place] - rows == set(), f"{place}: read, and not in the table"
+            assert used - read_names[place] == set(), f"{place}: in the table, and never read"
 
 
-def test_every_place_with_rows_was_visited(asked):
+def test_the_test_files_visit_every_place_with_rows(read_names):
     places = {p.rpartition("/")[0] for p, row in ELEMENTS.rows.items() if row.use.read}
-    assert places - set(asked) == set()
+    assert places - set(read_names) == set()
 
 
-def test_the_page_is_what_the_tables_say():
+def test_the_page_is_generated_from_the_tables():
     from simkit.loaders.elements_page import page
 
-    hint = "write it anew: python -m simkit.loaders.elements_page > docs/elements.md"
+    hint = "generate it again: python -m simkit.loaders.elements_page > docs/elements.md"
     assert (DOCS / "elements.md").read_text() == page(), hint
 
 
 @pytest.mark.parametrize("table", ELEMENTS.tables, ids=lambda t: t.element)
-def test_every_reference_from_a_table_leads_to_one(table):
+def test_every_reference_of_a_table_names_an_existing_table(table):
     names = {t.element for t in ELEMENTS.tables}
     assert {row.like for row in table.rows if row.like} <= names

@@ -1,4 +1,4 @@
-"""Models put into a world as it is loaded: the texts of `--spawn`, on the command line and in Python."""
+"""Additional models of a world: the texts of `--spawn`, on the command line and in Python."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ BOX = """<sdf version="1.9"><model name="box"><pose>0 0 0.25 0 0 1</pose><link n
         ("tiago", SpawnedModel("tiago")),
     ],
 )
-def test_a_text_says_what_comes_and_where(text: str, expected: SpawnedModel) -> None:
+def test_a_spawn_text_is_parsed_into_model_pose_and_name(text: str, expected: SpawnedModel) -> None:
     found = Diagnostics()
     assert parse_spawn(text, found) == expected
     assert not list(found)
 
 
 @pytest.mark.parametrize("text", ["", " ", "tiago:1,2", "tiago:1,x,2", "tiago:1,2,3,4,5", "tiago:nan,0,0"])
-def test_a_text_that_is_none_is_refused_with_what_is_allowed(text: str) -> None:
+def test_an_invalid_spawn_text_is_an_error_that_shows_the_allowed_form(text: str) -> None:
     found = Diagnostics()
     assert parse_spawn(text, found) is None
     (problem,) = found
@@ -44,7 +44,7 @@ def test_a_text_that_is_none_is_refused_with_what_is_allowed(text: str) -> None:
     assert "x,y,yaw" in problem.message + problem.hint
 
 
-def test_a_model_keeps_its_own_height_and_gets_place_and_direction(tmp_path: Path) -> None:
+def test_a_spawned_model_keeps_its_own_height_unless_z_is_given(tmp_path: Path) -> None:
     (tmp_path / "box.sdf").write_text(BOX)
     with simkit.load("empty", spawn=[f"{tmp_path}/box.sdf:1,2,0.5", f"{tmp_path}/box.sdf:3,0,0.75,0:high"]) as sim:
         pose = sim.model("box").pose
@@ -53,19 +53,19 @@ def test_a_model_keeps_its_own_height_and_gets_place_and_direction(tmp_path: Pat
         assert sim.model("high").pose.position.tolist() == [3, 0, 0.75]
 
 
-def test_what_was_spawned_with_the_world_is_there_after_a_reset() -> None:
+def test_spawned_models_still_exist_after_a_reset() -> None:
     with simkit.load("empty", spawn=["turtlebot3_burger:0,0,0:a", "turtlebot3_burger.urdf:0,1,0:b"]) as sim:
         sim.run(0.2)
         sim.reset()
         assert {"a", "b"} <= set(sim.models)
 
 
-def test_overrides_reach_what_is_spawned() -> None:
+def test_overrides_apply_to_spawned_models() -> None:
     with simkit.load("empty", spawn=["turtlebot3_burger:0,0,0:a"], overrides=["a::base_link.inertial.mass=2"]) as sim:
         assert sim.model("a").link("base_link").mass == pytest.approx(2.0)
 
 
-def test_every_problem_of_several_is_told_at_once() -> None:
+def test_the_problems_of_all_spawned_models_are_reported_at_once() -> None:
     with pytest.raises(LoadError) as caught:
         simkit.load("empty", spawn=["turtlebot3_burgr:0,0,0", "x:1", "turtlebot3_burger:0,0,0:ground_plane"])
     assert {d.code for d in caught.value.diagnostics if d.severity == "error"} == {
@@ -75,7 +75,7 @@ def test_every_problem_of_several_is_told_at_once() -> None:
     }
 
 
-def test_the_command_line_takes_several() -> None:
+def test_the_command_line_accepts_several_spawn_options() -> None:
     line = ["run", "empty", "--duration", "0.1", "--spawn", "turtlebot3_burger:0,0,0:a", "--spawn"]
     good = CliRunner().invoke(app, [*line, "turtlebot3_waffle:1,0,1.57"])
     assert good.exit_code == 0, good.output

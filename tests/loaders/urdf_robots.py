@@ -20,7 +20,7 @@ def joint(name: str, parent: str, child: str, content: str = LIMIT, kind: str = 
     return f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/>{content}</joint>\n'
 
 
-def said(found: list[Diagnostic], code: str) -> list[Diagnostic]:
+def with_code(found: list[Diagnostic], code: str) -> list[Diagnostic]:
     return [d for d in found if d.code == code]
 
 

@@ -1,4 +1,4 @@
-"""SDF files that hold every element and attribute that a reader asks for, each once at least."""
+"""SDF files that contain every element and attribute that a reader reads, each at least once."""
 
 POSE = '<pose relative_to="" degrees="true" rotation_format="euler_rpy">0 0 0 0 0 0</pose>'
 PLUGIN = '<plugin name="p" filename="libp.so"><anything/></plugin>'

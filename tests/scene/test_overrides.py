@@ -1,4 +1,4 @@
-"""`--set PATH=VALUE`: the value is the one that counts, and a wrong path names the closest."""
+"""`--set PATH=VALUE`: the value is applied, and an error about an unknown path names the closest one."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ WORLD = """
 """
 
 
-def test_the_step_of_the_physics_is_set() -> None:
+def test_the_physics_step_can_be_set() -> None:
     with load(WORLD, overrides=["physics.max_step_size=0.004"]) as sim:
         assert sim.timestep == 0.004
         assert sim.mj_model.opt.timestep == 0.004
@@ -65,7 +65,7 @@ def test_values_of_links_joints_and_collisions_are_set() -> None:
         assert sim.mj_model.dof_damping[sim.joint("arm::hinge").mj_dofs[0]] == 0.25
 
 
-def test_later_ones_win() -> None:
+def test_a_later_override_replaces_an_earlier_one() -> None:
     with load(WORLD, overrides=["physics.max_step_size=0.004", "physics.max_step_size=0.002"]) as sim:
         assert sim.timestep == 0.002
 
@@ -87,14 +87,14 @@ def test_later_ones_win() -> None:
         ("=3", "write PATH=VALUE"),
     ],
 )
-def test_what_does_not_fit_is_said(override: str, reason: str) -> None:
+def test_an_invalid_override_is_an_error(override: str, reason: str) -> None:
     with pytest.raises(InputError) as error:
         load(WORLD, overrides=[override]).close()
     assert reason in str(error.value)
     assert error.value.exit_code == 2
 
 
-def test_an_element_that_the_sensor_does_not_know_is_said() -> None:
+def test_an_override_of_an_unknown_sensor_element_is_an_error() -> None:
     with (
         load(WORLD, overrides=["arm::tip::imu.visualise_it=1"]) as sim,
         pytest.raises(InputError, match="visualise_it"),
@@ -103,16 +103,16 @@ def test_an_element_that_the_sensor_does_not_know_is_said() -> None:
 
 
 @pytest.mark.parametrize("text", [WORLD, '<sdf version="1.9"><model name="m"><link name="l"/></model></sdf>'])
-def test_how_pictures_are_drawn_is_set_for_worlds_and_bare_models(text: str) -> None:
-    given = ["scene.quality=gazebo", "scene.shadows=false", "scene.ambient=0.1 0.2 0.3", "scene.sky=1"]
-    with load(text, overrides=given) as sim:
-        around = sim.world.surroundings
-        assert (sim.world.quality, around.shadows, around.sky) == ("gazebo", False, True)
-        assert around.ambient == (0.1, 0.2, 0.3, 1.0)
+def test_rendering_settings_can_be_set_for_worlds_and_bare_models(text: str) -> None:
+    overrides = ["scene.quality=gazebo", "scene.shadows=false", "scene.ambient=0.1 0.2 0.3", "scene.sky=1"]
+    with load(text, overrides=overrides) as sim:
+        surroundings = sim.world.surroundings
+        assert (sim.world.quality, surroundings.shadows, surroundings.sky) == ("gazebo", False, True)
+        assert surroundings.ambient == (0.1, 0.2, 0.3, 1.0)
         assert sim.mj_model.vis.headlight.ambient.tolist() == pytest.approx([0.1, 0.2, 0.3])
 
 
 @pytest.mark.parametrize("text", ["scene.quality=fine", "scene.qualty=fast", "scene.ambient=2 0 0", "scene=1"])
-def test_how_pictures_cannot_be_drawn_is_said(text: str) -> None:
+def test_an_invalid_rendering_setting_is_an_error(text: str) -> None:
     with pytest.raises(InputError, match="SK-CLI-014"):
         load(WORLD, overrides=[text])

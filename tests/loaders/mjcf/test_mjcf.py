@@ -1,4 +1,4 @@
-"""MuJoCo's own format: what a file means, what it may name, and what is said of a bad one."""
+"""MuJoCo's own format: its scene, the files that it may read, and the reports on invalid files."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def write(folder: Path, files: dict[str, str | bytes]) -> Path:
 # ---------------------------------------------------------------------- what a file means
 
 
-def test_a_file_with_one_loose_body_is_a_model_in_the_world_of_its_own_options() -> None:
+def test_a_file_with_one_free_body_is_a_model_in_a_world_with_the_options_of_the_file() -> None:
     scene, _ = scene_of(ARM)
     assert scene.model is not None
     assert scene.model.name == "arm"
@@ -94,12 +94,12 @@ def test_bodies_become_links_with_their_poses_masses_and_inertias() -> None:
     assert upper.pose_world.position == pytest.approx((0, 0, 1.5))
     assert hand.pose_world.position == pytest.approx((0.4, 0, 1.5), abs=1e-12)
     assert base.inertial.mass == pytest.approx(1000 * 0.2 * 0.4 * 0.6)
-    wanted = [48 / 12 * (a * a + b * b) for a, b in ((0.4, 0.6), (0.2, 0.6), (0.2, 0.4))]
-    assert base.inertial.inertia == pytest.approx((*wanted, 0, 0, 0))
+    expected_moments = [48 / 12 * (a * a + b * b) for a, b in ((0.4, 0.6), (0.2, 0.6), (0.2, 0.4))]
+    assert base.inertial.inertia == pytest.approx((*expected_moments, 0, 0, 0))
     assert hand.inertial.mass == 0.5
 
 
-def test_joints_of_one_body_are_each_a_joint_between_the_same_two_links() -> None:
+def test_each_joint_of_a_body_connects_the_same_two_links() -> None:
     model = scene_of(ARM)[0].model
     assert model is not None
     elbow, slide, wrist = model.joints
@@ -113,7 +113,7 @@ def test_joints_of_one_body_are_each_a_joint_between_the_same_two_links() -> Non
     assert (slide.axes[0].stiffness, slide.axes[0].spring_ref) == (30.0, 0.2)
 
 
-def test_a_geom_collides_by_its_masks_and_is_drawn_by_its_group() -> None:
+def test_masks_decide_whether_a_geom_collides_and_its_group_whether_it_is_drawn() -> None:
     model = scene_of(ARM)[0].model
     assert model is not None
     base, upper, _ = model.links
@@ -135,7 +135,7 @@ def test_sites_are_frames_on_their_links() -> None:
     assert tip.pose_world.position == pytest.approx((0.4, 0, 1.5), abs=1e-12)
 
 
-def test_a_joint_tied_to_another_in_a_straight_line_mimics_it() -> None:
+def test_a_joint_with_a_linear_equality_mimics_its_leader() -> None:
     text = """<mujoco><worldbody><body name="a"><joint name="lead"/><geom size=".1"/></body>
       <body name="b"><joint name="follow" ref="0.3"/><geom size=".1"/></body></worldbody>
       <compiler angle="radian"/>
@@ -146,7 +146,7 @@ def test_a_joint_tied_to_another_in_a_straight_line_mimics_it() -> None:
     assert (mimic.joint, mimic.multiplier, mimic.offset) == ("lead", -2.0, pytest.approx(0.4))
 
 
-def test_a_file_with_something_solid_of_its_own_is_a_world(tmp_path: Path) -> None:
+def test_a_file_with_geoms_in_the_world_body_is_a_world(tmp_path: Path) -> None:
     scene_file = """<mujoco model="yard"><include file="arm.xml"/>
       <worldbody><geom name="floor" type="plane" size="0 0 1"/>
         <body name="crate" pos="1 0 0"><freejoint/><geom size=".1"/></body></worldbody></mujoco>"""
@@ -164,7 +164,7 @@ def test_a_file_with_something_solid_of_its_own_is_a_world(tmp_path: Path) -> No
     assert described["totals"]["links"] == 5
 
 
-def test_names_with_colons_are_models_and_their_links() -> None:
+def test_names_with_colons_are_split_into_models_and_links() -> None:
     text = """<mujoco><worldbody><body name="robot::base"><freejoint/><geom size=".1"/>
       <body name="robot::arm"><joint name="robot::elbow"/><geom size=".1"/></body></body>
       <body name="robot::loose"><freejoint/><geom size=".1"/></body></worldbody></mujoco>"""
@@ -182,7 +182,7 @@ def test_the_caller_chooses_the_base(base: str, free: bool) -> None:
             assert (sim.model("model").link("b").pose.position[2] < 0.95) == free
 
 
-def test_the_units_of_the_file_are_its_own() -> None:
+def test_the_angle_unit_of_the_file_is_applied() -> None:
     for unit, number in (("degree", "90"), ("radian", repr(np.pi / 2))):
         text = f"""<mujoco><compiler angle="{unit}"/><worldbody>
           <body euler="0 0 {number}"><joint range="-{number} {number}"/><geom size=".1"/></body></worldbody></mujoco>"""
@@ -207,7 +207,7 @@ def test_a_mesh_is_found_by_the_folder_that_the_compiler_element_names(tmp_path:
     assert model.links[0].inertial.mass == pytest.approx(1000 * 8 / 6, rel=1e-5)
 
 
-def test_a_mesh_that_is_not_there_is_an_error_and_to_describe_only_a_warning(tmp_path: Path) -> None:
+def test_a_missing_mesh_is_an_error_but_only_a_warning_for_describe(tmp_path: Path) -> None:
     text = """<mujoco model="m"><asset><mesh name="q" file="no.stl"/></asset>
       <worldbody><body name="b"><geom type="mesh" mesh="q"/></body></worldbody></mujoco>"""
     path = write(tmp_path, {"m.xml": text})
@@ -219,7 +219,7 @@ def test_a_mesh_that_is_not_there_is_an_error_and_to_describe_only_a_warning(tmp
     assert described["model"]["links"][0]["collisions"][0]["geom"]["missing"]
 
 
-def test_a_model_that_the_file_attaches_brings_its_own_files(tmp_path: Path) -> None:
+def test_an_attached_model_uses_its_own_files(tmp_path: Path) -> None:
     hand = """<mujoco model="hand"><compiler meshdir="m"/><asset><mesh file="tetra.stl"/></asset>
       <worldbody><body name="palm"><geom type="mesh" mesh="tetra"/></body></worldbody></mujoco>"""
     main = """<mujoco model="arm"><asset><model name="hand" file="hand/hand.xml"/></asset>
@@ -254,7 +254,7 @@ def test_a_file_is_included_once(tmp_path: Path) -> None:
     assert {d.code for d in errors_of(path)} == {"SK-MJCF-006"}
 
 
-def test_a_world_that_attaches_itself_ends(tmp_path: Path) -> None:
+def test_a_file_that_attaches_itself_is_an_error(tmp_path: Path) -> None:
     text = """<mujoco><asset><model name="me" file="a.xml"/></asset><worldbody><body name="b"><geom size="1"/>
       <attach model="me" body="b" prefix="x"/></body></worldbody></mujoco>"""
     assert {d.code for d in errors_of(write(tmp_path, {"a.xml": text}))} == {"SK-MJCF-006"}
@@ -263,7 +263,7 @@ def test_a_world_that_attaches_itself_ends(tmp_path: Path) -> None:
 # ---------------------------------------------------------------------- bad files
 
 
-def test_all_unknown_names_are_told_of_in_one_pass_with_the_closest(tmp_path: Path) -> None:
+def test_all_unknown_names_are_reported_in_one_pass_with_the_closest_name(tmp_path: Path) -> None:
     text = """<mujoco>
   <worldbody>
     <body>
@@ -284,7 +284,7 @@ def test_all_unknown_names_are_told_of_in_one_pass_with_the_closest(tmp_path: Pa
     assert [d.hint for d in found] == [f"did you mean '{w}'?" for w in ("geom", "size", "stiffness", "actuator")]
 
 
-def test_the_line_is_that_of_the_file_it_stands_in(tmp_path: Path) -> None:
+def test_errors_have_the_line_of_the_included_file(tmp_path: Path) -> None:
     part = "<mujoco>\n\n<worldbody>\n<body name='b'>\n<geom size='1' type='blob'/></body></worldbody></mujoco>"
     path = write(tmp_path, {"main.xml": "<mujoco>\n<include file='part.xml'/></mujoco>", "part.xml": part})
     (found,) = errors_of(path)
@@ -292,7 +292,7 @@ def test_the_line_is_that_of_the_file_it_stands_in(tmp_path: Path) -> None:
     assert "'blob'" in found.message
 
 
-def test_a_name_that_does_not_exist_comes_with_the_closest() -> None:
+def test_an_unknown_reference_is_reported_with_the_closest_name() -> None:
     text = """<mujoco><worldbody><body><joint name="elbow"/><geom size="1"/></body></worldbody>
       <actuator><motor joint="elbwo"/></actuator></mujoco>"""
     (found,) = errors_of(text)
@@ -315,7 +315,7 @@ def test_a_name_that_does_not_exist_comes_with_the_closest() -> None:
         ("<worldbody><body/></worldbody>", ""),
     ],
 )  # fmt: skip
-def test_a_file_that_asks_for_too_much_is_refused(content: str, code: str) -> None:
+def test_a_file_that_exceeds_a_limit_is_refused(content: str, code: str) -> None:
     text = f"<mujoco>{content}</mujoco>"
     if code:
         assert code in [d.code for d in errors_of(text)]
@@ -334,22 +334,20 @@ def test_a_file_that_asks_for_too_much_is_refused(content: str, code: str) -> No
         ("m.dae", b"<COLLADA/>"),
     ],
 )
-def test_a_mesh_file_that_is_none_is_refused_before_the_engine_sees_it(
-    tmp_path: Path, name: str, content: bytes
-) -> None:
+def test_an_invalid_mesh_file_is_refused_before_mujoco_reads_it(tmp_path: Path, name: str, content: bytes) -> None:
     text = f'<mujoco>\n<asset><mesh name="m" file="{name}"/></asset></mujoco>'
     (found,) = errors_of(write(tmp_path, {"a.xml": text, name: content}))
     assert (found.code, found.line) == ("SK-MJCF-007", 2)
 
 
-def test_a_picture_that_promises_too_many_pixels_is_refused(tmp_path: Path) -> None:
+def test_an_image_whose_header_declares_too_many_pixels_is_refused(tmp_path: Path) -> None:
     bomb = b"\x89PNG\r\n\x1a\n" + struct.pack(">I4s2I5B", 13, b"IHDR", 100_000, 100_000, 8, 2, 0, 0, 0) + b"\0" * 8
     text = '<mujoco><asset><texture name="t" type="2d" file="t.png"/></asset></mujoco>'
     (found,) = errors_of(write(tmp_path, {"a.xml": text, "t.png": bomb}))
     assert found.code == "SK-MJCF-007"
 
 
-def test_a_muscle_whose_range_cannot_be_found_in_time_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_search_for_the_range_of_a_muscle_has_a_time_limit(monkeypatch: pytest.MonkeyPatch) -> None:
     """Without any solver iteration the arm below flies apart, and the engine would measure its muscle for ever."""
     monkeypatch.setattr("simkit.compiler.mjcf_parser.RANGE_TIMEOUT", 0.01)
     text = """<mujoco><worldbody><body><joint name="j" range="-1 1" limited="true"/><geom size=".1" pos="1 0 0"/></body>
@@ -357,7 +355,7 @@ def test_a_muscle_whose_range_cannot_be_found_in_time_is_given_up(monkeypatch: p
     assert [d.code for d in errors_of(text)] == ["SK-MJCF-014"]
 
 
-def test_the_length_range_of_a_muscle_is_that_of_the_engine() -> None:
+def test_the_length_range_of_a_muscle_equals_that_of_mujoco() -> None:
     text = """<mujoco><compiler angle="radian"/><worldbody><body name="b"><joint name="j" range="-1 1"/>
       <geom size=".1" pos="1 0 0"/></body></worldbody><actuator><muscle name="pull" joint="j"/></actuator></mujoco>"""
     bare = mujoco.MjModel.from_xml_string(text)
@@ -365,7 +363,7 @@ def test_the_length_range_of_a_muscle_is_that_of_the_engine() -> None:
         assert np.array_equal(sim.mj_model.actuator_lengthrange, bare.actuator_lengthrange)
 
 
-def test_nothing_is_written_where_the_engine_warns(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_mujoco_warnings_are_not_written_to_a_file(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     before = Path.cwd()
     os.chdir(tmp_path)
     try:
@@ -376,7 +374,7 @@ def test_nothing_is_written_where_the_engine_warns(tmp_path: Path, capfd: pytest
     assert capfd.readouterr().err == ""
 
 
-def test_the_bounds_count_what_replication_makes() -> None:
+def test_the_limits_count_replicated_elements() -> None:
     assert size_limits.MOST_ELEMENTS == 100_000
     text = """<mujoco><worldbody><replicate count="300" offset="1 0 0"><body><geom size=".1"/></body></replicate>
       </worldbody></mujoco>"""

@@ -1,4 +1,4 @@
-"""Files that are no world and no model: the message says what they look like."""
+"""Files of another format: the message names their likely format."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def refused(path: Path) -> simkit.Diagnostic:
 
 
 @pytest.mark.parametrize(
-    ("content", "seems"),
+    ("content", "likely_format"),
     [
         (b"", "an empty file"),
         (b" \n\t", "an empty file"),
@@ -44,12 +44,12 @@ def refused(path: Path) -> simkit.Diagnostic:
         (b"version https://git-lfs.github.com/spec/v1\n", LFS),
     ],
 )  # fmt: skip
-def test_a_file_that_is_not_xml_is_called_what_it_looks_like(tmp_path: Path, content: bytes, seems: str) -> None:
+def test_an_error_about_another_format_names_this_format(tmp_path: Path, content: bytes, likely_format: str) -> None:
     path = tmp_path / "world.sdf"
     path.write_bytes(content)
     found = refused(path)
     assert (found.code, found.file) == ("SK-XML-005", str(path))
-    assert found.message == f"this is not XML; it looks like {seems}"
+    assert found.message == f"this is not XML; it looks like {likely_format}"
     assert "<sdf>, <robot> (URDF, xacro) or <mujoco> (MJCF)" in found.hint
 
 
@@ -62,7 +62,7 @@ def test_a_file_that_is_not_xml_is_called_what_it_looks_like(tmp_path: Path, con
         ("<robto/>", "did you mean 'robot'?"),
     ],
 )
-def test_xml_of_another_format_is_called_by_its_name(tmp_path: Path, content: str, hint: str) -> None:
+def test_an_error_about_xml_of_another_format_names_this_format(tmp_path: Path, content: str, hint: str) -> None:
     path = tmp_path / "world.sdf"
     path.write_text(content)
     found = refused(path)
@@ -70,7 +70,7 @@ def test_xml_of_another_format_is_called_by_its_name(tmp_path: Path, content: st
 
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-16-le", "utf-16-be"])
-def test_xml_is_read_in_the_encodings_that_it_may_have(tmp_path: Path, encoding: str) -> None:
+def test_xml_is_read_in_all_supported_encodings(tmp_path: Path, encoding: str) -> None:
     path = tmp_path / "world.sdf"
     path.write_bytes("<sdf version='1.9'><world name='Ä'/></sdf>".encode(encoding))
     diagnostics = Diagnostics()

@@ -1,4 +1,4 @@
-"""Files that mean harm, opened as a user opens them: exit code 0, 2 or 3, no traceback, in seconds and within 2 GiB."""
+"""Malicious files, opened as a user opens them: exit code 0, 2 or 3, no traceback, in seconds and within 2 GiB."""
 
 from __future__ import annotations
 
@@ -89,13 +89,13 @@ def errors(source: object, **options: object) -> list[str]:
 @pytest.mark.parametrize(
     "name", ["/dev/zero", "/dev/null", ".", "/proc/self/mem", "nothing.sdf", "", "x" * 5000, "a\nb.sdf"]
 )
-def test_what_is_no_world_is_refused(opened, name):
+def test_files_that_are_not_worlds_are_refused(opened, name):
     for command in ("check", "run", "inspect"):
         code, text = opened(command, name)
         assert code == 2 and "SK-" in text
 
 
-def test_a_pipe_is_read_and_a_silent_one_is_not_waited_for_long(tmp_path, monkeypatch):
+def test_a_pipe_is_read_and_a_silent_pipe_times_out(tmp_path, monkeypatch):
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
     content = MODEL.format(0, '<link name="l"/>').encode()
@@ -107,7 +107,7 @@ def test_a_pipe_is_read_and_a_silent_one_is_not_waited_for_long(tmp_path, monkey
     assert errors(pipe) == ["SK-LOAD-002"]
 
 
-def test_a_pipe_or_device_that_a_file_names_is_not_there(tmp_path, write):
+def test_a_pipe_or_device_named_in_a_file_counts_as_missing(tmp_path, write):
     os.mkfifo(tmp_path / "m.stl")
     (tmp_path / "zero.dae").symlink_to("/dev/zero")
     shape = '<link name="l"><visual name="v"><geometry><mesh><uri>{}</uri></mesh></geometry></visual></link>'
@@ -126,7 +126,7 @@ def test_a_sparse_file_of_two_gigabytes_is_refused(opened, tmp_path):
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="nothing is denied to root")
-def test_a_file_that_may_not_be_read_is_an_error(write, tmp_path):
+def test_a_file_without_read_permission_is_an_error(write, tmp_path):
     file = write("closed/w.sdf", WORLD)
     file.chmod(0)
     assert errors(file) == ["SK-LOAD-002"]
@@ -163,7 +163,7 @@ def test_a_file_that_may_not_be_read_is_an_error(write, tmp_path):
     ],
     ids=["include", "mesh", "heightmap"],
 )
-def test_nothing_is_read_outside_or_fetched(write, uri, content):
+def test_no_file_outside_the_folders_is_read_or_downloaded(write, uri, content):
     file = write("world/inner/w.sdf", WORLD.format(content.format(uri.replace("<", "&lt;"))))
     found = list(simkit.check(file))
     assert [d for d in found if d.code.startswith("SK-URI") and d.severity != "note"]
@@ -189,7 +189,7 @@ def test_nothing_is_read_outside_or_fetched(write, uri, content):
         '<xacro:include filename="r.xacro"/>',
     ],
 )
-def test_a_xacro_file_reads_and_runs_nothing_of_the_kind(write, line):
+def test_a_xacro_file_cannot_read_outside_its_folders_or_run_code(write, line):
     text = f'<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="base"/>{line}</robot>'
     found = list(simkit.check(write("a/b/r.xacro", text)))
     assert any(d.severity == "error" for d in found)
@@ -213,7 +213,7 @@ def test_a_link_inside_a_folder_is_followed_as_in_a_workspace_of_links(write, tm
 # ---------------------------------------------------------------------- circles and bombs
 
 
-def test_includes_that_go_round_through_other_formats_end(write, tmp_path):
+def test_circular_includes_through_other_formats_are_an_error(write, tmp_path):
     xacro = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">{}</robot>'
     write("one.xacro", xacro.format('<xacro:include filename="two.xacro"/>'))
     write("two.xacro", xacro.format('<xacro:include filename="one.xacro"/>'))
@@ -251,7 +251,7 @@ def test_entities_are_refused_in_every_format(declared, root):
 
 
 @pytest.mark.parametrize("name", ["model.config", "parts.xacro", "package.xml", "inner.xml"])
-def test_entities_are_refused_in_every_file_that_is_named(write, tmp_path, name):
+def test_entities_are_refused_in_every_referenced_file(write, tmp_path, name):
     """None of these can make memory of ten thousand million words."""
     bomb = f"{LAUGHS}]><x>&j;</x>"
     write(f"m/{name}", bomb)
@@ -267,13 +267,13 @@ def test_entities_are_refused_in_every_file_that_is_named(write, tmp_path, name)
 
 @pytest.mark.parametrize("suffix, root", [(".urdf", "robot"), (".xml", "mujoco"), (".xacro", "robot"), (".sdf", "sdf")])
 @pytest.mark.parametrize("shape", ["deep", "wide"])
-def test_a_million_nested_or_neighbouring_elements_end_soon(opened, write, suffix, root, shape):
+def test_a_million_nested_or_sibling_elements_are_handled_quickly(opened, write, suffix, root, shape):
     inner = "<link>" * 1_000_000 if shape == "deep" else '<link name="l"/>' * WIDE
     code, text = opened("check", write(f"x{suffix}", f"<{root}>{inner}</{root}>"))
     assert code == 2 and "SK-" in text
 
 
-def test_thousands_of_unknown_names_are_not_each_compared_with_thousands(write):
+def test_thousands_of_unknown_names_are_handled_quickly(write):
     links = "".join(f'<link name="link_{i}"/>' for i in range(6_000))
     frames = "".join(f'<frame name="f{i}" attached_to="lonk_{i}"/>' for i in range(6_000))
     found = list(simkit.check(MODEL.format(0, links + frames)))
@@ -296,13 +296,13 @@ def png(width: int, height: int, rows: bytes) -> bytes:
     '<collision name="c"><geometry><heightmap>'
     "<uri>p.png</uri></heightmap></geometry></collision></link>"], ids=["texture", "heightmap"])  # fmt: skip
 @pytest.mark.parametrize("size", [60_000, 2_000_000_000])
-def test_a_picture_that_unpacks_to_gigabytes_is_refused(opened, write, content, size):
+def test_an_image_that_unpacks_to_gigabytes_is_refused(opened, write, content, size):
     write("p.png", png(size, size, zlib.compress(b"\0" * 50_000_000, 9)))
     code, text = opened("check", write("w.sdf", MODEL.format(1, content)))
     assert code in (0, 2) and ("SK-MESH" in text or "SK-SDF" in text or "SK-URI" in text)
 
 
-def test_an_stl_header_that_promises_a_thousand_million_triangles_is_not_believed(opened, write):
+def test_an_stl_header_that_declares_a_thousand_million_triangles_is_refused(opened, write):
     write("m.stl", b"\0" * 80 + struct.pack("<I", 1_000_000_000) + b"\0" * 500)
     shape = '<link name="l"><visual name="v"><geometry><mesh><uri>m.stl</uri></mesh></geometry></visual></link>'
     code, text = opened("run", write("w.sdf", MODEL.format(0, shape)), "--duration", "0.002")
@@ -329,12 +329,12 @@ def test_a_thousand_million_rays_are_refused(kind, counts):
 
 @pytest.mark.parametrize("kind", ["camera", "depth_camera", "rgbd_camera"])
 @pytest.mark.parametrize("size", [(10**6, 10**6), (10**9, 1), (20_000, 20_000)])
-def test_a_huge_picture_is_refused(kind, size):
+def test_a_huge_camera_image_is_refused(kind, size):
     assert errors(MODEL.format(0, camera(kind, *size))) == ["SK-PARAM-002"]
 
 
 @pytest.mark.parametrize("rate", ["1e9", "1e-9", "1e300", "1e-300", "0"])
-def test_any_rate_is_kept_or_refused(rate):
+def test_any_update_rate_is_accepted_or_refused(rate):
     sensor = f'<link name="l"><sensor name="s" type="imu"><update_rate>{rate}</update_rate></sensor></link>'
     with simkit.load(MODEL.format(0, sensor)) as sim:
         sim.step(20)
@@ -342,7 +342,7 @@ def test_any_rate_is_kept_or_refused(rate):
 
 
 @pytest.mark.parametrize("step", ["1e-12", "1e9", "1e-320", "0", "-1", "nan", "inf", ""])
-def test_a_step_that_no_clock_counts_is_refused(step):
+def test_an_invalid_step_size_is_refused(step):
     world = WORLD.format(f'<physics name="p"><max_step_size>{step}</max_step_size></physics>')
     assert errors(world) == ["SK-PARAM-002"]
     mjcf = f'<mujoco><option timestep="{step or 0}"/><worldbody><geom size="1"/></worldbody></mujoco>'
@@ -362,7 +362,7 @@ def test_a_thousand_million_copies_are_refused(count):
     assert errors(WORLD.format(COPIES.format(4, rows)))[0] in ("SK-SDF-033", "SK-PARAM-002")
 
 
-def test_more_moving_bodies_than_the_engine_compiles_in_a_minute_are_refused(monkeypatch):
+def test_more_moving_bodies_than_mujoco_compiles_in_a_minute_are_refused(monkeypatch):
     monkeypatch.setattr("simkit.compiler.model_compilation.MOST_MOVING", 50)
     box = "<box><size>1 1 1</size></box><distribution><type>random</type></distribution>"
     assert errors(WORLD.format(COPIES.format(60, box))) == ["SK-PHYS-029"]
@@ -392,7 +392,7 @@ NAMES = [
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_topics_of_odd_names_are_recorded_and_read_back(tmp_path, name):
+def test_topics_with_unusual_names_are_recorded_and_read_back(tmp_path, name):
     quoted = quoteattr(name)
     plugin = '<plugin filename="gz-sim-joint-state-publisher-system" name="p"/>'
     plugin += '<plugin filename="gz-sim-odometry-publisher-system" name="o"/>'
@@ -415,7 +415,7 @@ def test_topics_of_odd_names_are_recorded_and_read_back(tmp_path, name):
 @pytest.mark.parametrize(
     "topic", ["", "/", "//", "a b", "../x", "名前", "x" * 10_000, "a//b/", "%n", "~/x", "a\nb", "{ns}", "/a/../b"]
 )
-def test_odd_topics_are_refused_or_made_valid(tmp_path, topic):
+def test_invalid_topic_names_are_refused_or_corrected(tmp_path, topic):
     sensor = LASER.format('"s"', "lidar", 500, topic, "lidar", SCAN.format(3, 1), "lidar")
     world = MODEL.format(0, sensor)
     if not errors(world):
@@ -424,6 +424,6 @@ def test_odd_topics_are_refused_or_made_valid(tmp_path, topic):
             assert all(t.startswith("/") and t.isascii() and t.isprintable() for t in sim.topics())
 
 
-def test_this_process_stays_small():
+def test_the_memory_of_this_process_stays_small():
     """All of the above that ran in it, with the engine and its libraries."""
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024 < LARGEST

@@ -1,4 +1,4 @@
-"""Reading XML: lines, bounds, and what is refused."""
+"""Reading XML: lines, limits and refused content."""
 
 from __future__ import annotations
 
@@ -37,13 +37,13 @@ def test_entities_are_refused():
 
 
 @pytest.mark.parametrize("text", ["<!-- a -- b --><a/>", "<!-- licence -->\n<?xml version='1.0'?><a/>"])
-def test_faults_in_front_of_the_root_are_only_warned_about(text):
+def test_faults_before_the_root_element_cause_only_a_warning(text):
     found = Diagnostics()
     assert parse_text(text, found) is not None
     assert [(d.code, d.severity) for d in found] == [("SK-XML-004", "warning")]
 
 
-def test_depth_and_number_of_elements_are_bounded(monkeypatch):
+def test_depth_and_number_of_elements_are_limited(monkeypatch):
     found = Diagnostics()
     assert parse_text("<a>" * 300 + "</a>" * 300, found) is None
     monkeypatch.setattr(xml_reader, "MAX_ELEMENTS", 10)

@@ -1,4 +1,4 @@
-"""`<experimental:params>`: an include changes what it brings."""
+"""`<experimental:params>`: an include changes its model."""
 
 from __future__ import annotations
 
@@ -28,21 +28,21 @@ def arm(load, write):
             "<include><uri>model://arm</uri></include></world></sdf>",
             (root,),
         )
-        changed, other = scene.world.models
-        return changed, other, [d for d in found if d.severity == "error"]
+        changed, unchanged = scene.world.models
+        return changed, unchanged, [d for d in found if d.severity == "error"]
 
     return _arm
 
 
-def test_each_child_has_an_action_where_the_element_has_none(arm):
-    changed, other, errors = arm(
+def test_children_have_actions_if_the_element_has_none(arm):
+    changed, unchanged, errors = arm(
         '<link element_id="base"><visual name="ball" action="add"><geometry><sphere><radius>2</radius></sphere>'
         '</geometry></visual><visual name="look" action="remove"/>'
         '<sensor name="eye" action="modify"><update_rate>30</update_rate></sensor>'
         '<inertial action="replace"><mass>7</mass></inertial></link>'
     )
     assert not errors
-    base, same = changed.links[0], other.links[0]
+    base, same = changed.links[0], unchanged.links[0]
     assert [v.name for v in base.visuals] == ["ball"] and [v.name for v in same.visuals] == ["look"]
     assert (base.sensors[0].rate, base.sensors[0].topic, same.sensors[0].rate) == (30, "eye", 10)
     assert (base.inertial.mass, same.inertial.mass) == (7, 2)
@@ -63,24 +63,24 @@ def test_whole_elements_are_added_removed_modified_and_replaced(arm):
     assert changed.links[1].inertial.mass == 9
 
 
-def test_a_path_leads_into_what_the_included_model_includes(arm):
-    changed, other, errors = arm(
+def test_a_path_can_lead_into_a_nested_include(arm):
+    changed, unchanged, errors = arm(
         '<link element_id="cargo::l"><inertial action="modify"><mass>5</mass></inertial></link>'
     )
     assert not errors
-    assert (changed.models[0].links[0].inertial.mass, other.models[0].links[0].inertial.mass) == (5, 3)
+    assert (changed.models[0].links[0].inertial.mass, unchanged.models[0].links[0].inertial.mass) == (5, 3)
     changed, _, errors = arm('<model element_id="cargo" action="remove"/>')
     assert not errors and changed.models == ()
 
 
-def test_a_removal_with_children_takes_only_those(arm):
+def test_a_removal_with_children_removes_only_these_children(arm):
     changed, _, errors = arm('<sensor element_id="base::eye" action="remove"><topic/></sensor>')
     assert not errors
     assert (changed.links[0].sensors[0].topic, changed.links[0].sensors[0].rate) == ("", 10)
 
 
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "expected_text"),
     [
         ('<link action="remove"/>', "needs element_id="),
         ('<link element_id="bas" action="remove"/>', "did you mean 'base'?"),
@@ -93,14 +93,14 @@ def test_a_removal_with_children_takes_only_those(arm):
         ('<link element_id="base" action="modify"><gravty>0</gravty></link>', "has no <gravty>"),
     ],
 )
-def test_a_wrong_change_is_an_error_at_its_line_and_changes_nothing(arm, change, said):
-    changed, other, errors = arm(change)
+def test_a_wrong_change_is_an_error_at_its_line_and_changes_nothing(arm, change, expected_text):
+    changed, unchanged, errors = arm(change)
     assert [(d.code, d.line) for d in errors] == [("SK-SDF-032", 2)]
-    assert said in f"{errors[0].message} {errors[0].hint}"
-    assert [link.name for link in changed.links] == [link.name for link in other.links]
+    assert expected_text in f"{errors[0].message} {errors[0].hint}"
+    assert [link.name for link in changed.links] == [link.name for link in unchanged.links]
 
 
-def test_what_a_change_adds_is_checked_like_the_rest_of_the_file(load, write):
+def test_added_elements_are_checked_like_all_others(load, write):
     root = write("models/box/model.sdf", BOX).parents[1]
     _, found = load(
         '<sdf version="1.9"><world name="w"><include><uri>model://box</uri><experimental:params>'

@@ -1,4 +1,4 @@
-"""Names with `::` in files before 1.8: they stand for nested models."""
+"""Names with `::` in files before 1.8, which represent nested models."""
 
 from __future__ import annotations
 
@@ -32,12 +32,12 @@ def test_a_flattened_model_is_nested_again(load, version):
     assert m.plugins[0].params.text("joint_name") == "arm::j"
 
 
-def test_from_1_8_on_the_separator_is_an_error_in_a_name(load):
+def test_from_sdf_1_8_on_a_name_with_the_separator_is_an_error(load):
     _, found = load(FLAT.format("1.8"))
     assert {d.code for d in found if d.severity == "error"} == {"SK-SDF-003"}
 
 
-def test_collisions_and_visuals_keep_such_names(load):
+def test_collisions_and_visuals_keep_names_with_the_separator(load):
     scene, _ = load(
         '<sdf version="1.7"><model name="m"><link name="l"><collision name="a::b"><geometry><box/></geometry>'
         "</collision></link></model></sdf>"

@@ -1,4 +1,4 @@
-"""Where things stand: relative poses, attached frames, placement frames, nested and merged models."""
+"""Poses: relative poses, attached frames, placement frames, nested and merged models."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def near(pose: Pose, *xyzrpy: float) -> None:
     assert abs(float(pose.quaternion @ want.quaternion)) == pytest.approx(1.0, abs=1e-12)
 
 
-def test_a_link_stands_relative_to_another_link(load):
+def test_a_link_pose_can_be_relative_to_another_link(load):
     scene, _ = load("""<sdf version="1.7"><model name="m"><pose>0 0 2 0 0 0</pose>
       <link name="a"><pose degrees="true">0.5 0 0 0 0 180</pose></link>
       <link name="b"><pose relative_to="a">0.5 0 1 0 0 0</pose></link></model></sdf>""")
@@ -38,13 +38,13 @@ def test_a_chain_of_frames_carries_a_joint_and_its_sensor(load):
     assert [f.attached_to for f in scene.model.frames] == ["m::b", "m::b"]
 
 
-def test_a_placement_frame_is_what_the_pose_speaks_of(load):
+def test_the_model_pose_applies_to_the_placement_frame(load):
     scene, _ = load("""<sdf version="1.9"><model name="m" placement_frame="tip"><pose>0 0 5 0 0 0</pose>
       <link name="a"/><frame name="tip"><pose>0 0 2 0 0 0</pose></frame></model></sdf>""")
     near(scene.model.pose_world, 0, 0, 3, 0, 0, 0)
 
 
-def test_a_nested_model_moves_as_one_and_is_seen_by_its_scoped_names(load):
+def test_a_nested_model_moves_as_a_whole_and_has_scoped_names(load):
     scene, _ = load("""<sdf version="1.9"><world name="w"><model name="m"><pose>1 0 0 0 0 0</pose>
       <model name="n"><pose>0 1 0 0 0 0</pose><link name="a"><pose>0 0 1 0 0 0</pose></link></model>
       <link name="b"><pose relative_to="n::a">0 0 1 0 0 0</pose></link></model>
@@ -57,7 +57,7 @@ def test_a_nested_model_moves_as_one_and_is_seen_by_its_scoped_names(load):
     near(scene.world.frames[0].pose_world, 1, 1, 1, 0, 0, 0)
 
 
-def test_the_canonical_link_may_lie_in_a_nested_model(load):
+def test_the_canonical_link_can_be_in_a_nested_model(load):
     scene, _ = load("""<sdf version="1.9"><model name="m"><model name="n"><link name="a"/></model></model></sdf>""")
     assert scene.model.canonical_link == "m::n::a"
 
@@ -69,22 +69,22 @@ def test_a_pose_that_depends_on_itself_is_an_error(load):
 
 
 @pytest.mark.parametrize(
-    ("version", "attributes", "wanted"),
+    ("version", "attributes", "expected_axis"),
     [
         ("1.4", "", (1, 0, 0)),  # before 1.5 in the model frame
         ("1.5", "", (0, 1, 0)),  # then in the joint frame
         ("1.9", 'expressed_in="__model__"', (1, 0, 0)),
     ],
 )
-def test_the_axis_is_read_in_the_frame_of_its_version(load, version, attributes, wanted):
+def test_the_axis_is_read_in_the_frame_of_its_version(load, version, attributes, expected_axis):
     scene, _ = load(f"""<sdf version="{version}"><model name="m"><link name="a"/>
       <link name="b"><pose>0 0 0 0 0 1.5707963267948966</pose></link>
       <joint name="j" type="revolute"><parent>a</parent><child>b</child>
       <axis><xyz {attributes}>1 0 0</xyz></axis></joint></model></sdf>""")
-    np.testing.assert_allclose(scene.model.joints[0].axes[0].xyz_world, wanted, atol=1e-12)
+    np.testing.assert_allclose(scene.model.joints[0].axes[0].xyz_world, expected_axis, atol=1e-12)
 
 
-def test_use_parent_model_frame_is_honoured_before_1_7(load):
+def test_use_parent_model_frame_is_used_before_sdf_1_7(load):
     scene, _ = load("""<sdf version="1.6"><model name="m"><link name="a"/>
       <link name="b"><pose>0 0 0 0 0 1.5707963267948966</pose></link>
       <joint name="j" type="prismatic"><parent>a</parent><child>b</child><axis><xyz>3 0 0</xyz>

@@ -1,4 +1,4 @@
-"""What an include brings: names, places, static, built-in models, merging, and what it refuses."""
+"""Includes: names, poses, static, built-in models, merging, and refused includes."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def test_an_include_inside_an_old_model_is_nested_and_static_with_it(load, write
     assert (nested.scoped, nested.static, nested.links[0].scoped) == ("outer::box", True, "outer::box::l")
 
 
-def test_a_merged_model_gives_its_content_away(load, write):
+def test_a_merged_model_becomes_part_of_the_including_model(load, write):
     root = write("models/box/model.sdf", BOX).parents[1]
     scene, found = load(
         '<sdf version="1.9"><model name="m"><link name="own"/><include merge="true"><uri>model://box</uri>'
@@ -57,7 +57,7 @@ BALL = '<mujoco model="ball"><worldbody><body name="b"><freejoint/><geom size="0
      '<include><uri>model://r</uri><experimental:params><link element_id="base" action="remove"/>'
      "</experimental:params></include>"],
 )  # fmt: skip
-def test_a_robot_in_urdf_is_neither_merged_nor_changed(load, write, inside):
+def test_a_urdf_robot_cannot_be_merged_or_changed_by_an_include(load, write, inside):
     root = write("models/r/r.urdf", ROBOT).parents[1]
     _, found = load(f'<sdf version="1.9"><model name="m"><link name="own"/>{inside}</model></sdf>', (root,))
     errors = [d for d in found if d.severity == "error"]
@@ -88,7 +88,7 @@ def test_a_folder_with_one_model_of_mujocos_own_format_is_that_model(load, write
 @pytest.mark.parametrize(
     "ground", ["model://ground_plane", "https://fuel.gazebosim.org/1.0/OpenRobotics/models/Ground Plane"]
 )
-def test_ground_and_sun_need_no_files(load, ground):
+def test_ground_plane_and_sun_are_built_in(load, ground):
     scene, found = load(
         f'<sdf version="1.6"><world name="w"><include><uri>{ground}</uri></include>'
         "<include><uri>model://sun</uri></include></world></sdf>"
@@ -99,7 +99,7 @@ def test_ground_and_sun_need_no_files(load, ground):
     assert (sun.type, sun.cast_shadows, tuple(sun.pose_world.position)) == ("directional", True, (0, 0, 10))
 
 
-def test_a_fuel_model_that_is_not_here_is_one_error_with_its_url(load):
+def test_a_missing_fuel_model_is_one_error_with_its_url(load):
     url = "https://fuel.gazebosim.org/1.0/OpenRobotics/models/Coke"
     _, found = load(f'<sdf version="1.6"><world name="w"><include><uri>{url}</uri></include></world></sdf>')
     assert [d.code for d in found] == ["SK-URI-002"]
@@ -115,7 +115,7 @@ def test_fuel_caches_are_read(load, write, monkeypatch):
     assert not [d for d in found if d.severity == "error"]
 
 
-def test_a_circle_of_includes_ends(load, write):
+def test_a_circle_of_includes_is_an_error(load, write):
     text = '<sdf version="1.9"><model name="a"><link name="l"/><include><uri>model://a</uri></include></model></sdf>'
     path = write("models/a/model.sdf", text)
     _, found = load(path, (path.parents[1],))
@@ -134,7 +134,7 @@ def test_model_config_chooses_the_highest_version(load, write):
 
 
 @pytest.mark.parametrize("uri", ["model://box/../../secret.sdf", "../../../secret.sdf", "/etc/hostname"])
-def test_no_uri_leaves_its_folders(load, write, uri):
+def test_a_uri_outside_its_folders_is_refused(load, write, uri):
     path = write(
         "models/worlds/w.sdf", f'<sdf version="1.9"><world name="w"><include><uri>{uri}</uri></include></world></sdf>'
     )
@@ -142,7 +142,7 @@ def test_no_uri_leaves_its_folders(load, write, uri):
     assert [d.code for d in found] == ["SK-URI-003"]
 
 
-def test_a_missing_mesh_is_a_warning_that_lists_where_it_was_looked_for(load, write):
+def test_a_missing_mesh_is_a_warning_that_lists_the_searched_paths(load, write):
     path = write(
         "m/model.sdf",
         '<sdf version="1.9"><model name="m"><link name="l"><collision name="c"><geometry><mesh>\n'

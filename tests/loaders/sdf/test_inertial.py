@@ -1,4 +1,4 @@
-"""Mass, centre of mass and inertia that follow from collisions, beside what analysis gives."""
+"""Mass, centre of mass and inertia from collisions, compared with analytic values."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def collision(shape: str, pose: str = "0 0 0 0 0 0", name: str = "c", density: s
 
 
 def mass_of(text: str):
-    """The inertial as the package resolves it, with its own reader of meshes."""
+    """Return the inertial that the package computes with its own reader of meshes."""
     from simkit.compiler.meshes.mesh_reader import load_mesh
 
     diagnostics = Diagnostics()
@@ -73,7 +73,7 @@ PI = math.pi
         ),
     ],
 )
-def test_solids_have_the_inertia_of_analysis(shape, mass, com, moments):
+def test_solids_have_the_analytic_inertia(shape, mass, com, moments):
     inertial, found = mass_of(link(collision(shape)))
     assert not found
     near(inertial, mass, com, (*moments, 0, 0, 0))
@@ -99,7 +99,7 @@ def test_an_outline_inside_another_is_a_hole_whichever_way_it_runs():
         near(inertial, 12 * W, (0, 0, 0.5), (W * (64 / 3 - 4 / 3 + 1), W * (64 / 3 - 4 / 3 + 1), W * 40, 0, 0, 0))
 
 
-def test_several_collisions_turn_and_add_up_about_their_common_centre():
+def test_the_inertias_of_rotated_collisions_add_up_about_their_common_centre():
     box = "<box><size>1 2 3</size></box>"
     turned = collision(box, f"5 0 0 {PI / 2} 0 0", "d", "<density>500</density>")
     inertial, _ = mass_of(link(collision(box) + turned))
@@ -110,7 +110,7 @@ def test_several_collisions_turn_and_add_up_about_their_common_centre():
     near(inertial, 9000, (com, 0, 0), (ixx, iyy, izz, 0, 0, 0))
 
 
-def test_the_density_of_the_inertial_stands_in_and_a_mass_scales():
+def test_the_density_of_the_inertial_is_the_default_and_a_mass_scales_the_result():
     box = collision("<box><size>1 1 1</size></box>")
     assert mass_of(link(box, '<inertial auto="true"><density>30</density></inertial>'))[0].mass == 30
     own = collision("<box><size>1 1 1</size></box>", density="<density>20</density>")
@@ -126,7 +126,7 @@ def test_a_mass_that_is_not_positive_is_an_error(mass):
     assert [d.code for d in found if d.severity == "error"] == ["SK-SDF-013"]
 
 
-def test_planes_and_nothing_have_no_volume_and_say_so():
+def test_planes_and_empty_shapes_have_no_volume_and_cause_a_warning():
     _, found = mass_of(link(collision("<plane/>")))
     assert [d.code for d in found] == ["SK-SDF-022", "SK-SDF-022"]
     assert all(d.severity == "warning" for d in found)
@@ -134,7 +134,7 @@ def test_planes_and_nothing_have_no_volume_and_say_so():
 
 @pytest.fixture
 def tetrahedron(tmp_path):
-    """A mesh file with the corners 0, x, y and z at 1: volume 1/6, centre 1/4."""
+    """Write a mesh file with the corners 0, x, y and z at 1: volume 1/6, centre 1/4."""
     corners = {"o": "0 0 0", "x": "1 0 0", "y": "0 1 0", "z": "0 0 1"}
     facets = "".join(
         "facet normal 0 0 0\nouter loop\n" + "".join(f"vertex {corners[c]}\n" for c in f) + "endloop\nendfacet\n"
@@ -146,7 +146,7 @@ def tetrahedron(tmp_path):
 
 
 @pytest.mark.parametrize("scale", [(1, 1, 1), (2, 3, 4), (-2, 3, 4), (-2, -3, -4)])
-def test_a_mesh_is_integrated_with_its_scale_also_a_negative_one(tetrahedron, scale):
+def test_a_mesh_is_integrated_with_its_positive_or_negative_scale(tetrahedron, scale):
     mesh = f"<mesh><uri>{tetrahedron}</uri><scale>{' '.join(map(str, scale))}</scale></mesh>"
     text = link(collision(mesh))
     path = tetrahedron.parent / "m.sdf"
@@ -161,7 +161,7 @@ def test_a_mesh_is_integrated_with_its_scale_also_a_negative_one(tetrahedron, sc
     near(inertial, volume * W, (a / 4, b / 4, c / 4), (yy + zz, xx + zz, xx + yy, xy, xz, yz))
 
 
-def test_the_unit_of_a_collada_file_counts(tmp_path):
+def test_the_unit_of_a_collada_file_is_applied(tmp_path):
     faces = "0 2 1 0 1 3 0 3 2 1 2 3"
     (tmp_path / "t.dae").write_text(f"""<?xml version="1.0"?>
 <COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><asset><unit name="dm" meter="0.1"/>

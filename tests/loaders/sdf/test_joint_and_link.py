@@ -1,4 +1,4 @@
-"""Joint and link settings as the format gives them, with their defaults."""
+"""Joint and link settings of the format, with their defaults."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def joint(content: str, kind: str = "revolute", version: str = "1.11") -> str:
     return model(f'<joint name="j" type="{kind}"><parent>a</parent><child>b</child>{content}</joint>', version)
 
 
-def test_a_stop_keeps_its_stiffness_where_the_file_gives_one(load):
+def test_a_limit_has_the_stiffness_that_the_file_gives(load):
     limit = "<limit><lower>-1</lower><upper>1</upper><stiffness>5</stiffness><dissipation>2</dissipation></limit>"
     axis = load(joint(f"<axis>{limit}</axis>"))[0].model.joints[0].axes[0]
     assert (axis.limit_stiffness, axis.limit_dissipation) == (5, 2)
@@ -38,7 +38,7 @@ def test_a_screw_has_metres_per_turn(load, text, pitch):
     assert scene.model.joints[0].thread_pitch == pytest.approx(pitch)
 
 
-def test_a_thread_without_turns_is_an_error(load):
+def test_a_thread_pitch_of_zero_is_an_error(load):
     _, found = load(joint("<axis/><thread_pitch>0</thread_pitch>", "screw"))
     assert [d.code for d in found if d.severity == "error"] == ["SK-PARAM-002"]
 
@@ -56,7 +56,7 @@ def test_a_mimic_may_name_a_joint_of_a_nested_model_and_its_second_axis(load):
 
 
 @pytest.mark.parametrize(("version", "xyz"), [("1.4", (1, 0, 0)), ("1.5", (0, -1, 0)), ("1.7", (0, -1, 0))])
-def test_before_1_5_an_axis_is_given_in_the_model_frame(load, version, xyz):
+def test_before_sdf_1_5_an_axis_is_given_in_the_model_frame(load, version, xyz):
     scene, _ = load(
         f'<sdf version="{version}"><model name="m"><link name="a"/><link name="b"><pose>0 0 0 0 0 -1.5707963267948966'
         '</pose></link><joint name="j" type="revolute"><parent>a</parent><child>b</child><axis><xyz>1 0 0</xyz></axis>'
@@ -65,7 +65,7 @@ def test_before_1_5_an_axis_is_given_in_the_model_frame(load, version, xyz):
     assert scene.model.joints[0].axes[0].xyz_world == pytest.approx(xyz, abs=1e-12)
 
 
-def test_before_1_7_a_switch_says_which_frame_the_axis_is_in(load):
+def test_before_sdf_1_7_a_switch_selects_the_frame_of_the_axis(load):
     text = (
         '<sdf version="1.6"><model name="m"><link name="a"/><link name="b"><pose>0 0 0 0 0 -1.5707963267948966'
         '</pose></link><joint name="j" type="revolute"><parent>a</parent><child>b</child><axis><xyz>1 0 0</xyz>'
@@ -75,7 +75,7 @@ def test_before_1_7_a_switch_says_which_frame_the_axis_is_in(load):
     assert load(text.format(0))[0].model.joints[0].axes[0].xyz_world == pytest.approx((0, -1, 0), abs=1e-12)
 
 
-def test_the_wind_of_a_model_blows_on_links_that_do_not_say_otherwise(load):
+def test_wind_of_a_model_acts_on_links_without_their_own_setting(load):
     scene, _ = load(
         '<sdf version="1.9"><model name="m"><enable_wind>1</enable_wind><allow_auto_disable>0</allow_auto_disable>'
         '<link name="a"/><link name="b"><enable_wind>0</enable_wind><velocity_decay><linear>0.1</linear>'

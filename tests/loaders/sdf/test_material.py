@@ -1,4 +1,4 @@
-"""Materials: what the element says, what its script says, and where pictures are found."""
+"""Materials: values of the element, values of its script, and the search for textures."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ material Own/Open { technique { pass { diffuse 0 0 1
 
 @pytest.fixture
 def read(tmp_path):
-    """Reads a model with one visual; returns its material and what was said."""
+    """Reads a model with one visual; returns its material and what was diagnostics."""
     scripts = tmp_path / "paints" / "materials" / "scripts"
     scripts.mkdir(parents=True)
     (scripts / "own.material").write_text(OGRE)
@@ -91,30 +91,30 @@ def script(name, uris=("model://paints/materials/scripts", "model://paints/mater
         ("RedTransparent", (1, 0, 0, 1), (1, 0, 0, 0.5), (0, 0, 0, 1)),
     ],
 )
-def test_gazebos_own_names_are_known(read, name, ambient, diffuse, emissive):
+def test_material_names_of_gazebo_have_their_colours(read, name, ambient, diffuse, emissive):
     for spelt in (
         script(f"Gazebo/{name}", ["file://media/materials/scripts/gazebo.material"]),
         script(f"Gazebo/{name}", []),
     ):
-        material, said = read(spelt)
+        material, diagnostics = read(spelt)
         assert (material.ambient, material.diffuse, material.emissive) == (ambient, diffuse, emissive)
-        assert not said
+        assert not diagnostics
 
 
-def test_an_unknown_name_is_noted_with_the_one_that_was_meant(read):
-    material, said = read(script("Gazebo/Oragne", []))
+def test_an_unknown_material_name_causes_a_note_with_the_closest_name(read):
+    material, diagnostics = read(script("Gazebo/Oragne", []))
     assert material.diffuse == (1, 1, 1, 1)
-    assert [(code, hint) for code, _, hint in said] == [("SK-SDF-021", "did you mean 'Gazebo/Orange'?")]
+    assert [(code, hint) for code, _, hint in diagnostics] == [("SK-SDF-021", "did you mean 'Gazebo/Orange'?")]
 
 
-def test_a_models_script_gives_colours_and_its_picture(read, tmp_path):
-    material, said = read(script("Own/Base"))
+def test_a_material_script_of_a_model_gives_colours_and_texture(read, tmp_path):
+    material, diagnostics = read(script("Own/Base"))
     assert material.ambient == (0.1, 0.2, 0.3, 1)
     assert material.diffuse == (0.4, 0.5, 0.6, 1)  # opaque: it does not blend
     assert material.specular == (0.7, 0.6, 0.5, 1)
     assert material.emissive == (0, 0.25, 0, 1)
     assert material.texture == tmp_path / "paints" / "materials" / "textures" / "paint.png"
-    assert not said
+    assert not diagnostics
 
 
 def test_a_script_inherits_from_its_own_file_and_from_gazebo(read):
@@ -134,41 +134,41 @@ def test_a_script_inherits_from_its_own_file_and_from_gazebo(read):
         ("Own/Open", (0, 0, 1, 1)),
     ],
 )
-def test_strange_scripts_are_read_as_far_as_they_go(read, name, diffuse):
-    material, said = read(script(name))
+def test_incomplete_scripts_are_read_as_far_as_possible(read, name, diffuse):
+    material, diagnostics = read(script(name))
     assert material.diffuse == diffuse
     assert material.double_sided is (name == "Own/Two words")
-    assert not said
+    assert not diagnostics
 
 
-def test_a_hidden_or_missing_script_is_noted(read):
+def test_a_hidden_or_missing_script_causes_a_note(read):
     assert [c for c, *_ in read(script("Own/Hidden"))[1]] == ["SK-SDF-021"]
     assert [c for c, *_ in read(script("Own/Base", ["model://nowhere/scripts"]))[1]] == ["SK-SDF-021"]
 
 
-def test_the_element_wins_over_its_script(read):
+def test_values_of_the_element_override_its_script(read):
     material, _ = read(script("Own/Base", more="<diffuse>0 0 1 1</diffuse><double_sided>true</double_sided>"))
     assert (material.diffuse, material.ambient) == ((0, 0, 1, 1), (0.1, 0.2, 0.3, 1))
     assert material.double_sided
 
 
-def test_a_scripts_picture_outside_of_its_folders_is_not_taken(read, tmp_path):
+def test_a_texture_outside_the_script_folders_is_refused(read, tmp_path):
     file = tmp_path / "paints" / "materials" / "scripts" / "own.material"
     file.write_text(OGRE.replace("paint.png", "../../../secret.png"))
-    material, said = read(script("Own/Base"))
+    material, diagnostics = read(script("Own/Base"))
     assert material.texture is None
-    assert [code for code, *_ in said] == ["SK-URI-006"]
+    assert [code for code, *_ in diagnostics] == ["SK-URI-006"]
 
 
 @pytest.mark.parametrize(
     "content", ["{" * 100_000, "material a " * 20_000, "/*" * 50_000, "material x {" + "pass {" * 50_000, '"' * 9999]
 )
-def test_a_harmful_script_is_read_in_no_time(read, tmp_path, content):
+def test_a_malicious_script_is_read_quickly(read, tmp_path, content):
     (tmp_path / "paints" / "materials" / "scripts" / "own.material").write_text(content)
     assert read(script("Own/Base"))[0].diffuse == (1, 1, 1, 1)
 
 
-def test_physically_based_materials_give_a_picture_and_roughness(read, tmp_path):
+def test_physically_based_materials_give_a_texture_and_roughness(read, tmp_path):
     (tmp_path / "albedo.png").write_bytes(b"any")
     text = """<material><diffuse>.5 .5 .5</diffuse><specular>.2 .2 .2</specular><pbr>
     <specular><albedo_map>other.png</albedo_map></specular>
@@ -179,14 +179,14 @@ def test_physically_based_materials_give_a_picture_and_roughness(read, tmp_path)
     assert material.diffuse == (0.5, 0.5, 0.5, 1)
 
 
-def test_a_missing_picture_is_said_once(read):
+def test_a_missing_texture_is_reported_once(read):
     text = "<material><pbr><metal><albedo_map>gone.png</albedo_map></metal></pbr></material>"
     two = f'{text}</visual><visual name="w"><geometry><sphere><radius>1</radius></sphere></geometry>{text}'
-    _, said = read(two)
-    assert [code for code, *_ in said] == ["SK-URI-006"]
+    _, diagnostics = read(two)
+    assert [code for code, *_ in diagnostics] == ["SK-URI-006"]
 
 
-def test_a_missing_mesh_is_said_once_however_often_it_is_used(tmp_path):
+def test_a_missing_mesh_is_reported_once_even_if_used_repeatedly(tmp_path):
     shape = "<geometry><mesh><uri>model://gone/a.stl</uri></mesh></geometry>"
     parts = "".join(f'<visual name="v{i}">{shape}</visual><collision name="c{i}">{shape}</collision>' for i in range(3))
     found = Diagnostics()

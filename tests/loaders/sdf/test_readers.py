@@ -1,4 +1,4 @@
-"""What the elements of a model mean: mass, shapes, surfaces, materials, joints, sensors, lights, worlds."""
+"""Elements of a model: mass, shapes, surfaces, materials, joints, sensors, lights, worlds."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def codes(found: list) -> set[str]:
     return {d.code for d in found if d.severity != "note"}
 
 
-def test_a_link_without_inertial_weighs_a_kilogram(load):
+def test_a_link_without_inertial_has_a_mass_of_1_kg(load):
     scene, found = load(body(""))
     inertial = scene.model.links[0].inertial
     assert (inertial.mass, inertial.inertia[:3], inertial.given) == (1.0, (1.0, 1.0, 1.0), False)
@@ -40,7 +40,7 @@ def test_the_inertia_is_turned_into_link_axes(load):
     np.testing.assert_allclose(inertial.inertia, (2, 1, 2.5, 0, 0, 0), atol=1e-12)
 
 
-def test_automatic_inertia_of_two_boxes_uses_parallel_axes_and_a_given_mass(load):
+def test_automatic_inertia_of_two_boxes_uses_parallel_axes_and_the_mass_of_the_file(load):
     box = '<collision name="{}"><pose>{} 0 0 0 0 0</pose><geometry><box><size>1 1 1</size></box></geometry></collision>'
     scene, _ = load(body('<inertial auto="true"><mass>4</mass></inertial>' + box.format("c", -1) + box.format("d", 1)))
     inertial = scene.model.links[0].inertial
@@ -68,7 +68,7 @@ def test_impossible_masses_are_reported(load, inertial, code, severity):
     "shape",
     ["<box><size>0 1 1</size></box>", "<sphere><radius>-1</radius></sphere>", "<plane><normal>0 0 0</normal></plane>"],
 )
-def test_shapes_of_no_size_are_errors(load, shape):
+def test_shapes_without_a_positive_size_are_errors(load, shape):
     _, found = load(body(f'<collision name="c"><geometry>{shape}</geometry></collision>'))
     assert codes(found) == {"SK-SDF-009"}
 
@@ -101,7 +101,7 @@ def test_a_material_script_is_a_colour_and_three_numbers_are_opaque(load):
 
 
 @pytest.mark.parametrize("lower", ["-1e16", "-inf", "-1e308"])
-def test_every_way_of_no_limit_is_infinite(load, lower):
+def test_every_spelling_of_no_limit_is_infinite(load, lower):
     scene, _ = load(joint(f"<axis><limit><lower>{lower}</lower><effort>-1</effort></limit></axis>"))
     axis = scene.model.joints[0].axes[0]
     assert (axis.lower, axis.upper, axis.effort, axis.velocity) == (-math.inf, math.inf, math.inf, math.inf)
@@ -123,18 +123,18 @@ def test_a_mimic_names_its_leader(load):
     assert (mimic.joint, mimic.multiplier, mimic.offset) == ("m::j", 2, 1)
 
 
-def test_a_wrong_name_is_an_error_that_names_the_closest(load):
+def test_an_unknown_name_is_an_error_with_the_closest_name(load):
     _, found = load(joint("<axis/>").replace("<parent>a<", "<parent>aa<"))
     (error,) = [d for d in found if d.severity == "error"]
     assert (error.code, error.hint) == ("SK-SDF-004", "did you mean 'a'?")
 
 
-def test_the_ends_of_a_joint_of_no_known_type_are_looked_at_too(load):
+def test_the_links_of_a_joint_with_an_unknown_type_are_also_checked(load):
     _, found = load(joint("<axis/>", "revolut").replace("<parent>a<", "<parent>aa<"))
     assert sorted(d.code for d in found if d.severity == "error") == ["SK-SDF-004", "SK-SDF-008"]
 
 
-def test_all_problems_come_in_one_pass(load):
+def test_all_problems_are_reported_in_one_pass(load):
     text = joint("<axis><xyz>0 0 0</xyz></axis>").replace(
         '<link name="a"/>', '<link name="a"/><link name="a"/><lnik name="z"/>'
     )
@@ -142,7 +142,7 @@ def test_all_problems_come_in_one_pass(load):
     assert codes(found) == {"SK-SDF-002", "SK-SDF-011", "SK-SDF-017"}
 
 
-def test_a_sensor_keeps_its_block_and_gives_its_plugins(load):
+def test_a_sensor_keeps_its_parameters_and_lists_its_plugins(load):
     scene, found = load(
         body("""<pose>0 0 1 0 0 0</pose><sensor name="s" type="imu"><pose>0 0 1 0 0 0</pose>
         <update_rate>50</update_rate>
@@ -156,12 +156,12 @@ def test_a_sensor_keeps_its_block_and_gives_its_plugins(load):
     assert not codes(found)
 
 
-def test_a_custom_sensor_is_of_its_own_kind(load):
+def test_a_custom_sensor_has_the_kind_of_its_gz_type(load):
     scene, _ = load(body('<sensor name="s" type="custom" gz:type="solar"/>'))
     assert scene.model.all_sensors()[0].kind == "solar"
 
 
-def test_a_world_has_its_physics_gravity_and_place(load):
+def test_a_world_has_its_physics_gravity_and_geographic_position(load):
     scene, _ = load("""<sdf version="1.6"><world name="w"><physics name="a"><max_step_size>0.1</max_step_size></physics>
       <physics name="b" default="true"><max_step_size>0.002</max_step_size></physics><gravity>0 0 -1.6</gravity>
       <magnetic_field>1e-5 0 0</magnetic_field><scene><shadows>false</shadows></scene>
@@ -186,25 +186,25 @@ def test_sdf_1_0_with_its_attributes_is_read(load):
     assert model.links[0].collisions[0].geometry.length == 1
 
 
-def test_an_unknown_root_lists_what_is_known(load):
+def test_an_unknown_root_element_is_an_error_that_lists_the_known_ones(load):
     _, found = load("<wrold/>")
     assert found[0].code == "SK-LOAD-003"
     assert "<sdf>" in found[0].message
 
 
-def test_a_file_that_is_not_there_is_an_error(load, tmp_path):
+def test_a_missing_file_is_an_error(load, tmp_path):
     scene, found = load(tmp_path / "no.sdf")
     assert [d.code for d in found] == ["SK-LOAD-002"]
     assert scene.model is None
 
 
-def test_a_slip_below_zero_is_reported_and_none(load):
+def test_a_negative_slip_is_reported_and_becomes_zero(load):
     scene, found = load(
         body("""<collision name="c"><geometry><sphere><radius>1</radius></sphere></geometry><surface><friction><ode>
         <mu>1</mu><mu2>1</mu2><slip1>-0.1</slip1><slip2>0.2</slip2></ode></friction></surface></collision>""")
     )
     surface = scene.model.links[0].collisions[0].surface
     assert (surface.slip1, surface.slip2) == (0.0, 0.2)
-    told = [d for d in found if d.code == "SK-SDF-030"]
-    assert [(d.severity, d.line) for d in told] == [("warning", 2)]
-    assert "<slip1> is -0.1 and cannot be negative; 0 is used" in told[0].message
+    warnings = [d for d in found if d.code == "SK-SDF-030"]
+    assert [(d.severity, d.line) for d in warnings] == [("warning", 2)]
+    assert "<slip1> is -0.1 and cannot be negative; 0 is used" in warnings[0].message

@@ -1,4 +1,4 @@
-"""Nothing is dropped in silence: unknown names, names in the wrong place, bad values, each with its line."""
+"""Reports on content without effect: unknown and misplaced names and invalid values, each with its line."""
 
 from __future__ import annotations
 
@@ -91,27 +91,27 @@ LEAVES = [i for i, line in enumerate(LINES) if LEAF.match(line)]
 WRONG = ("1,0 0", "abc", "nan", "1m", "1 2", "1 2 3 4 5", "1_000", "\u0661", "<value>1</value>")
 
 
-def loud(found, line: int) -> list[str]:
+def reported_messages(found, line: int) -> list[str]:
     return [d.message for d in found if d.severity != "note" and d.line == line]
 
 
-def test_the_file_itself_is_clean(load):
+def test_the_unchanged_file_has_no_warnings(load):
     _, found = load(FILE)
     assert not [d for d in found if d.severity != "note"]
 
 
 @pytest.mark.parametrize("index", LEAVES, ids=lambda i: LINES[i])
-def test_every_wrong_value_is_said_at_its_line(load, index):
+def test_every_invalid_value_is_reported_at_its_line(load, index):
     name, attributes, _ = LEAF.match(LINES[index]).groups()
     for value in WRONG:
         changed = [*LINES]
         changed[index] = f"<{name}{attributes}>{value}</{name}>"
         _, found = load("\n".join(changed))
-        assert loud(found, index + 1), changed[index]
+        assert reported_messages(found, index + 1), changed[index]
 
 
 @pytest.mark.parametrize("index", LEAVES, ids=lambda i: LINES[i])
-def test_every_misspelt_or_repeated_element_and_unknown_attribute_is_said_at_its_line(load, index):
+def test_misspelt_and_repeated_elements_and_unknown_attributes_are_reported_at_their_line(load, index):
     name, attributes, value = LEAF.match(LINES[index]).groups()
     for text in (
         f"<{name}x{attributes}>{value}</{name}x>",
@@ -121,16 +121,16 @@ def test_every_misspelt_or_repeated_element_and_unknown_attribute_is_said_at_its
         changed = [*LINES]
         changed[index] = text
         _, found = load("\n".join(changed))
-        assert loud(found, index + 1), text
+        assert reported_messages(found, index + 1), text
 
 
 @pytest.mark.parametrize("name", ["parent", "child", "size", "max_step_size", "uri", "mass"])
-def test_an_empty_text_is_not_a_value(load, name):
+def test_an_empty_text_is_reported(load, name):
     changed = [re.sub(rf"<{name}>[^<]*</{name}>", f"<{name}></{name}>", line) for line in LINES]
     if changed != LINES:
         _, found = load("\n".join(changed))
         lines = [i + 1 for i, line in enumerate(LINES) if line.startswith(f"<{name}>")]
-        assert all(loud(found, line) for line in lines)
+        assert all(reported_messages(found, line) for line in lines)
 
 
 @pytest.mark.parametrize(
@@ -151,13 +151,13 @@ def test_an_empty_text_is_not_a_value(load, name):
         ("<link name='l'>0 0 1 0 0 0</link>", "put it into one of its elements: <pose>"),
     ],
 )
-def test_the_hint_says_where_an_element_belongs(load, text, hint):
+def test_the_hint_shows_the_correct_place_or_name(load, text, hint):
     _, found = load(f'<sdf version="1.9"><world name="w"><model name="m">{text}</model></world></sdf>')
-    warned = [d for d in found if d.severity == "warning"]
-    assert warned and hint in warned[0].hint
+    warnings = [d for d in found if d.severity == "warning"]
+    assert warnings and hint in warnings[0].hint
 
 
-def test_a_reference_to_nothing_is_said_at_the_line_of_the_reference(load):
+def test_a_reference_to_an_unknown_frame_is_reported_at_its_line(load):
     for old, new in (
         ('<xyz expressed_in="__model__">', '<xyz expressed_in="nowhere">'),
         ('<pose degrees="true">', '<pose relative_to="nowhere">'),
@@ -167,10 +167,10 @@ def test_a_reference_to_nothing_is_said_at_the_line_of_the_reference(load):
         changed = [*LINES]
         changed[index] = changed[index].replace(old, new)
         _, found = load("\n".join(changed))
-        assert any("nowhere" in message for message in loud(found, index + 1)), new
+        assert any("nowhere" in message for message in reported_messages(found, index + 1)), new
 
 
-def test_an_axis_of_a_joint_without_one_is_only_noted(load):
+def test_an_axis_of_a_fixed_joint_causes_only_a_note(load):
     _, found = load(
         '<sdf version="1.9"><model name="m"><link name="a"/><link name="b"/><joint name="j" type="fixed">'
         "<parent>a</parent><child>b</child><axis><xyz>0 0 1</xyz></axis></joint></model></sdf>"
@@ -188,6 +188,6 @@ def test_an_axis_of_a_joint_without_one_is_only_noted(load):
         '<pose degrees="yes">0 0 0 0 0 0</pose>',
     ],
 )
-def test_a_rotation_that_means_nothing_is_an_error(load, pose):
+def test_an_invalid_rotation_is_an_error(load, pose):
     _, found = load(f'<sdf version="1.9"><model name="m"><link name="l">{pose}</link></model></sdf>')
     assert [d.code for d in found if d.severity == "error"] == ["SK-PARAM-002"]

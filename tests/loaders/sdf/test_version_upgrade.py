@@ -1,4 +1,4 @@
-"""The noise of an IMU as SDF wrote it before 1.6: once for all axes."""
+"""Noise of an IMU in files before SDF 1.6, shared by all axes."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ IMU = """<sdf version="{version}"><world name="w"><model name="m"><static>true</
 
 
 @pytest.mark.parametrize("version", ["1.3", "1.4", "1.5"])
-def test_every_axis_has_it(version: str) -> None:
+def test_shared_noise_is_copied_to_every_axis(version: str) -> None:
     with simkit.load(IMU.format(version=version, more="")) as sim:
         sim.step()
         rate, force = sim.sensor("m::l::s").latest.angular_velocity, sim.sensor("m::l::s").latest.linear_acceleration
@@ -22,7 +22,7 @@ def test_every_axis_has_it(version: str) -> None:
         assert "SK-PARAM-003" not in [d.code for d in sim.diagnostics]
 
 
-def test_what_is_said_in_the_newer_way_counts() -> None:
+def test_noise_of_an_axis_overrides_the_shared_noise() -> None:
     newer = "<angular_velocity><x><noise type='gaussian'><mean>3</mean></noise></x></angular_velocity>"
     with simkit.load(IMU.format(version="1.5", more=newer)) as sim:
         sim.step()
@@ -30,7 +30,7 @@ def test_what_is_said_in_the_newer_way_counts() -> None:
         assert (rate.x, rate.y, rate.z) == pytest.approx((3, 0, 0))
 
 
-def test_newer_files_do_not_know_it() -> None:
+def test_shared_noise_is_not_copied_in_newer_files() -> None:
     with simkit.load(IMU.format(version="1.6", more="")) as sim:
         sim.step()
         assert sim.sensor("m::l::s").latest.angular_velocity.x == 0

@@ -1,4 +1,4 @@
-"""What only a world has: merges, frames and joints between models, populations, actors, saved states, surroundings."""
+"""Elements of worlds: merges, frames and joints between models, populations, actors, saved states, surroundings."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def at(pose) -> tuple[float, ...]:
     return tuple(round(float(v), 9) for v in pose.position)
 
 
-def test_a_model_merged_into_a_world_gives_its_models_frames_and_joints(load, write):
+def test_a_model_merged_into_a_world_adds_its_models_frames_and_joints(load, write):
     root = write("models/cell/model.sdf", CELL).parents[1]
     scene, found = load(
         world('<include merge="true"><uri>model://cell</uri><pose>0 5 0 0 0 1.5707963267948966</pose></include>'),
@@ -58,14 +58,14 @@ def test_a_placement_frame_places_a_merged_model(load, write):
     assert [at(m.pose_world) for m in scene.world.models] == [(1, 0, 2), (0, 0, 3)]
 
 
-def test_a_world_takes_no_links_from_a_merged_model(load, write):
+def test_links_cannot_be_merged_into_a_world(load, write):
     root = write("models/m/model.sdf", '<sdf version="1.9"><model name="m"><link name="l"/></model></sdf>').parents[1]
     scene, found = load(world('<include merge="true"><uri>model://m</uri></include>'), (root,))
     assert errors(found) == ["<link name='l'> of 'm' cannot be merged into a world"]
     assert scene.world.models == ()
 
 
-def test_what_a_merged_model_says_of_itself_is_lost_with_a_note(load, write):
+def test_dropped_settings_of_a_merged_model_cause_a_note(load, write):
     text = '<sdf version="1.9"><model name="m"><static>1</static><link name="l"/></model></sdf>'
     root = write("models/m/model.sdf", text).parents[1]
     scene, found = load(
@@ -77,7 +77,7 @@ def test_what_a_merged_model_says_of_itself_is_lost_with_a_note(load, write):
     assert [d.message for d in found if d.code == "SK-SDF-035"] == ["the merge drops <static> of the merged model 'm'"]
 
 
-def test_frames_and_joints_of_a_world_reach_into_nested_models(load):
+def test_frames_and_joints_of_a_world_can_refer_to_nested_models(load):
     scene, found = load(
         world("""<model name="a"><pose>1 0 0 0 0 0</pose><model name="in"><pose>0 1 0 0 0 0</pose><link name="l"/>
           <frame name="g"><pose>0 0 1 0 0 0</pose></frame></model></model>
@@ -119,7 +119,7 @@ def points(scene) -> np.ndarray:
     return np.array([m.pose_world.position for m in scene.world.models])
 
 
-def test_a_grid_has_rows_along_y_and_its_middle_at_the_pose(load):
+def test_a_population_grid_has_rows_along_y_and_its_middle_at_the_pose(load):
     scene, found = load(
         population("<distribution><type>grid</type><rows>2</rows><cols>3</cols><step>2 1 0</step></distribution>")
     )
@@ -130,7 +130,7 @@ def test_a_grid_has_rows_along_y_and_its_middle_at_the_pose(load):
 
 
 @pytest.mark.parametrize(("axis", "step"), [("x", (2, 0, 0)), ("y", (0, 1, 0)), ("z", (0, 0, 0.5))])
-def test_a_line_goes_from_one_side_of_the_box(load, axis, step):
+def test_a_population_line_begins_at_one_side_of_the_box(load, axis, step):
     scene, _ = load(
         population(
             f"<model_count>4</model_count><distribution><type>linear-{axis}</type></distribution>"
@@ -144,7 +144,7 @@ def test_a_line_goes_from_one_side_of_the_box(load, axis, step):
 
 
 @pytest.mark.parametrize("kind", ["random", "uniform"])
-def test_points_at_random_lie_in_the_region(load, kind):
+def test_random_points_are_inside_the_region(load, kind):
     rest = f"<model_count>40</model_count><distribution><type>{kind}</type></distribution>"
     found = points(load(population(rest + "<box><size>8 4 2</size></box>"))[0])
     assert (np.abs(found - (10, 0, 1)) <= (4, 2, 1)).all() and len(np.unique(found, axis=0)) == 40
@@ -153,7 +153,7 @@ def test_points_at_random_lie_in_the_region(load, kind):
     assert radius.max() <= 3 and found[:, 2].min() >= 1 and found[:, 2].max() <= 3
 
 
-def test_uniform_places_keep_their_distance(load):
+def test_uniform_points_are_spread_evenly(load):
     rest = "<model_count>16</model_count><distribution><type>{}</type></distribution><box><size>8 8 0.1</size></box>"
 
     def nearest(kind: str) -> float:
@@ -164,7 +164,7 @@ def test_uniform_places_keep_their_distance(load):
     assert nearest("uniform") > 1.0 > nearest("random")
 
 
-def test_the_same_name_gives_the_same_places_in_every_process(load):
+def test_the_same_population_name_gives_the_same_points_in_every_process(load):
     rest = "<model_count>5</model_count><distribution><type>random</type></distribution><box><size>8 4 2</size></box>"
     text = population(rest)
     code = (
@@ -172,14 +172,14 @@ def test_the_same_name_gives_the_same_places_in_every_process(load):
         "scene = load_scene(sys.argv[1], resolver=Resolver(), diagnostics=Diagnostics())\n"
         "print([v.hex() for m in scene.world.models for v in m.pose_world.position.tolist()])"
     )
-    other = subprocess.run([sys.executable, "-c", code, text], capture_output=True, text=True, check=True).stdout
+    output = subprocess.run([sys.executable, "-c", code, text], capture_output=True, text=True, check=True).stdout
     mine = [v.hex() for point in points(load(text)[0]).tolist() for v in point]
-    assert other.strip() == str(mine)
+    assert output.strip() == str(mine)
     assert not np.array_equal(points(load(population(rest, name="q"))[0]), points(load(text)[0]))
 
 
 @pytest.mark.parametrize(
-    ("rest", "said"),
+    ("rest", "expected_text"),
     [
         ("<model_count>2</model_count>", "needs a <box> or a <cylinder>"),
         ("<distribution><type>linear_x</type></distribution>", "did you mean 'linear-x'?"),
@@ -192,10 +192,10 @@ def test_the_same_name_gives_the_same_places_in_every_process(load):
         ),
     ],
 )
-def test_a_population_without_a_place_is_an_error(load, rest, said):
+def test_a_population_without_a_valid_region_is_an_error(load, rest, expected_text):
     _, found = load(population(rest))
     wrong = [d for d in found if d.severity == "error"]
-    assert wrong and said in wrong[0].message + wrong[0].hint
+    assert wrong and expected_text in wrong[0].message + wrong[0].hint
 
 
 # ---------------------------------------------------------------------------------------------------- the rest
@@ -225,7 +225,7 @@ SAVED = """<model name="m"><link name="l"/></model><model name="gone"><link name
   <insertions><model name="late"><link name="l"/></model></insertions></state>"""
 
 
-def test_a_saved_state_moves_adds_and_removes(load):
+def test_a_saved_state_moves_adds_and_removes_models(load):
     scene, found = load(world(SAVED, "1.6"))
     assert {d.severity for d in found} == {"note"}
     w = scene.world
@@ -234,7 +234,7 @@ def test_a_saved_state_moves_adds_and_removes(load):
     assert at(w.lights[0].pose_world) == (0, 0, 9)
 
 
-def test_what_a_saved_state_would_need_joints_for_is_reported(load):
+def test_unapplied_parts_of_a_saved_state_are_reported(load):
     _, found = load(
         world(
             """<model name="m"><link name="a"/><link name="b"/>
@@ -246,9 +246,14 @@ def test_what_a_saved_state_would_need_joints_for_is_reported(load):
             "1.6",
         )
     )
-    said = [d.message for d in found if d.code == "SK-SDF-034"]
-    assert len(said) == 4
-    assert "'other'" in said[0] and "'mm'" in said[1] and "saved poses of b" in said[2] and "velocities" in said[3]
+    expected_text = [d.message for d in found if d.code == "SK-SDF-034"]
+    assert len(expected_text) == 4
+    assert (
+        "'other'" in expected_text[0]
+        and "'mm'" in expected_text[1]
+        and "saved poses of b" in expected_text[2]
+        and "velocities" in expected_text[3]
+    )
 
 
 def test_surroundings_are_read_with_their_defaults(load):
@@ -264,26 +269,26 @@ def test_surroundings_are_read_with_their_defaults(load):
           </spherical_coordinates>""")
     )
     assert not found
-    w, place = scene.world, scene.world.spherical_coordinates
+    w, coordinates = scene.world, scene.world.spherical_coordinates
     assert (w.wind, w.magnetic_field, w.atmosphere.temperature) == ((1, 2, 3), (1, 2, 3), 300)
-    assert (place.surface, place.equatorial, place.polar) == ("CUSTOM_SURFACE", 5, 4)
-    assert (place.latitude, place.heading) == pytest.approx((math.pi / 4, math.pi / 2))
+    assert (coordinates.surface, coordinates.equatorial, coordinates.polar) == ("CUSTOM_SURFACE", 5, 4)
+    assert (coordinates.latitude, coordinates.heading) == pytest.approx((math.pi / 4, math.pi / 2))
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "expected_text"),
     [
         ("<surface_model>EARTH_WSG84</surface_model>", "did you mean 'EARTH_WGS84'?"),
         ("<surface_model>CUSTOM_SURFACE</surface_model>", "needs <surface_axis_equatorial>"),
         ("<latitude_deg>91</latitude_deg>", "from -90 to 90"),
     ],
 )
-def test_a_place_on_no_planet_is_an_error(load, text, said):
+def test_invalid_spherical_coordinates_are_errors(load, text, expected_text):
     _, found = load(world(f"<spherical_coordinates>{text}</spherical_coordinates>"))
-    assert any(said in d.message + d.hint for d in found if d.severity == "error")
+    assert any(expected_text in d.message + d.hint for d in found if d.severity == "error")
 
 
-def test_the_steps_per_second_stand_in_for_the_factor(load):
+def test_the_update_rate_replaces_a_missing_real_time_factor(load):
     def factor(text: str) -> float:
         return load(world(f"<physics><max_step_size>0.002</max_step_size>{text}</physics>"))[0].world.physics
 
@@ -295,13 +300,13 @@ def test_the_steps_per_second_stand_in_for_the_factor(load):
     assert factor("<max_contacts>7</max_contacts>").max_contacts == 7
 
 
-def test_a_light_without_a_type_is_a_point_and_that_is_said(load):
+def test_a_light_without_a_type_is_a_point_light_with_a_warning(load):
     scene, found = load('<sdf version="1.9"><world name="w">\n<light name="lamp"/></world></sdf>')
     assert scene.worlds[0].lights[0].type == "point"
     assert [(d.code, d.severity, d.line) for d in found] == [("SK-SDF-039", "warning", 2)]
 
 
-def test_a_world_has_no_frame_named_model(load):
+def test_a_world_has_no_model_frame(load):
     _, found = load(
         '<sdf version="1.9"><world name="w"><model name="m">\n<pose relative_to="__model__">1 0 0 0 0 0</pose>'
         '<link name="l"/></model></world></sdf>'

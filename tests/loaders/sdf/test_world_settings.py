@@ -1,4 +1,4 @@
-"""`<scene>`: fog and sky as they are read and written, and how gloss is given."""
+"""`<scene>`: reading and writing of fog and sky, and the shininess of materials."""
 
 from __future__ import annotations
 
@@ -15,37 +15,41 @@ def scene(content: str) -> str:
     return f'<sdf version="1.9"><world name="w"><scene>{content}</scene></world></sdf>'
 
 
-def test_fog_and_sky_are_read_and_come_back_from_what_is_written(load):
-    first, said = load(scene(FOG + "<sky/>"))
+def test_fog_and_sky_survive_writing_and_reading(load):
+    first, diagnostics = load(scene(FOG + "<sky/>"))
     again, said_again = load(sdf_text(first, Diagnostics()))
     for found in (first, again):
         around = found.world.surroundings
         assert around.fog == Fog("exp2", (0.1, 0.2, 0.3, 1.0), 2.0, 30.0, 0.05)
         assert around.sky
-    assert not said and not said_again
+    assert not diagnostics and not said_again
 
 
-def test_what_a_sky_has_of_its_own_is_told_to_be_left_out(load):
-    found, said = load(scene("<sky><time>6</time><clouds><speed>2</speed></clouds></sky>"))
+def test_unsupported_settings_of_the_sky_are_reported(load):
+    found, diagnostics = load(scene("<sky><time>6</time><clouds><speed>2</speed></clouds></sky>"))
     assert found.world.surroundings.sky
-    assert [d.severity for d in said] == ["note"] and "<time>" in said[0].message and "<clouds>" in said[0].message
+    assert (
+        [d.severity for d in diagnostics] == ["note"]
+        and "<time>" in diagnostics[0].message
+        and "<clouds>" in diagnostics[0].message
+    )
 
 
 @pytest.mark.parametrize(("kind", "hint"), [("constant", "Classic"), ("Exp", "exp"), ("quadratic", "Classic")])
-def test_a_fog_that_nobody_draws_is_said(load, kind, hint):
-    found, said = load(scene(f"<fog><type>{kind}</type></fog>"))
+def test_an_unsupported_type_of_fog_is_reported(load, kind, hint):
+    found, diagnostics = load(scene(f"<fog><type>{kind}</type></fog>"))
     assert found.world.surroundings.fog is None
-    assert [d.code for d in said] == ["SK-RENDER-010"] and hint in said[0].hint
+    assert [d.code for d in diagnostics] == ["SK-RENDER-010"] and hint in diagnostics[0].hint
 
 
-def test_no_fog_is_no_fog(load):
-    found, said = load(scene("<fog><type>none</type></fog>"))
-    assert found.world.surroundings.fog is None and not said
+def test_the_fog_type_none_disables_fog(load):
+    found, diagnostics = load(scene("<fog><type>none</type></fog>"))
+    assert found.world.surroundings.fog is None and not diagnostics
 
 
-def test_shininess_is_the_exponent_of_the_gloss(load):
+def test_shininess_is_the_exponent_of_the_specular_highlight(load):
     visual = """<visual name="v"><geometry><sphere><radius>1</radius></sphere></geometry>
       <material><shininess>32</shininess></material></visual>"""
-    found, said = load(f'<sdf version="1.9"><model name="m"><link name="l">{visual}</link></model></sdf>')
+    found, diagnostics = load(f'<sdf version="1.9"><model name="m"><link name="l">{visual}</link></model></sdf>')
     assert found.model.links[0].visuals[0].material.shininess == 32.0
-    assert "shininess" not in " ".join(d.message for d in said)
+    assert "shininess" not in " ".join(d.message for d in diagnostics)

@@ -1,9 +1,9 @@
-"""`<gazebo>` in URDF: sensors, plugins, surfaces, looks, added joints; and robots included by SDF files."""
+"""`<gazebo>` in URDF: sensors, plugins, surfaces, materials, added joints; and robots that SDF files include."""
 
 from __future__ import annotations
 
 import numpy as np
-from urdf_robots import LIMIT, MASS, errors, joint, link, robot, said
+from urdf_robots import LIMIT, MASS, errors, joint, link, robot, with_code
 
 import simkit
 
@@ -16,7 +16,7 @@ def gazebo(content: str, reference: str = "") -> str:
     return f"<gazebo{named}>{content}</gazebo>\n"
 
 
-def test_blocks_of_one_reference_count_as_one_and_the_later_word_holds(load):
+def test_blocks_with_the_same_reference_are_joined_and_later_values_override_earlier_ones(load):
     text = robot(
         link("l", MASS + BALL)
         + gazebo("<mu1>0.1</mu1><kp>1000</kp>", "l")
@@ -30,7 +30,7 @@ def test_blocks_of_one_reference_count_as_one_and_the_later_word_holds(load):
     assert model.links[0].velocity_decay == (0.1, 0.1)
 
 
-def test_sensors_stay_on_their_own_link_behind_a_fixed_joint(load):
+def test_sensors_stay_on_their_own_link_after_a_fixed_joint(load):
     text = robot(
         link("a")
         + link("mast", "")
@@ -61,20 +61,20 @@ def test_a_sensor_on_a_joint_and_the_spring_of_a_joint(load):
     (j,) = scene.model.joints
     assert (j.sensors[0].scoped, j.sensors[0].on_joint) == ("r::j::ft", True)
     assert (j.axes[0].stiffness, j.axes[0].spring_ref) == (2, 0.5)
-    assert "<provideFeedback>" in said(found, "SK-URDF-022")[0].message
+    assert "<provideFeedback>" in with_code(found, "SK-URDF-022")[0].message
 
 
-def test_a_force_sensor_that_carries_nothing_is_refused(load):
+def test_a_force_sensor_on_a_joint_without_load_is_refused(load):
     text = robot(
         link("a")
         + link("b", "")
         + joint("j", "a", "b", "", "fixed")
         + gazebo('<sensor name="ft" type="force_torque"/>', "j")
     )
-    assert "it would always read zero" in said(load(text)[1], "SK-URDF-023")[0].message
+    assert "it would always read zero" in with_code(load(text)[1], "SK-URDF-023")[0].message
 
 
-def test_looks_and_surfaces_in_sdf_words(load):
+def test_gazebo_blocks_can_contain_sdf_materials_and_surfaces(load):
     text = robot(
         link("l", MASS + BALL + LOOK)
         + gazebo("<material>Gazebo/Red</material>", "l")
@@ -90,7 +90,7 @@ def test_looks_and_surfaces_in_sdf_words(load):
     assert body.collisions[0].laser_retro == 7
 
 
-def test_the_robot_itself_has_plugins_in_order_and_may_be_static(load):
+def test_the_robot_has_plugins_in_order_and_can_be_static(load):
     text = robot(
         link("l")
         + gazebo('<plugin name="one" filename="a.so"/><static>true</static>')
@@ -101,7 +101,7 @@ def test_the_robot_itself_has_plugins_in_order_and_may_be_static(load):
     assert model.static
 
 
-def test_a_joint_in_sdf_words_closes_a_loop(load):
+def test_an_sdf_joint_in_a_gazebo_block_closes_a_loop(load):
     text = robot(
         link("a")
         + link("b")
@@ -116,14 +116,14 @@ def test_a_joint_in_sdf_words_closes_a_loop(load):
     assert not errors(found)
 
 
-def test_what_gazebo_does_not_know_is_said_once_with_the_closest_name(load):
+def test_unknown_gazebo_elements_are_reported_once_with_the_closest_name(load):
     text = robot(link("l", MASS + BALL) + gazebo("<mu11>1</mu11>", "l") + gazebo("<mu11>2</mu11>", "l"))
-    (problem,) = said(load(text)[1], "SK-URDF-010")
+    (problem,) = with_code(load(text)[1], "SK-URDF-010")
     assert "2 times" in problem.message
     assert problem.hint.startswith("did you mean 'mu")
 
 
-def test_a_sensor_of_a_robot_measures():
+def test_a_sensor_of_a_urdf_robot_publishes_measurements():
     text = robot(
         link("l", MASS + BALL)
         + gazebo('<sensor name="imu" type="imu"><always_on>1</always_on><update_rate>100</update_rate></sensor>', "l")
@@ -136,7 +136,7 @@ def test_a_sensor_of_a_robot_measures():
 # ---------------------------------------------------------------------- inside SDF
 
 
-def test_an_sdf_world_includes_robots_places_them_and_joins_them(load, write):
+def test_an_sdf_world_can_include_robots_with_poses_and_joints(load, write):
     text = robot(link("base") + link("arm") + joint("j", "base", "arm", f'<origin xyz="0 0 1"/>{LIMIT}'), "bot")
     root = write("models/bot/bot.urdf", text).parents[1]
     write("models/bot/model.config", "<model><name>bot</name><urdf>bot.urdf</urdf></model>")
@@ -153,10 +153,10 @@ def test_an_sdf_world_includes_robots_places_them_and_joins_them(load, write):
     assert (b.static, [p.filename for p in b.plugins]) == (True, ["p.so"])
     assert scene.world.joints[0].child_link == "a::base"
     assert not errors(found)
-    assert not said(found, "SK-URDF-017")
+    assert not with_code(found, "SK-URDF-017")
 
 
-def test_a_nested_robot_has_the_name_of_its_model_before_its_own(load, write):
+def test_a_nested_robot_has_the_scoped_name_of_the_outer_model(load, write):
     root = write("models/bot/bot.urdf", robot(link("base"), "bot")).parents[1]
     text = """<sdf version="1.9"><model name="cart"><link name="l"/><include><uri>model://bot</uri></include>
       <joint name="j" type="fixed"><parent>l</parent><child>bot::base</child></joint></model></sdf>"""

@@ -1,4 +1,4 @@
-"""The noise of an IMU in a robot's `<gazebo>` block, as robots wrote it for SDF 1.4: once for all axes."""
+"""Noise of an IMU in a robot's `<gazebo>` block, as robots wrote it for SDF 1.4: shared by all axes."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ ONCE = """<noise><type>gaussian</type><rate><mean>0</mean><stddev>2e-4</stddev><
 OWN = "<angular_velocity><x><noise type='gaussian'><stddev>0.5</stddev></noise></x></angular_velocity>"
 
 
-def test_noise_that_is_written_once_is_each_axis_own() -> None:
+def test_shared_noise_of_an_imu_is_copied_to_every_axis() -> None:
     with simkit.load(ROBOT.format(ONCE)) as sim:
         options = sim.sensor("r::base::imu").options
         assert [(n.stddev, n.bias_mean) for n in options.angular_velocity] == [(2e-4, 7.5e-6)] * 3
@@ -21,7 +21,7 @@ def test_noise_that_is_written_once_is_each_axis_own() -> None:
         assert not [d for d in sim.diagnostics if "noise" in d.message]
 
 
-def test_what_an_axis_says_itself_stays() -> None:
+def test_an_axis_with_its_own_noise_keeps_it() -> None:
     with simkit.load(ROBOT.format(OWN + ONCE)) as sim:
         options = sim.sensor("r::base::imu").options
         assert [n.stddev for n in options.angular_velocity] == [0.5, 0.0, 0.0]

@@ -1,11 +1,11 @@
-"""`package://` and its kin without ROS: where packages are looked for, in which order, and what is said."""
+"""`package://` and similar URIs without ROS: searched folders, their order, and the messages."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
 import pytest
-from urdf_robots import MASS, errors, link, robot, said
+from urdf_robots import MASS, errors, link, robot, with_code
 
 import simkit
 from simkit.diagnostics import Diagnostics, Where
@@ -24,13 +24,13 @@ def with_mesh(uri: str) -> str:
 
 
 def package(write, path: str, name: str = "") -> Path:
-    """A package with one mesh."""
+    """Write a package with one mesh."""
     write(f"{path}/meshes/m.stl", path)
     return write(f"{path}/package.xml", f"<package><name>{name or Path(path).name}</name></package>").parent
 
 
 def found_mesh(load, file, paths=()) -> str:
-    """The content of the mesh that a robot found: the path of its package in these tests."""
+    """Return the content of the mesh that a robot found, which is the path of its package in these tests."""
     scene, found = load(file, paths)
     assert not errors(found), errors(found)
     shapes = scene.model.links[0].visuals
@@ -49,7 +49,7 @@ def test_a_package_is_found_around_the_file(load, write):
     assert found_mesh(load, further) == "ws/src/repo/head"
 
 
-def test_the_name_in_package_xml_counts_not_only_that_of_the_folder(load, write):
+def test_a_package_is_found_by_the_name_in_package_xml(load, write):
     package(write, "arm-main", "arm")
     file = write("arm-main/urdf/r.urdf", with_mesh("package://arm/meshes/m.stl"))
     assert found_mesh(load, file) == "arm-main"
@@ -69,7 +69,7 @@ def test_ament_prefixes_have_their_packages_in_share(load, write, monkeypatch):
     assert found_mesh(load, write("here/r.urdf", with_mesh("package://arm/meshes/m.stl"))) == "opt/share/arm"
 
 
-def test_a_folder_named_by_the_user_comes_before_all(write):
+def test_a_package_folder_given_by_the_user_is_searched_first(write):
     package(write, "ws/arm")
     other = package(write, "other/arm")
     file = write("ws/arm/urdf/r.urdf", with_mesh("package://arm/meshes/m.stl"))
@@ -87,14 +87,14 @@ def test_a_folder_named_by_the_user_comes_before_all(write):
         "../meshes/m.stl",
     ],
 )
-def test_other_ways_to_say_it(load, write, uri):
+def test_other_spellings_of_a_package_uri_are_accepted(load, write, uri):
     package(write, "ws/arm")
     scene, found = load(write("ws/arm/urdf/r.urdf", with_mesh(uri)))
     assert scene.model.links[0].visuals[0].geometry.file.read_text() == "ws/arm"
-    assert bool(said(found, "SK-URI-010")) == uri.startswith("file:///opt")
+    assert bool(with_code(found, "SK-URI-010")) == uri.startswith("file:///opt")
 
 
-def test_a_missing_package_is_said_once_with_every_place_and_the_flag(write):
+def test_a_missing_package_is_reported_once_with_all_searched_folders_and_the_option(write):
     meshes = "".join(
         f'<collision><geometry><mesh filename="package://nope/m{i}.stl"/></geometry></collision>\n' for i in range(3)
     )
@@ -111,10 +111,10 @@ def test_a_missing_package_is_said_once_with_every_place_and_the_flag(write):
 
 
 @pytest.mark.parametrize("part", ["visual", "collision"])
-def test_a_robot_goes_on_without_a_mesh_that_is_missing_and_says_so(load, write, part):
+def test_a_robot_loads_without_a_missing_mesh_and_with_a_warning(load, write, part):
     mesh = f'<{part}><geometry><mesh filename="gone.stl"/></geometry></{part}>'
     file = write("r.urdf", robot(link("l", MASS + mesh)))
-    assert [d.severity for d in said(load(file)[1], "SK-URI-001")] == ["warning"]
+    assert [d.severity for d in with_code(load(file)[1], "SK-URI-001")] == ["warning"]
     with simkit.load(file) as sim:
         assert sim.mj_model.ngeom == 0
 
@@ -123,7 +123,7 @@ def test_a_robot_goes_on_without_a_mesh_that_is_missing_and_says_so(load, write,
     "uri",
     ["package://../secret.stl", "package://arm/../../secret.stl", "../../../secret.stl", "file:///etc/hostname"],
 )
-def test_no_uri_leaves_its_folders(load, write, uri):
+def test_a_uri_outside_its_folders_is_refused(load, write, uri):
     package(write, "ws/src/arm")
     write("secret.stl", "secret")
     found = load(write("ws/src/arm/urdf/r.urdf", with_mesh(uri)))[1]
@@ -132,16 +132,16 @@ def test_no_uri_leaves_its_folders(load, write, uri):
     assert visual.geometry.missing
 
 
-def test_a_folder_without_package_xml_is_no_package_further_up(write):
+def test_a_distant_folder_without_package_xml_is_not_a_package(write):
     write("data/secret.stl", "secret")
     write("ws/src/arm/package.xml", "<package><name>arm</name></package>")
     file = write("ws/src/arm/urdf/r.urdf", with_mesh("package://data/secret.stl"))
     diagnostics = Diagnostics()
     load_scene(file, resolver=Resolver(), diagnostics=diagnostics)
-    assert said(list(diagnostics), "SK-URI-009")
+    assert with_code(list(diagnostics), "SK-URI-009")
 
 
-def test_what_find_package_found_may_be_read_from_then_on(write):
+def test_files_of_a_package_may_be_read_after_find_package_found_it(write):
     folder = package(write, "ws/arm")
     base = write("ws/hand/package.xml", "<package><name>hand</name></package>").parent
     resolver = Resolver(base=base)

@@ -1,4 +1,4 @@
-"""URDF: links, joints, materials, and what is said about mistakes."""
+"""URDF: links, joints, materials, and the reports on mistakes."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ import math
 
 import numpy as np
 import pytest
-from urdf_robots import ARM, LIMIT, MASS, errors, joint, link, robot, said
+from urdf_robots import ARM, LIMIT, MASS, errors, joint, link, robot, with_code
 
 import simkit
 from simkit.scene import Box, Capsule, Cylinder, Mesh, Sphere
 
 
-def test_links_and_joints_stand_where_the_origins_say(load):
+def test_links_and_joints_have_the_poses_of_their_origins(load):
     text = robot(
         link("a")
         + link("b")
@@ -31,13 +31,13 @@ def test_links_and_joints_stand_where_the_origins_say(load):
     assert (bc.axes[0].lower, bc.axes[0].upper, bc.axes[0].xyz_joint) == (-math.inf, math.inf, (1.0, 0.0, 0.0))
 
 
-def test_the_name_and_pose_of_the_caller_replace_those_of_the_file(load):
+def test_name_and_pose_given_by_the_caller_replace_those_of_the_file(load):
     model = load(ARM, name="left", pose=simkit.Pose((1, 2, 3)))[0].model
     assert [x.scoped for x in model.links] == ["left::base", "left::arm"]
     np.testing.assert_allclose(model.links[0].pose_world.position, (1, 2, 3))
 
 
-def test_the_origin_of_an_inertial_turns_its_tensor_into_link_axes(load):
+def test_the_inertia_is_rotated_from_the_inertial_origin_to_link_axes(load):
     text = robot(
         link(
             "a",
@@ -54,7 +54,7 @@ def test_a_link_without_inertial_is_a_frame_without_mass(load):
     scene, found = load(robot(link("a") + link("frame", "") + joint("j", "a", "frame", "", "fixed")))
     frame = scene.model.links[1]
     assert (frame.inertial.mass, frame.inertial.given) == (0, False)
-    assert "frame" in said(found, "SK-URDF-024")[0].message
+    assert "frame" in with_code(found, "SK-URDF-024")[0].message
 
 
 def test_shapes_have_the_sizes_and_names_that_gazebo_gives_them(load):
@@ -68,12 +68,12 @@ def test_shapes_have_the_sizes_and_names_that_gazebo_gives_them(load):
     content += '<collision name="lid"><origin xyz="0 0 1"/><geometry><sphere radius="1"/></geometry></collision>'
     found = load(robot(link("l", MASS + content)))[0].model.links[0].collisions
     assert [c.name for c in found] == ["l_collision", "l_collision_1", "l_collision_2", "l_collision_3", "lid"]
-    wanted = [Box((1, 2, 3)), Cylinder(1, 2), Sphere(3), Capsule(1, 2), Sphere(1)]
-    assert [c.geometry for c in found] == wanted
+    expected = [Box((1, 2, 3)), Cylinder(1, 2), Sphere(3), Capsule(1, 2), Sphere(1)]
+    assert [c.geometry for c in found] == expected
     np.testing.assert_allclose(found[-1].pose_link.position, (0, 0, 1))
 
 
-def test_names_of_collisions_are_unique_whatever_the_file_says(load):
+def test_names_of_collisions_are_always_unique(load):
     sphere = '<geometry><sphere radius="1"/></geometry></collision>'
     content = f'<collision>{sphere}<collision name="l_collision">{sphere}<collision name="l_collision">{sphere}'
     found = load(robot(link("l", MASS + content)))[0].model.links[0].collisions
@@ -81,7 +81,7 @@ def test_names_of_collisions_are_unique_whatever_the_file_says(load):
     assert "l_collision" in [c.name for c in found]
 
 
-def test_a_mesh_keeps_its_scale_even_a_negative_one(load, write):
+def test_a_mesh_keeps_its_positive_or_negative_scale(load, write):
     file = write(
         "pkg/urdf/r.urdf",
         robot(link("l", '<visual><geometry><mesh filename="../meshes/m.stl" scale="1 -1 0.001"/></geometry></visual>')),
@@ -107,10 +107,10 @@ def test_materials_are_found_by_name_wherever_they_are_defined(load):
     scene, found = load(text)
     colours = [x.visuals[0].material and x.visuals[0].material.diffuse for x in scene.model.links]
     assert colours == [(1, 0, 0, 1), (0, 1, 0, 0.5), (0, 1, 0, 0.5), (0, 0, 1, 1), None]
-    assert said(found, "SK-URDF-026")[0].hint == "did you mean 'red'?"
+    assert with_code(found, "SK-URDF-026")[0].hint == "did you mean 'red'?"
 
 
-def test_floating_and_planar_joints_and_what_controllers_need(load):
+def test_floating_and_planar_joints_and_data_for_controllers_are_read(load):
     text = robot(
         link("a")
         + link("b")
@@ -142,7 +142,7 @@ def test_the_axes_of_a_planar_joint_are_a_right_handed_frame(load, normal):
     np.testing.assert_allclose(z, np.array(normal) / np.linalg.norm(normal), atol=1e-9)
 
 
-def test_mimic_joints_follow_in_chains_and_never_in_rings(load):
+def test_mimic_joints_can_form_chains_but_not_rings(load):
     links = link("a") + "".join(link(n) for n in "bcd")
     chain = (
         joint("b", "a", "b")
@@ -185,12 +185,12 @@ def test_transmissions_keep_joints_actuators_and_reductions(load):
         ("EffortJointInterface",),
     )
     assert [c.attribute("name") for c in scene.model.controls] == ["c"]
-    assert said(found, "SK-URDF-025")[0].hint.startswith("did you mean 'j")
-    assert not said(found, "SK-URDF-010")
+    assert with_code(found, "SK-URDF-025")[0].hint.startswith("did you mean 'j")
+    assert not with_code(found, "SK-URDF-010")
 
 
 @pytest.mark.parametrize(
-    ("base", "links", "wanted", "code"),
+    ("base", "links", "expected", "code"),
     [
         ("auto", "base", "auto", "SK-URDF-017"),
         ("fixed", "base", "fixed", ""),
@@ -199,13 +199,13 @@ def test_transmissions_keep_joints_actuators_and_reductions(load):
         ("floating", "world", "fixed", "SK-URDF-018"),
     ],
 )
-def test_the_base_floats_unless_the_root_is_the_world(load, base, links, wanted, code):
+def test_the_base_floats_unless_the_root_link_is_the_world(load, base, links, expected, code):
     scene, found = load(robot(link(links, "") + link("b") + joint("j", links, "b")), base=base)
-    assert scene.model.base == wanted
+    assert scene.model.base == expected
     assert {d.code for d in found} & {"SK-URDF-017", "SK-URDF-018"} == ({code} if code else set())
 
 
-def test_a_link_named_world_keeps_its_name_and_holds_the_robot():
+def test_a_root_link_named_world_keeps_its_name_and_fixes_the_robot():
     with simkit.load(
         robot(link("world", "") + link("b") + joint("j", "world", "b", LIMIT + '<axis xyz="0 1 0"/>'))
     ) as sim:
@@ -218,7 +218,7 @@ def test_a_link_named_world_keeps_its_name_and_holds_the_robot():
 # ---------------------------------------------------------------------- mistakes
 
 
-def test_every_mistake_of_a_file_is_said_in_one_pass_with_its_line(load):
+def test_every_mistake_of_a_file_is_reported_in_one_pass_with_its_line(load):
     text = """<robot name="r">
       <link name="a"><inertial><mass value="1,5"/><inertia ixx="nan" iyy="1" izz="1"/></inertial></link>
       <link name="a"/>
@@ -229,7 +229,7 @@ def test_every_mistake_of_a_file_is_said_in_one_pass_with_its_line(load):
       <gazebo reference="bb"><mu1>1</mu1></gazebo>
     </robot>"""
     found = load(text)[1]
-    wanted = {
+    expected = {
         ("SK-URDF-013", 2),
         ("SK-URDF-002", 3),
         ("SK-URDF-010", 4),
@@ -238,22 +238,22 @@ def test_every_mistake_of_a_file_is_said_in_one_pass_with_its_line(load):
         ("SK-URDF-001", 7),
         ("SK-URDF-021", 8),
     }
-    assert wanted <= {(d.code, d.line) for d in found}
+    assert expected <= {(d.code, d.line) for d in found}
     hints = {d.code: d.hint for d in found}
     assert hints["SK-URDF-004"] == "did you mean 'revolute'?"
     assert hints["SK-URDF-003"] == "did you mean 'a'?"
     assert hints["SK-URDF-010"] == "did you mean 'collision'?"
-    assert "line 2" in said(found, "SK-URDF-002")[0].message
-    assert len(said(found, "SK-URDF-013")) == 2
+    assert "line 2" in with_code(found, "SK-URDF-002")[0].message
+    assert len(with_code(found, "SK-URDF-013")) == 2
 
 
-def test_of_a_second_link_of_one_name_nothing_more_is_said(load):
+def test_a_second_link_of_the_same_name_causes_only_one_error(load):
     link = '<link name="a"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial></link>'
     found = load(f'<robot name="r">{link}{link}</robot>')[1]
     assert [d.code for d in found if d.severity != "note"] == ["SK-URDF-002"]
 
 
-def test_faults_that_other_readers_pass_over_are_warnings(load):
+def test_faults_that_other_readers_ignore_are_warnings(load):
     inertial = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
     scene, found = load(
         f"""<robot name="r"><link name="a">{inertial}<visual><geometry><box size="1 1 1"/></geometry>
@@ -270,7 +270,7 @@ def test_faults_that_other_readers_pass_over_are_warnings(load):
     assert [(s.name, s.rate) for s in link.sensors] == [("s", 10)]
 
 
-def test_what_is_no_tree_is_an_error(load):
+def test_a_robot_that_is_not_a_tree_is_an_error(load):
     two_roots = robot(link("a") + link("b"))
     assert "'a' (line 1), 'b' (line 2)" in errors(load(two_roots)[1])[0]
     ring = robot(link("a") + link("b") + joint("j", "a", "b") + joint("k", "b", "a"))
@@ -282,34 +282,34 @@ def test_what_is_no_tree_is_an_error(load):
     assert errors(load(robot(""))[1])[0].startswith("SK-URDF-008")
 
 
-def test_a_file_with_expressions_in_it_looks_like_xacro(load):
+def test_a_urdf_file_with_expressions_causes_a_hint_about_xacro(load):
     text = robot(link("a", '<inertial><mass value="${mass}"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'))
-    (problem,) = said(load(text)[1], "SK-URDF-013")
+    (problem,) = with_code(load(text)[1], "SK-URDF-013")
     assert "xacro" in problem.hint
 
 
-def test_missing_limits_are_said_and_mean_none(load):
+def test_missing_limits_are_reported_and_mean_unlimited(load):
     scene, found = load(robot(link("a") + link("b") + joint("j", "a", "b", "")))
     assert scene.model.joints[0].axes[0].upper == math.inf
-    assert said(found, "SK-URDF-020")[0].severity == "warning"
+    assert with_code(found, "SK-URDF-020")[0].severity == "warning"
 
 
-def test_a_flat_shape_gets_a_tenth_of_a_millimetre_and_a_negative_one_is_refused(load):
+def test_a_size_of_zero_becomes_0_1_mm_and_a_negative_size_is_an_error(load):
     shape = '<collision><geometry><box size="1 1 {}"/></geometry></collision>'
     scene, found = load(robot(link("l", MASS + shape.format(0))))
     assert scene.model.links[0].collisions[0].geometry == Box((1, 1, 1e-4))
-    assert said(found, "SK-URDF-028")
-    assert said(load(robot(link("l", MASS + shape.format(-1))))[1], "SK-URDF-009")
+    assert with_code(found, "SK-URDF-028")
+    assert with_code(load(robot(link("l", MASS + shape.format(-1))))[1], "SK-URDF-009")
 
 
-def test_words_of_other_tools_are_one_note_and_prefixed_ones_are_silent(load):
+def test_elements_of_other_tools_cause_one_note_and_prefixed_elements_none(load):
     text = robot(link("l", MASS + '<contact><lateral_friction value="1"/></contact><drake:thing/>'))
     found = load(text)[1]
-    assert [d.severity for d in said(found, "SK-URDF-011")] == ["note"]
+    assert [d.severity for d in with_code(found, "SK-URDF-011")] == ["note"]
     assert not [d for d in found if "drake" in d.message]
 
 
-def test_a_robot_is_the_same_every_time(load):
+def test_loading_a_robot_is_deterministic(load):
     first, second = (load(ARM)[0].model for _ in range(2))
     assert [(x.scoped, x.pose_world) for x in first.links] == [(x.scoped, x.pose_world) for x in second.links]
 
@@ -317,7 +317,7 @@ def test_a_robot_is_the_same_every_time(load):
 # ------------------------------------------------------------------ what other readers pass over
 
 
-def test_a_mass_without_moments_is_a_point_mass_and_moments_without_mass_are_nothing(load):
+def test_a_mass_without_moments_is_a_point_mass_and_moments_without_mass_are_ignored(load):
     scene, found = load(
         robot(
             link("a", '<inertial><origin xyz="1 0 0"/><mass value="2"/></inertial>')
@@ -328,38 +328,38 @@ def test_a_mass_without_moments_is_a_point_mass_and_moments_without_mass_are_not
     a, b = (x.inertial for x in scene.model.links)
     assert (a.mass, a.com, a.inertia) == (2.0, (1.0, 0.0, 0.0), (0.0,) * 6)
     assert (b.mass, b.given) == (0.0, False)
-    assert [(d.severity, d.line) for d in said(found, "SK-URDF-031")] == [("warning", 1), ("warning", 2)]
+    assert [(d.severity, d.line) for d in with_code(found, "SK-URDF-031")] == [("warning", 1), ("warning", 2)]
     assert not errors(found)
 
 
 @pytest.mark.parametrize(
     ("written", "meant"), [("0.001", (0.001,) * 3), ("1 2 3 4", (1.0, 2.0, 3.0)), ("1 2 -3", (1.0, 2.0, -3.0))]
 )
-def test_the_scale_of_a_mesh_may_be_one_number_and_a_fourth_is_dropped(load, written, meant):
+def test_a_mesh_scale_can_be_one_number_and_a_fourth_number_is_ignored(load, written, meant):
     shape = f'<visual><geometry><mesh filename="m.stl" scale="{written}"/></geometry></visual>'
     scene, found = load(robot(link("l", MASS + shape)))
     assert scene.model.links[0].visuals[0].geometry.scale == meant
-    assert len(said(found, "SK-URDF-031")) == (written != "1 2 -3")
+    assert len(with_code(found, "SK-URDF-031")) == (written != "1 2 -3")
     assert not errors(found)
 
 
-def test_a_scale_that_is_no_number_stays_an_error(load):
+def test_a_scale_that_is_not_a_number_is_an_error(load):
     shape = '<visual><geometry><mesh filename="m.stl" scale="1 x 3 4"/></geometry></visual>'
-    assert said(load(robot(link("l", MASS + shape)))[1], "SK-URDF-013")
+    assert with_code(load(robot(link("l", MASS + shape)))[1], "SK-URDF-013")
 
 
-def test_colours_beyond_their_range_or_number_are_used_as_far_as_they_go(load):
+def test_colours_outside_their_range_are_limited_and_extra_numbers_ignored(load):
     visual = (
         '<visual><geometry><sphere radius="1"/></geometry><material name="m"><color rgba="{}"/></material></visual>'
     )
     scene, found = load(robot(link("l", MASS + visual.format("0.1 0.2 0.3 0 1") + visual.format("255 0 -1 1"))))
     colours = [v.material.diffuse for v in scene.model.links[0].visuals]
     assert colours == [(0.1, 0.2, 0.3, 0.0), (1.0, 0.0, 0.0, 1.0)]
-    assert {d.severity for d in said(found, "SK-URDF-031")} == {"warning"}
+    assert {d.severity for d in with_code(found, "SK-URDF-031")} == {"warning"}
     assert not errors(found)
 
 
-def test_a_plane_is_bullets_and_a_shape_nobody_knows_is_left_out(load):
+def test_a_plane_is_read_as_in_pybullet_and_an_unknown_shape_is_left_out(load):
     text = link(
         "l",
         MASS + '<collision><geometry><plane normal="0 1 0"/></geometry></collision>'
@@ -368,13 +368,13 @@ def test_a_plane_is_bullets_and_a_shape_nobody_knows_is_left_out(load):
     scene, found = load(robot(text))
     (collision,) = scene.model.links[0].collisions
     assert collision.geometry.normal == (0.0, 1.0, 0.0)
-    assert len(said(found, "SK-URDF-031")) == 2
+    assert len(with_code(found, "SK-URDF-031")) == 2
     assert not errors(found)
     near = '<collision><geometry><boxx size="1 1 1"/></geometry></collision>'
-    assert said(load(robot(link("l", MASS + near)))[1], "SK-URDF-009")
+    assert with_code(load(robot(link("l", MASS + near)))[1], "SK-URDF-009")
 
 
-def test_a_robot_without_any_mass_stands_still_unless_it_is_told_to_float(load):
+def test_the_base_of_a_robot_without_mass_is_fixed_unless_base_is_floating(load):
     text = robot(link("a", "") + link("b", "") + joint("ab", "a", "b", LIMIT))
     with simkit.load(text) as sim:
         sim.joint("r::ab").set_position(0.5)
@@ -386,7 +386,7 @@ def test_a_robot_without_any_mass_stands_still_unless_it_is_told_to_float(load):
         simkit.load(text, base="floating")
 
 
-def test_a_massless_root_that_carries_all_by_a_planar_joint_is_the_ground(load):
+def test_a_massless_root_link_with_only_planar_joints_is_fixed(load):
     text = robot(link("footprint", "") + link("base") + joint("drive", "footprint", "base", "", "planar"))
     with simkit.load(text) as sim:
         assert "SK-URDF-032" in {d.code for d in sim.diagnostics}

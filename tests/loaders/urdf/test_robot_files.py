@@ -1,4 +1,4 @@
-"""URDF as it is found in the wild: the element table, an independent reckoning of the poses, and damaged files."""
+"""Published URDF files: the element table, poses compared with an independent library, and damaged files."""
 
 from __future__ import annotations
 
@@ -46,8 +46,8 @@ WHOLE = f"""<robot name="r">{_MATERIAL}
 <gazebo/><gazebo reference="a"/><gazebo reference="j"/></robot>"""
 
 
-def asked_for(text: str) -> set[str]:
-    """Every path and attribute that the readers asked for while they read a robot."""
+def read_paths(text: str) -> set[str]:
+    """Return every path and attribute that the readers read in a robot."""
     diagnostics = Diagnostics()
     root = parse_text(text, diagnostics)
     workspace = Workspace(Resolver(missing_meshes=True), diagnostics)
@@ -67,15 +67,15 @@ def asked_for(text: str) -> set[str]:
     return found
 
 
-def test_the_table_of_elements_is_what_the_readers_ask_for():
-    found, table = asked_for(WHOLE), {path for path, _ in ELEMENTS}
+def test_the_table_of_elements_lists_exactly_the_names_that_are_read():
+    found, table = read_paths(WHOLE), {path for path, _ in ELEMENTS}
     holders = {path.partition("@")[0] for path in table} | {p.rpartition("/")[0] for p in table}
     holders |= {h.rpartition("/")[0] for h in holders} | {"robot/gazebo", "robot/ros2_control@name"}
     assert not table - found, "the table has what nobody reads"
     assert not found - table - holders, "somebody reads what the table lacks"
 
 
-def test_the_table_says_what_each_element_becomes():
+def test_the_table_describes_each_element():
     assert len({path for path, _ in ELEMENTS}) == len(ELEMENTS)
     assert all(becomes for _, becomes in ELEMENTS)
 
@@ -84,7 +84,7 @@ def test_the_table_says_what_each_element_becomes():
 
 
 def robots() -> list[Path]:
-    """URDF files of the package example-robot-data; none where it is not installed."""
+    """Return the URDF files of the package example-robot-data; none if the package is not installed."""
     try:
         files = metadata.files("example-robot-data") or []
     except metadata.PackageNotFoundError:
@@ -121,7 +121,7 @@ def test_poses_agree_with_yourdfpy_at_any_configuration(file):
 
 
 @pytest.mark.skipif(not robots(), reason="example-robot-data is not installed")
-def test_masses_of_real_robots_are_the_sums_of_their_files():
+def test_the_mass_of_a_real_robot_is_the_sum_of_the_masses_in_its_file():
     for file in robots()[:12]:
         folder = next(p for p in file.parents if p.name == "example-robot-data").parent
         written = re.sub(r"<!--.*?-->", "", file.read_text(errors="ignore"), flags=re.DOTALL)
@@ -158,7 +158,7 @@ _PIECES = (
 
 
 def damaged(text: str, generator: random.Random) -> str:
-    """A text with some attributes exchanged, lines lost or doubled, and odd pieces put in."""
+    """Return the text with some attributes exchanged, lines removed or repeated, and invalid fragments inserted."""
     for _ in range(generator.randint(1, 6)):
         position = generator.randrange(len(text))
         kind = generator.randrange(4)
@@ -181,7 +181,7 @@ def damaged(text: str, generator: random.Random) -> str:
 
 
 @pytest.mark.parametrize("seed", range(60))
-def test_a_damaged_file_is_read_or_refused_and_never_more(seed):
+def test_a_damaged_file_is_read_or_refused_without_an_exception(seed):
     generator = random.Random(seed)
     text = damaged(WHOLE, generator)
     diagnostics = Diagnostics()

@@ -1,4 +1,4 @@
-"""xacro: what it expands to, where its elements come from, what it may read, and what it may cost."""
+"""xacro: results, lines of the expanded elements, permitted files, and limits."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import xml.etree.ElementTree as ET
 from xml.dom import minidom
 
 import pytest
-from urdf_robots import errors, said
+from urdf_robots import errors, with_code
 
 import simkit
 from simkit.diagnostics import Diagnostics
@@ -102,7 +102,7 @@ def plain_xml(element):
 # ---------------------------------------------------------------------- what it means
 
 
-def test_a_file_expands_to_what_xacro_itself_makes_of_it(write, capsys):
+def test_a_file_expands_to_the_same_elements_as_with_xacro_itself(write, capsys):
     """The `xacro` package, run as a user runs it, is the reference."""
     import xacro as reference
 
@@ -114,7 +114,7 @@ def test_a_file_expands_to_what_xacro_itself_makes_of_it(write, capsys):
     assert plain(document.root) == plain_xml(ET.fromstring(reference.process(str(file))))
 
 
-def test_every_element_has_the_file_and_line_it_was_written_in(write):
+def test_every_expanded_element_has_its_original_file_and_line(write):
     document, _ = expanded(whole(write))
     places = {c.attribute("name"): (c.where.file.rpartition("/")[2], c.where.line) for c in document.root.children}
     assert places["p_base"] == ("main.urdf.xacro", 11)
@@ -122,7 +122,7 @@ def test_every_element_has_the_file_and_line_it_was_written_in(write):
     assert places["j2"] == ("main.urdf.xacro", 22)
 
 
-def test_a_mistake_in_a_macro_is_said_at_its_own_line(write, load):
+def test_a_mistake_in_a_macro_is_reported_at_its_own_line(write, load):
     write("parts.xacro", PARTS.replace("${mass}", "${name}"))
     file = write(
         "m.xacro",
@@ -134,7 +134,7 @@ def test_a_mistake_in_a_macro_is_said_at_its_own_line(write, load):
     assert (problem.code, problem.file.rpartition("/")[2], problem.line) == ("SK-URDF-013", "parts.xacro", 6)
 
 
-def test_arguments_come_from_the_caller_and_unknown_ones_are_said(write):
+def test_arguments_come_from_the_caller_and_unknown_ones_are_reported(write):
     file = whole(write)
     found = simkit.describe(file, xacro_args={"prefix": "left_", "flga": "1"})
     assert "left_base" in [x["name"] for x in found["model"]["links"]]
@@ -142,7 +142,7 @@ def test_arguments_come_from_the_caller_and_unknown_ones_are_said(write):
     assert problem["hint"] == "did you mean 'flag'?"
 
 
-def test_find_is_served_by_the_same_search_as_package_uris(write, load):
+def test_find_uses_the_same_search_as_package_uris(write, load):
     write("ws/parts/package.xml", "<package><name>parts</name></package>")
     write("ws/parts/urdf/part.xacro", xacro('<link name="of_parts"/>'))
     write("ws/parts/meshes/m.stl", "mesh")
@@ -161,7 +161,7 @@ def test_find_is_served_by_the_same_search_as_package_uris(write, load):
     assert scene.model.links[1].visuals[0].geometry.file.read_text() == "mesh"
 
 
-def test_a_package_that_only_a_text_names_is_a_note(write, load):
+def test_a_missing_package_whose_files_are_not_opened_causes_a_note(write, load):
     file = write(
         "r.xacro",
         xacro(
@@ -171,16 +171,16 @@ def test_a_package_that_only_a_text_names_is_a_note(write, load):
     )
     scene, found = load(file)
     assert scene.model.plugins[0].params.text("parameters") == "package://nope/a.yaml"
-    assert [d.severity for d in said(found, "SK-XACRO-007")] == ["note"]
+    assert [d.severity for d in with_code(found, "SK-XACRO-007")] == ["note"]
 
 
-def test_a_plain_urdf_that_declares_the_name_space_is_expanded_when_it_computes(load):
+def test_a_urdf_file_with_the_xacro_name_space_and_expressions_is_expanded(load):
     scene, found = load(xacro('<xacro:property name="n" value="base"/><link name="${n}_link"/>'))
     assert scene.model.links[0].name == "base_link"
     assert not errors(found)
 
 
-def test_sdf_in_xacro_is_sdf(write, load):
+def test_a_xacro_file_can_contain_sdf(write, load):
     file = write(
         "w.sdf.xacro",
         '<sdf version="1.9" xmlns:xacro="x"><xacro:property name="n" value="box"/>'
@@ -209,7 +209,7 @@ def test_sdf_in_xacro_is_sdf(write, load):
         ("\n${xacro.fatal('no such arm')}", 1, "no such arm", ""),
     ],
 )
-def test_a_mistake_has_its_line_and_the_closest_name(load, content, line, part, hint):
+def test_a_mistake_is_reported_with_its_line_and_the_closest_name(load, content, line, part, hint):
     scene, found = load(xacro(content))
     assert scene.model is None
     (problem,) = (d for d in found if d.severity == "error")
@@ -218,7 +218,7 @@ def test_a_mistake_has_its_line_and_the_closest_name(load, content, line, part, 
     assert problem.hint == (f"did you mean {hint!r}?" if hint else "")
 
 
-def test_the_macros_that_led_to_a_mistake_are_named(load):
+def test_the_macro_calls_that_led_to_a_mistake_are_listed(load):
     inner = '<xacro:macro name="inner"><a b="${nothing}"/></xacro:macro>\n'
     outer = '<xacro:macro name="outer">\n<xacro:inner/></xacro:macro>\n<xacro:outer/>'
     (problem,) = (d for d in load(xacro(inner + outer))[1] if d.severity == "error")
@@ -239,11 +239,11 @@ def test_the_macros_that_led_to_a_mistake_are_named(load):
         '<xacro:include filename="../*.xacro"/>',
     ],
 )
-def test_nothing_outside_the_folders_is_read(write, content):
+def test_no_file_outside_the_folders_is_read(write, content):
     write("secret.xacro", xacro('<link name="secret"/>'))
     document, found = expanded(write("a/b/r.xacro", xacro(content)))
     assert document is None
-    assert said(found, "SK-XACRO-002")
+    assert with_code(found, "SK-XACRO-002")
 
 
 DOUBLING = '<xacro:macro name="m0"><a/></xacro:macro>' + "".join(
@@ -264,13 +264,13 @@ TEXTS = '<xacro:property name="t0" value="aaaaaaaaaa"/>' + "".join(
         '<a b="${9 ** 9 ** 9}"/>',
     ],
 )
-def test_an_expansion_without_end_is_stopped(write, content):
+def test_an_endless_expansion_is_stopped(write, content):
     document, found = expanded(write("r.xacro", xacro(content)))
     assert document is None
-    assert said(found, "SK-XACRO-003")
+    assert with_code(found, "SK-XACRO-003")
 
 
-def test_a_parameter_that_takes_xacro_itself_for_ever_is_read_at_once(write):
+def test_a_macro_parameter_with_exponential_time_in_xacro_is_read_quickly(write):
     content = f'<xacro:macro name="m" params="a:={"x" * 60}\'"><a/></xacro:macro>'
     document, _ = expanded(write("r.xacro", xacro(content)))
     assert document is not None
@@ -282,7 +282,7 @@ def test_a_yaml_file_of_aliases_is_stopped(write):
     write("bomb.yaml", "\n".join(lines))
     document, found = expanded(write("r.xacro", xacro("<a b=\"${xacro.load_yaml('bomb.yaml')}\"/>")))
     assert document is None
-    assert said(found, "SK-XACRO-003")
+    assert with_code(found, "SK-XACRO-003")
 
 
 def evaluate(text, **names):
@@ -326,7 +326,7 @@ def evaluate(text, **names):
         "None is None",
     ],
 )
-def test_expressions_are_pythons(text):
+def test_expressions_have_the_values_of_python(text):
     assert evaluate(text) == eval(text)
 
 
@@ -354,7 +354,7 @@ def test_expressions_are_pythons(text):
         "eval('1')",
     ],
 )
-def test_nothing_of_python_but_values_can_be_reached(text):
+def test_expressions_cannot_access_python_internals(text):
     with pytest.raises(ExpansionError):
         evaluate(text)
 
@@ -380,12 +380,12 @@ def test_nothing_of_python_but_values_can_be_reached(text):
         "-" * 5000 + "1",
     ],
 )
-def test_no_value_and_no_computation_grows_without_bound(text):
+def test_values_and_computations_are_limited(text):
     with pytest.raises((BoundError, ExpansionError)):
         evaluate(text)
 
 
-def test_nothing_is_left_behind_and_threads_do_not_meet(write):
+def test_expansions_leave_no_modules_and_do_not_share_state_between_threads(write):
     before, modules = minidom.Element.writexml, {m for m in sys.modules if "simkit_xacro" in m}
     files = [
         write(f"r{i}.xacro", xacro(f'<xacro:arg name="n" default="{i}"/><link name="l$(arg n)"/>')) for i in range(8)
