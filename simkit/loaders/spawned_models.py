@@ -73,7 +73,7 @@ def parse_spawn(text: str, diagnostics: Diagnostics) -> SpawnedModel | None:
 
 def add_spawned_models(
     scene: Scene,
-    wanted: Sequence[str | SpawnedModel],
+    spawned_models: Sequence[str | SpawnedModel],
     resolver: Resolver,
     diagnostics: Diagnostics,
     load_model: Callable[..., SceneModel | None],
@@ -83,7 +83,7 @@ def add_spawned_models(
 
     Args:
         scene: the loaded scene.
-        wanted: the additional models, in this order.
+        spawned_models: the additional models, in this order.
         resolver: finds files.
         diagnostics: receives every problem.
         load_model: reads a model, given source, diagnostics, name and pose.
@@ -91,7 +91,7 @@ def add_spawned_models(
     """
     world = scene.world
     models = list(world.models)
-    for item in wanted:
+    for item in spawned_models:
         spawn = parse_spawn(item, diagnostics) if isinstance(item, str) else item
         if spawn is None:
             continue

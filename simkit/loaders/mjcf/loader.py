@@ -212,23 +212,23 @@ def _world_models(file: MjcfFile) -> list[SceneModel]:
         name = first if colons else origins.get(own, own).replace("::", "_")
         groups.setdefault((name, f"{first}::" if colons else ""), []).append(body)
     models: list[SceneModel] = []
-    taken: set[str] = set()
+    used_names: set[str] = set()
     if content.has_world:
         name = _free_name(WORLD_LINK, {n for n, _ in groups})
-        taken.add(name)
+        used_names.add(name)
         models.append(ModelReader(content, ModelPlacement(name, name, (), True, static=True)).read())
     for (name, strip), bodies in groups.items():
-        name = _free_name(name, taken)
-        taken.add(name)
+        name = _free_name(name, used_names)
+        used_names.add(name)
         frame = content.pose(bodies[0])
         placed = ModelPlacement(name, name, bodies, False, frame, frame, strip=strip)
         models.append(ModelReader(content, placed).read())
     return models
 
 
-def _free_name(name: str, taken: set[str]) -> str:
+def _free_name(name: str, used_names: set[str]) -> str:
     found, k = name, 1
-    while found in taken:
+    while found in used_names:
         k += 1
         found = f"{name}_{k}"
     return found
@@ -239,9 +239,9 @@ def _report_base(model: SceneModel, request: LoadRequest) -> None:
     if request.base == "fixed" and any(j.type == "fixed" and j.parent_link == "world" for j in model.joints):
         message = f"model {model.name!r} is fixed to the world, because of base='fixed'"
         request.diagnostics.note("SK-MJCF-012", message, model.where)
-    held = [j.name for j in model.joints if j.parent_link == "world"]
-    if request.base == "floating" and held:
-        message = f"model {model.name!r} cannot float: it is joined to the world by {', '.join(held[:5])}"
+    world_joints = [j.name for j in model.joints if j.parent_link == "world"]
+    if request.base == "floating" and world_joints:
+        message = f"model {model.name!r} cannot float: it is joined to the world by {', '.join(world_joints[:5])}"
         request.diagnostics.warning("SK-MJCF-012", message, model.where)
 
 

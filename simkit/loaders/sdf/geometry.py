@@ -23,8 +23,8 @@ def read_geometry(owner: Params, file: SdfFile, workspace: Workspace, what: str)
         near = did_you_mean("geometry", [c.name for c in owner.children])
         owner.warning("SK-SDF-009", f"{what} has no <geometry> and therefore no shape", near)
         return shapes.Empty()
-    held = [c for c in block.children if ":" not in c.name]
-    for shape in held:
+    children = [c for c in block.children if ":" not in c.name]
+    for shape in children:
         if shape.name not in _KNOWN_SHAPES:
             continue
         block.child(shape.name)
@@ -35,12 +35,12 @@ def read_geometry(owner: Params, file: SdfFile, workspace: Workspace, what: str)
         if shape.name == "polyline":
             return _polylines(block.all("polyline"))
         return _PRIMITIVES[shape.name](shape)
-    for name in _KNOWN_SHAPES if held else ():
+    for name in _KNOWN_SHAPES if children else ():
         block.has(name)
-    if held and held[0].name == "image":
+    if children and children[0].name == "image":
         block.child("image")
-        held[0].mark_all_read()
-        held[0].warning("SK-SDF-012", f"{what}: <image> as a shape is not simulated")
+        children[0].mark_all_read()
+        children[0].warning("SK-SDF-012", f"{what}: <image> as a shape is not simulated")
     return shapes.Empty()
 
 

@@ -95,9 +95,9 @@ def _included_name(include: Params, file: SdfFile, workspace: Workspace) -> str:
     uri = include.text("uri", "")
     if name or not uri:
         return name
-    quiet = workspace.quiet()
-    found = _open_include(uri, include, file, quiet)
-    element = None if found is None else _only_entity(found, uri, include, quiet)
+    preliminary = workspace.quiet()
+    found = _open_include(uri, include, file, preliminary)
+    element = None if found is None else _only_entity(found, uri, include, preliminary)
     return "" if element is None else element.attribute("name").strip()
 
 

@@ -27,19 +27,19 @@ def report_unread(root: Params, place: str = "sdf") -> None:
     """
     report = _UnreadReport(root.diagnostics)
     report.visit(root, place, ())
-    quiet = sorted(report.quiet.items(), key=lambda item: item[1].line or 0)
-    if quiet:
-        listed = ", ".join(f"<{name}> (line {where.line})" for name, where in quiet)
+    settings = sorted(report.ignored_settings.items(), key=lambda item: item[1].line or 0)
+    if settings:
+        listed = ", ".join(f"<{name}> (line {where.line})" for name, where in settings)
         message = f"Gazebo's own settings, without effect in simkit: {listed}"
-        root.diagnostics.note("SK-SDF-010", message, Where(quiet[0][1].file))
+        root.diagnostics.note("SK-SDF-010", message, Where(settings[0][1].file))
 
 
 @dataclass
 class _UnreadReport:
-    """Report on one tree; `quiet` holds the first place of each setting without effect."""
+    """Report on one tree; `ignored_settings` holds the first place of each setting without effect."""
 
     diagnostics: Diagnostics
-    quiet: dict[str, Where] = field(default_factory=dict)
+    ignored_settings: dict[str, Where] = field(default_factory=dict)
     count: int = 0
 
     def warn(self, code: str, where: Where, make_message: Callable[[], tuple[str, str]]) -> None:
@@ -78,11 +78,11 @@ class _UnreadReport:
             if not sdf_elements().is_open(place):
                 self.warn("SK-SDF-011", child.where, partial(_unknown_message, child, element, place, above))
         elif row.use is Use.IGNORED:
-            self.quiet.setdefault(child.name, child.where)
+            self.ignored_settings.setdefault(child.name, child.where)
         elif row.use is Use.NOT_SIMULATED:
             self.warn("SK-SDF-012", child.where, lambda: (f"<{child.name}>: {row.becomes}", ""))
         elif child.name in _LEFT_OVER:
-            self.quiet.setdefault(child.name, child.where)
+            self.ignored_settings.setdefault(child.name, child.where)
         else:
             self.warn("SK-SDF-011", child.where, partial(_unused_message, child, element))
 

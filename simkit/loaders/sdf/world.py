@@ -129,12 +129,12 @@ def _add_entity(source: EntitySource, content: _WorldContent, workspace: Workspa
     """Register one entity under its name in the world."""
     kind = source.element.name
     if kind != "model":
-        others = content.lights if kind == "light" else content.actors
-        if any(other.name == source.name for other in others):
+        entities = content.lights if kind == "light" else content.actors
+        if any(entity.name == source.name for entity in entities):
             text = f"the world has two {kind}s named {source.name!r}"
             workspace.diagnostics.error("SK-SDF-002", text, source.where)
         else:
-            others.append(source)
+            entities.append(source)
     elif source.merge:
         _merge_into_world(source, content, workspace)
     else:

@@ -117,11 +117,11 @@ def _check_tree(draft: RobotDraft) -> None:
     """Check that there is one root and one path to each link, and select the root."""
     above: dict[str, JointDraft] = {}
     for joint in list(draft.joints.values()):
-        other = above.get(joint.child)
-        if other is None:
+        existing = above.get(joint.child)
+        if existing is None:
             above[joint.child] = joint
             continue
-        first = f"{other.name!r} (line {other.element.where.line})"
+        first = f"{existing.name!r} (line {existing.element.where.line})"
         message = f"link {joint.child!r} is the child of two joints, {first} and {joint.name!r}; a URDF is a tree"
         hint = "close a loop with an SDF <joint> inside <gazebo>"
         draft.diagnostics.error("SK-URDF-005", message, joint.element.where, hint)
