@@ -89,7 +89,7 @@ class Resolver:
 
         A missing mesh is a warning, because Gazebo also continues without it. An absolute path of another machine,
         which does not exist here, counts as a missing mesh. A refused URI, which leaves the resource folders or has
-        an unknown scheme, is always an error.
+        an unknown scheme, is an error unless `missing_meshes` is set.
         """
         found = Diagnostics()
         path = self.resolve(uri, where, found, relative_to)
