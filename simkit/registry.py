@@ -1,4 +1,7 @@
-"""Registries computed from a package's modules and from entry points: one file per addition, no duplicates."""
+"""Registries of classes from the modules of a package and from entry points.
+
+A new class needs only its own file; no list of classes is edited.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +26,10 @@ _OUTER = "\nclass ", "\ndef ", "\nasync def "
 
 
 def entry_points_of(group: str) -> list[EntryPoint]:
-    """The entry points of a group. To read them all takes 20 ms: they are kept until a folder of `sys.path` changes."""
+    """Return the entry points of a group.
+
+    Reading all entry points takes 20 ms. They are cached until a folder of `sys.path` changes.
+    """
     state = tuple((folder, _folder_time(Path(folder))) for folder in sys.path)
     return list(_all_entry_points(state).select(group=group))
 
@@ -34,7 +40,7 @@ def _all_entry_points(_state: tuple[tuple[str, int], ...]) -> Any:  # its type d
 
 
 def _folder_time(folder: Path) -> int:
-    """When something was last put into a folder or taken out [ns]; 0 where there is none."""
+    """Return the time at which an entry of a folder was last added or removed [ns]; 0 if there is no folder."""
     try:
         return folder.stat().st_mtime_ns
     except OSError:
@@ -42,21 +48,21 @@ def _folder_time(folder: Path) -> int:
 
 
 class Kinds(Mapping[str, type[T]], Generic[T]):
-    """Every class under `packages` and in the entry points `group` that is a `base`, by each name it answers to.
+    """Mapping from names to the classes under `packages` and in the entry points `group` that derive from `base`.
 
-    A class that is asked for by name is all that is imported: the names are read from the text of the modules. To go
-    through all of them, or to ask for their number, imports every module.
+    A lookup imports only the class with that name, because the names are read from the text of the modules. Iteration
+    and `len` import every module.
 
     Args:
         packages: dotted names of the packages whose modules (and sub-packages' modules) are read.
         group: entry-point group.
-        base: classes must derive from it; abstract and nameless ones are passed over.
-        names: gives the names that a class answers to.
-        attributes: the class attributes that `names` reads: tuples of texts.
-        spell: what `names` makes of each of them.
+        base: required base class; abstract and nameless classes are skipped.
+        names: function that returns the names of a class.
+        attributes: class attributes that `names` reads: tuples of texts.
+        spell: function that `names` applies to each text.
 
     Raises:
-        RuntimeError: two classes answer to one name; said when all are gone through.
+        RuntimeError: two classes have the same name; raised when all classes are listed.
     """
 
     def __init__(
@@ -90,7 +96,7 @@ class Kinds(Mapping[str, type[T]], Generic[T]):
 
     @cached_property
     def written(self) -> Mapping[str, str]:
-        """Each name that a class answers to, as it is written in the class; imports only what computes its names."""
+        """Spelling of each name in the source of its class. Only modules that compute names are imported."""
         literal, computed = self._written
         modules = (importlib.import_module(module) for module in computed)
         classes = [*self._foreign, *(cls for module in modules for cls in self._classes(module))]
@@ -103,7 +109,7 @@ class Kinds(Mapping[str, type[T]], Generic[T]):
 
     @cached_property
     def _all(self) -> Mapping[str, type[T]]:
-        """Every class by name, sorted."""
+        """All classes by name, sorted."""
         classes: dict[type[T], None] = {}
         for module, _ in self._modules:
             classes.update(dict.fromkeys(self._classes(importlib.import_module(module))))
@@ -129,13 +135,13 @@ class Kinds(Mapping[str, type[T]], Generic[T]):
 
     @cached_property
     def _modules(self) -> tuple[tuple[str, Path], ...]:
-        """The names of all modules of the packages, and their files."""
+        """Names of all modules of the packages, and their files."""
         roots = [importlib.import_module(package) for package in self._packages]
         return tuple(found for root in roots for found in _modules_below(root.__path__, root.__name__))
 
     @cached_property
     def _written(self) -> tuple[Mapping[str, tuple[str, Sequence[str]]], Sequence[str]]:
-        """By each name that classes write down what they write and the modules; and those that compute their names."""
+        """Source spelling and modules of each literal name, and the modules that compute their names."""
         literal: dict[str, tuple[str, list[str]]] = {}
         computed = []
         for module, file in self._modules:
@@ -147,7 +153,7 @@ class Kinds(Mapping[str, type[T]], Generic[T]):
         return literal, computed
 
     def _texts(self, file: Path) -> list[str] | None:
-        """What the classes of a file give to the attributes; None where that is more than texts."""
+        """Read the texts that the classes of a file assign to the attributes; None for anything but literal texts."""
         try:
             content = file.read_bytes()
             if not any(name in content for name in map(str.encode, self._attributes)):
@@ -165,37 +171,42 @@ class Kinds(Mapping[str, type[T]], Generic[T]):
 
     @cached_property
     def _foreign(self) -> tuple[type[T], ...]:
-        """The classes of the entry points."""
-        found = []
+        """Classes of the entry points."""
+        found: list[type[T]] = []
+        log = logging.getLogger("simkit")
         for point in sorted(entry_points_of(self._group), key=lambda p: (p.name, p.value)):
             try:
                 loaded = point.load()
             except Exception as error:  # noqa: BLE001 - one broken package must not keep the others from working
-                said = (point.name, point.value, self._group, error)
-                logging.getLogger("simkit").warning("entry point %s (%s) of %s: %r", *said)
+                log.warning("entry point %s (%s) of %s: %r", point.name, point.value, self._group, error)
                 continue
             if inspect.isclass(loaded) and issubclass(loaded, self._base):
                 found.append(loaded)
+            else:
+                log.warning(
+                    "entry point %s (%s) of %s: %r is not a subclass of %s",
+                    *(point.name, point.value, self._group, loaded, self._base.__name__),
+                )
         return tuple(found)
 
     def _classes(self, module: ModuleType) -> list[type[T]]:
-        """The classes that a module defines."""
+        """Return the concrete classes that a module defines."""
         own = (cls for cls in vars(module).values() if inspect.isclass(cls) and cls.__module__ == module.__name__)
         return [cls for cls in own if issubclass(cls, self._base) and not inspect.isabstract(cls)]
 
 
 def _modules_below(folders: Iterable[str], package: str) -> Iterator[tuple[str, Path]]:
-    """The modules in a package's folders and in those below, by full name, with their files; imports nothing."""
+    """Yield the full names and files of the modules in a package's folders and below, without importing them."""
     for folder in folders:
         for info in pkgutil.iter_modules([folder]):
-            name, place = f"{package}.{info.name}", Path(folder, info.name)
-            yield name, place / "__init__.py" if info.ispkg else place.with_name(f"{info.name}.py")
+            name, path = f"{package}.{info.name}", Path(folder, info.name)
+            yield name, path / "__init__.py" if info.ispkg else path.with_name(f"{info.name}.py")
             if info.ispkg:
-                yield from _modules_below([str(place)], name)
+                yield from _modules_below([str(path)], name)
 
 
 def _assigned_name_pattern(source: str, name: str) -> Iterator[int]:
-    """Where in a module's text, behind the equals sign, a class attribute of this name is given its value."""
+    """Yield the offset behind each `=` that assigns a class attribute of this name in a module's text."""
     at = source.find(f"\n    {name}")
     while at >= 0:
         line = source[at + 5 + len(name) : source.find("\n", at + 1)]

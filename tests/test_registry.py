@@ -5,6 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
+from importlib.metadata import EntryPoint
 from pathlib import Path
 from typing import Any
 
@@ -99,6 +100,17 @@ def test_two_classes_of_one_name_are_told_when_all_are_gone_through(animals: Kin
     (tmp_path / "animals" / "broken.py").write_text(DOG)
     with pytest.raises(RuntimeError, match=r"'dog' is claimed by animals\.\w+ and by animals\.\w+"):
         len(animals)
+
+
+def test_an_entry_point_without_a_class_of_the_base_is_skipped_with_a_warning(
+    animals: Kinds[Any], caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    points = [EntryPoint("dog", "animals.dog:Dog", "zoo"), EntryPoint("stray", "json", "zoo")]
+    monkeypatch.setattr("simkit.registry.entry_points_of", lambda group: points)
+    assert [cls.__name__ for cls in animals._foreign] == ["Dog"]
+    (warning,) = caplog.messages
+    assert warning.startswith("entry point stray (json) of animals.nobody: <module 'json'")
+    assert warning.endswith("is not a subclass of Animal")
 
 
 def test_a_load_imports_neither_the_kinds_that_it_does_not_use_nor_the_message_types() -> None:
