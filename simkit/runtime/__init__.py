@@ -1,9 +1,10 @@
-"""The running simulation.
+"""Running simulation.
 
-What enters: a compiled world with its sensors and plugins, and what users and plugins command while it runs. What
-leaves: the state at every tick, messages, snapshots and diagnostics. What never: files of any format, kinds of sensors
-and plugins by name, and sockets. `contact` is below `engine`, that is below `communication` and `handles`, and
-`simulation.py` puts them together.
+- Input: a compiled world with its sensors and plugins, and the commands of users and plugins during the run.
+- Output: the state at every tick, messages, snapshots and diagnostics.
+- Not known here: file formats, names of kinds of sensors and plugins, and sockets.
+
+`contact` is below `engine`, which is below `communication` and `handles`. `simulation.py` combines them.
 """
 
 from simkit.mujoco_import import mujoco  # noqa: F401  (before any module imports MuJoCo by itself)

@@ -1,4 +1,4 @@
-"""A copy of a model under another name, at another place."""
+"""Copies of models under another name, at another pose."""
 
 from __future__ import annotations
 
@@ -30,20 +30,20 @@ _DIRECTION_FIELDS: Final = frozenset(("direction_world", "xyz_world"))
 
 
 def check_model_name(name: object) -> None:
-    """Raises InputError where no model in a file could have this name."""
+    """Raise InputError for a name that no model in a file can have."""
     if not isinstance(name, str) or not name.strip():
         raise InputError(f"found the name {name!r} for a model, allowed is a text that is not empty", "SK-NAME-005")
-    is_ours = name == "world" or (name.startswith("__") and name.endswith("__"))
-    if is_ours or "::" in name:
-        why = "is reserved" if is_ours else "has '::', which separates names"
-        raise InputError(f"a model cannot have the name {name!r}: it {why}", "SK-NAME-005")
+    is_reserved = name == "world" or (name.startswith("__") and name.endswith("__"))
+    if is_reserved or "::" in name:
+        reason = "is reserved" if is_reserved else "has '::', which separates names"
+        raise InputError(f"a model cannot have the name {name!r}: it {reason}", "SK-NAME-005")
 
 
 def copy_model(model: SceneModel, name: str, pose: Pose) -> SceneModel:
-    """A top-level model with everything in it under another name and moved along to a pose in the world.
+    """Copy a top-level model with its whole content under another name, moved to a pose in the world.
 
     Raises:
-        InputError: it is in the engine's own format, which has names of its own.
+        InputError: the model is in MuJoCo's own format, which has names of its own.
     """
     if any(nested.mjcf for nested in model.all_models()):
         message = f"SK-SERVICE-002 model {model.name!r} is in MuJoCo's own format and cannot be copied"
@@ -55,18 +55,18 @@ def copy_model(model: SceneModel, name: str, pose: Pose) -> SceneModel:
 def present_world(
     world: SceneWorld, models: Iterable[tuple[SceneModel, Pose]], lights: Iterable[tuple[SceneLight, Pose]]
 ) -> SceneWorld:
-    """A world with the models and lights that are there now, where they are now; joints are at zero in it.
+    """Return a world with the present models and lights at their present poses; all joints are at zero.
 
     Args:
-        world: as it was loaded.
-        models: top-level ones with the present pose of each; one in the engine's own format stays where it was.
-        lights: of the world itself, with the present pose of each.
+        world: world as loaded.
+        models: top-level models with their present poses; a model in MuJoCo's own format keeps its loaded pose.
+        lights: lights of the world itself with their present poses.
     """
     placed = tuple(m if any(n.mjcf for n in m.all_models()) else copy_model(m, m.name, pose) for m, pose in models)
-    shining = tuple(
+    moved_lights = tuple(
         replace(li, pose_world=pose, direction_world=tuple(pose.rotate(li.direction).tolist())) for li, pose in lights
     )
-    return replace(world, models=placed, lights=shining)
+    return replace(world, models=placed, lights=moved_lights)
 
 
 class _ModelCopier:
@@ -74,7 +74,7 @@ class _ModelCopier:
         self._old, self._new, self._shift = old, new, shift
 
     def of(self, value: T) -> T:
-        """A copy of a part of the scene."""
+        """Copy a part of the scene."""
         if isinstance(value, tuple):
             return tuple(self.of(item) for item in value)  # type: ignore[return-value]
         if isinstance(value, Params):

@@ -1,4 +1,4 @@
-"""One plugin in the place of another, while the run goes on from where it is."""
+"""Replacement of a plugin during a run that continues from its present state."""
 
 from __future__ import annotations
 
@@ -20,33 +20,35 @@ if TYPE_CHECKING:
     from simkit.runtime.simulation import Simulation
 
 PluginState = dict[str, Any]
-"""Attributes of a plugin, as `get_state` gives them."""
+"""Attributes of a plugin, as returned by `get_state`."""
 
 _CODE = "SK-PLUGIN-075"
 
 
 class IncompatiblePlugin(InputError):
-    """The new plugin wants something else in the physics than the old one has put there."""
+    """Error for a new plugin that needs other physics elements than the old plugin has added."""
 
-    def __init__(self, what: str) -> None:
-        super().__init__(f"{_CODE} {what}; the run has to begin anew for that", _CODE)
+    def __init__(self, change: str) -> None:
+        super().__init__(f"{_CODE} {change}; restart the run to apply this change", _CODE)
 
 
 def replace_plugin(sim: Simulation, old: AttachedPlugin, new: AttachedPlugin, scene: object) -> None:
-    """Puts a plugin in the place of one that is at work. Time, physics and everything else stay as they are.
+    """Replace an active plugin. Time, physics and everything else stay as they are.
 
-    `prepare` and `load` of the new one are called. Then its attributes are what its `load` made of them, but for those
-    that the old one had changed since its own `load`: these go over. So do live parameters that were set.
+    `prepare` and `load` of the new plugin are called. Its attributes are those that its `load` set. Attributes that the
+    old plugin had changed since its own `load` are carried over, as are live parameters that were set.
 
     Args:
-        sim: between two steps.
-        old: the plugin to be replaced.
-        new: an instance with `source` and `order` of the old one, that nobody has called yet.
-        scene: the resolved entity it hangs on.
+        sim: simulation, between two steps.
+        old: plugin to replace.
+        new: unused instance with `source` and `order` of the old plugin.
+        scene: resolved parent entity.
 
     Raises:
-        StructureChanged: `prepare` asks for servos or sites that are not there, or leaves some out.
-        LoadError, PluginError: the new one cannot be loaded. In all cases the old one is at work as before.
+        IncompatiblePlugin: `prepare` adds servos or sites that do not exist, or leaves some out. The old plugin stays
+            active.
+        LoadError: the new plugin has errors. The old plugin stays active.
+        PluginError: the new plugin raised. The old plugin stays active.
     """
     snapshots = sim.contents.spawner.snapshots
     before = snapshots.take()
@@ -57,8 +59,8 @@ def replace_plugin(sim: Simulation, old: AttachedPlugin, new: AttachedPlugin, sc
         snapshots.restore(_swap_in_snapshot(before, old, new, new.get_state()))
         _load(sim, new)
         loaded, first = new.get_state(), _parameter_values(sim, new)
-        had = next(state for plugin, state in before.plugins if plugin is old)
-        state = _carried_state(new, loaded, had, _loaded_state(sim, old))
+        old_state = next(state for plugin, state in before.plugins if plugin is old)
+        state = _carried_state(new, loaded, old_state, _loaded_state(sim, old))
         _take_over_parameters(sim, old, new)
         values = sim.communication.live_parameters.get_state()
         snapshots.restore(_swap_in_snapshot(before, old, new, state))
@@ -83,13 +85,13 @@ def replace_plugin(sim: Simulation, old: AttachedPlugin, new: AttachedPlugin, sc
 def _prepare(sim: Simulation, old: AttachedPlugin, new: AttachedPlugin, scene: object) -> None:
     if not new.has_hook("prepare"):
         if old._actuators:
-            raise IncompatiblePlugin(f"{new.name!r} does not drive {_list_actuators(old._actuators)} any more")
+            raise IncompatiblePlugin(f"{new.name!r} no longer drives {_list_actuators(old._actuators)}")
         return
     builder = _CompiledBuilder(sim.engine.structure.builder, old)
     new.prepare(scene, new.params, builder)
     new.params.diagnostics.raise_if_errors()
     if builder.left:
-        raise IncompatiblePlugin(f"{new.name!r} does not drive {_list_actuators(builder.left)} any more")
+        raise IncompatiblePlugin(f"{new.name!r} no longer drives {_list_actuators(builder.left)}")
     new._actuators = old._actuators
 
 
@@ -105,7 +107,7 @@ def _list_actuators(actuators: Iterable[ActuatorRef]) -> str:
 
 
 class _CompiledBuilder:
-    """A builder of a model that is compiled already: what is asked for has to be there."""
+    """Builder of a model that is already compiled: every requested element must exist."""
 
     def __init__(self, builder: SpecBuilder, old: AttachedPlugin) -> None:
         self._builder, self._old = builder, old
@@ -115,15 +117,15 @@ class _CompiledBuilder:
         return getattr(self._builder, name)
 
     def add_velocity_servo(self, joint_scoped: str, **options: Any) -> ActuatorRef:
-        return self._found("velocity", joint_scoped, **options)
+        return self._existing("velocity", joint_scoped, **options)
 
     def add_position_servo(self, joint_scoped: str, **options: Any) -> ActuatorRef:
-        return self._found("position", joint_scoped, **options)
+        return self._existing("position", joint_scoped, **options)
 
     def add_motor(
         self, joint_scoped: str, axis: int = 0, max_effort: float = math.inf, owner: str = "motor", **options: Any
     ) -> ActuatorRef:
-        return self._found("motor", joint_scoped, axis=axis, max_effort=max_effort, owner=owner, **options)
+        return self._existing("motor", joint_scoped, axis=axis, max_effort=max_effort, owner=owner, **options)
 
     def add_site(self, link_scoped: str, pose_link: object, name: str) -> str:
         if not any(name in record.sites for record in self._builder.records.values()):
@@ -135,7 +137,7 @@ class _CompiledBuilder:
             raise IncompatiblePlugin(f"{self._old.name!r} welds {child_link!r} to {parent_link!r}")
         return name
 
-    def _found(self, kind: str, joint: str, *, axis: int = 0, max_effort: float, **options: Any) -> ActuatorRef:
+    def _existing(self, kind: str, joint: str, *, axis: int = 0, max_effort: float, **options: Any) -> ActuatorRef:
         axes = self._builder.names.joint(joint).scene.axes
         effort = min(max_effort, axes[axis].effort) if axis < len(axes) else max_effort
         gains = (options.get("kp"), options.get("kv"))
@@ -150,7 +152,7 @@ class _CompiledBuilder:
 
 
 def _swap_in_snapshot(snapshot: Snapshot, old: AttachedPlugin, new: AttachedPlugin, state: PluginState) -> Snapshot:
-    """A snapshot with the new plugin in the place of the old one."""
+    """Return a snapshot with the new plugin instead of the old one."""
     plugins = [(new, state) if plugin is old else (plugin, had) for plugin, had in snapshot.plugins]
     return replace(snapshot, structure=_swap_in_structure(snapshot.structure, old, new), plugins=plugins)
 
@@ -165,27 +167,27 @@ def _swap_in_structure(structure: WorldStructure, old: AttachedPlugin, new: Atta
 
 
 def _loaded_state(sim: Simulation, plugin: AttachedPlugin) -> PluginState:
-    """A plugin's state after its `load`; of one that was spawned later nothing is known."""
+    """Return a plugin's state after its `load`; empty for a plugin that was spawned later."""
     return next((state for p, state in sim._loaded.plugins if p is plugin), {})
 
 
-def _carried_state(new: Any, loaded: PluginState, had: PluginState, first: PluginState) -> PluginState:
-    """The state that the new plugin goes on with; of a system of gz it is the system's variables that count."""
+def _carried_state(new: Any, loaded: PluginState, old_state: PluginState, first: PluginState) -> PluginState:
+    """Return the state with which the new plugin continues; for a Gazebo system, its variables count."""
     if "variables" not in loaded or not getattr(new, "is_gz_system", False):
-        return _merge_attributes(loaded, had, first, type(new).__module__)
-    was, at_first = had.get("variables", {}), first.get("variables", {})
-    variables = _merge_attributes(loaded["variables"], was, at_first, type(new.system).__module__)
-    return {**loaded, "entities": had.get("entities"), "variables": variables}
+        return _merge_attributes(loaded, old_state, first, type(new).__module__)
+    old_variables, first_variables = old_state.get("variables", {}), first.get("variables", {})
+    variables = _merge_attributes(loaded["variables"], old_variables, first_variables, type(new.system).__module__)
+    return {**loaded, "entities": old_state.get("entities"), "variables": variables}
 
 
-def _merge_attributes(loaded: PluginState, had: PluginState, first: PluginState, module: str) -> PluginState:
-    """The new one's attributes, with what the old one had changed since it was loaded."""
+def _merge_attributes(loaded: PluginState, old_state: PluginState, first: PluginState, module: str) -> PluginState:
+    """Return the new plugin's attributes with the changes that the old plugin made since its `load`."""
     state = dict(loaded)
-    for name, value in had.items():
+    for name, value in old_state.items():
         if name in first and _is_equal(first[name], value):
             continue
         if name not in first and name in loaded and first:
-            continue  # the new one makes in `load` what the old one made later
+            continue  # the new plugin sets in `load` an attribute that the old plugin set later
         if name in loaded and not _is_compatible(value, loaded[name]):
             continue
         if type(value).__module__ == module and name in loaded and hasattr(value, "__dict__"):
@@ -195,38 +197,38 @@ def _merge_attributes(loaded: PluginState, had: PluginState, first: PluginState,
 
 
 def _is_compatible(value: object, like: object) -> bool:
-    """Whether a value may stand where the new plugin has one of its own; None stands for anything."""
+    """Check whether a value may replace the new plugin's own value; None is compatible with every value."""
     number = (int, float, np.number)
     if value is None or like is None or (isinstance(value, number) and isinstance(like, number)):
         return True
     return type(value).__name__ == type(like).__name__
 
 
-def _is_equal(one: Any, other: Any) -> bool:
-    """Whether two states of an attribute are equal; objects that cannot tell are looked into."""
-    if one is other:
+def _is_equal(first: Any, second: Any) -> bool:
+    """Check whether two states of an attribute are equal; objects without `__eq__` are compared by their attributes."""
+    if first is second:
         return True
-    if type(one) is not type(other):
+    if type(first) is not type(second):
         return False
-    if isinstance(one, np.ndarray):
-        return one.shape == other.shape and bool(np.array_equal(one, other, equal_nan=one.dtype.kind == "f"))
-    if isinstance(one, (list, tuple)):
-        return len(one) == len(other) and all(map(_is_equal, one, other))
-    if isinstance(one, dict):
-        return one.keys() == other.keys() and all(_is_equal(one[key], other[key]) for key in one)
-    if not any("__eq__" in vars(cls) for cls in type(one).__mro__[:-1]) and hasattr(one, "__dict__"):
-        return _is_equal(vars(one), vars(other))
+    if isinstance(first, np.ndarray):
+        return first.shape == second.shape and bool(np.array_equal(first, second, equal_nan=first.dtype.kind == "f"))
+    if isinstance(first, (list, tuple)):
+        return len(first) == len(second) and all(map(_is_equal, first, second))
+    if isinstance(first, dict):
+        return first.keys() == second.keys() and all(_is_equal(first[key], second[key]) for key in first)
+    if not any("__eq__" in vars(cls) for cls in type(first).__mro__[:-1]) and hasattr(first, "__dict__"):
+        return _is_equal(vars(first), vars(second))
     try:
-        return bool(one == other)
+        return bool(first == second)
     except Exception:  # noqa: BLE001 - a foreign comparison may raise anything
         return False
 
 
-# ---------------------------------------------------------------------- what is open to others
+# ---------------------------------------------------------------------- interfaces
 
 
 def close_endpoints(sim: Simulation, owner: object) -> None:
-    """Takes every topic, service, action, parameter and subscription of a plugin away for good."""
+    """Remove every topic, service, action, parameter and subscription of a plugin permanently."""
     sim.communication.forget([owner])
     for reader in sim.communication.bus.subscriptions():
         if _is_callback_of(reader.callback, owner):
@@ -234,20 +236,20 @@ def close_endpoints(sim: Simulation, owner: object) -> None:
 
 
 def _is_callback_of(callback: object, owner: object) -> bool:
-    """Whether a callback is a method of a plugin, or guards one."""
+    """Check whether a callback is a method of a plugin, or a guard of one."""
     if getattr(callback, "__self__", None) is owner:
         return True
     for cell in getattr(callback, "__closure__", None) or ():
-        with suppress(ValueError):  # an empty one
+        with suppress(ValueError):  # an empty cell
             if cell.cell_contents is owner:
                 return True
     return False
 
 
 def _take_over_parameters(sim: Simulation, old: AttachedPlugin, new: AttachedPlugin) -> None:
-    """Live parameters that were set while the old plugin was at work keep their values, where the new one takes them.
+    """Keep the values of live parameters that were set on the old plugin, if the new plugin accepts them.
 
-    The old one's may be hidden behind new ones of the same name; the first snapshot has them.
+    New parameters of the same name may hide the old ones; the first snapshot contains the old ones.
     """
     table = sim.communication.live_parameters
     first = {p: value for part, state in sim._loaded.handles if part is table for p, value in state}
@@ -257,23 +259,23 @@ def _take_over_parameters(sim: Simulation, old: AttachedPlugin, new: AttachedPlu
             try:
                 parameter.take(parameter.checked(changed[parameter.name]))
             except SimkitError as error:
-                sim.engine.log.warning("%s is not taken over: %s", parameter.name, error)
+                sim.engine.log.warning("parameter %s keeps its new value: %s", parameter.name, error)
 
 
 def _parameter_values(sim: Simulation, plugin: AttachedPlugin) -> ParameterState:
-    """A plugin's live parameters with their values."""
+    """Return a plugin's live parameters with their values."""
     return tuple((p, value) for p, value in sim.communication.live_parameters.get_state() if p.owner is plugin)
 
 
 def _add_parameter_values(sim: Simulation, snapshot: Snapshot, values: ParameterState) -> Snapshot:
-    """A snapshot that has these parameters as well."""
+    """Return a snapshot that contains these parameters as well."""
     table = sim.communication.live_parameters
     handles = [(h, (*state, *values)) if h is table else (h, state) for h, state in snapshot.handles]
     return replace(snapshot, handles=handles)
 
 
 def _hand_over_goals(sim: Simulation, old: AttachedPlugin, new: AttachedPlugin) -> None:
-    """Goals that are being worked on go on with the new plugin's action of the same name, or are aborted."""
+    """Continue active goals with the new plugin's action of the same name, or abort them."""
     actions = sim.communication.actions.endpoints_of(new)
     for goal in [g for g in sim.communication.actions._goals if g._action.owner is old and not g.is_done]:
         if goal._action.name in actions:
@@ -283,7 +285,7 @@ def _hand_over_goals(sim: Simulation, old: AttachedPlugin, new: AttachedPlugin) 
 
 
 def _restore_servo_gains(sim: Simulation, plugin: AttachedPlugin) -> None:
-    """Gives the servos of a plugin that was left out their strength back."""
+    """Restore the servo gains of a plugin that was disabled."""
     if plugin._actuators:
         indices = [sim.engine.names.actuator(ref) for ref in plugin._actuators]
         for field in ("actuator_gainprm", "actuator_biasprm"):

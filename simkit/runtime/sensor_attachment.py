@@ -1,4 +1,4 @@
-"""A sensor that is fitted to a link or a joint while the simulation runs."""
+"""Sensors that are added to a link or a joint during a run."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ _XML_ATTRIBUTES = frozenset(("name", "type"))
 
 
 def sensor_xml(sensor: str | Mapping[str, object]) -> str:
-    """The `<sensor>` element that is meant, as XML.
+    """Return a `<sensor>` element as XML.
 
     Args:
-        sensor: the element as text, or a dict of it: `name` and `type`, then its elements; nested dicts are elements in
-            elements, lists repeated ones, tuples the numbers of one.
+        sensor: element as text, or as a dict with `name`, `type` and its child elements. In the dict, nested dicts are
+            nested elements, lists are repeated elements, and tuples are the numbers of one element.
     """
     if isinstance(sensor, str):
         return sensor
@@ -35,18 +35,18 @@ def sensor_xml(sensor: str | Mapping[str, object]) -> str:
 
 def _xml_elements(values: Mapping[str, object]) -> Iterator[str]:
     for key, value in values.items():
-        for one in value if isinstance(value, list) else [value]:
-            if isinstance(one, Mapping):
-                own = {k.removeprefix("@"): v for k, v in one.items() if k.startswith("@")}
-                inside = {k: v for k, v in one.items() if not k.startswith("@")}
+        for item in value if isinstance(value, list) else [value]:
+            if isinstance(item, Mapping):
+                own = {k.removeprefix("@"): v for k, v in item.items() if k.startswith("@")}
+                inside = {k: v for k, v in item.items() if not k.startswith("@")}
                 text = "".join(f" {k}='{_xml_text(v)}'" for k, v in own.items())
                 yield f"<{key}{text}>{''.join(_xml_elements(inside))}</{key}>"
             else:
-                yield f"<{key}>{_xml_text(one)}</{key}>"
+                yield f"<{key}>{_xml_text(item)}</{key}>"
 
 
 def _xml_text(value: object) -> str:
-    """A value as the text of an element or an attribute."""
+    """Return a value as the text of an element or an attribute."""
     if isinstance(value, bool):
         return str(value).lower()
     text = " ".join(map(str, value)) if isinstance(value, tuple) else str(value)
@@ -54,35 +54,35 @@ def _xml_text(value: object) -> str:
 
 
 def sensor_model_xml(sensor: str, on_joint: bool) -> str:
-    """A file with nothing but the sensor, on a link or a joint of a model."""
+    """Return an SDF file that contains only the sensor, on a link or a joint of a model."""
     joint = f"<joint name='j' type='revolute'><parent>l</parent><child>k</child><axis/>{sensor}</joint><link name='k'/>"
     inside = f"<link name='l'/>{joint}" if on_joint else f"<link name='l'>{sensor}</link>"
     return f"<sdf version='1.11'><model name='m'>{inside}</model></sdf>"
 
 
 def build_sensor_model(structure: WorldStructure, name: str, read: SceneModel) -> tuple[str, SceneModel, str]:
-    """What a structure gets more.
+    """Build a model that adds a sensor to a structure.
 
     Args:
-        structure: what is there.
+        structure: present structure.
         name: scoped name of the link or joint.
-        read: what came of `sensor_model_xml`.
+        read: model read from `sensor_model_xml`.
 
     Returns:
-        The name of the top-level model, a model with nothing but the sensor, and the sensor's scoped name.
+        Name of the top-level model, model with only the sensor, and scoped name of the sensor.
 
     Raises:
-        KeyError: nothing is called so.
-        InputError: it has a sensor of that name.
+        KeyError: no link or joint has that name.
+        InputError: the link or joint has a sensor of that name.
     """
     top, owner = find_owner(structure, name)
     on_joint = isinstance(owner, SceneJoint)
     found = read.joints[0].sensors if on_joint else read.links[0].sensors
     if len(found) != 1:
-        raise InputError(f"add_sensor takes one <sensor>, got {len(found)}")
+        raise InputError(f"add_sensor needs one <sensor>, got {len(found)}")
     scoped = f"{owner.scoped}::{found[0].name}"
     if any(sensor.scoped == scoped for sensor in structure.all_sensors()):
-        raise InputError(f"there is a sensor {scoped!r} already", "SK-NAME-004")
+        raise InputError(f"a sensor {scoped!r} exists already", "SK-NAME-004")
     sensor = _move_sensor(found[0], scoped, owner)
     shell = SceneModel(name=top, scoped=owner.scoped.rpartition("::")[0], pose_world=read.pose_world)
     if isinstance(owner, SceneJoint):
@@ -91,7 +91,11 @@ def build_sensor_model(structure: WorldStructure, name: str, read: SceneModel) -
 
 
 def find_owner(structure: WorldStructure, name: str) -> tuple[str, SceneLink | SceneJoint]:
-    """A link or joint by its scoped name, after the name of its top-level model; KeyError names the closest."""
+    """Return the name of the top-level model and the link or joint with a scoped name.
+
+    Raises:
+        KeyError: no link or joint has that name; the message suggests the closest name.
+    """
     models = structure.models.items()
     table: dict[str, tuple[str, SceneLink | SceneJoint]] = {}
     for top, model in models:
@@ -101,7 +105,7 @@ def find_owner(structure: WorldStructure, name: str) -> tuple[str, SceneLink | S
 
 
 def _move_sensor(sensor: SceneSensor, scoped: str, owner: SceneLink | SceneJoint) -> SceneSensor:
-    """The sensor as it would be read on its new owner."""
+    """Return the sensor as if it had been read on its new owner."""
     return replace(
         sensor,
         scoped=scoped,

@@ -1,4 +1,4 @@
-"""A running simulation: what a user steps, reads and talks to."""
+"""Running simulation: the object that users step, read and command."""
 
 from __future__ import annotations
 
@@ -39,16 +39,16 @@ if TYPE_CHECKING:
 
 
 class Simulation:
-    """A loaded world. Made by `simkit.load`; also a context manager.
+    """Loaded world, made by `simkit.load`; also a context manager.
 
-    Everything read shows the state at `time`.
+    All readings show the state at `time`.
 
     Attributes:
         engine: physics, step loop, servos, random streams, plugin faults.
         communication: topics, services, actions and live parameters.
-        contents: models, links, joints, sensors and plugins, and how they are added and removed.
+        contents: models, links, joints, sensors and plugins, with functions to add and remove them.
         control: pause, gravity, collisions, geographic origin, reset of models.
-        run_spec: description of the run that `simkit.load` made it from; None where it was made otherwise.
+        run_spec: specification of the run from `simkit.load`; None for a simulation made in another way.
     """
 
     run_spec: RunSpec | None = None
@@ -78,7 +78,7 @@ class Simulation:
 
     @property
     def tick(self) -> int:
-        """Steps done."""
+        """Number of the present step."""
         return self.engine.physics.tick
 
     @property
@@ -102,19 +102,22 @@ class Simulation:
         return self.engine.clock.timestep
 
     def step(self, count: int = 1) -> None:
-        """Advances `count` steps; raises SimulationDiverged, and PluginError where a plugin raised."""
+        """Advance by `count` steps; raise SimulationDiverged or PluginError on a failure."""
         if count < 0:
             raise ValueError(f"count must not be negative, got {count}")
         self._advance(self.tick + int(count))
 
     def run(self, duration: float) -> None:
-        """Advances a duration [s] of simulated time, to the nearest whole step; also where a hook goes back in time."""
+        """Advance by a duration [s] of simulated time, rounded to the nearest whole step.
+
+        The number of steps is the same if a hook restores an earlier time.
+        """
         if not duration >= 0:
             raise ValueError(f"duration must be a number of seconds that is not negative, got {duration}")
         self._advance(self.tick + self.engine.clock.ticks(duration))
 
     def run_until(self, condition: Callable[[Simulation], bool], timeout: float) -> bool:
-        """Steps until `condition(sim)`, asked after every step, holds; False when `timeout` [s] passed before."""
+        """Step until `condition(sim)` holds after a step; return False if `timeout` [s] passed first."""
         for _ in range(self.engine.clock.ticks(timeout)):
             self.step()
             if condition(self):
@@ -137,7 +140,7 @@ class Simulation:
 
     @journaled
     def reset(self, seed: int | None = None) -> None:
-        """Back to t = 0 and to what was loaded: physics, plugins, sensors, random streams (optionally re-seeded)."""
+        """Reset to t = 0 and the loaded state: physics, plugins, sensors and random streams (reseeded if given)."""
         loaded, engine = self._loaded_state(), self.engine
         engine.loop.drop_deferred()
         self.communication.bus.settle()
@@ -150,31 +153,32 @@ class Simulation:
 
     @journaled
     def snapshot(self) -> Snapshot:
-        """The whole state; a run restored to it repeats bit for bit.
+        """Return the whole state; a run that is restored to it repeats bit for bit.
 
-        Asked for by a hook or a callback it is that of the end of the step under way, and complete from then on.
+        A snapshot that a hook or a callback requests is taken at the end of the present step, and complete from then
+        on.
         """
         self.engine.check_open()
         snapshots = self.contents.spawner.snapshots
         if not self.engine.is_stepping:
             return snapshots.take()
-        snapshot, keep = snapshots.promise()
+        snapshot, keep = snapshots.defer()
         self.engine.loop.defer(keep)
         return snapshot
 
     @journaled
     def restore(self, snapshot: Snapshot) -> None:
-        """Back (or forward) to a snapshot of this simulation; what was spawned or removed since is undone.
+        """Restore a snapshot of this simulation, earlier or later; spawns and removals since then are undone.
 
         Raises:
-            ValueError: the snapshot is of another simulation, or was asked for within a step that has not ended.
+            ValueError: the snapshot belongs to another simulation, or its step has not ended.
         """
         engine = self.engine
         engine.check_open()
         if snapshot.owner is not self:
-            raise ValueError("the snapshot is of another simulation; each goes back to its own only")
+            raise ValueError("the snapshot belongs to another simulation; restore only snapshots of this one")
         if not snapshot.is_complete:
-            raise ValueError("the snapshot was asked for within a step that has not ended; restore it after that step")
+            raise ValueError("the snapshot was requested in a step that has not ended; restore it after that step")
         engine.loop.drop_deferred()
         if snapshot.seed != engine.streams.seed:
             self.communication.bus.settle()
@@ -183,25 +187,25 @@ class Simulation:
 
     def _restore(self, snapshot: Snapshot) -> None:
         self.contents.spawner.snapshots.restore(snapshot)
-        self.engine.loop.halt()  # a run that is served looks anew at how far it is to go
+        self.engine.loop.halt()  # a served run determines its end again
         self.engine.reschedule()
         self.contents.spawner.forget_gone()
 
     def _stateful(self) -> list[Stateful]:
-        """Every part with a state besides sensors and plugins, in the order in which they are restored."""
-        engine, talk, control, handles = self.engine, self.communication, self.control, self.contents.handles
-        own = (engine.faults, talk.live_parameters, talk.actions, control.pausing, control.origin)
+        """Return every part with a state, except sensors and plugins, in the order of restoring."""
+        engine, interfaces, control, handles = self.engine, self.communication, self.control, self.contents.handles
+        own = (engine.faults, interfaces.live_parameters, interfaces.actions, control.pausing, control.origin)
         return [*handles.stateful(), *own, engine.velocity_servos, *handles.tables["model"].values()]
 
     def _loaded_state(self) -> Snapshot:
         self.engine.check_open()
         if "_loaded" not in vars(self):
-            raise InputError("the world is still being loaded, there is nothing yet to go back to", "SK-CORE-004")
+            raise InputError("the world is still being loaded, so there is no state to reset to", "SK-CORE-004")
         return self._loaded
 
     @property
     def world(self) -> SceneWorld:
-        """The world as the file describes it."""
+        """World as the file describes it."""
         return self.engine.world
 
     @property
@@ -210,50 +214,50 @@ class Simulation:
         return self.contents.models
 
     def model(self, name: str) -> Model:
-        """A model by scoped name; KeyError names the closest."""
+        """Return a model by scoped name; a KeyError suggests the closest name."""
         return self.contents.handles.model(name)
 
     def link(self, name: str) -> Link:
-        """A link by scoped name; KeyError names the closest."""
+        """Return a link by scoped name; a KeyError suggests the closest name."""
         return self.contents.handles.link(name)
 
     def joint(self, name: str) -> Joint:
-        """A joint by scoped name; KeyError names the closest."""
+        """Return a joint by scoped name; a KeyError suggests the closest name."""
         return self.contents.handles.joint(name)
 
     def sensor(self, name: str) -> Any:
-        """A sensor by scoped name; KeyError names the closest."""
+        """Return a sensor by scoped name; a KeyError suggests the closest name."""
         return self.contents.handles.find("sensor", name)
 
     def light(self, name: str) -> Light:
-        """A light by scoped name; KeyError names the closest."""
+        """Return a light by scoped name; a KeyError suggests the closest name."""
         return self.contents.handles.light(name)
 
     def visual(self, name: str) -> Visual:
-        """A visual by scoped name; KeyError names the closest."""
+        """Return a visual by scoped name; a KeyError suggests the closest name."""
         return self.contents.handles.find_visual(name)
 
     def spawn(self, source: object, name: str | None = None, pose: Pose | None = None) -> Model:
-        """Adds a model while time goes on; everything else keeps its state and its handles.
+        """Add a model during the run; everything else keeps its state and its handles.
 
         Args:
-            source: a file, XML text, or the bare name of a model.
-            name: instead of the file's own.
-            pose: of the model frame in the world, instead of the file's own.
+            source: file, XML text, or bare name of a model.
+            name: name of the model; None for the name in the file.
+            pose: pose of the model frame in the world; None for the pose in the file.
 
         Raises:
-            LoadError: the source has errors, or the name is taken.
+            LoadError: the source has errors, or the name is already used.
             InputError: no model can have this name.
         """
         return self.contents.spawn_all([(source, name, pose)])[0]
 
     def remove(self, name: str) -> None:
-        """Takes a top-level model away while time goes on."""
+        """Remove a top-level model during the run."""
         self.contents.remove(name)
 
     @property
     def gravity(self) -> Vector:
-        """Acceleration that everything feels [m/s²], world frame, shape (3,); settable at any time."""
+        """Gravity [m/s²], world frame, shape (3,); settable at any time."""
         return self.control.gravity
 
     @gravity.setter
@@ -262,12 +266,12 @@ class Simulation:
 
     @property
     def plugins(self) -> dict[str, Any]:
-        """Plugins that the file made, by scoped name."""
+        """Plugins of the file by scoped name."""
         return self.contents.plugins
 
     @property
     def paused(self) -> bool:
-        """Whether the world is paused, as its services and `simkit run` understand it; settable."""
+        """True while the world is paused for its services and `simkit run`; settable."""
         return self.control.paused
 
     @paused.setter
@@ -275,10 +279,10 @@ class Simulation:
         self.control.paused = paused
 
     def publish(self, topic: str, message: Message) -> None:
-        """Sends a message object, or a dict of its fields; inputs get it before the next step.
+        """Publish a message object, or a dict of its fields; command inputs receive it before the next step.
 
         Raises:
-            MessageError: unknown topic, or fields that do not fit.
+            MessageError: the topic is unknown, or the fields do not fit its type.
         """
         self.engine.check_open()
         self.communication.bus.publish(topic, message)
@@ -286,78 +290,81 @@ class Simulation:
     def subscribe(
         self, topic: str, callback: Callback | None = None, keep: int | None = None, on_error: CallbackPolicy = "stop"
     ) -> Subscription:
-        """Receives a topic, before or after its publisher exists.
+        """Receive a topic; its publisher may be opened later.
 
         Args:
-            callback: called with each message.
-            keep: how many messages are kept, the newest; a million by default.
-            on_error: of a callback that raises: "stop" ends the run with a SubscriberError, "drop" the subscription.
+            topic: name of the topic.
+            callback: function that receives each message.
+            keep: number of newest messages to keep; None for a million.
+            on_error: policy for a callback that raises: "stop" ends the run with a SubscriberError, "drop" closes the
+                subscription.
         """
         return self.communication.bus.subscribe(topic, callback, keep, on_error)
 
     def topics(self) -> dict[str, str]:
-        """Topic -> ROS type name."""
+        """Return the ROS type names by topic."""
         return self.communication.bus.topics()
 
     def call(self, service: str, request: Message = None) -> Message:
-        """The response of a service to a message, a dict of its fields, or None for all zero.
+        """Send a request (message, dict of its fields, or None for all zero) to a service; return its response.
 
         Raises:
-            ServiceError: there is no such service; names the closest.
-            MessageError: the request does not fit.
+            ServiceError: no such service; the message suggests the closest name.
+            MessageError: the request does not fit the type.
             PluginError: the service of a plugin raised.
         """
         self.engine.check_open()
         return self.communication.services.call(service, request)
 
     def offer(self, service: str, type_name: str, handler: ServiceHandler) -> Service:
-        """Opens a service of a type such as `std_srvs/srv/Trigger`.
+        """Open a service.
 
         Args:
-            service: absolute, or taken as such.
-            type_name: its type.
-            handler: given the request, gives the response: a message, a dict of its fields, or None for all zero.
+            service: name of the service; a missing leading slash is added.
+            type_name: service type, such as `std_srvs/srv/Trigger`.
+            handler: function from a request to a response: a message, a dict of its fields, or None for all zero.
 
         Raises:
-            ServiceError: there is one of that name.
-            MessageError: an unknown type.
+            ServiceError: a service of that name exists.
+            MessageError: the type is unknown.
         """
         return self.communication.services.offer(service, type_name, handler)
 
     def send_goal(
         self, action: str, goal: Message = None, on_feedback: Callback | None = None, on_done: EndCallback | None = None
     ) -> GoalHandle:
-        """Sends a goal; the plugin has it before the next step.
+        """Send a goal; the plugin receives it before the next step.
 
         Args:
-            goal: a message, a dict of its fields, or None for all zero.
-            on_feedback: called with each feedback message.
-            on_done: called with the handle once the goal has ended.
+            action: name of the action.
+            goal: message, dict of its fields, or None for all zero.
+            on_feedback: function that receives each feedback message.
+            on_done: function that receives the handle after the end of the goal.
 
         Raises:
-            ActionError: there is no such action; names the closest.
-            MessageError: the goal does not fit.
+            ActionError: no such action; the message suggests the closest name.
+            MessageError: the goal does not fit the type.
         """
         self.engine.check_open()
         return self.communication.actions.send(action, goal, on_feedback, on_done)
 
     def set_parameter(self, node: str, name: str, value: object) -> None:
-        """Changes a live parameter; raises ParameterError where none has that name or takes the value."""
+        """Set a live parameter; raise ParameterError for an unknown parameter or a value that is not allowed."""
         self.communication.set_parameter(node, name, value)
 
     @property
     def diagnostics(self) -> list[Diagnostic]:
-        """What loading approximated or ignored."""
+        """Warnings and notes of the load: approximated or ignored parts of the input."""
         return list(self.engine.reports)
 
     @property
     def mj_model(self) -> mujoco.MjModel:
-        """The `mujoco.MjModel`; a new object after a spawn or a removal."""
+        """MuJoCo's `MjModel`; a new object after a spawn or a removal."""
         return self.engine.physics.model
 
     @property
     def mj_data(self) -> mujoco.MjData:
-        """The `mujoco.MjData`; a new object after a spawn or a removal."""
+        """MuJoCo's `MjData`; a new object after a spawn or a removal."""
         return self.engine.physics.data
 
     def _fill(self, scheduler: Scheduler) -> None:
@@ -366,7 +373,7 @@ class Simulation:
         self.communication.on_demand.fill(scheduler)
 
     def close(self) -> None:
-        """Closes plugins and sensors; further calls do nothing."""
+        """Close plugins and sensors; further calls do nothing."""
         engine = self.engine
         if engine.is_closed:
             return

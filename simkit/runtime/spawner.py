@@ -1,4 +1,4 @@
-"""What is in a simulation, and how that changes while it runs."""
+"""Spawning and removal of models, and the sensors and plugins of a simulation."""
 
 from __future__ import annotations
 
@@ -36,23 +36,25 @@ if TYPE_CHECKING:
 ModelLoader = Callable[..., SceneModel]
 SensorsAndPluginsMaker = Callable[..., SensorsAndPlugins]
 SpawnRequest = tuple[object, str | None, Pose | None]
-"""What a model is read from (or a model), and the name and the pose that it gets instead of its own."""
+"""Source of a model (or a model), and its new name and pose; None for those of the source."""
 
 
 class Spawner:
-    """Adds and removes models while a simulation runs, and puts their sensors and plugins to work.
+    """Function object that adds and removes models during a run and starts their sensors and plugins.
 
     Args:
-        sim: the simulation, for its sensors and plugins.
-        engine, communication, handles: of the simulation.
-        stateful: gives every part with a state besides sensors and plugins.
-        load_model: reads a model to be spawned.
-        make_parts: makes the sensors and plugins of a model and prepares a spec for them.
+        sim: simulation of the sensors and plugins.
+        engine: engine of the simulation.
+        communication: communication of the simulation.
+        handles: handles of the simulation.
+        stateful: function that returns every part with a state, except sensors and plugins.
+        load_model: function that reads a model to spawn.
+        make_parts: function that makes the sensors and plugins of a model and prepares a spec for them.
 
     Attributes:
-        load_model: reads a model to be spawned.
-        loaded_plugins: every plugin that is there, or that a snapshot or a reset may bring back.
-        snapshots: takes and restores the state of the simulation.
+        load_model: function that reads a model to spawn.
+        loaded_plugins: present plugins, and plugins that a snapshot or a reset may bring back.
+        snapshots: functions that take and restore the state of the simulation.
     """
 
     def __init__(
@@ -73,14 +75,14 @@ class Spawner:
         self._structures: list[weakref.ref[WorldStructure]] = []
         self.loaded_plugins: list[AttachedPlugin] = []
 
-    def spawn(self, wanted: Sequence[SpawnRequest]) -> list[str]:
-        """Adds models, compiled once for all of them; returns their names. Where one fails, all is as before."""
+    def spawn(self, requests: Sequence[SpawnRequest]) -> list[str]:
+        """Add models, compiled once for all of them; return their names. A failure undoes all changes."""
         old = self._engine.structure
         before, builder, found = self.snapshots.take(), old.builder.copy(), Diagnostics()
         models, parts, names = dict(old.models), dict(old.parts), []
-        for source, name, pose in wanted:
+        for source, name, pose in requests:
             if isinstance(source, SceneModel):
-                scene = source  # a copy of what is there
+                scene = source  # a copy of a present model
             else:
                 scene = self.load_model(source, found, name=name, pose=pose, taken=models)
             builder.add_model(scene)
@@ -91,11 +93,15 @@ class Spawner:
         return names
 
     def read(self, source: object) -> SceneModel:
-        """A model as its own file has it, without spawning it. Raises LoadError."""
+        """Read a model from its file without spawning it.
+
+        Raises:
+            LoadError: the source has errors.
+        """
         return self.load_model(source, Diagnostics())
 
     def add_sensor(self, name: str, sensor: str | Mapping[str, object]) -> str:
-        """Fits a sensor to a link or a joint; returns its scoped name. Where it fails, all is as before."""
+        """Add a sensor to a link or a joint; return its scoped name. A failure undoes all changes."""
         old = self._engine.structure
         _, owner = sensor_attachment.find_owner(old, name)
         text = sensor_attachment.sensor_model_xml(sensor_attachment.sensor_xml(sensor), isinstance(owner, SceneJoint))
@@ -107,14 +113,14 @@ class Spawner:
         parts = self._make(shell, builder, found)
         if not parts.sensors:
             raise LoadError(tuple(found))
-        there = old.parts[top]
-        joined = SensorsAndPlugins([*there.sensors, *parts.sensors], [*there.plugins, *parts.plugins])
+        present = old.parts[top]
+        joined = SensorsAndPlugins([*present.sensors, *parts.sensors], [*present.plugins, *parts.plugins])
         self.switch(replace(self._recompiled(builder), parts={**old.parts, top: joined}))
         self._start_or_restore([parts], found, before)
         return scoped
 
     def _make(self, scene: SceneModel, builder: SpecBuilder, found: Diagnostics) -> SensorsAndPlugins:
-        """The parts of what comes while it runs; they are called after all that is there already."""
+        """Make the sensors and plugins of a spawned model; the plugins are called after all present plugins."""
         parts = self._make_parts(scene, builder, found)
         self._spawned += 1
         for plugin, _ in parts.plugins:
@@ -123,7 +129,7 @@ class Spawner:
         return parts
 
     def _start_or_restore(self, added: list[SensorsAndPlugins], found: Diagnostics, before: Snapshot) -> None:
-        """Starts what was added; where that fails, all is as before."""
+        """Start added sensors and plugins; a failure undoes all changes."""
         try:
             self.start(added, found)
         except SimkitError:
@@ -137,13 +143,13 @@ class Spawner:
         self._engine.reports.extend(found)
 
     def undo(self, before: Snapshot) -> None:
-        """Takes back a change that failed, perhaps within a hook: what waits for the next step goes on waiting."""
+        """Undo a failed change, perhaps within a hook; commands for the next step stay in the queue."""
         self.snapshots.restore(before, with_inbox=False)
         self._engine.reschedule()
         self.forget_gone()
 
     def remove(self, name: str) -> None:
-        """Takes a top-level model away."""
+        """Remove a top-level model."""
         old = self._engine.structure
         if name not in old.models:
             raise InputError(f"{name!r} is not a top-level model; remove {name.split('::')[0]!r}", "SK-NAME-003")
@@ -154,37 +160,41 @@ class Spawner:
         self.switch(replace(self._recompiled(builder), models=models, movable=old.movable - {name}, parts=parts))
 
     def forget_gone(self) -> None:
-        """Closes what nothing brings back any more; within a step once that is done, for it may be at work."""
+        """Close plugins that nothing can bring back; within a step at its end, because a plugin may be running."""
         if self._engine.is_stepping:
             self._engine.loop.defer(self.forget)
         else:
             self.forget()
 
     def forget(self) -> None:
-        """Closes the plugins that nothing brings back any more: they are in no structure that is or that is kept.
+        """Close the plugins that no present or stored structure contains.
 
         Raises:
-            PluginError: one of them raised; the others are closed all the same.
+            PluginError: a plugin raised; the others are closed all the same.
         """
         now = self._engine.structure
         if len(self.loaded_plugins) == len(now.all_plugins()) and len(self._attached) == len(now.all_sensors()):
-            return  # all are there: nothing was taken away
+            return  # nothing was removed
         self._structures = [kept for kept in self._structures if kept() is not None]
         structures = [structure for kept in self._structures if (structure := kept()) is not None]
-        there = {id(p) for structure in structures for p in structure.all_plugins()}
-        gone = [plugin for plugin in self.loaded_plugins if id(plugin) not in there]
-        self.loaded_plugins = [plugin for plugin in self.loaded_plugins if id(plugin) in there]
+        present = {id(p) for structure in structures for p in structure.all_plugins()}
+        removed = [plugin for plugin in self.loaded_plugins if id(plugin) not in present]
+        self.loaded_plugins = [plugin for plugin in self.loaded_plugins if id(plugin) in present]
         sensors = {s for structure in structures for s in structure.all_sensors()}
-        owners = [*gone, *(self._attached - sensors)]
+        owners = [*removed, *(self._attached - sensors)]
         self._attached &= sensors
-        first = self._close(gone)
+        first = self._close(removed)
         self._communication.forget(owners)
         self._handles.forget([scene for structure in structures for scene in structure.models.values()])
         if first is not None:
             raise first
 
     def make_movable(self, name: str) -> bool:
-        """Makes the links of a static model bodies that follow their set pose; False where they are already."""
+        """Replace the links of a static model by bodies that follow their set pose.
+
+        Returns:
+            False if the model is already movable.
+        """
         old = self._engine.structure
         if name in old.movable:
             return False
@@ -196,22 +206,22 @@ class Spawner:
         self.switch(replace(self._recompiled(builder), movable=old.movable | {name}))
         for light in self._handles.tables["light"].values():
             if light.scene.link.startswith(f"{name}::"):
-                light.draw()  # it was drawn in the world's body, and is in its link's own now
+                light.draw()  # the light has moved from the world's body to its link's body
         return True
 
     def add_weld(self, name: str, parent_link: str, child_link: str) -> None:
-        """Adds a weld, let go at first, between two links."""
+        """Add an open weld between two links."""
         builder = self._engine.structure.builder.copy()
         builder.add_weld(name, parent_link, child_link, active=False)
         self.switch(self._recompiled(builder))
 
     def _recompiled(self, builder: SpecBuilder) -> WorldStructure:
-        """The present structure on the model of a changed builder."""
+        """Return the present structure with the compiled model of a changed builder."""
         old = self._engine.structure
         return replace(old, builder=builder, compiled=builder.recompile(old.compiled, self._engine.mj_data))
 
     def switch(self, structure: WorldStructure) -> None:
-        """Goes on with another structure, the changed model fields carried over."""
+        """Switch to another structure and carry over the changed model fields."""
         engine = self._engine
         old_model, fields = engine.mj_model, dict(engine.originals)
         new = structure.compiled.model
@@ -226,7 +236,7 @@ class Spawner:
         restore_compiled_fields(old_model, fields)
 
     def adopt(self, structure: WorldStructure) -> None:
-        """Binds handles, sensors and topics to a structure."""
+        """Bind handles, sensors and topics to a structure."""
         engine, handles, compiled = self._engine, self._handles, structure.compiled
         physics = engine.physics
         if not any(kept() is structure for kept in self._structures):
@@ -253,7 +263,11 @@ class Spawner:
                 sensor.bind(compiled)
 
     def start(self, parts: list[SensorsAndPlugins], diagnostics: Diagnostics) -> None:
-        """Attaches new sensors, then loads new plugins, in document order; raises LoadError where they found errors."""
+        """Attach new sensors, then load new plugins, in document order.
+
+        Raises:
+            LoadError: sensors or plugins have errors.
+        """
         bus = self._communication.bus
         bus.refuses_clashes = False
         for part in parts:
@@ -271,12 +285,12 @@ class Spawner:
         diagnostics.raise_if_errors()
 
     def load_plugin(self, plugin: AttachedPlugin, parent: object) -> None:
-        """Calls a plugin's `load`, and remembers what it made."""
+        """Call a plugin's `load` and store its loaded state."""
         faults = self._engine.faults
         self.loaded_plugins.append(plugin)
         try:
             plugin._setup(self._sim, plugin.source)
-            if plugin._failed is not None:  # before there was a simulation
+            if plugin._failed is not None:  # it raised before the simulation existed
                 hook, error = plugin._failed
                 faults.meet(plugin, hook, error)
                 return
@@ -291,7 +305,7 @@ class Spawner:
             faults.meet(plugin, "get_state", error)
 
     def close_plugins(self) -> SimkitError | None:
-        """Closes every plugin, once; gives the first error that one of them raised."""
+        """Close every plugin once; return the first error that a plugin raised."""
         first = self._close(self.loaded_plugins)
         self.loaded_plugins.clear()
         return first
@@ -307,10 +321,10 @@ class Spawner:
 
 
 def _check_hook_rates(plugin: AttachedPlugin) -> None:
-    """Reports a hook's rate that is none."""
+    """Report an invalid rate of a hook."""
     for name in ("before_step_rate", "after_step_rate"):
         rate = getattr(plugin, name)
         if rate is not None and not (isinstance(rate, (int, float)) and 0 <= rate < math.inf):
             message = f"plugin {plugin.name!r}: {name} is {rate!r}, allowed is a number of at least 0 [Hz], or None"
-            plugin.params.error("SK-PLUGIN-023", message, "0 and None are every step")
+            plugin.params.error("SK-PLUGIN-023", message, "0 and None mean every step")
             setattr(plugin, name, None)

@@ -1,4 +1,4 @@
-"""Models, links, joints, sensors and plugins of a simulation by name, and how they change while it runs."""
+"""Models, links, joints, sensors and plugins of a simulation by name, and their changes during the run."""
 
 from __future__ import annotations
 
@@ -25,18 +25,19 @@ if TYPE_CHECKING:
 
 
 class WorldContents:
-    """What is in a simulation.
+    """Content of a simulation.
 
     Args:
-        sim: the simulation, for its sensors and plugins.
-        engine, communication: of the simulation.
-        stateful: gives every part with a state besides sensors and plugins.
-        load_model: reads a model to be spawned.
-        make_parts: makes the sensors and plugins of a model and prepares a spec for them.
+        sim: simulation of the sensors and plugins.
+        engine: engine of the simulation.
+        communication: communication of the simulation.
+        stateful: function that returns every part with a state, except sensors and plugins.
+        load_model: function that reads a model to spawn.
+        make_parts: function that makes the sensors and plugins of a model and prepares a spec for them.
 
     Attributes:
-        handles: of models, links, joints, lights and sensors.
-        spawner: adds and removes models.
+        handles: handles of models, links, joints, lights and sensors.
+        spawner: function object that adds and removes models.
     """
 
     def __init__(
@@ -52,7 +53,7 @@ class WorldContents:
         self.handles = EntityHandles(engine, self.make_movable)
         self.spawner = Spawner(sim, engine, communication, self.handles, stateful, load_model, make_parts)
 
-    # ------------------------------------------------------------------ what there is
+    # ------------------------------------------------------------------ lists
 
     @property
     def models(self) -> dict[str, Model]:
@@ -71,7 +72,10 @@ class WorldContents:
 
     @property
     def plugins(self) -> dict[str, Any]:
-        """Plugins by scoped name, `robot::drive`; those of the world by their own. Of equal names the first."""
+        """Plugins by scoped name, `robot::drive`; those of the world by their own name.
+
+        The first of equal names counts.
+        """
         found: dict[str, Any] = {}
         for plugin in self._engine.structure.all_plugins():
             found.setdefault(f"{plugin.scoped}::{plugin.name}" if plugin.scoped else plugin.name, plugin)
@@ -88,23 +92,23 @@ class WorldContents:
         return self.handles.temperatures
 
     def has_sensor(self, name: str) -> bool:
-        """Whether a sensor of that name is simulated."""
+        """Check whether a sensor of that name is simulated."""
         return name in self.handles.tables["sensor"]
 
     def scene_link(self, scoped: str) -> SceneLink:
-        """A link as the file has it."""
+        """Return a link as described by the file."""
         return self.handles.scene_link(scoped)
 
     # ------------------------------------------------------------------ spawn and remove
 
     def spawn_all(self, models: Iterable[SpawnRequest]) -> list[Model]:
-        """Adds several models at once, which takes little longer than one; all of them or none.
+        """Add several models at once, which takes little longer than one. A failure adds none of them.
 
         Args:
-            models: source, name and pose of each, as for `Simulation.spawn`.
+            models: source, name and pose of each model, as for `Simulation.spawn`.
 
         Raises:
-            LoadError: one of the sources has errors, or its name is taken.
+            LoadError: a source has errors, or its name is already used.
             InputError: no model can have one of the names.
         """
         return self._spawned(list(models))
@@ -121,9 +125,9 @@ class WorldContents:
 
     @journaled
     def remove(self, name: str) -> None:
-        """Takes a top-level model away while time goes on."""
+        """Remove a top-level model during the run."""
         self._engine.check_open()
-        self.handles.model(name)  # an unknown name is a KeyError that tells the closest
+        self.handles.model(name)  # raises KeyError for an unknown name
         self.spawner.remove(name)
         self._communication.actions.abandon_gone()
         self._engine.reschedule()
@@ -131,23 +135,27 @@ class WorldContents:
 
     @journaled
     def clone(self, name: str, new_name: str, pose: Pose | None = None) -> Model:
-        """Adds a copy of a top-level model as its file has it, where the model is now or at a pose in the world.
+        """Add a copy of a top-level model, as described by its file.
+
+        Args:
+            name: name of the model.
+            new_name: name of the copy.
+            pose: pose in the world; None for the present pose of the model.
 
         Raises:
-            KeyError: there is no such model; names the closest.
-            InputError: there is a model of the new name, no model can have that name, or the model is of a kind that
-                cannot be copied.
+            KeyError: no such model; the message suggests the closest name.
+            InputError: the new name is already used or invalid, or a model of this kind cannot be copied.
         """
         model = self.handles.model(name)
         check_model_name(new_name)
         if new_name in self.handles.models:
-            raise InputError(f"SK-LOAD-011 there is a model {new_name!r} already", "SK-LOAD-011")
+            raise InputError(f"SK-LOAD-011 a model {new_name!r} exists already", "SK-LOAD-011")
         copied = copy_model(model.scene, new_name, model.pose if pose is None else pose)
         return self.spawn_all([(copied, None, None)])[0]
 
     @contextmanager
     def all_or_none(self) -> Iterator[None]:
-        """Where something raises within, whatever was spawned, removed or changed within is as before, bit for bit."""
+        """Undo all spawns, removals and changes within the context, bit for bit, if an exception is raised in it."""
         before = self.spawner.snapshots.take()
         try:
             yield
@@ -157,23 +165,23 @@ class WorldContents:
 
     @journaled
     def add_sensor(self, name: str, sensor: str | Mapping[str, object]) -> Any:
-        """Fits a sensor to a link or a joint while time goes on; nobody else's bits change.
+        """Add a sensor to a link or a joint during the run; no other output changes in any bit.
 
-        Snapshots, resets and removals cover it: it goes with its model, and a reset or a restore to an earlier time
-        takes it away.
+        Snapshots, resets and removals include the sensor. It is removed with its model, and by a reset or restore to an
+        earlier time.
 
         Args:
             name: scoped name of the link or joint.
-            sensor: a `<sensor>` element as XML text, or a dict of it: `{"name": "imu", "type": "imu",
-                "update_rate": 100, "imu": {…}}`.
+            sensor: `<sensor>` element as XML text or as a dict: `{"name": "imu", "type": "imu", "update_rate": 100,
+                "imu": {…}}`.
 
         Returns:
             The sensor.
 
         Raises:
             LoadError: the sensor has errors.
-            KeyError: there is no such link or joint; names the closest.
-            InputError: it has a sensor of that name.
+            KeyError: no such link or joint; the message suggests the closest name.
+            InputError: the link or joint has a sensor of that name.
         """
         self._engine.check_open()
         scoped = self.spawner.add_sensor(name, sensor)
@@ -182,13 +190,13 @@ class WorldContents:
 
     @journaled
     def make_movable(self, name: str) -> None:
-        """Lets a static top-level model be moved: its links become bodies that follow their set pose."""
+        """Make a static top-level model movable: its links become bodies that follow their set pose."""
         if self.spawner.make_movable(name):
             self._engine.reschedule()
 
     @property
     def models_reader(self) -> ModelLoader:
-        """Reads models that come while it runs, given `(source, diagnostics, *, name, pose, taken)`; settable."""
+        """Function that reads models to spawn, called as `(source, diagnostics, *, name, pose, taken)`; settable."""
         return self.spawner.load_model
 
     @models_reader.setter
@@ -196,27 +204,42 @@ class WorldContents:
         self.spawner.load_model = reader
 
     def name_in_file(self, source: object) -> str:
-        """The name that a model to be spawned has in its own file. Raises LoadError."""
+        """Return the name of a model in its file.
+
+        Raises:
+            LoadError: the source has errors.
+        """
         return self.spawner.read(source).name
 
     def pose_in_file(self, source: object) -> Pose:
-        """The pose in the world that a model to be spawned has in its own file. Raises LoadError."""
+        """Return the pose of a model in the world, as given in its file.
+
+        Raises:
+            LoadError: the source has errors.
+        """
         return self.spawner.read(source).pose_world
 
     # ------------------------------------------------------------------ welds
 
     @journaled
     def add_weld(self, name: str, parent_link: str, child_link: str) -> None:
-        """Adds a weld between two links while time goes on; `set_weld` closes it. Raises KeyError for unknown links."""
+        """Add an open weld between two links during the run; `set_weld` closes it.
+
+        Raises:
+            KeyError: a link does not exist.
+        """
         self.spawner.add_weld(name, parent_link, child_link)
         self._engine.reschedule()
 
     @journaled
     def set_weld(self, name: str, closed: bool) -> None:
-        """Closes a weld with its links as they stand now, or lets it go. Raises KeyError.
+        """Close a weld with its links at their present poses, or open it.
 
-        The constraint keeps the anchor, a point of the second body, where it is in the first, and their orientations:
-        seven numbers of `eq_data` behind the anchor's three.
+        The constraint keeps the anchor, a point of the second body, at its place in the first body, and the relative
+        orientation. These are seven numbers of `eq_data` behind the three of the anchor.
+
+        Raises:
+            KeyError: no such weld.
         """
         engine = self._engine
         number = engine.names.equality(name)

@@ -1,4 +1,4 @@
-"""Control of a world as a whole: pause, gravity, collisions, geographic origin, random seed, reset of models."""
+"""Control of a whole world: pause, gravity, collisions, geographic origin, random seed, reset of models."""
 
 from __future__ import annotations
 
@@ -27,30 +27,29 @@ if TYPE_CHECKING:
 
 
 class Advance(Protocol):
-    """Makes the steps up to a tick."""
+    """Function that makes the steps up to a tick."""
 
     def __call__(self, target: int, *, is_served: bool = False) -> None:
-        """Advances to `target`; a run that is served ends earlier where it is told to halt."""
+        """Advance to `target`; a served run ends earlier if the loop is halted."""
 
 
 class PauseControl:
-    """Where a run is to stop: what pausing, stepping and running to a time mean.
+    """Pause state of a run: pausing, stepping, and running to a time.
 
-    As with gz's server, it is the one who keeps a world running (`simkit run`) that stands still while the world is
-    paused, and goes on when it is resumed. A script that calls `step` or `run` says itself how far to go, as with gz's
-    multi-step, and gets there.
+    As in Gazebo's server, pausing stops the code that keeps a world running (`simkit run`), and resuming continues it.
+    A script that calls `step` or `run` sets its own target and reaches it, like Gazebo's multi-step.
 
     Args:
-        engine: that is advanced.
-        advance: makes the steps.
-        commands: another generation of them tells of a restore or a reset.
+        engine: engine of the simulation.
+        advance: function that makes the steps.
+        commands: command queue, whose generation changes with a restore or a reset.
 
     Attributes:
-        until: the tick beyond which it does not go by itself; None where it runs on.
-        is_stepping: whether it is on its way there by steps that were asked for.
-        pace: the highest real-time factor that somebody asked for; None for none. It is no state of the world.
-        is_served: whether somebody keeps the world running, so that what is asked for is done by them.
-        is_over: whether the run has come to its end, so that `advance` goes no further; no state of the world.
+        until: tick at which the run pauses; None if it continues.
+        is_stepping: True while the run makes requested steps up to `until`.
+        pace: requested highest real-time factor; None for none. Not part of the world's state.
+        is_served: True while other code keeps the world running and carries out requests.
+        is_over: True after the end of the run, so that `advance` stops. Not part of the world's state.
     """
 
     def __init__(self, engine: Engine, advance: Advance, commands: CommandQueue) -> None:
@@ -63,28 +62,28 @@ class PauseControl:
 
     @property
     def is_paused(self) -> bool:
-        """Whether the world stands still."""
+        """True while the world is paused."""
         return self.until is not None and self._engine.tick >= self.until
 
     def on_change(self, callback: Callable[[], None]) -> None:
-        """Calls back whenever somebody pauses the world, resumes it, or asks for steps."""
+        """Call a function whenever the world is paused or resumed, or steps are requested."""
         self._watchers.append(callback)
 
     def pause(self) -> None:
-        """Has the world stand still, once the step under way is done."""
+        """Pause the world after the present step."""
         self._set(self._engine.tick, is_stepping=False)
 
     def resume(self) -> None:
-        """Lets the world go on."""
+        """Resume the world."""
         self._set(None, is_stepping=False)
 
     def step(self, count: int) -> None:
-        """Has a world that is paused do so many steps, and pause again; more of them add up."""
+        """Make a paused world do `count` steps and pause again; several requests add up."""
         left = self.until - self._engine.tick if self.until is not None and self.is_stepping else 0
         self._set(self._engine.tick + max(0, left) + count, is_stepping=True)
 
     def run_to(self, time_ns: int) -> None:
-        """Has the world go on to the first tick at or after a simulated time [ns], and pause there."""
+        """Run the world to the first tick at or after a simulated time [ns], and pause there."""
         clock = self._engine.clock
         tick = clock.ticks(time_ns / 1e9)
         while clock.time_ns(tick) < time_ns:
@@ -94,14 +93,14 @@ class PauseControl:
         self._set(tick, is_stepping=False)
 
     def catch_up(self) -> None:
-        """Goes where the run is to stop, where nobody else will: outside a step, in a world that nobody serves."""
+        """Run to the pause tick, outside a step, in a world that no other code keeps running."""
         engine = self._engine
         if self.until is not None and not self.is_served and not engine.is_stepping and self.until > engine.tick:
             self._advance(self.until)
 
     @contextmanager
     def served(self) -> Iterator[None]:
-        """Says that the world is kept running within."""
+        """Mark the world as kept running within the context."""
         self.is_served = True
         try:
             yield
@@ -109,14 +108,14 @@ class PauseControl:
             self.is_served = False
 
     def end(self) -> None:
-        """Has a run that is served end with the step under way."""
+        """End a served run after the present step."""
         self.is_over = True
         self._engine.loop.halt()
 
     def advance(self, count: int) -> None:
-        """Goes on by up to `count` steps, as far as the world is let: what `simkit run` does again and again.
+        """Advance by up to `count` steps, limited by the pause tick; `simkit run` calls it repeatedly.
 
-        It ends where a hook goes back to another time, which may be the one at which it began.
+        The call ends when a hook restores another time, which may be the time at which the call began.
         """
         engine = self._engine
         end, commands = engine.tick + count, self._commands
@@ -143,22 +142,22 @@ class PauseControl:
 
 
 _MASK_FIELDS = ("geom_contype", "geom_conaffinity")
-_PLACE_FIELDS = ("body_pos", "body_quat")  # of what is fixed or hinged to the world and was moved
+_PLACE_FIELDS = ("body_pos", "body_quat")  # of moved bodies that are fixed or hinged to the world
 
 
 class GeographicOrigin:
-    """The place of the world's origin; sensors that depend on it (`navsat`, `magnetometer`) are told."""
+    """Geographic position of the world's origin; sensors that depend on it (`navsat`, `magnetometer`) are notified."""
 
     def __init__(self, engine: Engine) -> None:
         self._engine = engine
 
     @property
     def place(self) -> SphericalCoordinates | None:
-        """The world's `<spherical_coordinates>`; None where there are none."""
+        """World's `<spherical_coordinates>`; None if it has none."""
         return self._engine.world.spherical_coordinates
 
     def move(self, place: SphericalCoordinates | None) -> None:
-        """Puts the world's origin somewhere else."""
+        """Move the world's origin."""
         engine = self._engine
         sensors = [s for s in engine.structure.all_sensors() if hasattr(s, "relocate")]
         for sensor in sensors:
@@ -168,27 +167,30 @@ class GeographicOrigin:
             sensor.relocate()
 
     def get_state(self) -> SphericalCoordinates | None:
-        """Returns the place, for a snapshot."""
+        """Return the position for a snapshot."""
         return self.place
 
     def set_state(self, state: SphericalCoordinates | None) -> None:
-        """Goes back to a place from `get_state`."""
+        """Restore a position from `get_state`."""
         if state is not self.place:
             self.move(state)
 
 
 class WorldControl:
-    """What the services of a world do.
+    """Functions behind the services of a world.
 
     Args:
-        engine, communication, handles: of the simulation.
-        advance: makes steps.
-        loaded: gives the state at the start; raises InputError while the world is still being loaded.
+        engine: engine of the simulation.
+        bus: topic bus of the simulation.
+        handles: handles of the simulation.
+        advance: function that makes steps.
+        loaded: function that returns the state at the start; raises InputError while the world is still being loaded.
 
     Attributes:
-        pausing: whether the world stands still, and where it is to stop.
-        origin: where on its planet the world lies.
-        write_sdf: writes a world as SDF text; given from outside, for this room knows no format.
+        pausing: pause state.
+        origin: geographic position of the world's origin.
+        write_sdf: function that writes a world as SDF text; set from outside, because this package knows no file
+            format.
     """
 
     write_sdf: Callable[[SceneWorld], str] | None = None
@@ -205,9 +207,9 @@ class WorldControl:
 
     @property
     def paused(self) -> bool:
-        """Whether the world stands still, as its services, `simkit run` and gz understand it; settable.
+        """True while the world is paused for its services, `simkit run` and Gazebo; settable.
 
-        A script that calls `step` or `run` says itself how far to go, and gets there all the same.
+        A script that calls `step` or `run` sets its own target and reaches it all the same.
         """
         return self.pausing.is_paused
 
@@ -219,16 +221,17 @@ class WorldControl:
             self.pausing.pause()
 
     def serve(self, target: int) -> None:
-        """Advances up to a tick, or until the loop is halted.
+        """Advance up to a tick, or until the loop is halted.
 
         Raises:
-            SimulationDiverged, PluginError: as `Simulation.step`.
+            SimulationDiverged: the physics diverged.
+            PluginError: a plugin raised.
         """
         self._advance(target, is_served=True)
 
     @journaled
     def reseed(self, seed: int) -> None:
-        """Draws everything random from another seed from now on."""
+        """Use another seed for all random numbers from now on."""
         self._bus.settle()
         self._engine.streams.reseed(seed)
 
@@ -236,28 +239,28 @@ class WorldControl:
 
     @property
     def gravity(self) -> Vector:
-        """Acceleration that everything feels [m/s²], world frame, shape (3,); settable at any time."""
+        """Gravity [m/s²], world frame, shape (3,); settable at any time."""
         return np.array(self._engine.mj_model.opt.gravity)
 
     @gravity.setter
     def gravity(self, value: Sequence[float] | Vector) -> None:
         numbers = np.asarray(value, dtype=float)
         if numbers.shape != (3,) or not np.isfinite(numbers).all():
-            raise ValueError(f"gravity takes 3 finite numbers, got {value}")
+            raise ValueError(f"gravity must be 3 finite numbers, got {value}")
         engine = self._engine
         for sensor in engine.structure.all_sensors():
-            sensor.take_held()  # what was held was measured under the old one
+            sensor.take_held()  # pending values belong to the old gravity
         engine.physics.changed_model()
         engine.mj_model.opt.gravity[:] = numbers
-        engine.reschedule()  # whoever counts on it asks to be called
+        engine.reschedule()  # tasks that depend on gravity are scheduled again
 
     def enable_collisions(self, links: Iterable[str], enabled: bool, only: str = "") -> None:
-        """Lets the collisions of links make contacts, or not; rays see them all the same.
+        """Enable or disable the contacts of links; rays detect their collisions all the same.
 
         Args:
-            links: scoped names.
-            enabled: whether they do.
-            only: scoped name of the one collision that is meant; all of the links' where it is empty.
+            links: scoped names of the links.
+            enabled: True to enable contacts.
+            only: scoped name of a single collision; empty for all collisions of the links.
         """
         engine, names = self._engine, self._engine.names
         geoms = [g for link in links for g in names.link(link).geoms if not only or names.geom_owner(g)[1] == only]
@@ -269,15 +272,15 @@ class WorldControl:
     # ------------------------------------------------------------------ models
 
     def to_sdf(self) -> str:
-        """The world as SDF text: the models that are there now where they are now, with gravity and lights of now.
+        """Return the world as SDF text: present models at their present poses, with present gravity and lights.
 
-        Joints are at zero in it, for SDF has no word for their positions.
+        All joints are at zero in it, because SDF has no element for joint positions.
 
         Raises:
-            InputError: nothing that writes SDF came with the simulation.
+            InputError: the simulation has no SDF writer.
         """
         if self.write_sdf is None:
-            raise InputError("nothing that writes SDF came with this simulation")
+            raise InputError("this simulation has no SDF writer; create it with simkit.load")
         models = [(handle.scene, handle.pose) for handle in self._handles.models.values()]
         everything = self._handles.tables["light"].values()
         lights = [(light.scene, light.pose) for light in everything if not light.scene.link]
@@ -286,9 +289,9 @@ class WorldControl:
 
     @journaled
     def reset_models(self) -> None:
-        """Puts the models that are there back to where and how they started; time goes on.
+        """Reset the present models to their initial state; time continues.
 
-        Plugins start anew too, as they do in Gazebo Classic; sensors go on.
+        Plugins restart too, as in Gazebo Classic; sensors continue.
         """
         engine, loaded = self._engine, self._loaded()
         self._bus.settle()
@@ -308,10 +311,10 @@ class WorldControl:
 
 
 def _reset_physics(engine: Engine, loaded: Snapshot) -> None:
-    """Puts every model back: one that was loaded to its first state, one that was spawned since to where it came.
+    """Reset every model: a loaded model to its first state, a spawned model to its spawn pose.
 
-    What was removed stays away. Positions, velocities, controls, welds and the places of static models are set;
-    forces that wait for the next step are dropped.
+    Removed models stay removed. Positions, velocities, controls, welds and the poses of static models are set. Forces
+    for the next step are dropped.
     """
     model, data, physics = engine.mj_model, engine.mj_data, engine.physics
     for field in _PLACE_FIELDS:

@@ -148,7 +148,7 @@ def test_a_hook_cannot_step_its_own_simulation() -> None:
             self.sim.step()
 
     with opened(Hasty()) as sim:
-        with pytest.raises(simkit.PluginError, match="a step is under way"):
+        with pytest.raises(simkit.PluginError, match="the simulation is already stepping"):
             sim.run(1.0)
         assert sim.tick == 1
 

@@ -74,7 +74,7 @@ def test_the_warning_names_plugin_hook_time_and_the_last_line_of_the_traceback()
         found = [d for d in sim.diagnostics if d.code == "SK-PLUGIN-020"]
     assert len(found) == 1
     assert found[0].message == (
-        "plugin 'Pusher' raised in before_step at t=0.25 s and is left out from then on: RuntimeError: out of breath"
+        "plugin 'Pusher' raised in before_step at t=0.25 s and is disabled from then on: RuntimeError: out of breath"
     )
     assert "test_plugin_api_faults.py" in found[0].hint and found[0].hint.endswith("in before_step")
 
@@ -155,7 +155,7 @@ def test_exceptions_in_callbacks_are_handled_like_those_in_hooks(what: str) -> N
         if what == "topic":
             sim.publish("/more", {"data": -1.0})
         elif what == "service":
-            with pytest.raises(simkit.SimkitError, match="left out"):
+            with pytest.raises(simkit.SimkitError, match="is disabled"):
                 sim.call("/again")
         else:
             sim.set_parameter(next(iter(sim.communication.parameters)), "limit", 2.0)
@@ -361,7 +361,7 @@ def test_an_exception_in_get_state_is_handled_like_one_in_a_hook(hook: str) -> N
         sim.step(2)
         sim.restore(sim.snapshot())
         sim.step(2)
-        assert [hook in line and "is left out" in line for line in warnings(sim)] == [True]
+        assert [hook in line and "is disabled" in line for line in warnings(sim)] == [True]
         assert sim.contents.plugins["Forgetful"].steps == 2
 
 
@@ -374,7 +374,7 @@ def test_an_error_in_load_names_the_plugin() -> None:
         on_error = "disable"
 
     with pytest.raises(
-        simkit.PluginError, match=r"plugin 'Server' .* raised in load .*there is a service '/home' already"
+        simkit.PluginError, match=r"plugin 'Server' .* raised in load .*a service '/home' exists already"
     ):
         simkit.load(world(FLOATING), plugins=[Server(), Server()])
     with simkit.load(world(FLOATING), plugins=[Server(), Second()]) as sim:
@@ -407,9 +407,9 @@ def test_an_endless_recursion_disables_the_plugin_with_a_message(what: str) -> N
 
     with simkit.load(world(FLOATING), plugins=[Echo()]) as sim:
         if what == "service":
-            with pytest.raises(simkit.InputError, match="plugin 'Echo' is left out"):
+            with pytest.raises(simkit.InputError, match="plugin 'Echo' is disabled"):
                 sim.call("/srv")
         if what == "parameter":
             sim.set_parameter("/Echo", "gain", 2.0)
         sim.step(2)
-        assert ["RecursionError" in line and "is left out" in line for line in warnings(sim)] == [True]
+        assert ["RecursionError" in line and "is disabled" in line for line in warnings(sim)] == [True]

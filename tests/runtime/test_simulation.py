@@ -382,7 +382,7 @@ def test_several_models_are_spawned_at_once_or_none() -> None:
         models = sim.contents.spawn_all([(ball.format(name, z), None, None) for z, name in enumerate("abc")])
         assert [(m.name, float(m.pose.position[2])) for m in models] == [("a", 0.0), ("b", 1.0), ("c", 2.0)]
         before = sim.snapshot()
-        with pytest.raises(simkit.LoadError, match="there is a model 'd' already"):
+        with pytest.raises(simkit.LoadError, match="a model 'd' exists already"):
             sim.contents.spawn_all([(ball.format("d", 3), None, None), (ball.format("e", 3), "d", None)])
         assert list(sim.models) == ["a", "b", "c"]
         sim.step(5)

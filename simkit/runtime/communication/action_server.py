@@ -1,10 +1,10 @@
-"""Actions within the process: goals that take time, with feedback, a result, and a way to call them off.
+"""Actions within the process: goals that take time, with feedback, a result and cancellation.
 
     goal = sim.send_goal("/arm_controller/follow_joint_trajectory", {"trajectory": …})
     sim.run(3.0)
     goal.status, goal.result
 
-A goal, and the wish to cancel one, reach the plugin between two steps, in the order in which they were sent.
+The plugin receives goals and cancel requests between two steps, in the order in which they were sent.
 """
 
 from __future__ import annotations
@@ -25,15 +25,15 @@ if TYPE_CHECKING:
 
 
 EndCallback = Callable[["GoalHandle"], None]
-"""Called with a goal that has ended."""
+"""Function that receives a goal that has ended."""
 GoalCallback = Callable[["GoalHandle"], None]
 CancelCallback = Callable[["GoalHandle"], bool | None]
 
 
 class GoalStatus(enum.IntEnum):
-    """How far a goal is; the numbers are those of `action_msgs/msg/GoalStatus`, REJECTED is ours.
+    """Status of a goal. The numbers are those of `action_msgs/msg/GoalStatus`; REJECTED is simkit's own.
 
-    UNKNOWN is a goal that has not reached its plugin yet, or that a restore went back before.
+    UNKNOWN is a goal that has not reached its plugin yet, or that was sent after the restored state.
     """
 
     REJECTED = -1
@@ -50,16 +50,16 @@ _FINAL_STATES = frozenset({GoalStatus.REJECTED, GoalStatus.SUCCEEDED, GoalStatus
 
 
 class GoalHandle:
-    """A goal, as the one who sent it sees it and as the plugin that works on it does.
+    """Goal, as seen by the client that sent it and by the plugin that executes it.
 
     Attributes:
         id: 1, 2, … in the order in which goals were sent.
-        request: the goal message.
-        status: see `GoalStatus`.
-        result: the result message, once there is one.
-        feedback: the newest feedback message.
-        reason: why it was rejected, or anything else that was said with its end.
-        sent_ns: simulated time at which it was sent [ns].
+        request: goal message.
+        status: status; see `GoalStatus`.
+        result: result message; None before the end.
+        feedback: newest feedback message.
+        reason: reason of a rejection, or another text about the end of the goal.
+        sent_ns: simulated time at which the goal was sent [ns].
     """
 
     def __init__(self, action: Action, number: int, request: Message, sent_ns: int) -> None:
@@ -71,20 +71,23 @@ class GoalHandle:
         self._on_feedback: Callback | None = None
         self._on_done: EndCallback | None = None
 
-    # ------------------------------------------------------------------ for the one who sent it
+    # ------------------------------------------------------------------ for the client
 
     @property
     def is_done(self) -> bool:
-        """Whether it was rejected, succeeded, was cancelled or aborted."""
+        """True if the goal was rejected, succeeded, was cancelled or aborted."""
         return self.status in _FINAL_STATES
 
     @property
     def is_active(self) -> bool:
-        """Whether the plugin is at work on it."""
+        """True while the plugin executes the goal."""
         return self.status in (GoalStatus.ACCEPTED, GoalStatus.EXECUTING, GoalStatus.CANCELING)
 
     def cancel(self) -> None:
-        """Asks for it to be called off; the plugin hears of it before the next step, and may go on."""
+        """Request the cancellation of the goal.
+
+        The plugin receives the request before the next step and may continue.
+        """
         bus = self._action.bus
         with bus.passing("cancel", goal=self.id):
             bus.enqueue(lambda: self._action.ask_to_cancel(self))
@@ -92,28 +95,28 @@ class GoalHandle:
     # ------------------------------------------------------------------ for the plugin
 
     def reject(self, reason: str = "") -> None:
-        """Does not take the goal; only while it is being offered."""
+        """Reject the goal; allowed only in the goal callback."""
         if self.status in (GoalStatus.EXECUTING, GoalStatus.CANCELING):
-            raise ActionError(f"goal {self.id} of {self._action.name!r} was taken already; abort it")
+            raise ActionError(f"goal {self.id} of {self._action.name!r} was accepted already; abort it")
         self._end(GoalStatus.REJECTED, None, reason)
 
     def publish_feedback(self, feedback: Message) -> None:
-        """Tells how far it is, by a message or a dict of its fields; nobody, once it has ended."""
+        """Send feedback, a message or a dict of its fields, to the client; ignored after the end of the goal."""
         if self.is_done:
             return
         self.feedback = self._as_message(feedback, "Feedback")
         self._notify(self._on_feedback, self.feedback, "feedback")
 
     def succeed(self, result: Message = None, reason: str = "") -> None:
-        """Ends it well."""
+        """End the goal as succeeded."""
         self._end(GoalStatus.SUCCEEDED, result, reason)
 
     def abort(self, result: Message = None, reason: str = "") -> None:
-        """Ends it short of its aim."""
+        """End the goal as aborted."""
         self._end(GoalStatus.ABORTED, result, reason)
 
     def canceled(self, result: Message = None, reason: str = "") -> None:
-        """Ends it because that was asked for."""
+        """End the goal as cancelled."""
         self._end(GoalStatus.CANCELED, result, reason)
 
     def _end(self, status: GoalStatus, result: Message, reason: str) -> None:
@@ -123,12 +126,12 @@ class GoalHandle:
         self.status, self.reason = status, reason
         self._notify(self._on_done, self, "get_result")
 
-    def _notify(self, callback: Callback | None, what: Message, part: str) -> None:
-        """Calls the one who sent it back; what they raise is not the plugin's fault."""
+    def _notify(self, callback: Callback | None, argument: Message, part: str) -> None:
+        """Call a callback of the client; its exception is not an error of the plugin."""
         if callback is None:
             return
         try:
-            callback(what)
+            callback(argument)
         except Exception as error:
             if isinstance(error, SimkitError) and not isinstance(error, InputError):
                 raise
@@ -136,11 +139,11 @@ class GoalHandle:
             raise SubscriberError(topic, callback_name(callback), now, repr(error)) from error
 
     def _as_message(self, value: Message, part: str) -> Message:
-        wanted = f"{self._action.type_name}_{part}"
+        type_name = f"{self._action.type_name}_{part}"
         if value is None or isinstance(value, Mapping):
-            return msgs.make(wanted, **(value or {}))
-        if msgs.type_name(value) != wanted:
-            raise MessageError(f"{self._action.name!r} gives {wanted}, got {msgs.type_name(value)}")
+            return msgs.make(type_name, **(value or {}))
+        if msgs.type_name(value) != type_name:
+            raise MessageError(f"{self._action.name!r} needs {type_name}, got {msgs.type_name(value)}")
         return value
 
     def __deepcopy__(self, memo: dict[int, object]) -> GoalHandle:
@@ -148,12 +151,12 @@ class GoalHandle:
 
 
 class Action:
-    """One action, as the plugin behind it opened it.
+    """Action of a plugin.
 
     Attributes:
-        name: absolute.
-        type_name: such as `control_msgs/action/FollowJointTrajectory`.
-        owner: whose it is; it is there as long as its owner is.
+        name: absolute name.
+        type_name: action type, such as `control_msgs/action/FollowJointTrajectory`.
+        owner: plugin of the action; the action exists as long as its owner.
     """
 
     def __init__(
@@ -170,11 +173,11 @@ class Action:
         self._on_goal, self._on_cancel = on_goal, on_cancel
 
     def offer(self, goal: GoalHandle) -> None:
-        """Hands a goal to the plugin, which works on it unless it rejects it at once."""
+        """Pass a goal to the plugin, which executes it unless it rejects it at once."""
         if goal.is_done:
-            return  # its plugin raised before it got the goal
+            return  # the plugin raised before it received the goal
         if not self.active:
-            goal._end(GoalStatus.REJECTED, None, "the action is gone")
+            goal._end(GoalStatus.REJECTED, None, "the action was removed")
             return
         goal.status = GoalStatus.ACCEPTED
         self._guarded(self._on_goal, goal)
@@ -182,7 +185,10 @@ class Action:
             goal.status = GoalStatus.EXECUTING
 
     def ask_to_cancel(self, goal: GoalHandle) -> None:
-        """Hands the wish to cancel to the plugin; one that has no way to do so, or gives False, goes on."""
+        """Pass a cancel request to the plugin.
+
+        The goal continues if the plugin has no cancel callback or returns False.
+        """
         if not goal.is_active or goal.status is GoalStatus.CANCELING or self._on_cancel is None:
             return
         before, goal.status = goal.status, GoalStatus.CANCELING
@@ -206,15 +212,15 @@ class Action:
 
 
 GoalStates = tuple[int, tuple[tuple[GoalHandle, tuple[GoalStatus, Message, Message, str]], ...]]
-"""How many goals were sent, and status, result, feedback and reason of each."""
+"""Number of sent goals, and status, result, feedback and reason of each goal."""
 
 
 class ActionTable(EndpointTable[Action]):
     """All actions of a simulation, and the goals that were sent.
 
     Args:
-        bus: goals reach the plugins among its commands.
-        engine: calls plugins.
+        bus: topic bus, whose command queue passes goals to the plugins.
+        engine: engine that calls plugins.
     """
 
     kind, part, error = "action", "Goal", ActionError
@@ -225,16 +231,16 @@ class ActionTable(EndpointTable[Action]):
         self._sent = 0
 
     def act(self, name: str, type_name: str, on_goal: GoalCallback, on_cancel: CancelCallback | None = None) -> Action:
-        """Opens an action; whatever opens it within `bus.owned_by(owner)` belongs to that owner.
+        """Open an action. An action that is opened within `bus.owned_by(owner)` belongs to that owner.
 
         Raises:
-            ActionError: there is one of that name.
-            MessageError: an unknown type.
+            ActionError: an action of that name exists.
+            MessageError: the type is unknown.
         """
         name = absolute_name(name)
         self._check_type(type_name)
         if self._find(name) is not None:
-            raise ActionError(f"there is an action {name!r} already")
+            raise ActionError(f"an action {name!r} exists already")
         with self._bus.passing("act", action=name):
             action = Action(self._bus, self._engine, name, type_name, on_goal, on_cancel)
             self._endpoints.setdefault(name, []).append(action)
@@ -243,17 +249,17 @@ class ActionTable(EndpointTable[Action]):
     def send(
         self, name: str, goal: Message = None, on_feedback: Callback | None = None, on_done: EndCallback | None = None
     ) -> GoalHandle:
-        """Sends a goal; the plugin has it before the next step.
+        """Send a goal; the plugin receives it before the next step.
 
         Args:
-            name: absolute, or taken as such.
-            goal: a message, a dict of its fields, or None for all zero.
-            on_feedback: called with each feedback message.
-            on_done: called with the handle once it has ended.
+            name: name of the action; a missing leading slash is added.
+            goal: message, dict of its fields, or None for all zero.
+            on_feedback: function that receives each feedback message.
+            on_done: function that receives the handle after the end of the goal.
 
         Raises:
-            ActionError: there is no such action; names the closest.
-            MessageError: the goal does not fit.
+            ActionError: no such action; the message suggests the closest name.
+            MessageError: the goal does not fit the type.
         """
         action = self._get(absolute_name(name))
         request = self._as_message(action, goal)
@@ -270,22 +276,22 @@ class ActionTable(EndpointTable[Action]):
         return handle
 
     def abandon(self, owner: object, reason: str) -> None:
-        """Ends every goal of a plugin that is left out."""
+        """Abort every goal of a disabled plugin."""
         for goal in [g for g in self._goals if g._action.owner is owner and not g.is_done]:
             goal.abort(reason=reason)
 
     def abandon_gone(self) -> None:
-        """Ends every goal whose plugin has left the world."""
+        """Abort every goal of a plugin that was removed from the world."""
         for goal in [g for g in self._goals if not g._action.active and g.is_active]:
-            goal.abort(reason="the action is gone")
+            goal.abort(reason="the action was removed")
 
     def get_state(self) -> GoalStates:
-        """How far each goal is."""
+        """Return the status of each goal."""
         goals = [(g, (g.status, g.result, g.feedback, g.reason)) for g in self._goals]
         return self._sent, tuple(goals)
 
     def set_state(self, state: GoalStates) -> None:
-        """Back to a state from `get_state`; goals sent since are unknown again."""
+        """Restore a state from `get_state`; goals sent after it become UNKNOWN."""
         for goal in self._goals:
             goal.status, goal.result, goal.feedback, goal.reason = GoalStatus.UNKNOWN, None, None, ""
         self._sent = state[0]

@@ -1,4 +1,4 @@
-"""Commands that wait for the next step, in the order of arrival and at most so many of a topic."""
+"""Queue of the commands for the next step, in the order of arrival and with a limit for each topic."""
 
 from __future__ import annotations
 
@@ -7,27 +7,27 @@ from collections.abc import Callable, Iterable
 from typing import Any, Final
 
 QUEUE_DEPTH: Final = 1000
-"""So many messages of a topic wait for one step at most; of more, the newest do, as with ROS's `KEEP_LAST`."""
+"""Largest number of messages of a topic that wait for one step; the newest are kept, as with ROS's `KEEP_LAST`."""
 
 QueuedContent = Any
-"""A message, or a call where there is no topic."""
+"""Message, or function to call if there is no topic."""
 
 QueuedCommand = tuple[str, QueuedContent]
 
 
 class CommandQueue(dict[int, QueuedCommand]):
-    """What waits, by order of arrival; true where anything does.
+    """Waiting commands by order of arrival; false if empty.
 
-    Of each topic the newest `depth` messages are kept; an older one that has to go is counted. Entries without a topic
-    are calls, which are never dropped.
+    The newest `depth` messages of each topic are kept; dropped older messages are counted. Entries without a topic are
+    function calls, which are never dropped.
 
     Args:
-        on_full: called with a topic and its depth when the first of its messages is dropped.
+        on_full: function that receives a topic and its depth when the first of its messages is dropped.
 
     Attributes:
-        dropped: how many messages were dropped, by topic.
-        depths: how many are kept, by topic, where that is another number than `QUEUE_DEPTH`.
-        generation: another number after everything in it was replaced (a reset or a restore).
+        dropped: number of dropped messages by topic.
+        depths: limit by topic, where it differs from `QUEUE_DEPTH`.
+        generation: counter that changes when all content was replaced (a reset or a restore).
     """
 
     def __init__(self, on_full: Callable[[str, int], None]) -> None:
@@ -40,7 +40,7 @@ class CommandQueue(dict[int, QueuedCommand]):
         self.generation = 0
 
     def put(self, topic: str, content: QueuedContent) -> None:
-        """Lets a message, or a call where `topic` is empty, wait for the next step."""
+        """Queue a message, or a function call if `topic` is empty, for the next step."""
         key = self._next
         self._next = key + 1
         self[key] = topic, content
@@ -61,18 +61,18 @@ class CommandQueue(dict[int, QueuedCommand]):
             self._on_full(topic, self.depths.get(topic, QUEUE_DEPTH))
 
     def drain(self) -> list[QueuedCommand]:
-        """Takes out all that waits, in the order of arrival."""
+        """Remove and return all entries, in the order of arrival."""
         entries = list(self.values())
         self._empty()
         return entries
 
     def refill(self, entries: Iterable[QueuedCommand]) -> None:
-        """Puts this in place of all that waits."""
+        """Replace all entries."""
         self.generation += 1
         self._fill(entries)
 
     def put_back(self, entries: Iterable[QueuedCommand]) -> None:
-        """Puts what was drained and not dealt with before all that has come since."""
+        """Insert drained, unprocessed entries before all later ones."""
         self._fill([*entries, *self.values()])
 
     def _fill(self, entries: Iterable[QueuedCommand]) -> None:

@@ -18,18 +18,18 @@ if TYPE_CHECKING:
 
 
 MessageMaker = Callable[[str], "Message"]
-"""Makes the message of a topic."""
+"""Function that makes the message of a topic."""
 
 
 class OnDemandTasks:
-    """Tasks of a simulation that are due only while they are wanted.
+    """Tasks of a simulation that are due only while they are needed.
 
-    A wish is looked at when the schedule is made, and when somebody says that it changed; so a run in which nobody
-    wants anything has the schedule of one without them.
+    The need is checked when the schedule is made and when `look` is called. Without any need, the schedule is the same
+    as without these tasks.
 
     Args:
-        bus: whose readers decide.
-        reschedule: called when what is wanted has changed.
+        bus: topic bus whose subscriptions decide.
+        reschedule: function that is called when the need has changed.
     """
 
     def __init__(self, bus: TopicBus, reschedule: Callable[[], None]) -> None:
@@ -38,13 +38,13 @@ class OnDemandTasks:
         self._wanted: list[bool] = []
 
     def add(self, is_wanted: Callable[[], bool], rate: float | None, task: Task, phase: Phase = "after") -> None:
-        """Has `task(tick)` called at a rate while `is_wanted()`.
+        """Call `task(tick)` at a rate while `is_wanted()` is true.
 
         Args:
-            is_wanted: may depend on the state of the run and on who listens.
-            rate: [Hz]; None for every step.
-            task: what is to be done.
-            phase: before the step or after it.
+            is_wanted: condition; may depend on the state of the run and on the subscriptions.
+            rate: rate [Hz]; None for every step.
+            task: function to call.
+            phase: before or after the step.
         """
         self._tasks.append((is_wanted, rate, task, phase))
         self.look()
@@ -52,17 +52,17 @@ class OnDemandTasks:
     def broadcast(
         self, topics: dict[str, str], rate: float, make: MessageMaker, *, is_aside: bool = True, is_listed: bool = False
     ) -> dict[str, Publisher]:
-        """Publishes on topics at a rate while somebody listens.
+        """Publish on topics at a rate while they have subscribers.
 
         Args:
-            topics: topic -> its type.
-            rate: [Hz].
-            make: gives the message for a topic, or what makes it once somebody looks at it.
-            is_aside: whether recorders and counters leave them out unless they are named.
-            is_listed: whether those are listed while nobody reads them.
+            topics: types by topic.
+            rate: publishing rate [Hz].
+            make: function that returns the message of a topic, or a function that makes it when a subscriber reads it.
+            is_aside: exclude the topics from recorders and counters unless they are named.
+            is_listed: list the topics even without subscribers.
 
         Returns:
-            Topic -> publisher.
+            Publishers by topic.
         """
         bus = self._bus
         if is_aside:
@@ -85,13 +85,13 @@ class OnDemandTasks:
         return publishers
 
     def look(self) -> None:
-        """Says that what is wanted may have changed."""
+        """Reschedule if the need for a task has changed."""
         wanted = [is_wanted() for is_wanted, _, _, _ in self._tasks]
         if wanted != self._wanted and any(wanted + self._wanted):
             self._reschedule()
 
     def fill(self, scheduler: Scheduler) -> None:
-        """Schedules what is wanted now."""
+        """Schedule the tasks that are needed now."""
         self._wanted = [is_wanted() for is_wanted, _, _, _ in self._tasks]
         for wanted, (_, rate, task, phase) in zip(self._wanted, self._tasks, strict=True):
             if wanted:
@@ -99,18 +99,18 @@ class OnDemandTasks:
 
 
 class Communication:
-    """Everything that a simulation says and hears.
+    """Topics, services, actions and parameters of a simulation.
 
     Args:
-        bus: the topics.
-        engine: of the simulation.
+        bus: topic bus.
+        engine: engine of the simulation.
 
     Attributes:
-        bus: the topics.
-        services: the services.
-        actions: the actions, and the goals that were sent.
-        live_parameters: the parameters of all plugins.
-        on_demand: work that is scheduled only while somebody wants it.
+        bus: topics.
+        services: services.
+        actions: actions, and the goals that were sent.
+        live_parameters: parameters of all plugins.
+        on_demand: tasks that are scheduled only while they are needed.
     """
 
     def __init__(self, bus: TopicBus, engine: Engine) -> None:
@@ -121,29 +121,29 @@ class Communication:
         self.on_demand = OnDemandTasks(bus, engine.reschedule)
 
     def set_active(self, owners: Sequence[object]) -> None:
-        """Leaves only what these plugins and sensors opened (and what nobody owns) in use."""
+        """Enable only the interfaces of these plugins and sensors, and those without an owner."""
         for table in (self.bus, self.services, self.actions, self.live_parameters):
             table.set_active(owners)
 
     def forget(self, owners: Sequence[object]) -> None:
-        """Takes away for good what these plugins and sensors opened."""
+        """Remove the interfaces of these plugins and sensors permanently."""
         for table in (self.bus, self.services, self.actions, self.live_parameters):
             table.forget(owners)
 
     def abandon(self, owner: object, reason: str) -> None:
-        """Ends every goal of a plugin that is left out."""
+        """Abort every goal of a disabled plugin."""
         self.actions.abandon(owner, reason)
 
     def set_parameter(self, node: str, name: str, value: object) -> None:
-        """Changes a live parameter: at once, or from within a hook or a callback before the next step.
+        """Set a live parameter: at once, or before the next step if called from a hook or a callback.
 
         Raises:
-            ParameterError: there is none of that name, or it does not take the value.
+            ParameterError: no parameter has that name, or the value is not allowed.
         """
         self._engine.check_open()
         self.live_parameters.set(node, name, value)
 
     @property
     def parameters(self) -> dict[str, dict[str, Parameter[Any]]]:
-        """Live parameters: node -> name -> parameter."""
+        """Live parameters by node and name."""
         return self.live_parameters.nodes()

@@ -1,4 +1,4 @@
-"""Services and actions of a simulation by name: which of them are there, and the requests and goals that they take."""
+"""Tables of the services and actions of a simulation by name, with checks of their requests and goals."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 
 
 class Endpoint(Protocol):
-    """A service or an action; it is there as long as its owner is.
+    """Service or action; it exists as long as its owner.
 
     Attributes:
-        name: absolute.
-        active: whether its owner is in the world.
+        name: absolute name.
+        active: True if the owner is in the world.
     """
 
     name: str
@@ -29,11 +29,11 @@ class Endpoint(Protocol):
 
     @property
     def type_name(self) -> str:
-        """Its type, such as `std_srvs/srv/Trigger`."""
+        """Type, such as `std_srvs/srv/Trigger`."""
 
     @property
     def owner(self) -> object:
-        """Whose it is: a plugin, a sensor or None."""
+        """Owner: a plugin, a sensor or None."""
 
 
 E = TypeVar("E", bound=Endpoint)
@@ -43,8 +43,8 @@ class EndpointTable(Generic[E]):
     """All services or all actions of a simulation.
 
     Args:
-        bus: knows who opens what.
-        engine: calls plugins.
+        bus: topic bus, which records the owner of each new endpoint.
+        engine: engine that calls plugins.
     """
 
     kind: ClassVar[str]
@@ -56,44 +56,48 @@ class EndpointTable(Generic[E]):
         self._endpoints: dict[str, list[E]] = {}
 
     def names(self) -> dict[str, str]:
-        """Name -> type, sorted."""
+        """Return the types by name, sorted."""
         found = ((name, self._find(name)) for name in sorted(self._endpoints))
         return {name: endpoint.type_name for name, endpoint in found if endpoint is not None}
 
     def endpoints_of(self, owner: object) -> dict[str, E]:
-        """Those of one owner by name."""
-        return {one.name: one for opened in self._endpoints.values() for one in opened if one.owner is owner}
+        """Return the endpoints of an owner by name."""
+        return {e.name: e for endpoints in self._endpoints.values() for e in endpoints if e.owner is owner}
 
     def set_active(self, owners: Sequence[object]) -> None:
-        """Leaves only those of these owners (and those without one) in use."""
+        """Enable only the endpoints of these owners, and those without an owner."""
         living = {id(owner) for owner in owners}
-        for endpoint in (one for opened in self._endpoints.values() for one in opened):
+        for endpoint in (e for endpoints in self._endpoints.values() for e in endpoints):
             endpoint.active = endpoint.owner is None or id(endpoint.owner) in living
 
     def forget(self, owners: Sequence[object]) -> None:
-        """Takes everything of these owners away for good."""
-        gone = {id(owner) for owner in owners}
-        self._endpoints = {n: [e for e in opened if id(e.owner) not in gone] for n, opened in self._endpoints.items()}
+        """Remove all endpoints of these owners permanently."""
+        removed = {id(owner) for owner in owners}
+        self._endpoints = {n: [e for e in found if id(e.owner) not in removed] for n, found in self._endpoints.items()}
 
     def _check_type(self, type_name: str) -> None:
-        """Raises MessageError for an unknown type; what is in its files is read when something comes."""
+        """Raise MessageError for an unknown type; the content of its definition is read with the first message."""
         if type_name not in definition_files():
             msgs.full_name(f"{type_name}_{self.part}")
 
     def _find(self, name: str) -> E | None:
-        return next((one for one in self._endpoints.get(name, ()) if one.active), None)
+        return next((endpoint for endpoint in self._endpoints.get(name, ()) if endpoint.active), None)
 
     def _get(self, name: str) -> E:
-        """The one of that name that is in use; the error without one names the closest."""
+        """Return the active endpoint of that name; the error for a missing one suggests the closest name."""
         found = self._find(name)
         if found is None:
             raise self.error(f"no {self.kind} {name!r}; {name_hint(name, self.names())}")
         return found
 
     def _as_message(self, endpoint: E, value: Message) -> Message:
-        """The request or goal of a message, a dict of its fields, or None for all zero. Raises MessageError."""
-        wanted = f"{endpoint.type_name}_{self.part}"
-        message = msgs.from_dict([wanted], value or {}) if value is None or isinstance(value, Mapping) else value
-        if msgs.type_name(message) != wanted:
-            raise MessageError(f"{endpoint.name!r} takes {wanted}, got {msgs.type_name(message)}")
+        """Convert a message, a dict of its fields, or None for all zero to a request or goal.
+
+        Raises:
+            MessageError: the value does not fit the type.
+        """
+        type_name = f"{endpoint.type_name}_{self.part}"
+        message = msgs.from_dict([type_name], value or {}) if value is None or isinstance(value, Mapping) else value
+        if msgs.type_name(message) != type_name:
+            raise MessageError(f"{endpoint.name!r} needs {type_name}, got {msgs.type_name(message)}")
         return message

@@ -1,7 +1,7 @@
-"""The doors of a simulation: what comes in from outside goes through them, and who writes a journal hears of it.
+"""Journal of the external inputs of a simulation, for recordings that repeat a run.
 
-Outside is whoever makes the steps, and whoever is called back by a topic without being a plugin of the world. What
-plugins do themselves comes again when the run is repeated, and is not told.
+External inputs come from the code that steps the simulation and from topic callbacks that belong to no plugin. Inputs
+by plugins are not recorded, because the plugins repeat them when the run is repeated.
 """
 
 from __future__ import annotations
@@ -19,47 +19,52 @@ S = TypeVar("S", bound="Journaled")
 
 
 class Journal(Protocol):
-    """Hears of all that comes in; it is `TopicBus.journal` while it does."""
+    """Recorder of external inputs; `TopicBus.journal` while it is active."""
 
-    def passing(self, door: str, words: Mapping[str, object]) -> AbstractContextManager[Any]:
-        """A context manager around what is done by somebody who may be outside; `words` are the arguments."""
+    def passing(self, operation: str, arguments: Mapping[str, object]) -> AbstractContextManager[Any]:
+        """Return a context manager for an operation that may be external.
+
+        Args:
+            operation: name of the operation.
+            arguments: arguments of the operation.
+        """
 
     def called_back(self, subscription: object) -> AbstractContextManager[None]:
-        """A context manager around a callback that is no plugin's."""
+        """Return a context manager for the call of a callback that belongs to no plugin."""
 
     def hears(self, topic: str, subscription: object) -> None:
-        """Told before somebody subscribes with a callback that is no plugin's."""
+        """Record a new subscription whose callback belongs to no plugin, before it is added."""
 
     def outside(self, callback: OutsideCallback) -> OutsideCallback:
-        """A callback that somebody hands over who may be outside, to be called instead of it."""
+        """Return a replacement for a callback that may be external."""
 
     def before_steps(self) -> None:
-        """Told before steps are made."""
+        """Record the beginning of a series of steps."""
 
     def after_steps(self) -> None:
-        """Told after them, also where they ended in an error."""
+        """Record the end of a series of steps, also after an error."""
 
 
 class JournalKeeper(Protocol):
-    """Knows who writes a journal: the topic bus.
+    """Object with the present journal: the topic bus.
 
     Attributes:
-        journal: hears of what comes in from outside; None where nobody does.
+        journal: recorder of external inputs; None without one.
     """
 
     journal: Journal | None
 
 
 class Journaled(Protocol):
-    """Part of a simulation whose calls from outside go into a journal."""
+    """Part of a simulation whose external calls are recorded in a journal."""
 
     @property
     def _bus(self) -> JournalKeeper:
-        """Knows the journal."""
+        """Topic bus with the journal."""
 
 
 def journaled(method: Callable[Concatenate[S, P], R]) -> Callable[Concatenate[S, P], R]:
-    """Has a journal hear of each call of a method."""
+    """Decorate a method so that a journal records each of its calls."""
     signature = inspect.signature(method)
     name = method.__name__.lstrip("_")
 

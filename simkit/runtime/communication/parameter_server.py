@@ -1,4 +1,4 @@
-"""Live parameters: values of a plugin that may be changed while it runs, typed and bounded, as those of a ROS 2 node.
+"""Live parameters: typed and bounded values of a plugin that may change during a run, like those of a ROS 2 node.
 
     sim.communication.parameters["/tb3/gain_tuner"]["p_gain"].value
     sim.set_parameter("/tb3/gain_tuner", "p_gain", 12.0)
@@ -34,17 +34,18 @@ _TYPE_NAMES = {bool: "a boolean", int: "an integer", float: "a number", str: "te
 
 
 class Parameter(Generic[T]):
-    """A value that may be changed while the simulation runs.
+    """Value that may change while the simulation runs.
 
     Attributes:
-        node: the node it is a parameter of, such as `/tb3/diff_drive`.
-        name: its name.
-        value: the present value.
-        minimum, maximum: bounds of a number; None where there is none.
-        choices: what is allowed, where that is a list; empty otherwise.
-        description: what it is, with its unit.
-        owner: the plugin.
-        active: whether that is part of the simulation now; False of one that a restore may bring back.
+        node: node of the parameter, such as `/tb3/diff_drive`.
+        name: name of the parameter.
+        value: present value.
+        minimum: lower bound of a number; None without one.
+        maximum: upper bound of a number; None without one.
+        choices: allowed values; empty if not limited to a list.
+        description: meaning, with its unit.
+        owner: plugin of the parameter.
+        active: True if the plugin is part of the simulation; False if only a restore can bring it back.
     """
 
     def __init__(
@@ -68,7 +69,7 @@ class Parameter(Generic[T]):
 
     @property
     def allowed(self) -> str:
-        """What it takes, in words."""
+        """Text of the allowed values."""
         if self.choices:
             return "one of " + ", ".join(map(repr, self.choices))
         words = _TYPE_NAMES[type(self.value)]
@@ -81,10 +82,10 @@ class Parameter(Generic[T]):
         return f"{words} of at most {self.maximum:g}" if self.maximum is not None else words
 
     def checked(self, value: object) -> T:
-        """The value as it would be stored.
+        """Return the value as it would be stored.
 
         Raises:
-            ParameterError: it is of another type, or out of bounds; says what is allowed.
+            ParameterError: the value has another type or is out of bounds; the message lists the allowed values.
         """
         found = _convert(value, self.value)
         if found is None or not self.is_within(found):
@@ -92,13 +93,13 @@ class Parameter(Generic[T]):
         return found  # type: ignore[no-any-return]
 
     def take(self, value: T) -> None:
-        """Stores a checked value and tells the plugin."""
+        """Store a checked value and notify the plugin."""
         self.value = value
         if self._on_change is not None:
             self._on_change(value)
 
     def is_within(self, value: object) -> bool:
-        """Whether a value of the right type is allowed."""
+        """Check whether a value of the right type is allowed."""
         if self.choices and value not in self.choices:
             return False
         if isinstance(value, (bool, str)):
@@ -117,24 +118,24 @@ ParameterState = tuple[tuple[AnyParameter, Any], ...]
 
 
 class ParameterTable:
-    """The parameters of all plugins, by node.
+    """Parameters of all plugins, by node.
 
     Args:
-        bus: changes within a step wait among its commands.
-        engine: tells whether a step is under way.
+        bus: topic bus, whose command queue holds the changes made during a step.
+        engine: engine of the simulation.
     """
 
     def __init__(self, bus: TopicBus, engine: Engine) -> None:
         self._bus, self._engine = bus, engine
-        # a model that comes under the name of one that is gone, and may come back, has the same node
+        # a new model may have the name, and so the node, of a removed model that a restore can bring back
         self._parameters: dict[str, dict[tuple[int, str], AnyParameter]] = {}
 
     def add(self, parameter: AnyParameter) -> None:
-        """Adds a parameter to its node."""
+        """Add a parameter to its node."""
         self._parameters.setdefault(parameter.node, {})[id(parameter.owner), parameter.name] = parameter
 
     def node_of(self, owner: object, wanted: str, otherwise: str) -> str:
-        """The name of a plugin's node: of `wanted`, `otherwise`, `otherwise_2`, … the first that no other has."""
+        """Return the name of a plugin's node, the first free one of `wanted`, `otherwise`, `otherwise_2` and so on."""
         names = itertools.chain((wanted, otherwise), (f"{otherwise}_{i}" for i in itertools.count(2)))
         return next(name for name in names if self._is_free(name, owner))
 
@@ -142,15 +143,15 @@ class ParameterTable:
         return all(p.owner is owner or not p.active for p in self._parameters.get(node, {}).values())
 
     def nodes(self) -> dict[str, dict[str, AnyParameter]]:
-        """Node -> name -> parameter, sorted by node."""
+        """Return the parameters by node and name, sorted by node."""
         active = ((n, [p for p in self._parameters[n].values() if p.active]) for n in sorted(self._parameters))
         return {node: {p.name: p for p in found} for node, found in active if found}
 
     def find(self, node: str, name: str) -> AnyParameter:
-        """A parameter.
+        """Return a parameter.
 
         Raises:
-            ParameterError: there is none of that name; names the closest.
+            ParameterError: no parameter has that name; the message suggests the closest name.
         """
         nodes = self.nodes()
         if node not in nodes:
@@ -163,10 +164,10 @@ class ParameterTable:
 
     @journaled
     def set(self, node: str, name: str, value: object) -> None:
-        """Changes a parameter before the next step; at once where no step is under way.
+        """Set a parameter: before the next step if called during a step, else at once.
 
         Raises:
-            ParameterError: there is none of that name, or it does not take the value.
+            ParameterError: no parameter has that name, or the value is not allowed.
         """
         parameter = self.find(node, name)
         checked = parameter.checked(value)
@@ -176,33 +177,33 @@ class ParameterTable:
             parameter.take(checked)
 
     def set_active(self, owners: Sequence[object]) -> None:
-        """Leaves only the parameters of these plugins in use."""
+        """Enable only the parameters of these plugins."""
         living = {id(owner) for owner in owners}
         for parameter in (p for found in self._parameters.values() for p in found.values()):
             parameter.active = id(parameter.owner) in living
 
     def forget(self, owners: Sequence[object]) -> None:
-        """Takes every parameter of these plugins away for good."""
-        gone = {id(owner) for owner in owners}
+        """Remove every parameter of these plugins permanently."""
+        removed = {id(owner) for owner in owners}
         for node, found in list(self._parameters.items()):
-            kept = {key: p for key, p in found.items() if id(p.owner) not in gone}
+            kept = {key: p for key, p in found.items() if id(p.owner) not in removed}
             if kept:
                 self._parameters[node] = kept
             else:
                 del self._parameters[node]
 
     def get_state(self) -> ParameterState:
-        """Every parameter with its value."""
+        """Return every parameter with its value."""
         return tuple((p, p.value) for found in self._parameters.values() for p in found.values())
 
     def set_state(self, state: ParameterState) -> None:
-        """Back to values from `get_state`; the plugins are not told, their own state goes back as well."""
+        """Restore values from `get_state`. The plugins are not notified, because their own state is restored too."""
         for parameter, value in state:
             parameter.value = value
 
 
 def _convert(value: Any, like: object) -> Any:
-    """A value as the type of `like`; None where it is of another."""
+    """Convert a value to the type of `like`; None if its type differs."""
     if isinstance(value, (np.generic, np.ndarray)):
         value = value.tolist()
     if isinstance(like, (bool, str)):
@@ -238,18 +239,18 @@ _VALUE_FIELDS = {
 
 
 def offer_parameter_services(services: ServiceTable, parameters: ParameterTable, node: str) -> None:
-    """Opens the six parameter services of a node."""
+    """Open the six parameter services of a node."""
 
     def find(name: str) -> AnyParameter | None:
         return parameters.nodes().get(node, {}).get(name)
 
-    def set_all(wanted: list[Message]) -> dict[str, object]:
-        return _set_parameters(parameters, node, wanted)
+    def set_all(values: list[Message]) -> dict[str, object]:
+        return _set_parameters(parameters, node, values)
 
     handlers: dict[str, ServiceHandler] = {
         "GetParameters": lambda request: {"values": [_value_message(find(n)) for n in request.names]},
         "GetParameterTypes": lambda request: {"types": [_value_message(find(n))["type"] for n in request.names]},
-        "SetParameters": lambda request: {"results": [set_all([one]) for one in request.parameters]},
+        "SetParameters": lambda request: {"results": [set_all([value]) for value in request.parameters]},
         "SetParametersAtomically": lambda request: {"result": set_all(request.parameters)},
         "ListParameters": lambda request: {"result": {"names": _list_names(parameters, node, request.prefixes)}},
         "DescribeParameters": lambda request: {"descriptors": [_descriptor(find(n)) for n in request.names]},
@@ -265,7 +266,7 @@ def _list_names(parameters: ParameterTable, node: str, prefixes: list[str]) -> l
 
 
 def _value_message(parameter: AnyParameter | None) -> dict[str, object]:
-    """A `ParameterValue`; type 0 where there is no such parameter."""
+    """Return a `ParameterValue`, with type 0 for a missing parameter."""
     if parameter is None:
         return {"type": 0}
     kind = _ROS_TYPES[type(parameter.value)]
@@ -273,14 +274,14 @@ def _value_message(parameter: AnyParameter | None) -> dict[str, object]:
     return {"type": kind, _VALUE_FIELDS[kind]: list(value) if isinstance(value, tuple) else value}
 
 
-def _set_parameters(parameters: ParameterTable, node: str, wanted: list[Message]) -> dict[str, object]:
-    """Changes all of them or none."""
+def _set_parameters(parameters: ParameterTable, node: str, values: list[Message]) -> dict[str, object]:
+    """Set all parameters or none."""
     try:
         checked = []
-        for one in wanted:
-            parameter = parameters.find(node, one.name)
-            field = _VALUE_FIELDS.get(int(one.value.type))
-            checked.append((parameter.name, parameter.checked(getattr(one.value, field) if field else None)))
+        for item in values:
+            parameter = parameters.find(node, item.name)
+            field = _VALUE_FIELDS.get(int(item.value.type))
+            checked.append((parameter.name, parameter.checked(getattr(item.value, field) if field else None)))
     except ParameterError as error:
         return {"successful": False, "reason": str(error)}
     for name, value in checked:

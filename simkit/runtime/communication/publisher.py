@@ -1,4 +1,4 @@
-"""The ends of a topic within the process: who publishes on it, and which inputs take commands from it."""
+"""Publishers of a topic, and listeners that receive its messages as commands."""
 
 from __future__ import annotations
 
@@ -15,24 +15,24 @@ if TYPE_CHECKING:
 
 
 class PublishingBus(JournalKeeper, Protocol):
-    """What a publisher asks of the topic bus."""
+    """Interface of the topic bus that a publisher needs."""
 
     inbox: CommandQueue
 
 
 class TopicSides(NamedTuple):
-    """Readers and publishers of a topic, as they are at any time."""
+    """Present readers and publishers of a topic."""
 
     readers: TopicReaders
     publishers: list[Publisher]
 
 
 class Publisher:
-    """One end of a topic; `wanted` says whether somebody reads now.
+    """Publisher of a topic; `wanted` is true while the topic has subscribers.
 
     Attributes:
-        last: the last message of a latched topic.
-        pending: publishes what its owner has put off, before anybody looks; None where nothing is ever put off.
+        last: last message of a latched topic.
+        pending: function that publishes the deferred messages of the owner; None if nothing is ever deferred.
     """
 
     __slots__ = (
@@ -64,15 +64,15 @@ class Publisher:
 
     @property
     def is_live(self) -> bool:
-        """Whether somebody does something with each message at once."""
+        """True if each message is processed at once: by a callback, by a command input, or as a latched message."""
         readers = self._readers
         return readers.is_called or readers.feeds or self.latched
 
     @property
     def patience(self) -> float:
-        """How many of the newest messages anybody will look at; 0 where nothing may be put off.
+        """Number of newest messages that may be read later; 0 if no message may be deferred.
 
-        That is where somebody is called back or counts what comes, and where others publish on the same topic.
+        The value is 0 for subscribers with a callback or a counter, and for several publishers on one topic.
         """
         readers = self._readers
         if self.is_live or readers.is_streamed or len(self._publishers) > 1:
@@ -80,13 +80,13 @@ class Publisher:
         return readers.keeps
 
     def publish(self, message: Message) -> None:
-        """Hands a message to every subscriber, now, and to command inputs before the next step.
+        """Pass a message to every subscriber now, and to command inputs before the next step.
 
         Args:
-            message: of the topic's type, or a dict of its fields.
+            message: message of the topic's type, or a dict of its fields.
 
         Raises:
-            MessageError: a dict does not fit the topic's type.
+            MessageError: the dict does not fit the topic's type.
         """
         if type(message) is dict:
             message = msgs.make(self.type_name, **message)
@@ -99,16 +99,17 @@ class Publisher:
             self._bus.inbox.put(self.topic, message)
 
     def publish_later(self, make: Callable[[], Message], work: PendingWork | None = None) -> LazyMessage | None:
-        """Publishes what `make()` gives, made at once only where somebody is called back with it.
+        """Publish the message that `make()` returns; `make` is called when the message is read.
 
-        On a latched topic that nobody reads it is made for the first one who does.
+        If a subscriber has a callback, the message is made at once. On a latched topic without subscribers, the first
+        subscriber's read makes the message.
 
         Args:
-            make: gives the message.
-            work: what is being done on another thread that `make` waits for.
+            make: function that returns the message.
+            work: work on another thread that `make` waits for.
 
         Returns:
-            What was handed out instead of the message; None where it was made.
+            Placeholder of the message; None if the message was made at once.
         """
         if self.latched and not self._readers.readers and not self._readers.feeds:
             later = self.last = LazyMessage(make, work=work)
@@ -126,12 +127,12 @@ class Publisher:
 
 
 class ExternalPublisher(Publisher):
-    """One that belongs to no plugin and no sensor: what it publishes comes in from outside."""
+    """Publisher that belongs to no plugin or sensor; its messages are external inputs."""
 
     __slots__ = ()
 
     def publish(self, message: Message) -> None:
-        """As every publisher does; a journal hears of it."""
+        """Publish a message and record it in the journal."""
         journal = self._bus.journal
         if journal is None:
             super().publish(message)
@@ -142,7 +143,7 @@ class ExternalPublisher(Publisher):
             super().publish(message)
 
     def publish_later(self, make: Callable[[], Message], work: PendingWork | None = None) -> LazyMessage | None:
-        """Publishes what `make()` gives; a journal has to have it now."""
+        """Publish the message that `make()` returns; at once if there is a journal."""
         if self._bus.journal is None:
             return super().publish_later(make, work)
         self.publish(make())
@@ -150,7 +151,7 @@ class ExternalPublisher(Publisher):
 
 
 class Listener:
-    """A command input: its callback runs between two steps."""
+    """Command input; its callback is called between two steps."""
 
     __slots__ = ("active", "callback", "owner", "topic", "types")
 

@@ -1,15 +1,14 @@
-"""Services within the process: a request goes in, a response comes back, with the types that ROS 2 gives them.
+"""Services within the process: requests and responses with the types of ROS 2.
 
     sim.call("/world/office/control", {"world_control": {"pause": True}})
     sim.offer("/robot/home", "std_srvs/srv/Trigger", lambda request: {"success": True})
 
-A bridge has only to carry them.
+A bridge only has to forward them.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING
 
 from simkit import msgs
 from simkit.errors import PluginError, ServiceError, SimkitError
@@ -18,9 +17,6 @@ from simkit.runtime.communication.subscription import Message
 from simkit.runtime.communication.topic_bus import absolute_name
 from simkit.runtime.engine.plugin_faults import call_plugin
 
-if TYPE_CHECKING:
-    pass
-
 ServiceHandler = Callable[[Message], Message]
 
 
@@ -28,12 +24,12 @@ class Service:
     """One service.
 
     Attributes:
-        name: absolute.
-        type_name: such as `std_srvs/srv/Trigger`.
-        handler: given the request, gives the response: a message, a dict of its fields, or None for all zero.
-        owner: whose it is: a plugin, a sensor or None; it is there as long as its owner is.
-        active: whether its owner is in the world.
-        yields: whether another one of its name may take its place.
+        name: absolute name.
+        type_name: service type, such as `std_srvs/srv/Trigger`.
+        handler: function from a request to a response: a message, a dict of its fields, or None for all zero.
+        owner: plugin, sensor or None; the service exists as long as its owner.
+        active: True if the owner is in the world.
+        yields: True if another service of the same name may replace it.
     """
 
     __slots__ = ("active", "handler", "name", "owner", "type_name", "yields")
@@ -50,66 +46,66 @@ class ServiceTable(EndpointTable[Service]):
     """All services of a simulation.
 
     Args:
-        bus: knows who opens what.
-        engine: calls plugins.
+        bus: topic bus, which records the owner of each new service.
+        engine: engine that calls plugins.
     """
 
     kind, part, error = "service", "Request", ServiceError
 
     def offer(self, name: str, type_name: str, handler: ServiceHandler) -> Service:
-        """Opens a service; whatever opens it within `bus.owned_by(owner)` belongs to that owner.
+        """Open a service. A service that is opened within `bus.owned_by(owner)` belongs to that owner.
 
         Raises:
-            ServiceError: there is one of that name.
-            MessageError: an unknown type.
+            ServiceError: a service of that name exists.
+            MessageError: the type is unknown.
         """
         name = absolute_name(name)
         self._check_type(type_name)
-        standing = self._find(name)
-        if standing is not None and not standing.yields:
-            raise ServiceError(f"there is a service {name!r} already, {_describe_owner(standing)}")
+        existing = self._find(name)
+        if existing is not None and not existing.yields:
+            raise ServiceError(f"a service {name!r} exists already, {_describe_owner(existing)}")
         with self._bus.passing("offer", service=name):
             service = Service(name, type_name, handler, self._bus.owner)
             self._endpoints.setdefault(name, []).insert(0, service)
         return service
 
     def offer_by_default(self, name: str, type_name: str, handler: ServiceHandler) -> None:
-        """Opens a service that is there as long as nobody else offers one of its name."""
+        """Open a service that exists while no other service has its name."""
         name = absolute_name(name)
         service = Service(name, type_name, handler, self._bus.owner)
         service.yields = True
         self._endpoints.setdefault(name, []).append(service)
 
     def close(self, service: Service) -> None:
-        """Takes a service away for good."""
+        """Remove a service permanently."""
         offered = self._endpoints.get(service.name, [])
         if service in offered:
             offered.remove(service)
 
     def call(self, name: str, request: Message = None) -> Message:
-        """The response of a service, which is at work when this returns.
+        """Call a service and return its response.
 
         Args:
-            name: absolute, or taken as such.
-            request: a message, a dict of its fields, or None for all zero.
+            name: name of the service; a missing leading slash is added.
+            request: message, dict of its fields, or None for all zero.
 
         Raises:
-            ServiceError: there is no such service; names the closest.
-            MessageError: the request does not fit.
+            ServiceError: no such service; the message suggests the closest name.
+            MessageError: the request does not fit the type.
             PluginError: the service of a plugin raised.
         """
         service = self._get(absolute_name(name))
-        asked = self._as_message(service, request)
-        with self._bus.passing("call", service=service, request=asked):
-            return self._answer(service, asked)
+        message = self._as_message(service, request)
+        with self._bus.passing("call", service=service, request=message):
+            return self._answer(service, message)
 
     def _answer(self, service: Service, request: Message) -> Message:
         owner, hook = service.owner, f"service {service.name}"
         try:
-            found = call_plugin(owner, hook, service.handler, request)
-            if found is None or isinstance(found, Mapping):
-                return msgs.make(f"{service.type_name}_Response", **(found or {}))
-            return found
+            response = call_plugin(owner, hook, service.handler, request)
+            if response is None or isinstance(response, Mapping):
+                return msgs.make(f"{service.type_name}_Response", **(response or {}))
+            return response
         except SimkitError:
             raise
         except Exception as error:
@@ -118,7 +114,7 @@ class ServiceTable(EndpointTable[Service]):
             name, where = getattr(owner, "name", "") or service.name, str(getattr(owner, "where", ""))
             if hasattr(owner, "on_error"):
                 self._engine.faults.meet(owner, hook, error)
-                raise ServiceError(f"service {service.name!r} raised, and plugin {name!r} is left out") from error
+                raise ServiceError(f"service {service.name!r} raised, and plugin {name!r} is disabled") from error
             raise PluginError(name, hook, self._engine.time, where, repr(error)) from error
 
 

@@ -1,4 +1,4 @@
-"""Who hears a topic, and what they keep of it."""
+"""Subscriptions of a topic and the messages that they keep."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from typing import Any, Final, Literal, Protocol
 from simkit.runtime.communication.journal import JournalKeeper
 
 Message = Any
-"""A message: an instance of a class of `simkit.msgs`, which are made as definitions are read."""
+"""Message: an instance of a class of `simkit.msgs`. The classes are created when their definitions are read."""
 
 Callback = Callable[[Message], object]
 CallbackPolicy = Literal["stop", "drop"]
 
 MAX_KEPT_MESSAGES: Final = 1_000_000
-"""So many messages are kept by a subscription that says nothing of it; of more, the newest are."""
+"""Number of newest messages that a subscription without `keep` keeps."""
 
 NO_MESSAGE = object()
-"""What is given instead of a message that cannot be made."""
+"""Replacement for a message that cannot be made."""
 
 
 class PendingWork(Protocol):
@@ -27,15 +27,15 @@ class PendingWork(Protocol):
 
     @property
     def is_done(self) -> bool:
-        """Whether its result is there."""
+        """True if the result is available."""
 
 
 class LazyMessage:
-    """A message that is made when somebody looks at it.
+    """Message that is made when it is read.
 
     Attributes:
-        is_awaited: whether it will be looked at for all that is known: a reader keeps every message, or records it.
-        work: what is being done on another thread that the message waits for; None where there is no such thing.
+        is_awaited: True if a reader keeps or records every message, so that the message will be read.
+        work: work on another thread that the message waits for; None without such work.
     """
 
     __slots__ = ("_make", "_message", "is_awaited", "work")
@@ -47,53 +47,53 @@ class LazyMessage:
 
     @property
     def is_ready(self) -> bool:
-        """Whether `get` gives the message without waiting for another thread."""
+        """True if `get` returns the message without waiting for another thread."""
         return self.work is None or self.work.is_done
 
     def get(self) -> Message:
-        """The message; NOTHING where it turned out that there is none."""
+        """Return the message; NO_MESSAGE if it cannot be made."""
         make = self._make
         if make is not None:
-            # in this order, since two threads may ask at the same time: both are given the same message
+            # in this order, because two threads may read at the same time: both get a message
             self._message = make()
             self._make = self.work = None
         return self._message
 
 
 class SubscriptionFailures(Protocol):
-    """What becomes of a subscription that fails."""
+    """Handling of a failed subscription."""
 
     def subscriber_failed(self, subscription: Subscription, error: Exception) -> None:
-        """Called while an exception of its callback is being handled."""
+        """Handle an exception of the callback, inside the `except` block."""
 
     def report_full(self, topic: str) -> None:
-        """Called when a subscription that keeps all has had more messages than it can keep."""
+        """Report that a subscription without `keep` has dropped messages."""
 
 
 class SubscribingBus(JournalKeeper, Protocol):
-    """What a subscription asks of the topic bus."""
+    """Interface of the topic bus that a subscription needs."""
 
     @property
     def failures(self) -> SubscriptionFailures:
-        """What becomes of a subscription that fails."""
+        """Handling of a failed subscription."""
 
     def gather(self, topic: str) -> None:
-        """Lets the publishers of a topic hand over what they have put off."""
+        """Publish the deferred messages of a topic."""
 
     def unsubscribe(self, subscription: Subscription) -> None:
-        """Takes a subscription away."""
+        """Remove a subscription."""
 
 
 class TopicReaders:
-    """Who hears a topic.
+    """Subscriptions and command inputs of a topic.
 
     Attributes:
-        readers: the subscriptions.
-        receivers: what takes a message, one for each of them.
-        is_called: whether one of them is called back with each message, and not only keeps it.
-        looks_at_all: whether one of them will look at every message for all that is known.
-        is_streamed: whether one of them takes each message as it comes, made or not.
-        feeds: whether command inputs hear the topic.
+        readers: subscriptions.
+        receivers: functions that receive a message, one for each subscription.
+        is_called: True if a subscription has a callback and does not only keep messages.
+        looks_at_all: True if a subscription keeps or records every message.
+        is_streamed: True if a subscription receives each message when it is published, even if it is not made yet.
+        feeds: True if the topic has command inputs.
     """
 
     __slots__ = ("feeds", "is_called", "is_streamed", "looks_at_all", "readers", "receivers")
@@ -104,7 +104,7 @@ class TopicReaders:
         self.is_called = self.is_streamed = self.looks_at_all = self.feeds = False
 
     def count(self) -> None:
-        """After a change of the readers."""
+        """Update the attributes after a change of the subscriptions."""
         self.receivers = tuple(reader.receive for reader in self.readers)
         self.is_called = any(reader.is_called for reader in self.readers)
         self.is_streamed = any(type(reader) is StreamSubscription for reader in self.readers)
@@ -112,20 +112,20 @@ class TopicReaders:
 
     @property
     def keeps(self) -> float:
-        """The most messages that one of the readers keeps; infinite where one keeps all."""
+        """Largest number of messages that a subscription keeps; infinite if one keeps all."""
         return max((reader.keeps for reader in self.readers), default=0)
 
 
 class Subscription:
-    """What arrives on a topic.
+    """Received messages of a topic.
 
     Attributes:
-        messages: what arrived since the subscription: the last `keep`, or the last million where nothing is said.
-        receive: takes a message.
-        callback: called with each; None for nothing.
-        on_error: what becomes of a callback that raises: "stop" stops the run, "drop" closes the subscription.
-        is_called: whether it has a callback.
-        keeps: the most messages that it keeps.
+        messages: messages since the subscription: the last `keep`, or without `keep` the last million.
+        receive: function that receives a message.
+        callback: function that is called with each message; None for none.
+        on_error: policy for a callback that raises: "stop" stops the run, "drop" closes the subscription.
+        is_called: True if there is a callback.
+        keeps: largest number of messages that the subscription keeps.
     """
 
     def __init__(
@@ -146,26 +146,26 @@ class Subscription:
 
     @property
     def latest(self) -> Message:
-        """The newest message, or None before the first."""
+        """Newest message, or None before the first."""
         self._bus.gather(self.topic)
         if not self._messages:
             return None
         newest = self._messages[-1]
         if type(newest) is LazyMessage:
             newest = newest.get()
-        if newest is NO_MESSAGE:  # as if it had not been sent
+        if newest is NO_MESSAGE:  # treated as not sent
             self._messages.pop()
             return self.latest
         return newest
 
     def settle(self) -> None:
-        """Has every message made that is still to be made."""
+        """Make every message that is not made yet."""
         for message in self._messages:
             if type(message) is LazyMessage:
                 message.get()
 
     def close(self) -> None:
-        """Stops receiving; what was received stays."""
+        """Stop receiving; the received messages stay."""
         self._bus.unsubscribe(self)
 
     def _keep_and_call(self, message: Message) -> None:
@@ -173,7 +173,7 @@ class Subscription:
         journal = self._bus.journal
         try:
             if journal is None:
-                self.callback(message)  # type: ignore[misc]  # this is only used where there is one
+                self.callback(message)  # type: ignore[misc]  # only used with a callback
             else:
                 with journal.called_back(self):
                     self.callback(message)  # type: ignore[misc]  # as above
@@ -185,7 +185,7 @@ class Subscription:
 
 
 class StreamSubscription(Subscription):
-    """A subscription that only calls back and keeps nothing (a recorder's)."""
+    """Subscription that only calls back and keeps nothing, for recorders."""
 
     def __init__(self, bus: SubscribingBus, topic: str, callback: Callback, takes_later: bool) -> None:
         super().__init__(bus, topic, callback, 0, "stop")
@@ -194,7 +194,7 @@ class StreamSubscription(Subscription):
 
 
 def callback_name(callback: Callback | None) -> str:
-    """What a callback is called, and where it stands."""
+    """Return the name of a callback with its file and line."""
     code = getattr(getattr(callback, "__func__", callback), "__code__", None)
     name = str(getattr(callback, "__qualname__", "") or type(callback).__name__)
     return f"{name!r} ({code.co_filename}:{code.co_firstlineno})" if code is not None else repr(name)

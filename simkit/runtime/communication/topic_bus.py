@@ -1,4 +1,4 @@
-"""Topics within the process. Readings go out at once; commands queue and come in between two steps."""
+"""Topics within the process: messages go to subscribers at once, and to command inputs between two steps."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from simkit.runtime.engine.plugin_faults import is_guarded
 
 
 def absolute_name(topic: str) -> str:
-    """The topic with its leading slash."""
+    """Return the topic with its leading slash."""
     return topic if topic.startswith("/") else "/" + topic
 
 
@@ -39,18 +39,18 @@ class TopicBus:
     """All topics of a simulation.
 
     Args:
-        reports: where it tells what happens to messages while running.
-        now: gives the simulated time [s].
+        reports: collection for diagnostics about messages during the run.
+        now: function that returns the simulated time [s].
 
     Attributes:
         inbox: commands that wait for the next step.
-        refuses_clashes: whether an end of another type than the topic's is refused when it is opened; while plugins are
-            being loaded all are looked at together.
-        revision: another number after every change of who reads or publishes what.
-        aside: topics that nobody takes unasked: recorders and counters leave them out unless they are named.
-        unlisted: those of them that are only listed while somebody reads them.
-        failures: what becomes of callbacks that raise, and of messages that are too many.
-        journal: hears of what comes in from outside; None where nobody does.
+        refuses_clashes: raise an error when a publisher or listener of another type than the topic's is opened. While
+            plugins are being loaded, one pass checks all of them together instead.
+        revision: counter that changes with every change of readers and publishers.
+        aside: topics that recorders and counters exclude unless they are named.
+        unlisted: topics of `aside` that are only listed while they have subscribers.
+        failures: handling of callbacks that raise, and of too many messages.
+        journal: recorder of external inputs; None without one.
     """
 
     def __init__(self, reports: Diagnostics | None = None, now: Callable[[], float] = lambda: 0.0) -> None:
@@ -68,15 +68,15 @@ class TopicBus:
         self.journal: Journal | None = None
         self._on_change: dict[str, Callable[[], None]] = {}
 
-    # ------------------------------------------------------------------ ends
+    # ------------------------------------------------------------------ publishers, listeners, subscriptions
 
-    def passing(self, door: str, **words: object) -> AbstractContextManager[Any]:
-        """A context of what is done by somebody who may be outside; a journal, if there is one, hears of it."""
-        return nullcontext() if self.journal is None else self.journal.passing(door, words)
+    def passing(self, operation: str, **arguments: object) -> AbstractContextManager[Any]:
+        """Return a context manager for an operation that may be external; a journal, if there is one, records it."""
+        return nullcontext() if self.journal is None else self.journal.passing(operation, arguments)
 
     @contextmanager
     def owned_by(self, owner: object) -> Iterator[None]:
-        """Whatever opens a topic within belongs to `owner` and is silenced with it."""
+        """Make `owner` the owner of everything that is opened within the context; it is disabled with its owner."""
         before, self.owner = self.owner, owner
         try:
             yield
@@ -84,12 +84,12 @@ class TopicBus:
             self.owner = before
 
     def advertise(self, topic: str, type_name: str, *, latched: bool = False) -> Publisher:
-        """Opens a topic for publishing.
+        """Open a topic for publishing.
 
         Args:
-            topic: absolute, or taken as such.
+            topic: name of the topic; a missing leading slash is added.
             type_name: ROS 2 type, such as `sensor_msgs/msg/Imu`.
-            latched: a later subscriber gets the last message (transient local).
+            latched: send the last message to a later subscriber (transient local).
         """
         topic = absolute_name(topic)
         self.gather(topic)
@@ -106,14 +106,14 @@ class TopicBus:
         return publisher
 
     def listen(self, topic: str, types: Sequence[str], callback: Callback, *, depth: int | None = None) -> Listener:
-        """Opens a topic for commands.
+        """Open a topic for commands.
 
         Args:
-            topic: absolute, or taken as such.
-            types: what is taken; the first is the one listed.
-            callback: called with each message between two steps.
-            depth: how many messages of the topic wait for one step at most, the oldest being dropped of more; the most
-                that any of its listeners asks for.
+            topic: name of the topic; a missing leading slash is added.
+            types: accepted types; the first one is listed.
+            callback: function that receives each message between two steps.
+            depth: largest number of messages of the topic that wait for one step; the oldest are dropped. The largest
+                depth of the topic's listeners counts.
         """
         topic = absolute_name(topic)
         if depth is not None:
@@ -131,34 +131,34 @@ class TopicBus:
     def subscribe(
         self, topic: str, callback: Callback | None = None, keep: int | None = None, on_error: CallbackPolicy = "stop"
     ) -> Subscription:
-        """Receives a topic, whether its publisher exists yet or not.
+        """Receive a topic; its publisher may be opened later.
 
         Args:
-            topic: absolute, or taken as such.
-            callback: called with each message.
-            keep: how many messages are kept, the newest; a million where nothing is said.
-            on_error: what becomes of a callback that raises: "stop" stops the run with a SubscriberError, "drop" closes
-                the subscription with a warning, and the run goes on.
+            topic: name of the topic; a missing leading slash is added.
+            callback: function that receives each message.
+            keep: number of newest messages to keep; None for a million.
+            on_error: policy for a callback that raises: "stop" stops the run with a SubscriberError, "drop" closes the
+                subscription with a warning, and the run continues.
         """
         if on_error not in ("stop", "drop"):
-            raise ValueError(f"on_error is 'stop' or 'drop', got {on_error!r}")
+            raise ValueError(f"on_error must be 'stop' or 'drop', got {on_error!r}")
         subscription = Subscription(self, absolute_name(topic), callback, keep, on_error)
         if self.journal is not None and callback is not None and not is_guarded(callback):
             self.journal.hears(subscription.topic, subscription)
         return self._add_reader(subscription)
 
     def tap(self, topic: str, callback: Callback, *, takes_later: bool = False) -> Subscription:
-        """Receives a topic without keeping its messages.
+        """Receive a topic without keeping its messages.
 
         Args:
-            topic: absolute, or taken as such.
-            callback: called with each message.
-            takes_later: whether it may be called with a `LazyMessage` instead, which it keeps as long as it needs.
+            topic: name of the topic; a missing leading slash is added.
+            callback: function that receives each message.
+            takes_later: allow a `LazyMessage` instead of a message; the callback may keep it.
         """
         return self._add_reader(StreamSubscription(self, absolute_name(topic), callback, takes_later))
 
     def close(self, end: Publisher | Listener) -> None:
-        """Takes a publisher or a listener away for good."""
+        """Remove a publisher or a listener permanently."""
         self.gather(end.topic)
         if isinstance(end, ExternalPublisher):
             with self.passing("close", publisher=end):
@@ -172,7 +172,7 @@ class TopicBus:
         self._tidy(end.topic)
 
     def set_active(self, owners: Sequence[object]) -> None:
-        """Leaves only the ends of these owners (and those without one) in use."""
+        """Enable only the publishers and listeners of these owners, and those without an owner."""
         living = {id(o) for o in owners}
         tables: tuple[Mapping[str, Endpoints], ...] = (self._publishers, self._listeners)
         for ends in (ends for table in tables for ends in table.values()):
@@ -180,14 +180,18 @@ class TopicBus:
                 end.active = end.owner is None or id(end.owner) in living
 
     def forget(self, owners: Sequence[object]) -> None:
-        """Takes every end of these owners away for good."""
-        gone = {id(owner) for owner in owners}
+        """Remove every publisher and listener of these owners permanently."""
+        removed = {id(owner) for owner in owners}
         tables: tuple[Mapping[str, Endpoints], ...] = (self._publishers, self._listeners)
-        for end in [end for table in tables for ends in table.values() for end in ends if id(end.owner) in gone]:
+        for end in [end for table in tables for ends in table.values() for end in ends if id(end.owner) in removed]:
             self.close(end)
 
     def endpoints(self, topic: str | None = None) -> Iterator[tuple[str, Publisher | Listener, tuple[str, ...], str]]:
-        """Topic, end, its types and what it does ("publishes" or "takes"), of one topic or of all."""
+        """Yield topic, publisher or listener, its types and its verb ("publishes" or "takes").
+
+        Args:
+            topic: absolute name of one topic; None for all topics.
+        """
         for name in dict.fromkeys((*self._publishers, *self._listeners)) if topic is None else (topic,):
             for publisher in self._publishers.get(name, ()):
                 yield name, publisher, (publisher.type_name,), "publishes"
@@ -200,14 +204,14 @@ class TopicBus:
             if clash:
                 raise MessageError(clash)
 
-    # ------------------------------------------------------------------ what there is
+    # ------------------------------------------------------------------ lists
 
     def topics(self) -> dict[str, str]:
-        """Topic -> ROS type name, of what is published and what is listened to, sorted."""
+        """Return the ROS type names of all published and received topics, sorted by topic, without unlisted ones."""
         return {t: kind for t, kind in self.all_topics().items() if t not in self.unlisted or self.wanted(t)}
 
     def all_topics(self) -> dict[str, str]:
-        """The same with those that are not listed."""
+        """Return the ROS type names of all topics, including unlisted ones."""
         found: dict[str, str] = {}
         for topic, publishers in self._publishers.items():
             for p in publishers:
@@ -220,25 +224,25 @@ class TopicBus:
         return dict(sorted(found.items()))
 
     def latched(self) -> frozenset[str]:
-        """Topics whose last message is kept for later subscribers."""
+        """Return the topics whose last message is kept for later subscribers."""
         return frozenset(t for t, publishers in self._publishers.items() for p in publishers if p.latched and p.active)
 
     def wanted(self, topic: str) -> bool:
-        """Whether somebody subscribes to a topic."""
+        """Check whether a topic has subscribers."""
         return bool(self._readers_of(absolute_name(topic)).readers)
 
     def on_topic(self, callback: Callable[[str, str], None]) -> None:
-        """Calls `callback(topic, type_name)` for every topic there is and will be."""
+        """Call `callback(topic, type_name)` for every present and future topic."""
         self._watchers.append(callback)
         for topic, type_name in self.all_topics().items():
             callback(topic, type_name)
 
     def on_readers_change(self, topic: str, callback: Callable[[], None]) -> None:
-        """Calls back whenever the readers of a topic have changed."""
+        """Call a function whenever the subscriptions of a topic have changed."""
         self._on_change[topic] = callback
 
     def subscriptions(self) -> list[Subscription]:
-        """All that are open."""
+        """Return all open subscriptions."""
         return [reader for readers in self._readers.values() for reader in readers.readers]
 
     def _report_change(self, topic: str) -> None:
@@ -248,7 +252,7 @@ class TopicBus:
     # ------------------------------------------------------------------ messages
 
     def settle(self) -> None:
-        """Makes every message that waits to be looked at, before what it is made from changes."""
+        """Make every message that is not made yet, before its source data change."""
         for publishers in self._publishers.values():
             for publisher in publishers:
                 if publisher.pending is not None:
@@ -258,22 +262,22 @@ class TopicBus:
                 reader.settle()
 
     def settle_topic(self, topic: str) -> None:
-        """The same of one topic."""
+        """Make every message of one topic that is not made yet."""
         self.gather(topic)
         for reader in self._readers_of(topic).readers:
             reader.settle()
 
     def gather(self, topic: str) -> None:
-        """Lets the publishers of a topic hand over what they have put off."""
+        """Publish the deferred messages of a topic."""
         for publisher in self._publishers.get(topic, ()):
             if publisher.pending is not None:
                 publisher.pending()
 
     def publish(self, topic: str, message: Message) -> None:
-        """A message from outside the loop: subscribers see it now, command inputs before the next step.
+        """Publish a message from outside the loop: to subscribers now, to command inputs before the next step.
 
         Raises:
-            MessageError: nobody could say what type a dict is to have, or it fits none.
+            MessageError: the type of a dict is unknown, or the dict fits no type.
         """
         topic = absolute_name(topic)
         types = [t for li in self._listeners.get(topic, ()) if li.active for t in li.types]
@@ -283,7 +287,7 @@ class TopicBus:
                 raise MessageError(f"no topic {topic!r}; {name_hint(topic, self.topics())}")
             message = msgs.from_dict(list(dict.fromkeys(types)), dict(message))
         elif types and msgs.type_name(message) not in types:
-            raise MessageError(f"{topic!r} takes {' or '.join(dict.fromkeys(types))}, got {msgs.type_name(message)}")
+            raise MessageError(f"{topic!r} needs {' or '.join(dict.fromkeys(types))}, got {msgs.type_name(message)}")
         with self.passing("publish", topic=topic, message=message):
             self.gather(topic)
             readers = self._readers_of(topic)
@@ -293,14 +297,14 @@ class TopicBus:
                 self.inbox.put(topic, message)
 
     def enqueue(self, call: Callable[[], None]) -> None:
-        """Has something done between two steps, in its turn among the queued commands."""
+        """Call a function between two steps, in order with the queued commands."""
         self.inbox.put("", call)
 
     def deliver_inputs(self) -> None:
-        """Hands queued commands to their inputs, in the order of arrival.
+        """Pass queued commands to their inputs, in the order of arrival.
 
         Raises:
-            PluginError: a plugin raised; what came after waits for the next step.
+            PluginError: a plugin raised; the remaining commands wait for the next step.
         """
         inbox = self.inbox
         entries, generation, done = inbox.drain(), inbox.generation, 0
@@ -311,7 +315,7 @@ class TopicBus:
                     self._deliver_input(topic, message)
                 else:
                     message()
-                if inbox.generation != generation:  # who was called went back to another time
+                if inbox.generation != generation:  # the callback restored another state
                     return
         except BaseException:
             if inbox.generation == generation:
@@ -330,7 +334,7 @@ class TopicBus:
 
     @property
     def dropped(self) -> dict[str, int]:
-        """Topic -> how many messages to its inputs were dropped, since too many came for one step."""
+        """Numbers of command messages by topic that were dropped because too many came for one step."""
         return dict(self.inbox.dropped)
 
     def _readers_of(self, topic: str) -> TopicReaders:
@@ -365,7 +369,10 @@ class TopicBus:
             self._tidy(subscription.topic)
 
     def _tidy(self, topic: str) -> None:
-        """Forgets a topic that has no end any more: others come, with other names, for as long as a run goes on."""
+        """Remove a topic without publishers, listeners and subscriptions.
+
+        A long run with changing topic names would otherwise need ever more memory.
+        """
         if not (self._publishers.get(topic) or self._listeners.get(topic) or self._readers_of(topic).readers):
             for table in (self._publishers, self._listeners, self._readers):
                 table.pop(topic, None)

@@ -1,4 +1,4 @@
-"""What becomes of callbacks of topics that raise, and of messages that are too many."""
+"""Handling of topic callbacks that raise, and of too many messages."""
 
 from __future__ import annotations
 
@@ -19,40 +19,40 @@ class TopicFailures:
     """Errors and warnings of the topics of a simulation.
 
     Args:
-        reports: receives the warnings.
-        now: gives the simulated time [s].
+        reports: collection for the warnings.
+        now: function that returns the simulated time [s].
     """
 
     def __init__(self, reports: Diagnostics, now: Callable[[], float]) -> None:
         self._reports, self._now = reports, now
 
     def subscriber_failed(self, subscription: Subscription, error: Exception) -> None:
-        """Stops the run or closes the subscription, as it asks; called while the exception is being handled."""
+        """Stop the run or close the subscription, as its policy requires; call it inside the `except` block."""
         if isinstance(error, (PluginError, SimulationDiverged)) or is_guarded(subscription.callback):
             raise error
         topic, name = subscription.topic, callback_name(subscription.callback)
         if subscription.on_error == "stop":
             if isinstance(error, SimkitError) and not isinstance(error, InputError):
-                raise error  # else who publishes would be blamed for it
+                raise error  # unchanged, so that the publishing plugin is not blamed
             raise SubscriberError(topic, name, self._now(), repr(error)) from error
         subscription.close()
-        message = f"subscriber {name} of {topic!r} raised at t={self._now():.6g} s and hears no more: {error!r}"
+        message = f"subscriber {name} of {topic!r} raised at t={self._now():.6g} s and is closed: {error!r}"
         self._reports.warning("SK-TOPIC-003", message)
 
     def input_error(self, listener: Listener, error: Exception) -> SimkitError:
-        """Return the error of a command input whose callback raised."""
-        owner, what = listener.owner, f"its callback for {listener.topic!r}"
+        """Return the error for a command input whose callback raised."""
+        owner, hook = listener.owner, f"its callback for {listener.topic!r}"
         if hasattr(owner, "where"):
-            return PluginError(str(getattr(owner, "name", owner)), what, self._now(), str(owner.where), repr(error))
+            return PluginError(str(getattr(owner, "name", owner)), hook, self._now(), str(owner.where), repr(error))
         return SubscriberError(listener.topic, callback_name(listener.callback), self._now(), repr(error))
 
     def report_full(self, topic: str) -> None:
-        """Warns of a subscription that keeps all and has had more messages than it can keep."""
-        message = f"a subscription to {topic!r} is full: of more than {MAX_KEPT_MESSAGES} messages the newest are there"
-        self._reports.warning("SK-TOPIC-005", message, hint="subscribe with keep=, or close it once it is not needed")
+        """Warn that a subscription without `keep` has received more messages than it can keep."""
+        message = f"a subscription to {topic!r} is full: only the newest {MAX_KEPT_MESSAGES} messages are kept"
+        self._reports.warning("SK-TOPIC-005", message, hint="subscribe with keep=, or close the subscription after use")
 
     def report_dropped(self, topic: str, depth: int) -> None:
-        """Warns of more messages for one step than an input takes."""
+        """Warn that more messages came for one step than an input accepts."""
         message = f"more than {depth} messages on {topic!r} came for one step: the oldest are dropped from now on"
         hint = "send less often; sim.communication.bus.dropped counts them"
         self._reports.warning("SK-TOPIC-004", message, hint=hint)

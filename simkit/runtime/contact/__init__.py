@@ -1,7 +1,7 @@
-"""Forces between bodies in contact.
+"""Contact forces between bodies.
 
-What enters: MuJoCo's model and data with contacts found and velocities known, and what plugins ask of wheels and belts.
-What leaves: corrected references, tangents and coefficients of contacts, the contacts between collisions of the files,
-and whether the next steps need the contact law or speculative contacts. What never: the clock, plugins, messages, or
-anything that advances the state.
+- Input: MuJoCo's model and data with contacts and velocities, and the requests of plugins for wheels and belts.
+- Output: corrected references, tangents and coefficients of contacts, and the contacts between the collisions of a
+  file. It also decides whether the next steps need the contact law or speculative contacts.
+- Not known here: the clock, plugins, messages, and anything that advances the state.
 """

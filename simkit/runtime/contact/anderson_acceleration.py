@@ -1,4 +1,4 @@
-"""Anderson's acceleration of a fixed-point iteration."""
+"""Anderson acceleration of a fixed-point iteration."""
 
 from __future__ import annotations
 
@@ -7,69 +7,75 @@ from itertools import pairwise
 from typing import Final
 
 _NEAR_FACTOR: Final = 50.0
-"""Root mean square of what was missed, in units of the tolerance, up to which the iteration has come near."""
+"""Largest root mean square of the residual, in units of the tolerance, at which the iteration counts as near a
+solution."""
 
 _MAX_EXTRAPOLATION: Final = 100.0
-"""Ratio of squares of the extrapolation to what was missed, beyond which the plain iterate is used."""
+"""Largest ratio of the squares of extrapolation and residual; beyond it the plain iterate is used."""
 
 
 class AndersonAcceleration:
-    """Anderson's acceleration of a fixed-point iteration, with the last two differences.
+    """Anderson acceleration of a fixed-point iteration, with the last two differences.
 
-    Plain repetition gains a tenth of the distance a time where wheels are light, and 2 % where four wheels share the
-    load of a stiff vehicle, as a change of that share moves nothing.
+    Plain iteration removes a tenth of the error per iteration with light wheels. With four wheels that share the load
+    of a stiff vehicle it removes 2 %, because a change of that share moves nothing.
 
     Attributes:
-        best: what was asked when the least was missed, for contacts whose iteration does not converge: where friction
-            on a lever presses harder the more it is pressed.
+        best: iterate with the smallest residual. It is used for contacts whose iteration does not converge: friction on
+            a lever can press harder the more it is pressed.
     """
 
     def __init__(self) -> None:
         self.best: list[float] = []
         self._least = math.inf
-        self._misses: list[list[float]] = []
-        self._given: list[list[float]] = []
+        self._residuals: list[list[float]] = []
+        self._results: list[list[float]] = []
 
     def has_come_near(self, tolerance: float) -> bool:
-        """Return whether the root mean square of what was missed was ever within some tolerances, about g."""
+        """Check whether the root mean square of the residual was ever within some tolerances, about g."""
         return bool(self.best) and self._least < (_NEAR_FACTOR * tolerance) ** 2 * len(self.best)
 
-    def next(self, asked: list[float], given: list[float]) -> list[float]:
-        """Return what to ask next, after `asked` has given `given`."""
-        miss = [g - x for x, g in zip(asked, given, strict=True)]
-        size = math.fsum(one * one for one in miss)
+    def next(self, iterate: list[float], result: list[float]) -> list[float]:
+        """Return the next iterate.
+
+        Args:
+            iterate: present iterate.
+            result: result of the iteration for `iterate`.
+        """
+        residual = [g - x for x, g in zip(iterate, result, strict=True)]
+        size = math.fsum(value * value for value in residual)
         if size < self._least:
-            self._least, self.best = size, asked
-        if self._misses and size > math.fsum(one * one for one in self._misses[-1]):
-            self._misses, self._given = [], []  # contacts have opened or closed: what was before says nothing
-        self._misses, self._given = [*self._misses[-2:], miss], [*self._given[-2:], given]
-        if len(self._misses) < 2:
-            return given
-        steps = [_difference(b, a) for a, b in pairwise(self._misses)]
-        moves = [_difference(b, a) for a, b in pairwise(self._given)]
-        shares = _least_squares(steps, miss)
+            self._least, self.best = size, iterate
+        if self._residuals and size > math.fsum(value * value for value in self._residuals[-1]):
+            self._residuals, self._results = [], []  # contacts have opened or closed: earlier results do not apply
+        self._residuals, self._results = [*self._residuals[-2:], residual], [*self._results[-2:], result]
+        if len(self._residuals) < 2:
+            return result
+        steps = [_difference(b, a) for a, b in pairwise(self._residuals)]
+        moves = [_difference(b, a) for a, b in pairwise(self._results)]
+        shares = _least_squares(steps, residual)
         further = [
-            -math.fsum(share * move[i] for share, move in zip(shares, moves, strict=True)) for i in range(len(given))
+            -math.fsum(share * move[i] for share, move in zip(shares, moves, strict=True)) for i in range(len(result))
         ]
-        if math.fsum(one * one for one in further) > _MAX_EXTRAPOLATION * size:
-            return given
-        return [g + one for g, one in zip(given, further, strict=True)]
+        if math.fsum(value * value for value in further) > _MAX_EXTRAPOLATION * size:
+            return result
+        return [g + one for g, one in zip(result, further, strict=True)]
 
 
 def _difference(a: list[float], b: list[float]) -> list[float]:
     return [x - y for x, y in zip(a, b, strict=True)]
 
 
-def _least_squares(columns: list[list[float]], wanted: list[float]) -> list[float]:
-    """Return the shares of one or two columns that come nearest to a vector."""
+def _least_squares(columns: list[list[float]], target: list[float]) -> list[float]:
+    """Return the least-squares coefficients of one or two columns for a vector."""
     first, second = columns[-1], columns[0]
     a = math.fsum(x * x for x in first)
-    e = math.fsum(x * y for x, y in zip(first, wanted, strict=True))
+    e = math.fsum(x * y for x, y in zip(first, target, strict=True))
     if len(columns) == 1:
         return [e / a if a > 0.0 else 0.0]
     b = math.fsum(x * y for x, y in zip(first, second, strict=True))
     c = math.fsum(x * x for x in second)
-    f = math.fsum(x * y for x, y in zip(second, wanted, strict=True))
+    f = math.fsum(x * y for x, y in zip(second, target, strict=True))
     determinant = a * c - b * b
     if determinant <= 1e-8 * a * c:
         return [0.0, e / a if a > 0.0 else 0.0]

@@ -1,12 +1,13 @@
-"""Friction that differs along and across a direction, and contacts that slip with the force on them.
+"""Friction that differs along and across a direction, and contacts that slip in proportion to their force.
 
-MuJoCo's contacts have two coefficients, along two tangents that it chooses by the normal alone. Gazebo's have them
-along `<fdir1>`, which turns with a link: a wheel with rollers holds along them and rolls across. And Gazebo's contacts
-may slip: their surfaces pass each other at a speed of compliance times force (ODE's `slip1`, `slip2` [m/s/N]).
+MuJoCo's contacts have two coefficients along two tangents, which MuJoCo chooses from the normal alone. Gazebo's
+contacts have them along `<fdir1>`, which turns with a link: a wheel with rollers grips along the rollers and rolls
+across. Gazebo's contacts may also slip: their surfaces pass each other at a speed of compliance times force (ODE's
+`slip1`, `slip2` [m/s/N]).
 
-So between the engine's pass over positions and velocities and its solving for forces, the contacts of such collisions
-get their tangents and coefficients, and their friction the softness that lets it slip. It is done in every forward
-pass (`Physics.shaper`), whoever asks for it: no reader makes a difference. `softness` makes them soft.
+This module changes the contacts of such collisions after MuJoCo has computed positions and velocities, and before it
+solves for forces. The contacts get their tangents and coefficients, and their friction gets the softness that lets it
+slip (`contact_slip`). Every forward pass does this (`Physics.shaper`), so that readers make no difference.
 """
 
 from __future__ import annotations
@@ -44,10 +45,11 @@ _SHARED_KEY = "directed friction"
 
 @dataclass(frozen=True, slots=True)
 class SlippingWheel:
-    """A wheel whose contacts slip the more the faster it turns.
+    """Wheel whose contacts slip in proportion to its rate of rotation.
 
     Attributes:
-        link, joint: scoped names of the wheel and of the joint that it turns on.
+        link: scoped name of the wheel.
+        joint: scoped name of the wheel's joint.
     """
 
     link: str
@@ -55,31 +57,31 @@ class SlippingWheel:
 
 
 WheelSlips = Callable[[], list[Pair]]
-"""Of each wheel the compliances across (along its axle) and ahead, per turning rate [m/N]."""
+"""Function that returns each wheel's compliances across (along its axle) and ahead, per rate of rotation [m/N]."""
 
 
 class ContactRequest(NamedTuple):
-    """What plugins ask of contacts at one tick: how belts run, and the slips of the wheels of each plugin."""
+    """Requests of plugins at one tick: the motions of belts, and the slips of each plugin's wheels."""
 
     runs: list[BeltMotion | None]
     slips: list[list[Pair]]
 
 
 class ShapedPhysics(Protocol):
-    """Physics whose contacts are changed before they are solved for."""
+    """Physics whose contacts are changed before they are solved."""
 
     shaper: ContactShaper | None
 
     def changed_contacts(self) -> None:
-        """Says that contacts are to be found anew."""
+        """Record that contacts must be detected again."""
 
 
 class AnisotropicFriction:
-    """Contacts of a simulation whose friction has a direction or slips; without any it costs nothing.
+    """Contacts of a simulation with directional friction or slip; without any, there is no cost.
 
     Args:
-        physics: whose contacts are changed.
-        reports: receives a warning if the integrator has no place for such contacts.
+        physics: physics whose contacts are changed.
+        reports: collection for a warning if the integrator cannot support such contacts.
     """
 
     def __init__(self, physics: ShapedPhysics, reports: Diagnostics) -> None:
@@ -92,7 +94,7 @@ class AnisotropicFriction:
         self._belts: weakref.WeakKeyDictionary[object, Callable[[], Sequence[Belt]]] = weakref.WeakKeyDictionary()
 
     def bind(self, compiled: Compiled, plugins: Iterable[object]) -> None:
-        """Binds to another compiled model; only wheels and belts of these plugins count from now on."""
+        """Switch to another compiled model; only wheels and belts of these plugins count from now on."""
         self._compiled, self._plugins = compiled, frozenset(map(id, plugins))
         table = self._table()
         for owner, (wheels, slips) in self._wheels.items():
@@ -104,11 +106,11 @@ class AnisotropicFriction:
         self._install(table)
 
     def add_belts(self, owner: object, belts: Callable[[], Sequence[Belt]]) -> None:
-        """Has surfaces run from now on, for as long as their plugin is there.
+        """Add moving surfaces, which exist as long as their plugin.
 
         Args:
-            owner: the plugin.
-            belts: gives them in the present engine model.
+            owner: plugin of the belts.
+            belts: function that returns the belts in the present engine model.
         """
         self._belts[owner] = belts
         table = self._table()
@@ -117,12 +119,12 @@ class AnisotropicFriction:
         self._physics.changed_contacts()
 
     def add_wheels(self, owner: object, wheels: Sequence[SlippingWheel], slips: WheelSlips) -> None:
-        """Has the contacts of wheels slip from now on, for as long as their plugin is there.
+        """Add slipping wheels, which exist as long as their plugin.
 
         Args:
-            owner: the plugin.
-            wheels: of its model.
-            slips: asked in every forward pass, so that they are part of the plugin's state.
+            owner: plugin of the wheels.
+            wheels: wheels of the plugin's model.
+            slips: function that is called in every forward pass, so that the slips are part of the plugin's state.
         """
         self._wheels[owner] = tuple(wheels), slips
         table = self._table()
@@ -131,19 +133,19 @@ class AnisotropicFriction:
         self._physics.changed_contacts()
 
     def _install(self, table: _ModelFriction) -> None:
-        """Have the physics use it, if there is anything in it and the engine's integrator lets it."""
+        """Make the physics use a table, if the table is not empty and the integrator allows it."""
         physics, has_place = self._physics, table.model.opt.integrator != _DISCRETE
         physics.shaper = table if table and has_place else None
         if table and not has_place and not self._is_reported:
             self._is_reported = True
             message = (
-                "directions and slip of friction, and surfaces that run, have no effect: the engine's integrator is "
-                "discrete, which has no place for them between velocities and forces"
+                "directional friction, slip and moving surfaces have no effect: the discrete integrator of the engine "
+                "does not compute velocities before forces"
             )
             self._reports.warning("SK-PHYS-030", message, table.where(), 'integrator="implicitfast" in <option>')
 
     def owners(self) -> list[object]:
-        """The plugins whose wheels slip, of those that are there."""
+        """Return the present plugins with slipping wheels."""
         return [owner for owner in self._wheels if id(owner) in self._plugins]
 
     def _table(self) -> _ModelFriction:
@@ -152,7 +154,7 @@ class AnisotropicFriction:
 
 
 class _ModelFriction:
-    """What one compiled model has of them, and how its contacts are changed."""
+    """Slipping and directional contacts of one compiled model."""
 
     def __init__(self, model: mujoco.MjModel, names: NameMap) -> None:
         self.model, self._names = model, names
@@ -171,17 +173,17 @@ class _ModelFriction:
         return bool(self._rows or self._belts)
 
     def where(self) -> Where:
-        """Of the first link that it is about."""
+        """Return the file position of the first affected link."""
         geoms = {geom for geom, concerned in enumerate(self._concerns) if concerned}
         return next((link.scene.where for link in self._names.links.values() if geoms & set(link.geoms)), NOWHERE)
 
     @property
     def acts(self) -> bool:
-        """Whether there is anything that may have to be done."""
+        """True if some contact may have to be changed."""
         return bool(self._rows) or self.surfaces.run
 
     def add_belts(self, owner: object, belts: Sequence[Belt]) -> None:
-        """Surfaces that run; a second time nothing more."""
+        """Add the moving surfaces of a plugin, once."""
         if id(owner) not in self._belts:
             self._belts.add(id(owner))
             for belt in belts:
@@ -190,7 +192,7 @@ class _ModelFriction:
             self._arrange()
 
     def _rub(self, belt: Belt) -> None:
-        """Gives the collisions of a belt the friction that its plugin asks for."""
+        """Give the collisions of a belt the friction that its plugin requests."""
         if belt.friction is None:
             return
         for scoped in dict.fromkeys(self._names.geom_owner(geom)[1] for geom in belt.geoms):
@@ -214,7 +216,7 @@ class _ModelFriction:
         return [geom for geom in link.geoms if self._names.geom_owner(geom)[1] == collision.scoped]
 
     def add_wheels(self, owner: object, wheels: Sequence[SlippingWheel], slips: WheelSlips) -> None:
-        """Lets them slip; a second time nothing more."""
+        """Add the slipping wheels of a plugin, once."""
         if id(owner) in self._sources:
             return
         keys = []
@@ -237,7 +239,7 @@ class _ModelFriction:
 
     def _arrange(self) -> None:
         self._list = rows = list(self._rows.values())
-        self._row_of = [-1] * (self.model.ngeom + 1)  # the last for -1: no geom
+        self._row_of = [-1] * (self.model.ngeom + 1)  # the last item is for index -1: no geom
         for number, row in enumerate(rows):
             for geom in row.geoms:
                 self._row_of[geom] = number
@@ -252,11 +254,11 @@ class _ModelFriction:
     # ------------------------------------------------------------------ in a forward pass
 
     def request(self) -> ContactRequest:
-        """Return what plugins ask for now."""
+        """Return the present requests of plugins."""
         return ContactRequest(self.surfaces.runs(), [slips() for _, slips in self._sources.values()])
 
     def shape(self, data: mujoco.MjData, request: ContactRequest | None = None) -> None:
-        """Gives the contacts of such collisions their tangents, coefficients and softness."""
+        """Set tangents, coefficients and softness of the affected contacts."""
         model, surfaces = self.model, self.surfaces
         runs, wheels = self.request() if request is None else request
         found = find_friction_contacts(data, self._concerns) if data.ncon else None
@@ -287,7 +289,7 @@ class _ModelFriction:
     def _soft(
         self, data: mujoco.MjData, found: AnyFrictionContacts, places: RowContacts, wheels: list[list[Pair]]
     ) -> list[tuple[int, int, Pair]]:
-        """The contacts that slip, with the tree that does and their compliances [m/s/N]."""
+        """Return the slipping contacts with their kinematic trees and compliances [m/s/N]."""
         slips = self._slip
         if self._wheels:
             slips = slips.copy()
@@ -302,7 +304,10 @@ class _ModelFriction:
 
 
 def _direction_link(name: str, link: str, names: NameMap) -> LinkBinding | None:
-    """The link that a direction is given in, by its name in the scope of the collision's link; None for its own."""
+    """Return the link in whose frame a direction is given, by its name in the scope of the collision's link.
+
+    The result is None for the collision's own link.
+    """
     if not name:
         return None
     scope = link.rpartition("::")[0]

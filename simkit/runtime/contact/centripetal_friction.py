@@ -1,13 +1,13 @@
-"""Friction between bodies that swing together: the centripetal acceleration of what a hand carries.
+"""Friction between bodies that rotate together: centripetal acceleration of an object in a gripper.
 
-The rows of friction ask for J a = -b v: that the slip v dies away at the rate b. But the slip also changes with the
-Jacobian: dv/dt = J a + Jdot qvel. What a hand swings round on an arc of radius R needs the acceleration omega² R
-towards the centre, which is just that second term; left out, the object creeps outwards at omega² R / b until friction
-notices (1 mm/s for 1 rad/s at 0.5 m). So the term is taken off the reference of the tangents. Of it the part
-b dt / 2 is left: the integrator moves along the chord and not along the arc.
+The rows of friction request J a = -b v, so that the slip v decays at the rate b. The slip also changes with the
+Jacobian: dv/dt = J a + Jdot qvel. An object that a gripper carries on an arc of radius R needs the acceleration omega²
+R towards the centre, which is exactly this second term. Without it, the object creeps outwards at omega² R / b until
+friction compensates (1 mm/s for 1 rad/s at 0.5 m). Therefore the term is subtracted from the reference of the tangents.
+The fraction b dt / 2 of it stays, because the integrator moves along the chord and not along the arc.
 
-For bodies that roll on each other the point of contact travels over both surfaces and the term is another one, so only
-bodies that turn together are corrected, and along the tangents only.
+On bodies that roll on each other, the contact point travels over both surfaces and the term differs. Therefore only
+bodies that rotate together are corrected, and only along the tangents.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ import numpy.typing as npt
 from simkit.runtime.contact.contact_conditions import ARRAY_THRESHOLD
 
 _MIN_ANGULAR_VELOCITY: Final = 0.03
-"""Angular velocity [rad/s] from which the correction counts: at 1 m it is 0.9 mm/s²."""
+"""Least angular velocity for the correction [rad/s]: at 1 m it is 0.9 mm/s²."""
 
 _MAX_RELATIVE_SHARE: Final = 0.2
-"""Angular velocity of one body relative to the other, as a share of its own, up to which they turn together."""
+"""Largest relative angular velocity of two bodies that rotate together, as a fraction of their own."""
 
 Point = tuple[float, float, float]
 
@@ -33,7 +33,7 @@ class CentripetalFriction:
     """Contacts between moving bodies of one compiled model.
 
     Args:
-        model: of the engine.
+        model: MuJoCo's model.
     """
 
     def __init__(self, model: mujoco.MjModel) -> None:
@@ -48,10 +48,10 @@ class CentripetalFriction:
         self._jacobian = np.empty((3, model.nv))
 
     def find(self, data: mujoco.MjData) -> list[tuple[int, int, int]]:
-        """Return the contacts between bodies of different models that turn together: number and both bodies.
+        """Return the contacts between bodies of different models that rotate together: contact number and both bodies.
 
         Args:
-            data: of the engine, with velocities up to date.
+            data: MuJoCo's data with velocities up to date.
         """
         found: list[tuple[int, int, int]] = []
         if not self._can_carry:
@@ -70,7 +70,7 @@ class CentripetalFriction:
                 d, e, f = data.cvel[other, :3].tolist()
                 own = min(a * a + b * b + c * c, d * d + e * e + f * f)
                 u, v, w = a - d, b - e, c - f
-                apart = u * u + v * v + w * w  # a power would raise where a world that diverges overflows
+                apart = u * u + v * v + w * w  # `**` would raise on overflow in a diverging world
                 together = (
                     own > _MIN_ANGULAR_VELOCITY * _MIN_ANGULAR_VELOCITY
                     and apart < _MAX_RELATIVE_SHARE * _MAX_RELATIVE_SHARE * own
@@ -81,14 +81,16 @@ class CentripetalFriction:
         return found
 
     def correct(self, data: mujoco.MjData, carried: list[tuple[int, int, int]]) -> list[tuple[int, float]]:
-        """Take the term off the references of the tangents; for each pair of bodies that of its first contact's place.
+        """Subtract the term from the references of the tangents.
+
+        All contacts of a pair of bodies use the term at the position of their first contact.
 
         Args:
-            data: of the engine.
-            carried: contacts, as `find` gives them.
+            data: MuJoCo's data.
+            carried: contacts from `find`.
 
         Returns:
-            Rows and their references as they were.
+            Rows and their previous references.
         """
         before: list[tuple[int, float]] = []
         contact, aref, damping = data.contact, data.efc_aref, data.efc_KBIP
@@ -114,6 +116,6 @@ class CentripetalFriction:
         return before
 
     def _bias(self, data: mujoco.MjData, point: npt.NDArray[np.float64], body: int) -> npt.NDArray[np.float64]:
-        """Return the acceleration of a point of a body [m/s²] that follows from velocities alone, world frame."""
+        """Return the velocity-dependent acceleration of a point of a body [m/s²], world frame."""
         mujoco.mj_jacDot(self._model, data, self._jacobian, None, point, body)
         return self._jacobian @ data.qvel

@@ -1,4 +1,4 @@
-"""What touches what: the engine's contacts, by the collisions of the files they belong to."""
+"""Contacts of the engine by the collisions of the files that they belong to."""
 
 from __future__ import annotations
 
@@ -18,29 +18,29 @@ Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.integer[Any]]
 Bools = npt.NDArray[np.bool_]
 
-mj_contact_force, any_of = mujoco.mj_contactForce, np.logical_or.reduce  # looked up once
+mj_contact_force, any_of = mujoco.mj_contactForce, np.logical_or.reduce  # looked up once for speed
 
 
 @dataclass(frozen=True, eq=False)
 class CollisionTable:
-    """The collisions of a compiled model, numbered in the order of their first geoms.
+    """Collisions of a compiled model, numbered in the order of their first geoms.
 
     Attributes:
-        names: scoped, by number; a geom that no file's collision stands behind counts by its own name.
-        of_geom: number by geom id, shape (ngeom + 1,); the last one, -1, is for what is no geom.
+        names: scoped names by number; a geom without a collision in a file has its own name.
+        of_geom: collision number by geom id, shape (ngeom + 1,); the last item is for index -1, no geom.
     """
 
     names: tuple[str, ...]
     of_geom: Ints
 
     def mask(self, scoped: Collection[str]) -> Bools:
-        """Which geoms belong to these collisions, shape (ngeom + 1,); the last one never does."""
+        """Return a mask of the geoms of these collisions, shape (ngeom + 1,); the last item is False."""
         numbers = [i for i, name in enumerate(self.names) if name in scoped]
         return np.isin(self.of_geom, numbers)
 
 
 def collision_table(compiled: Compiled) -> CollisionTable:
-    """The collisions of a compiled model; found once for all who ask."""
+    """Return the collisions of a compiled model; computed once for all callers."""
     names = compiled.names
     return names.shared("collisions", lambda: _build_collision_table(names, compiled.model))
 
@@ -58,14 +58,14 @@ def _build_collision_table(names: NameMap, model: mujoco.MjModel) -> CollisionTa
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CollisionContacts:
-    """Contacts that some collisions take part in, k of them, in the engine's order.
+    """Contacts of some collisions, k of them, in the engine's order.
 
     Attributes:
-        geoms: the two geoms of each, shape (k, 2).
-        positions: [m], world, shape (k, 3); half way between the two surfaces.
-        frames: axes of each contact as rows, world, shape (k, 3, 3); the first points from geom 0 to geom 1.
-        depths: how deep the two are in each other [m], shape (k,).
-        wrenches: force [N] and torque [N·m] on geom 1 at the position, in those axes, shape (k, 6).
+        geoms: two geoms of each contact, shape (k, 2).
+        positions: position half way between the two surfaces [m], world frame, shape (k, 3).
+        frames: axes of each contact as rows, world frame, shape (k, 3, 3); the first points from geom 0 to geom 1.
+        depths: penetration depth [m], shape (k,).
+        wrenches: force [N] and torque [N·m] on geom 1 at the position, in the contact's axes, shape (k, 6).
     """
 
     geoms: Ints
@@ -76,20 +76,21 @@ class CollisionContacts:
 
 
 def find_contacts(model: mujoco.MjModel, data: mujoco.MjData, mine: Bools) -> CollisionContacts | None:
-    """The contacts that geoms of `mine` take part in; None where there are none.
+    """Return the contacts of selected geoms; None if there are none.
 
-    A contact is where two surfaces touch or overlap, or where one pushes the other before that. What only comes within
-    the engine's margin is none.
+    A contact exists if two surfaces touch or overlap, or if one pushes the other before that. Geoms that are only
+    within the engine's margin do not count.
 
     Args:
-        data: with everything computed.
-        mine: by geom id, shape (ngeom + 1,).
+        model: MuJoCo's model.
+        data: MuJoCo's data with a complete forward pass.
+        mine: mask of the selected geoms, shape (ngeom + 1,).
     """
     if not data.ncon:
         return None
     contact = data.contact
     pairs = contact.geom
-    # the usual few contacts cost less as Python's numbers than as arrays
+    # for a few contacts, Python numbers are faster than arrays
     rows = any_of(mine.take(pairs), axis=1).nonzero()[0]
     if not rows.size:
         return None

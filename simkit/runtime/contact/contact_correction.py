@@ -1,6 +1,6 @@
-"""Contacts whose normal reference the contact law corrects, and the size of the correction: on plain numbers or arrays.
+"""Correction of the normal references of contacts by the contact law, on plain numbers or arrays.
 
-`ArrayContactCorrection` has the same law on arrays, with the same bits. Plain numbers are faster for up to some 60
+`ArrayContactCorrection` is the same law on arrays, with the same bits. Plain numbers are faster for up to about 60
 contacts: an array of four numbers costs as much as one of four hundred.
 """
 
@@ -37,11 +37,12 @@ class ContactCorrection:
     """Contacts under the elliptic cone, on plain numbers.
 
     Args:
-        data: of the engine.
-        contacts: of each the row of its normal, its coefficients of friction (none where it does not slide), the
-            reference of the normal, the acceleration asked for along it [m/s²], NaN where the reference stays, whether
-            it rebounds and gets just that, and the tolerance of its reference [m/s²].
-        changed: other rows whose references are no longer as they were, with those.
+        data: MuJoCo's data.
+        contacts: tuple of each contact. It holds the row of its normal and its friction coefficients (empty if it does
+            not slide). It continues with the reference of the normal and the requested acceleration along it [m/s²];
+            NaN keeps the reference. The last items are True for an exact rebound, and the tolerance of the reference
+            [m/s²].
+        changed: other changed rows with their previous references.
     """
 
     def __init__(self, data: mujoco.MjData, contacts: list[CorrectedContact], changed: list[tuple[int, float]]) -> None:
@@ -52,11 +53,13 @@ class ContactCorrection:
         self._sequence: AndersonAcceleration | None = None
 
     def guess(self, moves: Floats) -> None:
-        """Set references by a guess of J a, shape (nefc,); of the forces nothing is known yet."""
+        """Set references from a guess of J a, shape (nefc,), before any forces are known."""
         accelerations, aref, asked = moves.tolist(), self._aref, self._asked
         self._before = before = aref.tolist()
         for row, mus, normal, goal, _, _ in self._contacts:
-            if len(mus) == 2:  # written out, as nearly all have two tangents: a third of the time of the loop
+            if (
+                len(mus) == 2
+            ):  # unrolled, because nearly all contacts have two tangents: saves a third of the loop's time
                 one = mus[0] * (before[row + 1] - accelerations[row + 1])
                 other = mus[1] * (before[row + 2] - accelerations[row + 2])
                 total = one * one + other * other
@@ -70,7 +73,12 @@ class ContactCorrection:
             asked.append(now)
 
     def correct(self, moves: Floats, forces: Floats) -> bool:
-        """Set references by a solution, J a and forces of shape (nefc,); False where they differ from the last."""
+        """Set references from a solution; return True if they stay within the tolerances.
+
+        Args:
+            moves: J a of the solution, shape (nefc,).
+            forces: constraint forces of the solution, shape (nefc,).
+        """
         accelerations, force, before, softness = moves.tolist(), forces.tolist(), self._before, self._softness
         if not softness:
             self._softness = softness = self._data.efc_R.tolist()
@@ -88,7 +96,7 @@ class ContactCorrection:
                     one = mu * (before[place] - accelerations[place] - softness[place] * force[place])
                     total += one * one
             if goal == goal:
-                # a contact that closes is stopped, also by more than its softness asks; one that opens gets no more
+                # a closing contact is stopped, even beyond its own reference; an opening contact is only limited
                 wanted = goal + softness[row] * force[row]
                 normal = wanted if rebounds else max(normal, wanted) if normal < goal else min(normal, wanted)
                 most = max(most, CLOSING_ACCURACY * goal)
@@ -105,7 +113,7 @@ class ContactCorrection:
         return stays
 
     def settle(self) -> None:
-        """Ask for what has missed the least; as the engine does where that was much."""
+        """Use the references with the smallest residual; if it is large, use the engine's references."""
         if self._sequence is not None and not self._sequence.has_come_near(self._contacts[0][5]):
             self.restore()
         elif self._sequence is not None:
@@ -113,7 +121,7 @@ class ContactCorrection:
                 self._aref[row] = best
 
     def restore(self) -> None:
-        """Put the references back as they were."""
+        """Restore the previous references."""
         aref = self._aref
         for row, _, normal, _, _, _ in self._contacts:
             aref[row] = normal
@@ -124,13 +132,13 @@ class ContactCorrection:
 def find_correction(
     data: mujoco.MjData, around: ContactConditions, residual: Floats | None = None
 ) -> ContactCorrection | None:
-    """Return the contacts that slide, close or open fast, or overlap; None where there is none.
+    """Return the contacts that slide, close or open fast, or overlap; None if there are none.
 
     Args:
-        data: of the engine, with velocities up to date and an elliptic cone.
+        data: MuJoCo's data with velocities up to date and an elliptic cone.
         around: step, gravity and tolerance.
-        residual: aref - J a - R f of a solution, shape (nefc,), for contacts that only begin to slide; without it a
-            contact slides by its velocity.
+        residual: aref - J a - R f of a solution, shape (nefc,), for contacts that only begin to slide. Without it, the
+            velocity decides whether a contact slides.
     """
     contact, step, closing, inner = data.contact, around.step, around.closing, around.inner
     all_rows, dims, friction = contact.efc_address.tolist(), contact.dim.tolist(), contact.friction.tolist()
@@ -158,13 +166,13 @@ def find_correction(
         speed, depth = velocity[row], -distance[number]
         if (
             CLOSING_SPEED <= speed <= OPENING_SPEED and depth <= MIN_PENETRATION
-        ):  # it slides at most: most contacts, most of the time
+        ):  # neither closing nor opening: the most frequent case
             if total > square:
                 found.append((row, mus[: dim - 1], aref[row], nothing, False, around.tolerance))
             continue
         normal, goal, after, rebounds = aref[row], nothing, speed, False
         closes, tolerance = speed < CLOSING_SPEED, around.tolerance
-        if closes and closing is not None:  # what is stopped ahead of the surface goes on towards it, slowly
+        if closes and closing is not None:  # a geom that is stopped before the surface still approaches it slowly
             first, second = contact.geom[number].tolist()
             left = closing[first] + closing[second]
             after = speed + left if speed < -left else speed
@@ -185,7 +193,7 @@ def find_correction(
                     for place in range(row + 1, row + dim):
                         changed.append((place, aref[place]))
                         data.efc_aref[place] = slower * aref[place]
-        if depth > MIN_PENETRATION:  # the impedance is near 1 there, and a contact is lost from less lift on
+        if depth > MIN_PENETRATION:  # the impedance is near 1 there, so that less lift opens the contact
             impedance = data.efc_KBIP.item(row, 2)
             tolerance = min(tolerance, LIFT_FACTOR * tolerance * (1.0 - impedance) / impedance)
         if total > tolerance * tolerance:
@@ -204,14 +212,17 @@ class ArrayContactCorrection:
     """Contacts under either cone, on arrays.
 
     Args:
-        data: of the engine.
-        is_pyramid: whether the cone is one.
-        rows: of each contact, the row of its normal, or the first of its edges, shape (k,).
-        places: the rows of its friction, shape (k, most), or pairs of edges, shape (k, most, 2).
-        mu: their coefficients, zero for rows that it has not or that do not slide, shape (k, most).
-        edges: the rows that carry the normal, shape (k, n); rows that a contact has not repeat its first.
-        normals, goals, rebounds, tolerances: as for `ContactCorrection`, shape (k,).
-        changed: as for `ContactCorrection`.
+        data: MuJoCo's data.
+        is_pyramid: True for the pyramidal cone.
+        rows: row of the normal of each contact, or the first of its edges, shape (k,).
+        places: rows of the friction, shape (k, most), or pairs of edges, shape (k, most, 2).
+        mu: coefficients of these rows, shape (k, most); zero for missing rows and for contacts that do not slide.
+        edges: rows that carry the normal, shape (k, n); missing rows repeat the first one.
+        normals: references of the normals [m/s²], shape (k,), as in `ContactCorrection`.
+        goals: requested accelerations [m/s²] or NaN, shape (k,), as in `ContactCorrection`.
+        rebounds: True for exact rebounds, shape (k,), as in `ContactCorrection`.
+        tolerances: tolerances of the references [m/s²], shape (k,), as in `ContactCorrection`.
+        changed: other changed rows with their previous references.
     """
 
     def __init__(
@@ -239,13 +250,13 @@ class ArrayContactCorrection:
         self._sequence = AndersonAcceleration()
 
     def guess(self, moves: Floats) -> None:
-        """As `ContactCorrection.guess`."""
+        """Set references as `ContactCorrection.guess` does."""
         self._tangents = self._aref[self._places]
         normals = np.where(self._has_goal, self._goals, self._normals)
         self._ask(normals - _lift(self._tangents - moves[self._places], self._mu, self._is_pyramid))
 
     def correct(self, moves: Floats, forces: Floats) -> bool:
-        """As `ContactCorrection.correct`."""
+        """Set references as `ContactCorrection.correct` does."""
         places = self._places
         residual = self._tangents - moves[places] - self._compliance * forces[places]
         size = _lift(residual, self._mu, self._is_pyramid)
@@ -264,14 +275,14 @@ class ArrayContactCorrection:
         return False
 
     def settle(self) -> None:
-        """As `ContactCorrection.settle`."""
+        """Choose references as `ContactCorrection.settle` does."""
         if self._sequence.has_come_near(float(self._tolerances[0])):
             self._ask(np.array(self._sequence.best))
         else:
             self.restore()
 
     def restore(self) -> None:
-        """Put the references back as they were."""
+        """Restore the previous references."""
         self._aref[self._edges] = self._before
         for row, reference in self._changed:
             self._aref[row] = reference
@@ -283,7 +294,7 @@ class ArrayContactCorrection:
 
 
 def _lift(residual: Floats, mu: Floats, is_pyramid: bool) -> Floats:
-    """Return by how much a contact is lifted for residuals along its friction rows or pairs of edges (k,) [m/s²]."""
+    """Return the lift of contacts for residuals along their friction rows or pairs of edges [m/s²], shape (k,)."""
     if is_pyramid:
         apart = np.abs(residual[..., 0] - residual[..., 1]) / 2.0
         found: Floats = np.where(mu > 0.0, apart, 0.0).max(axis=1, initial=0.0)
@@ -301,7 +312,7 @@ AnyContactCorrection = ContactCorrection | ArrayContactCorrection
 def find_array_correction(
     model: mujoco.MjModel, data: mujoco.MjData, around: ContactConditions, residual: Floats | None = None
 ) -> ArrayContactCorrection | None:
-    """As `find_correction`, for either cone."""
+    """Return the contacts to correct as `find_correction` does, for either cone."""
     contact, is_pyramid, step = data.contact, bool(model.opt.cone == _PYRAMID), around.step
     numbers = (contact.efc_address >= 0).nonzero()[0]
     if not numbers.size:

@@ -1,17 +1,19 @@
-"""The contact law: what slides stays in contact, what hits comes to rest, what overlaps parts slowly.
+"""Contact law: sliding bodies stay in contact, hitting bodies come to rest, overlapping bodies separate slowly.
 
-MuJoCo solves for contact forces f with R f + J a - aref in the dual of the friction cone. That cone is convex, so a
-contact that slides is asked for a normal acceleration of mu times the tangential one that friction could not give, 250
-times g at 3 m/s. It is lifted off, falls back, and hops. De Saxce and Feng (1998) take just that part off the normal
-row: with u = aref - J a - R f along the tangents, the normal reference becomes aref_n - s, s = |mu u|. Normal force and
-friction are then Coulomb's, mu N against the slip. As u depends on the solution, s is found by repetition: the first
-guess is the acceleration of the step before, which is part of the state; in steady sliding one solution is enough.
+MuJoCo solves for contact forces f with R f + J a - aref in the dual of the friction cone. That cone is convex.
+Therefore a sliding contact gets a normal acceleration of mu times the tangential acceleration that friction could not
+give, 250 times g at 3 m/s. The contact lifts off, falls back, and hops. De Saxce and Feng (1998) subtract exactly that
+part from the normal row. With u = aref - J a - R f along the tangents, the normal reference becomes aref_n - s, s = |mu
+u|. Normal force and friction are then Coulomb's: mu N against the slip. As u depends on the solution, s is found by
+iteration. The first guess is the acceleration of the previous step, which is part of the state. In steady sliding one
+solution is enough.
 
-Two more corrections of the normal row, for contacts that are rigid (not for a `<kp>` that makes them soft):
-a contact that closes fast is stopped within the step, as Gazebo's engines do it, and not over two time constants;
-and one that opens, or overlaps, is pushed apart at no more than `EXIT_SPEED`.
+Two more corrections of the normal row apply to rigid contacts (not to contacts that a `<kp>` makes soft):
 
-`docs/physics.md` has the formulas, the limits, and what was measured.
+- A contact that closes fast is stopped within the step, as in Gazebo's engines, and not over two time constants.
+- A contact that opens or overlaps separates at no more than `EXIT_SPEED`.
+
+`docs/physics.md` has the formulas, the limits and the measurements.
 """
 
 from __future__ import annotations
@@ -30,27 +32,29 @@ from simkit.runtime.contact.height_field_contacts import HeightFieldContacts
 from simkit.runtime.contact.wheel_contacts import WheelContacts
 
 TOLERANCE: Final = 0.02
-"""Accuracy of the correction, in units of g: a contact is lost from about 0.1 g on, which its softness bears."""
+"""Accuracy of the correction, in units of g: a contact opens from about 0.1 g, which its softness tolerates."""
 
 MAX_SOLUTIONS: Final = 10
-"""Solutions a step at most; wheels much lighter than what they carry need several while they begin to skid."""
+"""Largest number of solutions per step; wheels much lighter than their load need several when they begin to skid."""
 
 MAX_STEP_WITH_EDGES: Final = 0.0025
-"""Step [s] up to which a wheel that does not slip may hold by both its edges.
+"""Largest step [s] at which a wheel without slip may touch with both its edges.
 
-At 4 ms the edges of a TurtleBot3's wheels push against each other and turn it by 0.6 degrees on a metre straight ahead.
+At 4 ms the edges of a TurtleBot3's wheels push against each other. They turn the robot by 0.6 degrees per metre
+straight ahead.
 """
 
 QUIET_SPEED: Final = 1e-4
 """Root sum square [m/s, rad/s] of the velocities along all constraints below which nothing slides."""
 
 FAST_SPEED: Final = 0.5
-"""Speed [m/s] of a body from which it may hit something within a window; what rolls along touches, but slides not.
+"""Least speed [m/s] of a body that may hit something within a window; a rolling body touches but does not slide.
 
-The engine's own contacts throw it back with a sixth of its speed, three times `EXIT_SPEED` at most from here down.
+Below this speed the engine's own contacts throw a body back with a sixth of its speed, at most three times
+`EXIT_SPEED`.
 """
 
-_MIN_GRAVITY: Final = 1.0  # [m/s²]; without weight there is no scale for the tolerance
+_MIN_GRAVITY: Final = 1.0  # [m/s²] scale of the tolerance in a world without gravity
 _AFTER_VELOCITIES: Final = int(mujoco.mjtStage.mjSTAGE_VEL)
 _PYRAMID: Final = mujoco.mjtCone.mjCONE_PYRAMIDAL
 
@@ -58,40 +62,40 @@ mj_forward_skip, mj_mul_jac_vec = mujoco.mj_forwardSkip, mujoco.mj_mulJacVec
 
 
 def window_length(timestep: float) -> int:
-    """Return for how many steps one look at the contacts decides whether they follow the law.
+    """Return the number of steps for which one check of the contacts decides whether they follow the law.
 
-    A look costs 3 to 6 µs: at 16 steps 1 to 4 % of what they take, at 8 twice that. Longer steps have the shorter
-    window, as what begins to slide within it is lifted until it ends.
+    A check costs 3 to 6 µs: 1 to 4 % of the time of 16 steps, twice that with 8. Longer steps have the shorter window,
+    because a contact that begins to slide within the window lifts until its end.
     """
     return 16 if timestep <= 0.001 else 8
 
 
 class ContactShaper(Protocol):
-    """Changes contacts in every forward pass, once velocities are known and before forces are."""
+    """Function object that changes contacts in every forward pass, after the velocities and before the forces."""
 
     model: mujoco.MjModel
 
     @property
     def acts(self) -> bool:
-        """Whether there is anything to change; else the engine's contacts stay as they are."""
+        """True if there is something to change; otherwise the engine's contacts stay."""
 
     def shape(self, data: mujoco.MjData, request: Any = None) -> None:
-        """Change the contacts of data of its model, as is asked for now or as was once asked for by `request`."""
+        """Change the contacts of data of its model by the present requests, or by the stored `request`."""
 
     def request(self) -> Any:
-        """Return what is asked of contacts now, for `shape`."""
+        """Return the present requests for contacts, for `shape`."""
 
 
 class ContactLaw:
-    """Forces of the contacts of one compiled model.
+    """Contact forces of one compiled model.
 
     Args:
-        model: of the engine.
+        model: MuJoCo's model.
     """
 
     def __init__(self, model: mujoco.MjModel) -> None:
         self.model = model
-        self._gravity = model.opt.gravity  # a view: gravity can be changed while it runs
+        self._gravity = model.opt.gravity  # a view, because gravity may change during a run
         self._product = np.empty(0)
         constant = contact_time_constant(float(model.opt.timestep))
         softest = constant * (1.0 + 1e-9)
@@ -100,7 +104,7 @@ class ContactLaw:
         self._fields = HeightFieldContacts(model)
         self._wheels, self._carried = WheelContacts(model), CentripetalFriction(model)
         self._always_merges = bool(self._wheels) and model.opt.timestep > MAX_STEP_WITH_EDGES
-        trees = np.append(model.body_treeid[model.geom_bodyid], -1)  # the last for contacts without a geom
+        trees = np.append(model.body_treeid[model.geom_bodyid], -1)  # the last item is for contacts without a geom
         collides = (model.geom_contype | model.geom_conaffinity) != 0
         self._tree_of = np.where(trees >= 0, trees, model.ntree)
         self._colliding = np.unique(trees[:-1][collides & (trees[:-1] >= 0)])
@@ -111,16 +115,16 @@ class ContactLaw:
 
     @property
     def changes_contacts(self) -> bool:
-        """Whether `solve` may change the constraints, so that they have to be made anew for other velocities."""
+        """True if `solve` may change the constraints, so that other velocities need new constraints."""
         return bool(self._wheels)
 
     def is_needed(self, data: mujoco.MjData) -> bool:
-        """Return whether some contact slides, hits or overlaps, or some model flies or is fast and may hit something.
+        """Check whether a contact slides, hits or overlaps, or whether a flying or fast model may hit something.
 
-        Never in a world that asks for the engine's own contacts.
+        The result is False in a world that uses the engine's own contacts.
 
         Args:
-            data: of the engine, with positions and velocities up to date.
+            data: MuJoCo's data with positions and velocities up to date.
         """
         if not self._is_on:
             return False
@@ -134,15 +138,15 @@ class ContactLaw:
         """Solve for accelerations and forces.
 
         Args:
-            data: of the engine, with positions and velocities up to date.
-            closing: speed [m/s] with which each geom may still close after it was stopped, in a window with speculative
-                contacts; None in others.
-            keeps_references: whether the references of constraints stay corrected, for the engine to solve once more;
-                else they are put back as they were.
-            probes: whether contacts that do not slide yet may be pushed into it by a new control or force.
+            data: MuJoCo's data with positions and velocities up to date.
+            closing: remaining approach speed [m/s] of each geom after it is stopped; None in a window without
+                speculative contacts.
+            keeps_references: keep the corrected references of constraints, so that the engine can solve again;
+                otherwise they are restored.
+            probes: check whether a new control or force makes contacts slide that do not slide yet.
 
         Returns:
-            Whether some contact was corrected.
+            True if a contact was corrected.
         """
         if not (data.ncon and self._is_on):
             mj_forward_skip(self.model, data, _AFTER_VELOCITIES, 1)
@@ -172,7 +176,7 @@ class ContactLaw:
         return found is not None
 
     def _finds(self, data: mujoco.MjData) -> bool:
-        """Return whether some contact has to be corrected; leaves the references as they were."""
+        """Check whether a contact needs a correction; the references stay unchanged."""
         found = self._find(data, None)
         if found is None:
             return False
@@ -180,9 +184,9 @@ class ContactLaw:
         return True
 
     def _has_flying(self, data: mujoco.MjData) -> bool:
-        """Return whether some tree that can collide is awake and touches nothing: it may land within the window."""
+        """Check whether an awake tree with collisions touches nothing, so that it may land within the window."""
         trees = self._colliding
-        # what lies exactly on a surface has a contact without rows, and no force yet
+        # a body exactly on a surface has a contact without rows, and no force yet
         if len(trees) < 2 or data.nefc == data.ne + data.nf + data.nl:
             return len(trees) > 0 and data.nefc == data.ne + data.nf + data.nl
         contact = data.contact
@@ -192,14 +196,14 @@ class ContactLaw:
         return bool((~touches[trees] & (data.tree_asleep[trees] < 0)).any())
 
     def _has_fast(self, data: mujoco.MjData) -> bool:
-        """Return whether some body that moves freely is so fast that a hit within the window counts."""
+        """Check whether a freely moving body is so fast that a hit within the window matters."""
         velocities = data.qvel
-        if velocities.dot(velocities) <= FAST_SPEED * FAST_SPEED:  # nothing at all is
+        if velocities.dot(velocities) <= FAST_SPEED * FAST_SPEED:  # no body can be fast
             return False
         return bool((np.abs(velocities[self._free]) > FAST_SPEED).any())
 
     def _is_quiet(self, data: mujoco.MjData) -> bool:
-        """Return whether all constraints are nearly at rest and none is asked to part fast."""
+        """Check whether all constraints are nearly at rest and no reference separates bodies fast."""
         velocity, reference = data.efc_vel, data.efc_aref
         if velocity.dot(velocity) > QUIET_SPEED * QUIET_SPEED:
             return False
@@ -208,7 +212,7 @@ class ContactLaw:
     def _find(
         self, data: mujoco.MjData, closing: list[float] | None, residual: Any = None
     ) -> AnyContactCorrection | None:
-        """Return the contacts whose normal reference has to be corrected."""
+        """Return the contacts whose normal references need a correction."""
         gravity: list[float] = self._gravity.tolist()
         around = self._around
         if gravity != around.gravity:
@@ -222,7 +226,7 @@ class ContactLaw:
         return find_correction(data, around, residual)
 
     def _repeat(self, data: mujoco.MjData, found: AnyContactCorrection) -> None:
-        """Solve, correct the normal references by the solution, and solve again until they stay."""
+        """Solve, correct the normal references by the solution, and repeat until they converge."""
         model = self.model
         found.guess(self._multiplied(data, data.qacc_warmstart))
         for _ in range(MAX_SOLUTIONS - 1):
@@ -234,7 +238,7 @@ class ContactLaw:
             mj_forward_skip(model, data, _AFTER_VELOCITIES, 1)
 
     def _multiplied(self, data: mujoco.MjData, acceleration: Any) -> Any:
-        """Return J a, shape (nefc,); the array is used again at the next call."""
+        """Return J a, shape (nefc,); the next call reuses the array."""
         if self._product.size != data.nefc:
             self._product = np.empty(data.nefc)
         mj_mul_jac_vec(self.model, data, self._product, acceleration)

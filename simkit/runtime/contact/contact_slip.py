@@ -1,9 +1,10 @@
-"""Contacts that slip with the force on them.
+"""Contacts that slip in proportion to their force.
 
-A row of friction obeys R f = aref - a, with aref = -B v. ODE's slip is v' = -c f of the velocity after the step, so
-R = c/dt and B = 1/dt. Under MuJoCo's elliptic cone R of the two tangents is tied (R·mu² is one number), so for two
-compliances one R is chosen and B is R/c for each: at a constant force both slip exactly, and after a change of it they
-get there at ODE's pace as long as R is not small beside the inverse of the mass that is pushed.
+A row of friction obeys R f = aref - a, with aref = -B v. ODE's slip is v' = -c f for the velocity after the step, so R
+= c/dt and B = 1/dt. Under MuJoCo's elliptic cone, R of the two tangents is coupled (R·mu² is one number). For two
+different compliances, one R is chosen, and B is R/c for each tangent. At a constant force both tangents slip exactly.
+After a change of the force they converge as fast as in ODE, unless R is small compared with the inverse of the pushed
+mass.
 """
 
 from __future__ import annotations
@@ -17,21 +18,21 @@ import numpy as np
 Numbers = list[float]
 Pair = tuple[float, float]
 SlippingContact = tuple[int, int, Pair]
-"""A contact, the kinematic tree that slips, and its compliances along its two tangents [m/s/N]."""
+"""Contact number, number of the slipping kinematic tree, and compliances along the two tangents [m/s/N]."""
 
-_STIFF_FACTOR = 4.0  # times what contacts yield: an R beside which they do not count
-# of the larger of two compliances: so much both have, so that the softer one is not sluggish
+_STIFF_FACTOR = 4.0  # multiple of the contacts' inverse mass beside which an R dominates
+# least compliance as a fraction of the larger of two, so that the softer tangent does not react slowly
 _MIN_COMPLIANCE_SHARE = 0.02
 
 
 class ContactSlip:
-    """Makes contacts of one compiled model soft, once its constraints are made."""
+    """Function object that makes contacts of one compiled model soft, after its constraints are made."""
 
     def __init__(self, model: mujoco.MjModel) -> None:
         self.model = model
 
     def soften(self, data: mujoco.MjData, soft: Sequence[SlippingContact]) -> None:
-        """Makes the friction of elliptic contacts soft."""
+        """Make the friction of elliptic contacts soft."""
         contact, step = data.contact, float(self.model.opt.timestep)
         firsts, dims, frictions = contact.efc_address.tolist(), contact.dim.tolist(), contact.friction.tolist()
         yields = self._yields(data, [one for one in soft if not _is_isotropic(one[2], frictions[one[0]])], firsts)
@@ -40,7 +41,7 @@ class ContactSlip:
             first, friction = firsts[number], frictions[number][: dims[number] - 1]
             by_friction = [(by := friction[0] / one) * by for one in friction]
             normal, base = all_r.item(first), all_r.item(first + 1)
-            # by more it would overshoot, where there is next to no compliance
+            # more damping would overshoot with almost no compliance
             most = [1.0 / step, 1.0 / step]
             if _is_isotropic(slip, friction):
                 base = max(base, slip[0] / step)
@@ -57,9 +58,9 @@ class ContactSlip:
                 terms[first + 1 + tangent, 1] = min(damping, most[tangent])
 
     def _yields(self, data: mujoco.MjData, soft: Sequence[SlippingContact], firsts: list[int]) -> dict[int, Numbers]:
-        """How much all contacts of a tree yield to forces along their two tangents at most, summed [1/kg].
+        """Return the summed inverse masses of each tree's contacts along their two tangents, as upper bounds [1/kg].
 
-        A sum of diagonal elements is no less than any eigenvalue.
+        The sum of diagonal elements is at least as large as any eigenvalue.
         """
         found: dict[int, Numbers] = {}
         if not soft:
@@ -81,9 +82,9 @@ class ContactSlip:
         return found
 
     def soften_pyramid(self, data: mujoco.MjData, number: int, slip: Pair) -> None:
-        """Takes of the damping of a pyramid's edges what is too much along each tangent.
+        """Reduce the damping of a pyramid's edges where it is too large along a tangent.
 
-        Their R holds up the load as well and stays, so it takes longer until they slip as they are to.
+        R of the edges also carries the load and stays, so that the contacts reach their slip later.
         """
         contact, velocity, aref = data.contact, data.efc_vel, data.efc_aref
         first, friction = int(contact.efc_address[number]), contact.friction[number].tolist()
@@ -98,16 +99,22 @@ class ContactSlip:
 
 
 def _is_isotropic(slip: Pair, friction: Sequence[float]) -> bool:
-    """Whether a contact is the same along both tangents."""
+    """Check whether a contact is equal along both tangents."""
     return slip[0] == slip[1] and friction[0] == friction[1]
 
 
 def _shared_resistance(slip: Pair, by_friction: Numbers, yields: Numbers, step: float) -> float:
-    """R of the first tangent, where the second has `by_friction` as much of it and the two slip differently.
+    """Return R of the first tangent for two tangents with different slip.
 
-    The larger it is beside what the contacts yield, S, the sooner the softer one slips as it is to. But the stiffer one
-    slips with S dt R / (S + R) at least, as damping by more than that would overshoot; that is not to be more than its
-    own compliance, or a fiftieth of the other's.
+    A larger R, compared with the inverse mass S of the contacts, lets the softer tangent reach its slip sooner. The
+    stiffer tangent slips with at least S dt R / (S + R), because more damping would overshoot. This slip must not
+    exceed its own compliance, or a fiftieth of the other tangent's compliance.
+
+    Args:
+        slip: compliances of both tangents [m/s/N].
+        by_friction: R of each tangent relative to the first one.
+        yields: inverse masses along the tangents [1/kg].
+        step: length of a step [s].
     """
     wanted = [one / step / by for one, by in zip(slip, by_friction[:2], strict=True)]
     softer = int(wanted[1] > wanted[0])

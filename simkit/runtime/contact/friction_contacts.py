@@ -1,4 +1,4 @@
-"""Contacts with friction that certain geoms take part in: numbers and frames, as plain numbers or as arrays."""
+"""Contacts with friction of certain geoms: numbers and frames, as plain numbers or as arrays."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ Ints = npt.NDArray[np.integer[Any]]
 
 
 class FrictionContacts(NamedTuple):
-    """Contacts that rub, k of them; plain numbers where there are few, as arrays of three are slow.
+    """Few contacts with friction, k of them, as plain numbers, because arrays of three are slow.
 
     `FrictionContactArrays` holds many.
 
     Attributes:
-        numbers: among the contacts.
-        geoms: the two geoms of each; -1 for none.
-        frames: normal (from the first geom to the second) and two tangents of each, 9 numbers.
+        numbers: indices among the engine's contacts.
+        geoms: two geoms of each contact; -1 for none.
+        frames: normal (from the first geom to the second) and two tangents of each contact, 9 numbers.
     """
 
     numbers: list[int]
@@ -35,7 +35,7 @@ class FrictionContacts(NamedTuple):
 
 
 class FrictionContactArrays(NamedTuple):
-    """The same of many contacts, on arrays."""
+    """Many contacts with friction, as arrays; see `FrictionContacts`."""
 
     numbers: Ints
     geoms: Ints
@@ -46,11 +46,11 @@ AnyFrictionContacts = FrictionContacts | FrictionContactArrays
 
 
 def find_friction_contacts(data: mujoco.MjData, concerns: Sequence[bool]) -> AnyFrictionContacts | None:
-    """The contacts that rub among those that are about certain geoms; None where there is none.
+    """Return the contacts with friction of certain geoms; None if there are none.
 
     Args:
-        data: of the engine, with positions.
-        concerns: for each geom whether it is about it; the last is for -1.
+        data: MuJoCo's data with positions.
+        concerns: True for each selected geom; the last item is for index -1.
     """
     contact = data.contact
     if data.ncon > ARRAY_THRESHOLD:
@@ -58,7 +58,7 @@ def find_friction_contacts(data: mujoco.MjData, concerns: Sequence[bool]) -> Any
         rubs = (contact.efc_address >= 0) & (contact.dim > 1) & (one_side | other_side)
         many: Ints = rubs.nonzero()[0]
         if many.size > ARRAY_THRESHOLD:
-            which: slice | Ints = slice(None) if many.size == data.ncon else many  # a slice is quicker
+            which: slice | Ints = slice(None) if many.size == data.ncon else many  # a slice is faster
             return FrictionContactArrays(many, contact.geom[which], contact.frame[which].copy())
         numbers = many.tolist()
         return FrictionContacts(numbers, contact.geom[rubs].tolist(), contact.frame[rubs].tolist()) if numbers else None

@@ -1,4 +1,4 @@
-"""Giving contacts the tangents and coefficients that their collisions ask for."""
+"""Tangents and friction coefficients of contacts, as their collisions specify them."""
 
 from __future__ import annotations
 
@@ -23,22 +23,23 @@ Numbers = list[float]
 Pair = tuple[float, float]
 RowContact = tuple[int, int, int]
 RowContacts = list[RowContact] | Ints
-"""Of each contact its place among the touches, its row, and the other geom; an array (k, 3) for
-`FrictionContactArrays`.
+"""Contacts with a row: index among the found contacts, row number, and the other geom.
+
+An array of shape (k, 3) for `FrictionContactArrays`.
 """
 
-_MIN_TANGENT_SHARE = 1e-2  # of the square of a direction: with less of it along a surface it has none there
+_MIN_TANGENT_SHARE = 1e-2  # least squared fraction of a direction along a surface; less counts as perpendicular
 
 
 @dataclass(slots=True)
 class FrictionRow:
-    """What a collision asks for; the first direction is `axis` in the frame of `body`.
+    """Friction of a collision; the first direction is `axis` in the frame of `body`.
 
     Attributes:
-        mu: friction along and across.
-        slip: compliances along and across [m/s/N].
-        tree: the kinematic tree that it is part of.
-        dof: of the wheel's turning, whose rate its slips are multiplied with; -1 for none.
+        mu: friction along and across the axis.
+        slip: compliances along and across the axis [m/s/N].
+        tree: kinematic tree of the collision.
+        dof: degree of freedom of the wheel, whose rate multiplies its slips; -1 for none.
     """
 
     geoms: list[int]
@@ -51,13 +52,13 @@ class FrictionRow:
 
 
 class FrictionTangents:
-    """Those of one compiled model.
+    """Tangents and coefficients of contacts in one compiled model.
 
     Args:
-        model: of the engine.
-        rows: what collisions ask for.
-        row_of: number of the row of each geom, -1 for none; the last is for -1: no geom.
-        is_belt: of each row, whether it is of a surface that can run.
+        model: MuJoCo's model.
+        rows: friction of collisions.
+        row_of: row number of each geom, -1 for none; the last item is for index -1, no geom.
+        is_belt: True for each row of a surface that can move.
     """
 
     def __init__(
@@ -71,7 +72,7 @@ class FrictionTangents:
         self._mus: Floats = np.array([row.mu for row in rows]).reshape(-1, 2)
 
     def find(self, found: AnyFrictionContacts) -> RowContacts:
-        """The contacts that have a row."""
+        """Return the contacts that have a row."""
         if isinstance(found, FrictionContacts):
             return self._find(found)
         first, second = self._rows_of[found.geoms].T
@@ -91,13 +92,13 @@ class FrictionTangents:
         return places
 
     def turn(self, data: mujoco.MjData, found: AnyFrictionContacts, places: RowContacts, flow: BeltFlow | None) -> None:
-        """Turns the tangents of contacts and sets their coefficients; the frames of the touches are turned as well.
+        """Rotate the tangents of contacts and set their coefficients; the frames in `found` are rotated as well.
 
         Args:
-            data: of the engine, with positions.
+            data: MuJoCo's data with positions.
             found: contacts.
-            places: of them that have a row, as `find` gives them.
-            flow: of them that are with surfaces that run.
+            places: contacts that have a row, from `find`.
+            flow: contacts with moving surfaces.
         """
         if isinstance(found, FrictionContacts) and isinstance(places, list):
             self._turn(data, found, places, flow)
@@ -107,29 +108,29 @@ class FrictionTangents:
     def _turn(
         self, data: mujoco.MjData, found: FrictionContacts, places: list[RowContact], flow: BeltFlow | None
     ) -> None:
-        """Turns the tangents of contacts and sets their coefficients; the frames of the touches are turned as well."""
+        """Rotate the tangents of contacts and set their coefficients; the frames in `found` are rotated as well."""
         contact, ground, least = data.contact, self._model.geom_friction, mujoco.mjMINMU
         which: Any = [found.numbers[place] for place, _, _ in places]
         if len(which) == data.ncon:
-            which = slice(None)  # a view is quicker
+            which = slice(None)  # a view is faster
         flows = contact.surfacevel[which].tolist() if self._model.flg_surfacevel else None
-        # a belt's friction is along its own way, not along its <fdir1>; a roller's stays its own on a belt too
+        # a belt's friction is along its motion, not along its <fdir1>; a roller keeps its own direction on a belt
         along = {} if flow is None else dict(zip(flow.places, flow.directions, strict=True))
         turns: dict[int, Numbers] = {}
         frames, frictions = [], []
         for index, (place, row, other) in enumerate(places):
-            asked, frame = self._rows[row], found.frames[place]
+            friction_row, frame = self._rows[row], found.frames[place]
             axis: Sequence[float] | None = along.get(place) if self._is_belt[row] else None
             if axis is None:
-                turn = turns.get(asked.body)
+                turn = turns.get(friction_row.body)
                 if turn is None:
-                    turn = turns[asked.body] = data.xmat[asked.body].tolist()
-                axis = _rotate_vector(turn, asked.axis)
+                    turn = turns[friction_row.body] = data.xmat[friction_row.body].tolist()
+                axis = _rotate_vector(turn, friction_row.axis)
             turned = _rotate_frame(frame, axis)
-            # what is there may be less: what velocity control carries slides freely
+            # the present friction may be smaller: a model under velocity control slides freely
             most = ground.item(other, 0) if other >= 0 else math.inf
-            one, two = asked.mu
-            if turned is frame:  # no direction there: as where the file gives none
+            one, two = friction_row.mu
+            if turned is frame:  # the direction is perpendicular to the surface: friction without a direction
                 one = two = min(one, two)
             elif flows is not None:
                 _rotate_surface_velocity(flows[index], frame, turned)
@@ -137,18 +138,20 @@ class FrictionTangents:
             frames.append(turned)
             frictions.append((one, two, most))
         contact.frame[which] = frames
-        there = contact.friction[which].tolist()
-        for each, (one, two, most) in zip(there, frictions, strict=True):
+        present = contact.friction[which].tolist()
+        for each, (one, two, most) in zip(present, frictions, strict=True):
             most = min(each[0], each[1], most)
             each[0], each[1] = max(min(one, most), least), max(min(two, most), least)
-        contact.friction[which] = there
+        contact.friction[which] = present
         if flows is not None:
             contact.surfacevel[which] = flows
 
-    def _turn_many(self, data: mujoco.MjData, found: FrictionContactArrays, asked: Ints, flow: BeltFlow | None) -> None:
-        """The same on arrays, with the same bits."""
+    def _turn_many(
+        self, data: mujoco.MjData, found: FrictionContactArrays, contacts: Ints, flow: BeltFlow | None
+    ) -> None:
+        """Rotate the tangents of many contacts on arrays, with the same bits as `_turn`."""
         contact, least = data.contact, mujoco.mjMINMU
-        places, rows, others = asked.T
+        places, rows, others = contacts.T
         which: slice | Ints = slice(None) if len(places) == data.ncon else found.numbers[places]
         frames = found.frames[places]
         axes = _rotate_vectors(data.xmat[self._bodies], self._axes)[rows]
@@ -165,19 +168,19 @@ class FrictionTangents:
             flows = contact.surfacevel[which]
             contact.surfacevel[which] = np.where(lies[:, None], rotate_surface_velocities(flows, frames, after), flows)
         found.frames[places] = contact.frame[which] = after
-        there = contact.friction[which, :2]
+        present = contact.friction[which, :2]
         most = np.where(others >= 0, self._model.geom_friction[others, 0], math.inf)
-        most = np.minimum(most, np.minimum(there[:, 0], there[:, 1]))
+        most = np.minimum(most, np.minimum(present[:, 0], present[:, 1]))
         contact.friction[which, :2] = np.maximum(np.minimum(mu, most[:, None]), least)
 
 
-def _rotate_frame(frame: Numbers, wanted: Sequence[float]) -> Numbers:
-    """A contact's frame (normal and two tangents, (9,)) whose first tangent is along a direction.
+def _rotate_frame(frame: Numbers, direction: Sequence[float]) -> Numbers:
+    """Return a contact frame (normal and two tangents, (9,)) whose first tangent follows a direction.
 
-    The frame as it was where the direction stands on the surface.
+    The frame is returned unchanged if the direction is perpendicular to the surface.
     """
     nx, ny, nz = frame[:3]
-    x, y, z = wanted
+    x, y, z = direction
     over = x * nx + y * ny + z * nz
     fx, fy, fz = x - over * nx, y - over * ny, z - over * nz
     square = fx * fx + fy * fy + fz * fz
@@ -189,7 +192,7 @@ def _rotate_frame(frame: Numbers, wanted: Sequence[float]) -> Numbers:
 
 
 def _rotate_surface_velocity(flow: Numbers, before: Numbers, after: Numbers) -> None:
-    """Takes the speed of a surface along the tangents of one frame over to those of another."""
+    """Convert a surface velocity from the tangents of one frame to those of another, in place."""
     one, two = flow[:2]
     over = [one * a + two * b for a, b in zip(before[3:6], before[6:], strict=True)]
     flow[0] = sum(a * b for a, b in zip(over, after[3:6], strict=True))
@@ -197,14 +200,14 @@ def _rotate_surface_velocity(flow: Numbers, before: Numbers, after: Numbers) -> 
 
 
 def _rotate_vector(matrix: Numbers, vector: Numbers) -> Numbers:
-    """A row-major matrix (9,) times a vector (3,)."""
+    """Multiply a row-major matrix (9,) with a vector (3,)."""
     a, b, c, d, e, f, g, h, i = matrix
     x, y, z = vector
     return [a * x + b * y + c * z, d * x + e * y + f * z, g * x + h * y + i * z]
 
 
 def _rotate_vectors(matrices: Floats, vectors: Floats) -> Floats:
-    """Row-major matrices (k, 9) times vectors (k, 3)."""
+    """Multiply row-major matrices (k, 9) with vectors (k, 3)."""
     a, b, c, d, e, f, g, h, i = matrices.T
     x, y, z = vectors.T
     return np.stack((a * x + b * y + c * z, d * x + e * y + f * z, g * x + h * y + i * z), axis=1)

@@ -1,7 +1,8 @@
-"""Contacts with the inner walls of a height field, which are not there.
+"""Contacts with the inner walls of a height field, which must not push.
 
-MuJoCo makes a height field of prisms, one below each triangle. A body that lies on it may touch the wall between two
-prisms, with a normal along the ground: a box that slides down an even ramp is then stopped at the border of two cells.
+MuJoCo builds a height field of prisms, one below each triangle. A body on it may touch the wall between two prisms,
+with a normal along the ground. Without a correction, a box that slides down an even ramp stops at the border of two
+cells.
 """
 
 from __future__ import annotations
@@ -14,16 +15,16 @@ import numpy as np
 import numpy.typing as npt
 
 _STEEPEST: Final = 0.866
-"""Cosine of 30°: by more than that a normal has to differ from all of the ground around to be one of an inner wall."""
+"""Cosine of 30°: a normal of an inner wall differs by more than that from all normals of the surrounding ground."""
 
 Normal = tuple[float, float, float]
 
 
 class HeightFieldContacts:
-    """The height fields of one compiled model.
+    """Height fields of one compiled model.
 
     Args:
-        model: of the engine.
+        model: MuJoCo's model.
     """
 
     def __init__(self, model: mujoco.MjModel) -> None:
@@ -40,7 +41,7 @@ class HeightFieldContacts:
         """Return the numbers of the contacts with inner walls.
 
         Args:
-            data: of the engine, with contacts.
+            data: MuJoCo's data with contacts.
         """
         contact, fields, found = data.contact, self._fields, []
         for number, (first, second) in enumerate(contact.geom.tolist()):
@@ -54,11 +55,12 @@ class HeightFieldContacts:
         return frozenset(found)
 
     def _is_inner(self, field: int, point: npt.NDArray[np.float64], normal: npt.NDArray[np.float64]) -> bool:
-        """Check whether a normal is far from those of the ground around, which is nearly even.
+        """Check whether a normal differs from those of the surrounding, nearly even ground.
 
         Args:
             field: number of the height field.
-            point, normal: in its frame [m].
+            point: position in the frame of the height field [m].
+            normal: unit normal in the frame of the height field.
         """
         model = self._model
         rows, columns = int(model.hfield_nrow[field]), int(model.hfield_ncol[field])
@@ -66,7 +68,7 @@ class HeightFieldContacts:
         step_x, step_y = 2.0 * half_x / (columns - 1), 2.0 * half_y / (rows - 1)
         row, column = int((point[1] + half_y) / step_y), int((point[0] + half_x) / step_x)
         start = int(model.hfield_adr[field])
-        if 0 <= row < rows - 1 and 0 <= column < columns - 1:  # most contacts are with the ground right there
+        if 0 <= row < rows - 1 and 0 <= column < columns - 1:  # most contacts touch the triangles of this cell
             at, data = start + row * columns + column, model.hfield_data
             a, b, c, d = (height * data.item(i) for i in (at, at + 1, at + columns, at + columns + 1))
             x, y, z = normal.tolist()
@@ -79,7 +81,7 @@ class HeightFieldContacts:
         if min(around.shape) < 2:
             return False
         along_x, along_y = np.diff(around, axis=1) / step_x, np.diff(around, axis=0) / step_y
-        # each triangle has one edge along x and one along y: of each cell four pairs, two of which are triangles
+        # each triangle has one edge along x and one along y: a cell has four such pairs, two of them are triangles
         x = np.stack((along_x[:-1], along_x[1:], along_x[:-1], along_x[1:]))
         y = np.stack((along_y[:, :-1], along_y[:, 1:], along_y[:, 1:], along_y[:, :-1]))
         normals = np.stack((-x, -y, np.ones_like(x)), axis=-1).reshape(-1, 3)

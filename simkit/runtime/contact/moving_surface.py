@@ -1,9 +1,9 @@
-"""Surfaces that run while what they belong to stays where it is: conveyor belts and tracks.
+"""Surfaces that move while their body stays: conveyor belts and tracks.
 
-A contact with such a surface is held not at rest but at the surface's velocity, up to friction. MuJoCo carries that in
-`mjContact.surfacevel`. It is set here for each contact and not once for a geom, since a belt runs round its collision:
-what its upper side carries ahead, its lower side carries back, and its ends carry up and down. Many contacts are dealt
-with on arrays, with the same bits as on plain numbers.
+Friction drives a contact with such a surface to the velocity of the surface, not to rest. MuJoCo has
+`mjContact.surfacevel` for it. The velocity is set for each contact and not once for a geom, because a belt runs round
+its collision. Its upper side moves ahead, its lower side moves back, and its ends move up and down. Many contacts are
+processed on arrays, with the same bits as on plain numbers.
 """
 
 from __future__ import annotations
@@ -35,11 +35,11 @@ ZERO_VECTOR: Point = (0.0, 0.0, 0.0)
 
 @dataclass(frozen=True, slots=True)
 class BeltMotion:
-    """How a belt runs now.
+    """Present motion of a belt.
 
     Attributes:
-        speed: [m/s]; a positive one carries what lies on top along x, where x, the axle and up are right-handed.
-        centre: of the circle, in the world, that its contacts are carried along [m]; None where it runs straight.
+        speed: speed [m/s]. A positive speed carries objects on top along x, where x, the axle and up are right-handed.
+        centre: centre of the circle along which contacts are carried [m], world frame; None for straight motion.
     """
 
     speed: float
@@ -47,19 +47,20 @@ class BeltMotion:
 
 
 BeltMotions = Sequence[BeltMotion | None]
-"""How each of several belts runs now; None for one that stands still."""
+"""Present motions of several belts; None for a stopped belt."""
 
 
 @dataclass(frozen=True, slots=True)
 class Belt:
-    """A surface that can run, in one compiled model.
+    """Moving surface in one compiled model.
 
     Attributes:
         geoms: ids of its geoms.
-        body: that they move with.
-        axle: unit vector in the body's frame that the belt runs round.
-        now: asked in every forward pass, so that it is part of its plugin's state; None while it stands still.
-        friction: coefficients along and across its way; None where they are those of the file.
+        body: body of the geoms.
+        axle: unit vector of the belt's axle in the body's frame.
+        now: function that returns the present motion; None while the belt is stopped. Every forward pass calls it, so
+            that the motion is part of the plugin's state.
+        friction: coefficients along and across the motion; None for those of the file.
     """
 
     geoms: tuple[int, ...]
@@ -70,13 +71,13 @@ class Belt:
 
 
 class BeltContacts(NamedTuple):
-    """The contacts with running surfaces, k of them.
+    """Contacts with moving surfaces, k of them.
 
     Attributes:
-        numbers: among the contacts.
-        places: among the touches that they were found in.
-        directions: of friction, unit vectors in the world.
-        velocities: of the second geom's surface less the first's [m/s], world.
+        numbers: indices among the engine's contacts.
+        places: indices among the contacts that were searched.
+        directions: unit vectors of friction, world frame.
+        velocities: velocity of the second geom's surface minus the first's [m/s], world frame.
     """
 
     numbers: list[int]
@@ -86,7 +87,7 @@ class BeltContacts(NamedTuple):
 
 
 class BeltContactArrays(NamedTuple):
-    """The same of contacts among many, on arrays."""
+    """Contacts with moving surfaces as arrays; see `BeltContacts`."""
 
     numbers: Ints
     places: Ints
@@ -98,10 +99,10 @@ BeltFlow = BeltContacts | BeltContactArrays
 
 
 class MovingSurfaces:
-    """The belts of a compiled model.
+    """Belts of a compiled model.
 
     Attributes:
-        concerns: for each geom whether it is part of one; the last is for -1: no geom.
+        concerns: True for each geom of a belt; the last item is for index -1, no geom.
     """
 
     def __init__(self, model: mujoco.MjModel) -> None:
@@ -113,7 +114,7 @@ class MovingSurfaces:
         self._flow: BeltFlow | None = None
 
     def add(self, belt: Belt) -> None:
-        """A belt more."""
+        """Add a belt."""
         self.model.flg_surfacevel = True
         for geom in belt.geoms:
             self._owner[geom], self.concerns[geom] = len(self._belts), True
@@ -122,36 +123,36 @@ class MovingSurfaces:
 
     @property
     def run(self) -> bool:
-        """Whether one of them runs."""
+        """True if a belt is moving."""
         return any(belt.now() is not None for belt in self._belts)
 
     def runs(self) -> list[BeltMotion | None]:
-        """How each of them runs now."""
+        """Return the present motion of each belt."""
         return [belt.now() for belt in self._belts]
 
     # ------------------------------------------------------------------ contacts
 
     def look(self, data: mujoco.MjData, found: AnyFrictionContacts | None, runs: BeltMotions) -> BeltFlow | None:
-        """Finds the contacts with belts that run; also for `carry`.
+        """Find the contacts with moving belts and store them for `carry`.
 
         Args:
-            data: of the engine, with positions.
-            found: its contacts that may be with belts.
-            runs: how belts run.
+            data: MuJoCo's data with positions.
+            found: contacts that may be with belts.
+            runs: motions of the belts.
         """
         if found is None or not any(runs):
             self._flow = None
         elif isinstance(found, FrictionContacts):
-            self._flow = self._found(data, found, runs)
+            self._flow = self._find(data, found, runs)
         else:
-            self._flow = self._found_many(data, found, runs)
+            self._flow = self._find_many(data, found, runs)
         return self._flow
 
-    def _found_many(
+    def _find_many(
         self, data: mujoco.MjData, found: FrictionContactArrays, runs: BeltMotions
     ) -> BeltContactArrays | None:
         axles = [
-            ZERO_VECTOR if run is None else _world_axle(data, one) for one, run in zip(self._belts, runs, strict=True)
+            ZERO_VECTOR if run is None else _world_axle(data, belt) for belt, run in zip(self._belts, runs, strict=True)
         ]
         points = data.contact.pos[found.numbers]
         places, directions, velocities = find_belt_contacts(
@@ -159,10 +160,10 @@ class MovingSurfaces:
         )
         return BeltContactArrays(found.numbers[places], places, directions, velocities) if places.size else None
 
-    def _found(self, data: mujoco.MjData, found: FrictionContacts, runs: BeltMotions) -> BeltContacts | None:
+    def _find(self, data: mujoco.MjData, found: FrictionContacts, runs: BeltMotions) -> BeltContacts | None:
         owner, flow = self._owner, BeltContacts([], [], [], [])
         axles: dict[int, Point] = {}
-        known: dict[Any, tuple[Point, Point]] = {}  # what lies flat on a straight belt has one normal
+        known: dict[Any, tuple[Point, Point]] = {}  # all contacts of a flat object on a straight belt have one normal
         for place, (first, second) in enumerate(found.geoms):
             one, other = owner[first], owner[second]
             into = runs[other] if other >= 0 else None
@@ -176,7 +177,7 @@ class MovingSurfaces:
                 belts = [(b, r, sign) for b, r, sign in ((other, into, 1.0), (one, out, -1.0)) if r is not None]
                 is_bent = any(run.centre is not None for _, run, _ in belts)
                 point = data.contact.pos[found.numbers[place]].tolist() if is_bent else ZERO_VECTOR
-                both = self._way(data, belts, (nx, ny, nz), point, axles)
+                both = self._motion(data, belts, (nx, ny, nz), point, axles)
                 if not is_bent:
                     known[key] = both
             flow.numbers.append(found.numbers[place])
@@ -185,7 +186,7 @@ class MovingSurfaces:
             flow.velocities.append(both[1])
         return flow if flow.numbers else None
 
-    def _way(
+    def _motion(
         self,
         data: mujoco.MjData,
         belts: Sequence[tuple[int, BeltMotion, float]],
@@ -193,13 +194,14 @@ class MovingSurfaces:
         place: Sequence[float],
         axles: dict[int, Point],
     ) -> tuple[Point, Point]:
-        """Direction of friction and velocity at a contact with one belt or two.
+        """Return the direction of friction and the velocity [m/s] at a contact with one or two belts.
 
         Args:
-            data: of the engine.
-            belts: numbers, how they run, and 1 where the normal is into the belt, -1 where it is out of it.
-            normal, place: of the contact.
-            axles: those in the world that are known, by belt.
+            data: MuJoCo's data.
+            belts: numbers, motions and signs; the sign is 1 for a normal into the belt, -1 for a normal out of it.
+            normal: unit normal of the contact.
+            place: position of the contact [m].
+            axles: known axles in the world frame, by belt.
         """
         direction, (vx, vy, vz) = ZERO_VECTOR, ZERO_VECTOR
         for belt, run, inwards in belts:
@@ -214,11 +216,11 @@ class MovingSurfaces:
         return direction, (vx, vy, vz)
 
     def carry(self, data: mujoco.MjData, frames: Sequence[Numbers] | Floats) -> None:
-        """Gives the contacts found by `look` their surface velocity.
+        """Set the surface velocity of the contacts that `look` found.
 
         Args:
-            data: of the engine.
-            frames: of all touches as they are now, whose tangents count.
+            data: MuJoCo's data.
+            frames: present frames of all searched contacts.
         """
         flow = self._flow
         if flow is None:
@@ -235,14 +237,17 @@ class MovingSurfaces:
 
 
 def _world_axle(data: mujoco.MjData, belt: Belt) -> Point:
-    """What a belt runs round, in the world."""
+    """Return the axle of a belt in the world frame."""
     a, b, c, d, e, f, g, h, i = data.xmat[belt.body].tolist()
     x, y, z = belt.axle
     return a * x + b * y + c * z, d * x + e * y + f * z, g * x + h * y + i * z
 
 
 def _circular_direction(along: Point, normal: Point, place: Sequence[float], centre: Point) -> Point:
-    """The way round a centre that is not against the straight one; that one where there is none round it."""
+    """Return the direction of rotation about a centre that does not oppose the linear motion.
+
+    The linear direction is returned if there is no rotation.
+    """
     (x, y, z), (cx, cy, cz) = place, centre
     circle = _unit(_cross(normal, (x - cx, y - cy, z - cz)))
     if circle == ZERO_VECTOR:
@@ -259,7 +264,7 @@ def _cross(a: Point, b: Point) -> Point:
 
 
 def _unit(vector: Point) -> Point:
-    """A vector of length 1; zero for one that has nearly none."""
+    """Return the unit vector; zero for a vector of nearly no length."""
     x, y, z = vector
     length = math.sqrt(x * x + y * y + z * z)
     return (x / length, y / length, z / length) if length > MIN_SINE else ZERO_VECTOR
@@ -268,25 +273,25 @@ def _unit(vector: Point) -> Point:
 Bools = npt.NDArray[np.bool_]
 
 MIN_SINE = 1e-6
-"""Sine of an angle below which a normal stands along an axle."""
+"""Sine of the angle below which a normal is parallel to an axle."""
 
 
 def find_belt_contacts(
     belts: Ints, frames: Floats, points: Floats, runs: BeltMotions, axles: Sequence[Point]
 ) -> tuple[Ints, Floats, Floats]:
-    """Which of some contacts are with belts that run, the directions of their friction, and their velocities [m/s].
+    """Return the contacts with moving belts, their directions of friction, and their velocities.
 
     Args:
-        belts: numbers of those on either side, shape (k, 2); -1 for none.
-        frames: normal (from the first side to the second) and tangents of each, shape (k, 9).
-        points: where they are [m], world, shape (k, 3).
-        runs: how belts run.
-        axles: of the belts, unit vectors in the world; any for one that stands.
+        belts: belt numbers on both sides, shape (k, 2); -1 for none.
+        frames: normal (from the first side to the second) and tangents of each contact, shape (k, 9).
+        points: positions [m], world frame, shape (k, 3).
+        runs: motions of the belts.
+        axles: axles of the belts, unit vectors in the world frame; any vector for a stopped belt.
 
     Returns:
-        Places (m,) among the contacts, directions (m, 3) and velocities (m, 3) in the world.
+        Indices (m,) among the contacts, directions (m, 3) and velocities [m/s] (m, 3) in the world frame.
     """
-    does_run = np.array([run is not None for run in (*runs, None)])  # the last for -1
+    does_run = np.array([run is not None for run in (*runs, None)])  # the last item is for index -1
     active: Bools = does_run[belts]
     places = (active[:, 0] | active[:, 1]).nonzero()[0]
     normals, axle = frames[places, :3], np.array(axles)
@@ -311,7 +316,10 @@ def find_belt_contacts(
 
 
 def _circular_directions(along: Floats, normal: Floats, away: Floats) -> Floats:
-    """The way round a centre that is not against the straight one; that one where there is none round it."""
+    """Return the directions of rotation about centres that do not oppose the linear motions (k, 3).
+
+    The linear direction is returned where there is no rotation.
+    """
     circle = unit(cross(normal, away))
     over = dot(circle, along)
     ahead = np.where(over == 0.0, 0.0, np.copysign(1.0, over))
@@ -320,36 +328,36 @@ def _circular_directions(along: Floats, normal: Floats, away: Floats) -> Floats:
 
 
 def cross(a: Floats, b: Floats) -> Floats:
-    """Vector products (k, 3)."""
+    """Return the cross products (k, 3)."""
     (ax, ay, az), (bx, by, bz) = a.T, b.T
     return np.stack((ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx), axis=1)
 
 
 def dot(a: Floats, b: Floats) -> Floats:
-    """Scalar products (k,)."""
+    """Return the scalar products (k,)."""
     (ax, ay, az), (bx, by, bz) = a.T, b.T
     found: Floats = ax * bx + ay * by + az * bz
     return found
 
 
 def unit(vectors: Floats) -> Floats:
-    """Vectors of length 1 (k, 3); zero for one that has nearly none."""
+    """Return the unit vectors (k, 3); zero for vectors of nearly no length."""
     length = np.sqrt(dot(vectors, vectors))[:, None]
     return np.where(length > MIN_SINE, vectors / np.maximum(length, MIN_SINE), 0.0)
 
 
 def along_tangents(frames: Floats, vectors: Floats) -> Floats:
-    """Parts (k, 2) of vectors (k, 3) along the tangents of contacts, of frames (k, 9)."""
+    """Return the components (k, 2) of vectors (k, 3) along the tangents of frames (k, 9)."""
     return np.stack((dot(frames[:, 3:6], vectors), dot(frames[:, 6:], vectors)), axis=1)
 
 
 def rotate_frames(frames: Floats, wanted: Floats, upright: float) -> tuple[Floats, Bools]:
-    """Contacts' frames (k, 9) whose first tangent is along a direction (k, 3), and where there is one.
+    """Return contact frames (k, 9) whose first tangent follows a direction, and a mask of the rotated frames.
 
     Args:
-        frames: as they are; they stay where a direction stands on the surface.
-        wanted: the directions, in the world.
-        upright: of the square of a direction, the part that has to lie along the surface.
+        frames: present frames; a frame stays unchanged if its direction is perpendicular to the surface.
+        wanted: directions in the world frame (k, 3).
+        upright: least squared fraction of a direction that must lie along the surface.
     """
     normal = frames[:, :3]
     flat = wanted - dot(wanted, normal)[:, None] * normal
@@ -361,6 +369,6 @@ def rotate_frames(frames: Floats, wanted: Floats, upright: float) -> tuple[Float
 
 
 def rotate_surface_velocities(flows: Floats, before: Floats, after: Floats) -> Floats:
-    """Speeds of surfaces (k, 3) along the tangents of some frames (k, 9), along those of others."""
+    """Convert surface velocities (k, 3) from the tangents of some frames (k, 9) to those of others."""
     over = flows[:, :1] * before[:, 3:6] + flows[:, 1:2] * before[:, 6:]
     return np.hstack((along_tangents(after, over), flows[:, 2:]))

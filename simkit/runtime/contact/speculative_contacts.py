@@ -1,10 +1,10 @@
-"""Detection of bodies that move so far in one step that they could pass through what they meet.
+"""Detection of bodies that move so far in one step that they could pass through an obstacle.
 
-MuJoCo's speculative contacts sweep geoms along their velocities and stop them before they touch. They cost 1.1 to 2.7
-times a step even where nothing is fast, so they are switched on for windows of some steps (`window_length`), by a
-rule that looks at positions and velocities alone. In such a window all steps follow the contact law, which stops within
-one step what closes fast: a body that strikes with an edge begins to spin, and its other corners would sink through a
-soft contact.
+MuJoCo's speculative contacts sweep geoms along their velocities and stop them before they touch. They multiply the time
+of a step by 1.1 to 2.7 even without fast bodies. Therefore they are enabled for windows of some steps
+(`window_length`), by a rule that depends on positions and velocities alone. In such a window all steps follow the
+contact law, which stops a fast contact within one step. A body that strikes with an edge begins to spin, and its other
+corners would sink through a soft contact.
 """
 
 from __future__ import annotations
@@ -29,16 +29,17 @@ if TYPE_CHECKING:
 
 
 SPECULATIVE_FLAG: Final = int(mujoco.mjtEnableBit.mjENBL_SPECULATIVE)
-"""What is set in `model.opt.enableflags` for such a window."""
+"""Bit in `model.opt.enableflags` for a window with speculative contacts."""
 
 _GROWTH: Final = 2.0
-"""Share by which speeds may grow within a window."""
+"""Factor by which speeds may grow within a window."""
 
 _MAX_TILTED_TRAVEL: Final = 3.0
-"""Half thicknesses of both in a step; beyond it up to 13 of 100 boxes and capsules that strike tilted pass."""
+"""Travel of both bodies in a step, in half thicknesses; beyond it up to 13 of 100 tilted boxes and capsules pass
+through."""
 
 _SAFE_SHARE: Final = 0.25
-"""Share of half the thickness of both within the stopping time, with which a contact may still close."""
+"""Remaining approach travel within the stopping time, as a fraction of half the thickness of both."""
 
 _MAX_DENSE_SIZE: Final = 20_000
 _MAX_PAIRS: Final = 4_000_000
@@ -50,14 +51,15 @@ _multiply = np.multiply
 
 
 class FastApproach(NamedTuple):
-    """Two geoms of which one may pass through the other within the next window.
+    """Two geoms, one of which may pass through the other within the next window.
 
     Attributes:
-        geom, other: the one that is fast, and what it comes towards.
-        speed: of the fastest points towards each other [m/s].
-        thickness: of the thinner one [m].
-        step: length of a step [s] with which they would not.
-        is_height_field: whether `other` is a height field.
+        geom: fast geom.
+        other: geom that it approaches.
+        speed: approach speed of the fastest points [m/s].
+        thickness: thickness of the thinner geom [m].
+        step: length of a step [s] that avoids the passage.
+        is_height_field: True if `other` is a height field.
     """
 
     geom: int
@@ -75,9 +77,10 @@ class FastBodyDetector:
         model: `MjModel`; masks, sizes and the step are read once.
 
     Attributes:
-        closing: speed [m/s] with which each geom may still close once it has been stopped, the last for no geom;
-            so a body that is stopped ahead of a wall gets there.
-        on_approach: is given what cannot be helped, at each look that finds something; it may change no state.
+        closing: remaining approach speed [m/s] of each geom after it is stopped; the last item is for no geom. A body
+            that is stopped before a wall thus still reaches it.
+        on_approach: function that receives the approaches that speculative contacts cannot stop; it may change no
+            state.
     """
 
     def __init__(self, model: mujoco.MjModel) -> None:
@@ -85,7 +88,7 @@ class FastBodyDetector:
         self.on_approach: Callable[[list[FastApproach]], None] | None = None
         step = float(model.opt.timestep)
         self._window = window_length(step)
-        # so long a body goes on into a soft contact, and twice as long into one that bounces
+        # time for which a body still moves into a soft contact; twice as long for a bouncing one
         bounces = bool((model.geom_solref[travel_bounds.can_collide(model), 0] < 0.0).any())
         self._time = max(_GROWTH * step, contact_time_constant(step) / (1.0 if bounces else 2.0))
         self._half = travel_bounds.half_thickness(model)
@@ -107,7 +110,7 @@ class FastBodyDetector:
         self._weigh()
 
     def _weigh(self) -> None:
-        """Compute the weights of velocities by which `wants` finds at once that nothing is fast."""
+        """Compute weights of velocities with which `wants` quickly excludes fast bodies."""
         model, nv = self.model, self.model.nv
         rows, dofs, lever = travel_bounds.velocity_levers(model, self._moving)
         share = lever * self._time / self._allowed[rows]
@@ -118,7 +121,7 @@ class FastBodyDetector:
             self._share = np.zeros((len(self._moving), nv))
             np.add.at(self._share, (rows, dofs), share)
         self._weights = weights
-        # |Σ w v| ≤ 1 within a tree where its n terms have Σ (w v)² ≤ 1/n
+        # |Σ w v| ≤ 1 holds within a tree if its n terms have Σ (w v)² ≤ 1/n
         trees = model.dof_treeid
         counts = np.bincount(trees, minlength=max(model.ntree, 1)) if nv else np.ones(1)
         self._rooted = weights * np.sqrt(counts[trees]) if nv else weights
@@ -126,13 +129,13 @@ class FastBodyDetector:
         self._starts = model.tree_dofadr.astype(np.intp)
         self._can_be_fast = bool(len(self._moving)) and bool(weights.any()) and not has_engine_contacts(model)
 
-    # ------------------------------------------------------------------ the look
+    # ------------------------------------------------------------------ check of a window
 
     def wants(self, data: mujoco.MjData) -> bool:
-        """Return whether the next window needs speculative contacts, by `qpos`, `qvel` and mocap poses alone."""
+        """Check whether the next window needs speculative contacts, from `qpos`, `qvel` and mocap poses alone."""
         if not self._can_be_fast:
             return False
-        if data is not self._data:  # the same one at every look; its arrays stay where they are
+        if data is not self._data:  # the same object at every check; its arrays keep their addresses
             self._data, self._velocities_now = data, data.qvel
         terms = _multiply(self._velocities_now, self._rooted, self._terms)
         if terms.dot(terms) <= 1.0 or self._is_slow(self._velocities_now):
@@ -179,7 +182,10 @@ class FastBodyDetector:
         return True
 
     def _positions(self, data: mujoco.MjData) -> mujoco.MjData:
-        """Compute positions and velocities of bodies aside: those in `data` are as old as its last forward pass."""
+        """Compute positions and velocities of bodies in separate data.
+
+        Those in `data` are of its last forward pass.
+        """
         model = self.model
         scratch: mujoco.MjData | None = self._scratch
         if scratch is None:
@@ -189,7 +195,9 @@ class FastBodyDetector:
             scratch.mocap_pos[:], scratch.mocap_quat[:] = data.mocap_pos, data.mocap_quat
         options = model.opt
         flags = options.enableflags
-        options.enableflags = flags & ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)  # with it, what never moves is left out
+        options.enableflags = flags & ~int(
+            mujoco.mjtEnableBit.mjENBL_SLEEP
+        )  # with the flag, MuJoCo skips static bodies
         try:
             mujoco.mj_kinematics(model, scratch)
             mujoco.mj_comPos(model, scratch)
@@ -199,7 +207,7 @@ class FastBodyDetector:
         return scratch
 
     def _velocities(self, scratch: mujoco.MjData) -> tuple[Floats, Floats]:
-        """Return velocities of the moving geoms' centres, and speeds of their farthest points around them [m/s]."""
+        """Return velocities of the moving geoms' centres, and speeds of their farthest points about them [m/s]."""
         motion = scratch.cvel.take(self._bodies, 0)
         spin, arm = motion[:, :3], scratch.geom_xpos.take(self._moving, 0) - scratch.subtree_com.take(self._roots, 0)
         linear = motion[:, 3:].copy()
@@ -211,7 +219,7 @@ class FastBodyDetector:
         return linear, turning
 
     def _near(self, places: Floats, fast: Ints, speeds: Floats) -> tuple[Ints, Ints]:
-        """Find pairs of a fast geom and one that it may reach within a window, whatever it bounces off on the way."""
+        """Find pairs of a fast geom and a geom that it may reach within a window, even after bounces."""
         model, others = self.model, self._others
         radius = model.geom_rbound
         reach = (speeds[fast, None] + speeds[None, others]) * (self._window * _GROWTH * model.opt.timestep)
@@ -228,17 +236,17 @@ class FastBodyDetector:
         return one[keep], other[keep]
 
     def _inside(self, points: Floats, geoms: Ints) -> Floats:
-        """Transform points of the world into the frames of the boxes around geoms."""
+        """Transform world points to the frames of the bounding boxes of geoms."""
         scratch = self._scratch
         turned = scratch.geom_xmat[geoms].reshape(-1, 3, 3)
         local: Floats = np.einsum("nji,nj->ni", turned, points - scratch.geom_xpos[geoms])
         local -= self.model.geom_aabb[geoms, :3]
         return local
 
-    # ------------------------------------------------------------------ what cannot be helped
+    # ------------------------------------------------------------------ unstoppable approaches
 
     def _find_helpless(self, scratch: mujoco.MjData, one: Ints, other: Ints, both: Floats, linear: Floats) -> None:
-        """Report pairs on a course through each other that speculative contacts do not stop for sure."""
+        """Report approaching pairs that speculative contacts do not reliably stop."""
         model, step, half = self.model, float(self.model.opt.timestep), self._half
         together = half[one] + half[other]
         is_field = model.geom_type[other] == _HFIELD
@@ -255,7 +263,10 @@ class FastBodyDetector:
             self.on_approach(found)
 
     def _is_on_course(self, scratch: mujoco.MjData, one: Ints, other: Ints, linear: Floats) -> npt.NDArray[np.bool_]:
-        """Check whether straight on, within a window, the sphere around the one meets the box around the other."""
+        """Check whether the bounding sphere of one geom meets the bounding box of the other.
+
+        The check assumes straight motion within a window.
+        """
         model = self.model
         start = self._inside(scratch.geom_xpos[one], other)
         turned = scratch.geom_xmat[other].reshape(-1, 3, 3)
@@ -269,14 +280,14 @@ class FastBodyDetector:
 
 
 class FastBodyWarnings:
-    """Warnings of collisions that may pass through each other, one for each pair.
+    """Warnings about collisions that may pass through each other, one for each pair.
 
     Args:
-        reports: receives the warnings.
+        reports: collection for the warnings.
         timestep: length of a step [s].
 
     Attributes:
-        names: of the present compiled model.
+        names: name map of the present compiled model.
     """
 
     def __init__(self, reports: Diagnostics, timestep: float) -> None:
@@ -285,7 +296,7 @@ class FastBodyWarnings:
         self.names: NameMap
 
     def __call__(self, approaches: list[FastApproach]) -> None:
-        """Warn of the pairs that are new."""
+        """Warn of new pairs."""
         names, timestep = self.names, self._timestep
         for found in approaches:
             link, one, _ = names.geom_owner(found.geom)
@@ -295,11 +306,11 @@ class FastBodyWarnings:
             if pair in self._reported:
                 continue
             self._reported.add(pair)
-            what = f"the height map {other}" if found.is_height_field else other
+            obstacle = f"the height map {other}" if found.is_height_field else other
             travel = found.speed * timestep
             message = (
-                f"{one} may pass through {what}: it comes at {found.speed:.3g} m/s, {travel:.3g} m in a step of "
-                f"{timestep:g} s, and the thinner of the two is {found.thickness:.3g} m thick"
+                f"{one} may pass through {obstacle}: it approaches at {found.speed:.3g} m/s, {travel:.3g} m in a step "
+                f"of {timestep:g} s, and the thinner of the two is {found.thickness:.3g} m thick"
             )
             where = names.link(link).scene.where if link in names.links else NOWHERE
             hint = f"<max_step_size>{_round_down(found.step):g}</max_step_size>"
@@ -307,6 +318,6 @@ class FastBodyWarnings:
 
 
 def _round_down(value: float) -> float:
-    """Return a positive number with one digit that is not larger."""
+    """Return the largest number with one digit that is not above a positive number."""
     unit = 10.0 ** math.floor(math.log10(value))
     return math.floor(value / unit * (1.0 + 1e-12)) * unit

@@ -1,6 +1,6 @@
-"""Bounds on how far collision geoms move per unit of joint velocity, and on the travel that each of them may have.
+"""Bounds on the motion of collision geoms per unit of joint velocity, and on the allowed travel of each geom.
 
-All are computed once from the compiled model. Indices of geoms and degrees of freedom are those of MuJoCo.
+All bounds are computed once from the compiled model. Indices of geoms and degrees of freedom are those of MuJoCo.
 """
 
 from __future__ import annotations
@@ -20,16 +20,16 @@ _ROUND = [int(getattr(mujoco.mjtGeom, f"mjGEOM_{n}")) for n in ("CAPSULE", "CYLI
 _ELLIPSOID = int(mujoco.mjtGeom.mjGEOM_ELLIPSOID)
 _FREE, _BALL, _SLIDE, _HINGE = (int(getattr(mujoco.mjtJoint, f"mjJNT_{n}")) for n in ("FREE", "BALL", "SLIDE", "HINGE"))
 _UNLIMITED_SPAN: Final = 1e3
-"""[m] of a slide joint without limits, for the levers of the joints above it."""
+"""Assumed travel [m] of a slide joint without limits, for the levers of the joints above it."""
 
 _MAX_COMPARED_BODIES: Final = 64
-"""Bodies of one kinematic tree up to which its pairs are looked at one by one."""
+"""Largest number of bodies of a kinematic tree for which all pairs are compared."""
 
 
 def half_thickness(model: mujoco.MjModel) -> Floats:
     """Return half the least extent [m] of each geom; infinite for a plane, half the base for a height field.
 
-    One entry more than there are geoms: an infinite one, for contacts of no geom (index -1).
+    The last of ngeom + 1 items is infinite, for contacts without a geom (index -1).
     """
     half = np.append(model.geom_aabb[:, 3:6].min(axis=1), np.inf)
     half[:-1][model.geom_type == _PLANE] = np.inf
@@ -39,20 +39,20 @@ def half_thickness(model: mujoco.MjModel) -> Floats:
 
 
 def rotational_symmetries(model: mujoco.MjModel) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]]:
-    """Return which geoms no rotation about their centre changes, and which none about their z axis does."""
+    """Return masks of the geoms that no rotation about their centre changes, and none about their z axis."""
     size, kind = model.geom_size, model.geom_type
     is_round = np.isin(kind, _ROUND) | ((kind == _ELLIPSOID) & (size[:, 0] == size[:, 1]))
     return kind == _SPHERE, is_round
 
 
 def can_collide(model: mujoco.MjModel) -> npt.NDArray[np.bool_]:
-    """Return which geoms may touch anything at all."""
+    """Return a mask of the geoms that may touch anything at all."""
     found: npt.NDArray[np.bool_] = (model.geom_contype | model.geom_conaffinity) != 0
     return found
 
 
 def can_touch(model: mujoco.MjModel, one: Ints, other: Ints) -> npt.NDArray[np.bool_]:
-    """Return whether geoms may touch by their masks alone; the arguments are indices that broadcast."""
+    """Check whether geoms may touch by their masks alone; the arguments are indices that broadcast."""
     types, affinities = model.geom_contype, model.geom_conaffinity
     found: npt.NDArray[np.bool_] = ((types[one] & affinities[other]) | (types[other] & affinities[one])) != 0
     return found
@@ -61,8 +61,9 @@ def can_touch(model: mujoco.MjModel, one: Ints, other: Ints) -> npt.NDArray[np.b
 def allowed_travel(model: mujoco.MjModel, half: Floats, geoms: Ints) -> Floats:
     """Return the travel [m] up to which moving geoms pass through nothing.
 
-    Two geoms can pass through each other once they travel, together, more than half the thickness of both. So what
-    meets moving geoms may travel half its own thickness, and what meets static ones half of the thinnest of them more.
+    Two geoms can pass through each other if their common travel exceeds half the thickness of both. Therefore a geom
+    that meets moving geoms may travel half its own thickness. A geom that meets only static geoms may travel half the
+    thickness of the thinnest of them more.
     """
     kinds: dict[tuple[int, int], list[int]] = defaultdict(list)  # masks -> geoms
     for geom in np.flatnonzero(can_collide(model)).tolist():
@@ -104,7 +105,7 @@ def _can_touch_itself(model: mujoco.MjModel, tree: int) -> bool:
 
 
 def is_filtered(model: mujoco.MjModel, one: int, other: int) -> bool:
-    """Return whether the engine leaves out contacts between two bodies, whatever their masks."""
+    """Check whether the engine ignores contacts between two bodies, whatever their masks."""
     weld, parent = model.body_weldid, model.body_parentid
     a, b = int(weld[one]), int(weld[other])
     if a == b:
@@ -119,7 +120,7 @@ def is_filtered(model: mujoco.MjModel, one: int, other: int) -> bool:
 
 
 def velocity_levers(model: mujoco.MjModel, geoms: Ints) -> tuple[Ints, Ints, Floats]:
-    """Return rows of (place in `geoms`, degree of freedom, lever): surface points move by at most lever · |velocity|.
+    """Return rows of (index in `geoms`, degree of freedom, lever): surface points move by at most lever · |velocity|.
 
     The lever is 1 for a translation and a length [m] for a rotation, over all configurations.
     """

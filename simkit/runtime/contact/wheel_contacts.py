@@ -2,11 +2,12 @@
 
 A wide wheel touches flat ground at the two ends of a line. While it turns about the vertical, both ends slip in
 opposite directions. Under Coulomb's law the least drag then makes one end stick, and the wheel rolls on that edge. Its
-track is wrong by half a width, 6 % of the speed of a TurtleBot3 that turns on the spot. On the line of contact of a
-tyre the slip changes steadily. There a drag D moves the point without slip by the share D / (mu N) of half the width.
+track width is then wrong by half a wheel width, 6 % of the speed of a TurtleBot3 that turns on the spot. On the contact
+line of a tyre the slip changes continuously. There a drag D moves the point without slip by D / (mu N) of half the
+width.
 
-So both contacts keep their own normals, which hold the wheel upright, and share one friction point: the place where
-the line of contact crosses the middle of the tread.
+Therefore both contacts keep their own normals, which hold the wheel upright, and share one friction point. It lies
+where the contact line crosses the middle of the tread.
 """
 
 from __future__ import annotations
@@ -17,22 +18,22 @@ import mujoco
 import numpy as np
 
 _ALIGNED: Final = 0.999
-"""Cosine between the axis of a wheel's shape and that of its joint, at least."""
+"""Least cosine between the axis of a wheel's shape and that of its joint."""
 
 _CENTRED: Final = 0.05
-"""Radii by which a wheel's shape may be off the axis of its joint, at most."""
+"""Largest distance of a wheel's shape from the axis of its joint, in radii."""
 
 _LEVEL: Final = 0.9999
-"""Cosine between the normals of two contacts that count as one line, at least."""
+"""Least cosine between the normals of two contacts on one line."""
 
 _NO_ISLANDS: Final = int(mujoco.mjtDisableBit.mjDSBL_ISLAND)
 
 
 class WheelContacts:
-    """The wheels of one compiled model: shapes of revolution that turn freely about their own axis.
+    """Wheels of one compiled model: shapes of revolution that turn freely about their own axis.
 
     Args:
-        model: of the engine.
+        model: MuJoCo's model.
     """
 
     def __init__(self, model: mujoco.MjModel) -> None:
@@ -40,7 +41,7 @@ class WheelContacts:
         self._is_sparse = bool(mujoco.mj_isSparse(model))
         self._has_islands = not model.opt.disableflags & _NO_ISLANDS
         self._axis_of: dict[int, int] = {}  # geom -> column of its matrix that is the axis
-        if model.opt.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL:  # its rows are edges, and not tangents
+        if model.opt.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL:  # its rows are edges, not tangents
             return
         for joint in np.flatnonzero(model.jnt_type == mujoco.mjtJoint.mjJNT_HINGE).tolist():
             low, high = model.jnt_range[joint].tolist()
@@ -57,7 +58,7 @@ class WheelContacts:
         return bool(self._axis_of)
 
     def _axis(self, geom: int, joint: int) -> int | None:
-        """Return the axis of a geom, as a column of its matrix, about which it is a wheel on a joint; else None."""
+        """Return the matrix column of the axis about which a geom is a wheel on a joint; None if it is not a wheel."""
         model = self._model
         kind = int(model.geom_type[geom])
         collides = bool(model.geom_contype[geom] | model.geom_conaffinity[geom])
@@ -77,13 +78,13 @@ class WheelContacts:
         return column if is_wheel else None
 
     def merge(self, data: mujoco.MjData) -> bool:
-        """Give the contacts along a line one friction point: their Jacobians' tangent rows become the same.
+        """Give the contacts of a line one friction point: the tangent rows of their Jacobians become equal.
 
         Args:
-            data: of the engine, with contacts, constraints and velocities.
+            data: MuJoCo's data with contacts, constraints and velocities.
 
         Returns:
-            Whether there was one.
+            True if there was a line.
         """
         lines = self._lines(data) if self._axis_of else []
         if not lines:
@@ -104,7 +105,7 @@ class WheelContacts:
                 one += weight * apart
                 other[:] = one
                 is_changed = True
-        if not is_changed:  # merged before: islands take more of the engine's memory each time
+        if not is_changed:  # merged before: computing islands again would use more of the engine's memory
             return True
         if self._has_islands:
             mujoco.mj_island(self._model, data)
@@ -112,7 +113,7 @@ class WheelContacts:
         return True
 
     def _lines(self, data: mujoco.MjData) -> list[tuple[int, int, float]]:
-        """Return the rows of both ends of each line of contact, and where between them the middle of the tread is."""
+        """Return the rows of both ends of each contact line, and the relative position of the middle of the tread."""
         contact, axis_of = data.contact, self._axis_of
         groups: dict[tuple[int, int], list[int]] = {}
         for number, (first, second) in enumerate(contact.geom.tolist()):

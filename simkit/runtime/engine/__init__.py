@@ -1,6 +1,6 @@
-"""The step loop over MuJoCo: clock, scheduler, physics, sleep, random streams, plugin faults and snapshots.
+"""Step loop over MuJoCo: clock, scheduler, physics, sleep, random streams, plugin faults and snapshots.
 
-What enters: a compiled world, commands that wait for the next step, and writes to the state between two steps. What
-leaves: states at ticks, due tasks of sensors and plugins, snapshots, and the error of a physics that diverged. What
-never: names of topics or kinds of sensors and plugins, and files.
+- Input: a compiled world, commands that wait for the next step, and writes to the state between two steps.
+- Output: states at ticks, due tasks of sensors and plugins, snapshots, and the error of a diverged simulation.
+- Not known here: names of topics, kinds of sensors and plugins, and files.
 """

@@ -1,9 +1,9 @@
-"""Calls into Python between the velocities and the forces of a forward pass that the engine makes by itself.
+"""Python callback between the velocities and the forces of a forward pass that MuJoCo makes by itself.
 
-The engine has one such place, `mjcb_control`, for the whole process and all its threads. It is taken only while steps
-need it. Meanwhile passes of others come by as well, also of models that are being compiled and that Python has no
-objects of; so the place is taken in C, where passes are told apart by the addresses of their data, and not by
-`mujoco.set_mjcb_control`, which cannot stand such passes. What was there before is called as well.
+MuJoCo has one such callback, `mjcb_control`, for the whole process and all its threads. It is installed only while
+steps need it. Other forward passes call it too, even for models that are being compiled and have no Python objects.
+`mujoco.set_mjcb_control` cannot handle such passes. Therefore a C function is installed, which recognises the pass by
+the address of its data. A callback that was installed before is still called.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ _Control = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p)
 
 
 class _Callback:
-    """Function that is called for some data.
+    """Function that is called for one `MjData`.
 
     Attributes:
-        error: what it raised, which cannot pass through the engine.
+        error: exception that the function raised; it cannot pass through the engine.
     """
 
     def __init__(self, call: Callable[[], None]) -> None:
@@ -45,24 +45,24 @@ class _Callback:
 
 
 class _ControlCallback:
-    """MuJoCo's one callback between velocities and forces, shared by all data of the process."""
+    """MuJoCo's only callback between velocities and forces, shared by all data of the process."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
-        self._callbacks: dict[int, _Callback] = {}  # by the address of the data; each is of one thread
+        self._callbacks: dict[int, _Callback] = {}  # by the address of the data; each data belongs to one thread
         self._previous: Callable[[int, int], None] | None = None
         self._function = _Control(self._call)
         self._address = ctypes.cast(self._function, ctypes.c_void_p).value
 
     def add(self, address: int, callback: _Callback) -> None:
-        """Has a callback called in the forward passes of the data at an address."""
+        """Call a callback in the forward passes of the data at an address."""
         with self._lock:
             if not self._callbacks:
                 self._install()
             self._callbacks[address] = callback
 
     def remove(self, address: int) -> None:
-        """Ends it."""
+        """Stop calling the callback of the data at an address."""
         with self._lock:
             del self._callbacks[address]
             if not self._callbacks:
@@ -76,8 +76,8 @@ class _ControlCallback:
             callback()
 
     def _install(self) -> None:
-        there = _callback_pointer().value
-        self._previous = None if there is None else _Control(there)
+        installed = _callback_pointer().value
+        self._previous = None if installed is None else _Control(installed)
         _callback_pointer().value = self._address
 
     def _uninstall(self) -> None:
@@ -100,19 +100,19 @@ _CONTROL: Final = _ControlCallback()
 
 @contextmanager
 def call_before_forces(data: mujoco.MjData, call: Callable[[], None]) -> Iterator[None]:
-    """Have a function called in every forward pass of some data; not in those that the function itself makes.
+    """Call a function in every forward pass of one `MjData`, except in passes that the function itself makes.
 
-    What it raises is raised at the end; until then it is not called again.
+    An exception of the function is raised at the end of the `with` block; the function is not called again before that.
 
     Args:
-        data: of the engine; passes of others, on other threads, are left alone.
-        call: may change the contacts and the references of constraints of these data.
+        data: engine data; forward passes of other data, on other threads, are not affected.
+        call: function that may change the contacts and the references of constraints of these data.
     """
-    address, mine = int(data._address), _Callback(call)
-    _CONTROL.add(address, mine)
+    address, callback = int(data._address), _Callback(call)
+    _CONTROL.add(address, callback)
     try:
         yield
     finally:
         _CONTROL.remove(address)
-    if mine.error is not None:
-        raise mine.error
+    if callback.error is not None:
+        raise callback.error

@@ -1,4 +1,4 @@
-"""The engine of a simulation: physics, step loop, servos, wrenches, wind, random streams, plugin faults."""
+"""Engine of a simulation: physics, step loop, servos, wrenches, wind, random streams and plugin faults."""
 
 from __future__ import annotations
 
@@ -26,34 +26,34 @@ if TYPE_CHECKING:
     from simkit.scene import SceneWorld
 
 _LARGEST_CONTROL: Final = 9e9
-"""[rad/s, N·m, …]; one of 1e10 (mjMAXVAL) or more makes the engine take every control in the world for zero."""
+"""Largest control [rad/s, N·m, …]. From 1e10 (mjMAXVAL) on, MuJoCo sets every control of the world to zero."""
 
 
 class Engine(EngineState):
-    """Everything of a simulation that advances it.
+    """All parts of a simulation that advance it.
 
     Args:
-        world: the scene.
-        structure: what is compiled of it.
+        world: scene of the world.
+        structure: compiled structure of the world.
         clock: simulated time.
-        seed: of all random streams.
-        reports: collects what is found while the simulation runs.
-        commands: delivered between two steps.
-        fill: puts every task into the scheduler, in document order.
-        on_error: what becomes of plugins that raise; None leaves it to files and classes.
+        seed: seed of all random streams.
+        reports: collection of the diagnostics of the run.
+        commands: source of the commands that are delivered between two steps.
+        fill: function that adds every task to the scheduler, in document order.
+        on_error: policy for plugins that raise; None uses the policy of the file or of the plugin's class.
 
     Attributes:
         streams: random numbers by name.
-        faults: what becomes of plugins that raise, and which of them are left out.
-        velocity_servos: the velocity servos that plugins asked for.
-        wrenches: wrenches that hold until they are set anew.
-        wind: how the air moves.
-        friction: contacts whose friction has a direction or slips.
-        fast_body_warnings: warns of bodies that are too fast for the length of a step.
-        loop: makes the steps.
-        render_thread: whether pictures of cameras are drawn beside the physics where nobody waits for them; to be
-            changed at any time, for it changes no message.
-        velocity_limit: limit of an axis of a joint [rad/s or m/s], by scoped name and number of the axis.
+        faults: handling of plugins that raise, and the set of disabled plugins.
+        velocity_servos: velocity servos that plugins requested.
+        wrenches: wrenches that persist until they are replaced.
+        wind: velocity of the air.
+        friction: contacts with directional friction or slip.
+        fast_body_warnings: warnings about bodies that are too fast for the time step.
+        loop: step loop.
+        render_thread: draw camera images beside the physics while no subscriber waits for them. It may change at any
+            time, because it changes no message.
+        velocity_limit: function that returns the limit of a joint's axis [rad/s or m/s] by scoped name and axis number.
     """
 
     render_thread = False
@@ -82,12 +82,12 @@ class Engine(EngineState):
 
     @property
     def is_stepping(self) -> bool:
-        """Whether a step is under way: this is asked by a hook or a callback."""
+        """True during a step, when a hook or a callback reads it."""
         return self.loop.is_running
 
     @property
     def steps(self) -> int:
-        """Steps made since it was loaded, those among them that a reset or a restore has undone."""
+        """Number of steps since the load, including steps that a reset or a restore has undone."""
         return self.physics.tick - self.loop.jumped
 
     @property
@@ -96,13 +96,13 @@ class Engine(EngineState):
         return self.loop.scheduler
 
     def reschedule(self) -> None:
-        """Takes changed rates, sensors and plugins into account; within a hook, once the tick is dealt with."""
+        """Apply changed rates, sensors and plugins; within a hook, after the other tasks of the tick."""
         self.loop.reschedule()
 
     def set_control(self, actuator: ActuatorRef, value: float) -> None:
-        """Writes the control of an actuator that a plugin added; the next step sees it.
+        """Write the control of an actuator that a plugin added; the next step uses it.
 
-        A velocity is kept within the joint's velocity limit; the control is what its servo makes of it.
+        A velocity is limited to the joint's velocity limit; its servo computes the control from it.
         """
         limit = _LARGEST_CONTROL
         if actuator.kind == "velocity":

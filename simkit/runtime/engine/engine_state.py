@@ -1,4 +1,4 @@
-"""MuJoCo's objects of a simulation, the structure that they were compiled from, and changes of the model."""
+"""MuJoCo's model and data of a simulation, the structure that they were compiled from, and changes of the model."""
 
 from __future__ import annotations
 
@@ -22,23 +22,23 @@ if TYPE_CHECKING:
 
 
 class EngineState:
-    """State of the engine that everything else in a simulation reads and writes.
+    """Engine state that the other parts of a simulation read and write.
 
     Args:
-        world: the scene.
-        structure: what is compiled of it.
+        world: scene of the world.
+        structure: compiled structure of the world.
         clock: simulated time.
-        reports: collects what is found while the simulation runs.
+        reports: collection of the diagnostics of the run.
 
     Attributes:
-        world: the scene, with what was changed of it since.
-        structure: what is in the world now; never changed, only replaced.
-        clock: converts ticks to time.
-        physics: MuJoCo's model and data, and how they advance.
-        originals: model fields that were written to, as compiled.
-        reports: collects what is found while the simulation runs.
+        world: scene, with the changes made during the run.
+        structure: present structure of the world; it is replaced, never changed.
+        clock: conversion of ticks to time.
+        physics: MuJoCo's model and data, and the functions that advance them.
+        originals: compiled values of the model fields that were written to.
+        reports: collection of the diagnostics of the run.
         log: logger of the simulation.
-        is_closed: whether the simulation has been closed.
+        is_closed: True after the simulation has been closed.
     """
 
     def __init__(self, world: SceneWorld, structure: WorldStructure, clock: Clock, reports: Diagnostics) -> None:
@@ -50,7 +50,7 @@ class EngineState:
         self.is_closed = False
 
     def check_open(self) -> None:
-        """Raises InputError after the simulation has been closed."""
+        """Raise InputError after the simulation has been closed."""
         if self.is_closed:
             raise InputError("the simulation is closed", "SK-CORE-002")
 
@@ -58,7 +58,7 @@ class EngineState:
 
     @property
     def tick(self) -> int:
-        """Steps done."""
+        """Number of the present step."""
         return self.physics.tick
 
     @property
@@ -96,7 +96,7 @@ class EngineState:
     # ------------------------------------------------------------------ changes of the model
 
     def touch(self, field: str) -> npt.NDArray[np.float64]:
-        """Returns a model field to be written to; snapshots and restores cover it from now on."""
+        """Return a model field for writing; snapshots and restores include it from now on."""
         values: npt.NDArray[np.float64] = getattr(self.physics.model, field)
         if not field.startswith("light_"):
             for sensor in self.structure.all_sensors():
@@ -107,5 +107,5 @@ class EngineState:
         return values
 
     def original(self, field: str) -> npt.NDArray[np.float64]:
-        """Returns a touched field's values as compiled."""
+        """Return the compiled values of a model field that was written to."""
         return self.originals[field]

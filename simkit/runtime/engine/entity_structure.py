@@ -1,4 +1,7 @@
-"""What is in the world: models, and the sensors and plugins on them, whose classes this room does not know."""
+"""Structure of the world: its models, and interfaces of the sensors and plugins on them.
+
+This package does not import the classes of sensors and plugins.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +22,7 @@ if TYPE_CHECKING:
     from simkit.scene import ScenePlugin, SceneSensor
 
 AttachedState = Any
-"""State of a sensor or a plugin, which only itself understands."""
+"""State of a sensor or plugin; only the sensor or plugin itself can interpret it."""
 
 
 class PublishedProduct(Protocol):
@@ -27,11 +30,11 @@ class PublishedProduct(Protocol):
 
     @property
     def type_name(self) -> str:
-        """Its ROS type."""
+        """ROS type of the message."""
 
 
 class AttachedSensor(Protocol):
-    """What the runtime asks of a sensor."""
+    """Interface of a sensor that the runtime needs."""
 
     scene: SceneSensor
     scoped: str
@@ -39,51 +42,51 @@ class AttachedSensor(Protocol):
 
     @property
     def reads_contacts(self) -> bool:
-        """Whether it needs the contacts of its bodies."""
+        """True if the sensor needs the contacts of its bodies."""
 
     @property
     def _products(self) -> Mapping[str, PublishedProduct]: ...
 
     @property
     def topic(self) -> str:
-        """Topic of its first message."""
+        """Topic of the sensor's first message."""
 
     def build(self, builder: SpecBuilder) -> None:
-        """Adds what it needs to the specification."""
+        """Add the elements that the sensor needs to the specification."""
 
     def attach(self, sim: Any) -> None:
-        """Opens its topics and random streams."""
+        """Open the sensor's topics and random streams."""
 
     def bind(self, compiled: Compiled) -> None:
-        """Finds itself in a compiled model."""
+        """Look up the sensor's elements in a compiled model."""
 
     def timetable(self) -> Timetable | None:
-        """Returns the ticks at which it is sampled; None for every one."""
+        """Return the ticks at which the sensor is sampled; None for every tick."""
 
     def sample(self, tick: int) -> None:
-        """Takes a sample."""
+        """Measure at a tick."""
 
     def take_held(self) -> None:
-        """Takes what still has to be read of the present model."""
+        """Read all pending values of the present model."""
 
     def reset(self) -> None:
-        """Goes back to its beginning."""
+        """Reset the sensor to its initial state."""
 
     def close(self) -> None:
-        """Releases what it holds."""
+        """Release the sensor's resources."""
 
     def leave(self) -> None:
-        """Is no longer in the world."""
+        """Close the sensor's interfaces after its removal from the world."""
 
     def get_state(self) -> AttachedState:
-        """Returns what a snapshot keeps."""
+        """Return the state for a snapshot."""
 
     def set_state(self, state: AttachedState) -> None:
-        """Goes back to a state from `get_state`."""
+        """Restore a state from `get_state`."""
 
 
 class AttachedPlugin(Protocol):
-    """What the runtime asks of a plugin."""
+    """Interface of a plugin that the runtime needs."""
 
     name: str
     scoped: str
@@ -101,26 +104,26 @@ class AttachedPlugin(Protocol):
 
     @property
     def reads_parameter_files(self) -> bool:
-        """Whether it reads those that the run was given."""
+        """True if the plugin reads the parameter files of the run."""
 
     @classmethod
     def has_hook(cls, hook: Any) -> bool:
-        """Checks whether its class has a hook."""
+        """Check whether the plugin's class defines a hook."""
 
     def prepare(self, scene: Any, params: Params, builder: Any) -> None:
-        """Adds what it needs to the specification."""
+        """Add the elements that the plugin needs to the specification."""
 
     def load(self, parent: Any, params: Params) -> None:
-        """Begins its work."""
+        """Initialise the plugin."""
 
     def get_state(self) -> AttachedState:
-        """Returns what a snapshot keeps."""
+        """Return the state for a snapshot."""
 
     def set_state(self, state: AttachedState) -> None:
-        """Goes back to a state from `get_state`."""
+        """Restore a state from `get_state`."""
 
     def report_unread(self) -> None:
-        """Reports parameters that nobody read."""
+        """Report unused parameters."""
 
     def _setup(self, sim: Any, source: ScenePlugin | None = None) -> None: ...
 
@@ -128,15 +131,15 @@ class AttachedPlugin(Protocol):
 
 
 ParentFinder = Callable[[Any], Any]
-"""Gives a plugin's parent (a simulation, a handle, a sensor) once the handles of a simulation exist."""
+"""Function that returns a plugin's parent (a simulation, a handle, a sensor) once the handles of a simulation exist."""
 
 
 @dataclass
 class SensorsAndPlugins:
-    """The sensors and plugins of one model (or of the world), in document order.
+    """Sensors and plugins of one model (or of the world), in document order.
 
     Attributes:
-        plugins: each with a function that gives its parent once the handles exist.
+        plugins: plugins, each with the function that returns its parent once the handles exist.
     """
 
     sensors: list[AttachedSensor] = field(default_factory=list)
@@ -145,14 +148,14 @@ class SensorsAndPlugins:
 
 @dataclass(frozen=True)
 class WorldStructure:
-    """What is in the world at one time; a spawn or a removal makes another, snapshots keep theirs.
+    """Content of the world at one time. A spawn or a removal creates a new structure; snapshots keep theirs.
 
     Attributes:
-        builder: the spec it was compiled from (not changed any more).
+        builder: builder of the spec that was compiled; no longer changed.
         compiled: engine objects and names.
         models: top-level models by name, in order.
         movable: names of the static models that were made movable.
-        parts: sensors and plugins by the name of their top-level model; the world's under the empty name.
+        parts: sensors and plugins by the name of their top-level model; those of the world under the empty name.
     """
 
     builder: SpecBuilder
@@ -165,24 +168,24 @@ class WorldStructure:
         return [s for p in self.parts.values() for s in p.sensors]
 
     def all_plugins(self) -> list[AttachedPlugin]:
-        """Every plugin, in the order in which they are loaded and called."""
+        """Return every plugin in the order in which plugins are loaded and called."""
         return [plugin for plugin, _ in plugins_in_order(self.parts.values())]
 
 
 FROM_FILE, FROM_PYTHON, FROM_SPAWN = range(3)
-"""Plugins of the file come first, in document order; then those made in Python; then those of spawned models."""
+"""Order of plugins: those of the file in document order, those made in Python, those of spawned models."""
 
 
 def plugins_in_order(parts: Iterable[SensorsAndPlugins]) -> list[tuple[AttachedPlugin, ParentFinder]]:
-    """Plugins, each with what gives its parent, in the order in which they are loaded and called."""
+    """Return the plugins with their parent finders, in the order in which plugins are loaded and called."""
     return sorted((pair for part in parts for pair in part.plugins), key=lambda pair: pair[0]._order)
 
 
 def bodies_kept_awake(structure: WorldStructure) -> set[int]:
-    """Ids of the bodies that must never sleep, or somebody could tell: a model with a plugin, a link with a sensor.
+    """Return the ids of the bodies that must never sleep: those of a model with a plugin and of a link with a sensor.
 
-    Of a sensor or plugin that reads contacts of something that cannot move that is everything: the contacts of a
-    sleeper with it are not there.
+    All bodies stay awake if a sensor or plugin reads the contacts of a link that cannot move. A sleeping body has no
+    contacts with such a link.
     """
     links = structure.compiled.names.links
     bodies: set[int] = set()

@@ -16,11 +16,13 @@ if TYPE_CHECKING:
 
 
 class PersistentWrenches:
-    """Wrenches on links that hold until they are set anew: force [N], torque [N·m], world frame, at the centre of mass.
+    """Wrenches on links that persist until they are replaced.
+
+    A wrench is a force [N] and a torque [N·m] in the world frame at the centre of mass.
 
     Args:
-        engine: whose links are pushed.
-        faults: tells which plugins are at work; those of others push nothing.
+        engine: engine of the links.
+        faults: source of the enabled plugins; disabled plugins apply no wrench.
     """
 
     def __init__(self, engine: EngineState, faults: PluginFaults) -> None:
@@ -28,24 +30,24 @@ class PersistentWrenches:
         self._by_owner: dict[int, tuple[object, dict[str, npt.ArrayLike]]] = {}
 
     def set(self, owner: object, wrenches: Mapping[str, npt.ArrayLike], *, are_applied: bool = False) -> None:
-        """Sets all wrenches of a plugin; what other plugins set holds too, and nothing of a plugin that is gone.
+        """Replace all wrenches of a plugin; wrenches of other enabled plugins persist.
 
         Args:
-            owner: the plugin that sets them.
-            wrenches: by scoped link name; a link that is not there is waited for.
-            are_applied: the state has them already (it was restored).
+            owner: plugin that sets the wrenches.
+            wrenches: wrenches by scoped link name. A wrench on a missing link is applied once the link exists.
+            are_applied: True if the engine state already contains the wrenches (a restored state).
         """
         self._by_owner[id(owner)] = owner, dict(wrenches)
-        if not are_applied:  # while a state is restored, what others push is still that of before
+        if not are_applied:  # during a restore, the wrenches of other plugins are not yet restored
             self.push(are_applied=False)
 
     def push(self, *, are_applied: bool = False) -> None:
-        """Hands the sums to the physics, for the links and plugins that are there now.
+        """Pass the sums of the wrenches to the physics, for the present links and enabled plugins.
 
-        A plugin that went is forgotten: should a restore bring it back, its state brings what it pushes.
+        The wrenches of a removed plugin are dropped. If a restore brings the plugin back, its state sets them again.
         """
         living = set(map(id, self._faults.living(self._engine.structure)))
-        self._by_owner = {key: found for key, found in self._by_owner.items() if key in living}
+        self._by_owner = {key: owned for key, owned in self._by_owner.items() if key in living}
         links = self._engine.names.links
         total: dict[int, npt.NDArray[np.float64]] = {}
         for _, wrenches in self._by_owner.values():
@@ -59,10 +61,11 @@ Velocity = tuple[float, float, float]
 
 
 class Wind:
-    """The velocity of the air: the world's `<wind>`, or what a plugin makes of it. A handle.
+    """Velocity of the air: the world's `<wind>`, or the wind of a plugin. A handle.
 
     Attributes:
-        source: gives the velocity [m/s], world frame, that holds in the step from a tick on; None: the world's.
+        source: function that returns the velocity [m/s, world frame] during the step that follows a tick. None uses the
+            world's wind.
     """
 
     def __init__(self, world: SceneWorld) -> None:
@@ -71,7 +74,7 @@ class Wind:
         self.source: Callable[[int], Velocity] | None = None
 
     def at(self, tick: int) -> Velocity:
-        """Velocity of the air [m/s], world frame, in the step that follows a tick."""
+        """Return the velocity of the air [m/s, world frame] during the step that follows a tick."""
         return self._steady if self.source is None else self.source(tick)
 
     def __deepcopy__(self, memo: dict[int, object]) -> Wind:

@@ -1,4 +1,4 @@
-"""The forward pass of MuJoCo: accelerations and forces of the state at a tick, for the next step and for readers."""
+"""Forward pass of MuJoCo: accelerations and forces of the state at a tick, for the next step and for readers."""
 
 from __future__ import annotations
 
@@ -19,21 +19,21 @@ from simkit.runtime.engine.physics_state import (
 )
 
 SKIPPED_STAGE = {CONTROL: int(mujoco.mjtStage.mjSTAGE_VEL), VELOCITY: int(mujoco.mjtStage.mjSTAGE_POS)}
-"""The last of MuJoCo's stages that is up to date, by how much of the forward pass is not."""
+"""Last of MuJoCo's stages that is up to date, by the stage of the forward pass that is out of date."""
 
 _AFTER_VELOCITIES = SKIPPED_STAGE[CONTROL]
 
-# looked up once: the loop calls them every few microseconds
+# looked up once, because the loop calls these functions every few microseconds
 mj_forward, mj_forward_skip = mujoco.mj_forward, mujoco.mj_forwardSkip
 mj_fwd_position, mj_fwd_velocity = mujoco.mj_fwdPosition, mujoco.mj_fwdVelocity
 mj_get_state, mj_rne_post_constraint = mujoco.mj_getState, mujoco.mj_rnePostConstraint
 
 
 class ForwardPass(PhysicsState):
-    """Physics state whose accelerations and forces are computed for whoever asks first."""
+    """Physics state whose accelerations and forces are computed at the first read."""
 
     def fresh(self) -> mujoco.MjData:
-        """The data with a forward pass of the state at this tick."""
+        """Return the data with a complete forward pass of the state at this tick."""
         if self.checks_controls:
             self._check_controls()
         if self.stage:
@@ -41,10 +41,11 @@ class ForwardPass(PhysicsState):
         return self.data
 
     def fresh_velocities(self) -> bool:
-        """Compute all but accelerations for the state at this tick; the next step goes on from there.
+        """Compute everything except accelerations for the state at this tick; the next step continues from there.
 
         Returns:
-            Whether it was done: not where everything is to wake, nor under an integrator of another kind.
+            True if the velocities are up to date. False if all bodies are to be woken, or if the integrator is of
+            another kind.
         """
         if self.stage < VELOCITY:
             return True
@@ -62,7 +63,7 @@ class ForwardPass(PhysicsState):
         if self.sleep.wants_all_awake:
             self.sleep.forward()
         else:
-            # what is changed of contacts is changed as they are found, not a second time
+            # contacts are changed right after their detection, not a second time later
             if self.stage == STALE or shaper is not None or self.law.changes_contacts:
                 mj_fwd_position(model, data)
             mj_fwd_velocity(model, data)
@@ -71,27 +72,27 @@ class ForwardPass(PhysicsState):
         self.stage = CONTROL
 
     def _look_for_fast(self) -> None:
-        """Decide at the beginning of a window, from the state alone, whether it needs speculative contacts."""
+        """Decide at the beginning of a window, from the state alone, whether the window needs speculative contacts."""
         self._fast_until = (self.tick // self._window + 1) * self._window
         is_fast = self.fast_bodies.wants(self.data)
         if is_fast != self._is_fast:
             self._is_fast = is_fast
             set_speculative(self.model, is_fast)
-            self.stage = STALE  # contacts are found otherwise
+            self.stage = STALE  # contact detection changes
 
     @property
     def _closing(self) -> list[float] | None:
-        """The speeds at which geoms may still close in this window, if it has speculative contacts."""
+        """Limits of the approach speeds of geoms in this window; None without speculative contacts."""
         return self.fast_bodies.closing if self._is_fast else None
 
     @property
     def _acting_shaper(self) -> ContactShaper | None:
-        """The shaper, if it has anything to change now."""
+        """Contact shaper; None if it has nothing to change now."""
         shaper = self.shaper
         return shaper if shaper is not None and shaper.acts else None
 
     def _forward(self) -> None:
-        """Complete the forward pass: with the contact law where the steps of this window need it."""
+        """Complete the forward pass, with the contact law if the steps of this window need it."""
         model, data, stage = self.model, self.data, self.stage
         is_shaped = self._acting_shaper is not None
         if self._integrate is None or not (self.tick >= self._until or self._uses_law or self._probes or is_shaped):
@@ -110,7 +111,7 @@ class ForwardPass(PhysicsState):
             self._uses_law = self._is_fast or self.law.is_needed(data)
         if self._probes:
             self._probes = False
-            self.stage = STALE  # an interrupt amid it leaves constraints as they are while it solves
+            self.stage = STALE  # an interrupt during the solve leaves unfinished constraints
             self._uses_law = self.law.solve(data, self._closing, probes=True) or self._uses_law
         elif self._uses_law or is_shaped:
             self.stage = STALE
@@ -120,15 +121,16 @@ class ForwardPass(PhysicsState):
         self.stage = FRESH
 
     def _check_controls(self) -> None:
-        """Notices controls that were written to the engine's data directly."""
+        """Detect controls that were written directly to the engine's data."""
         if not np.array_equal(self._controls, self.data.ctrl):
             self._controls[:] = self.data.ctrl
             self.changed(CONTROL)
 
     def fresh_accelerations(self) -> mujoco.MjData:
-        """The same, with body accelerations and the forces between bodies.
+        """Return the data with a forward pass, body accelerations and the forces between bodies.
 
-        Forces of the last step only are counted in: they made the motion, and what a motor holds is not in free fall.
+        The forces of the last step are included, even if they are applied for one step only. They caused the motion, so
+        a joint under a motor does not appear to be in free fall.
         """
         if self.shows_applied and self._has_passed():
             return self.data_of(self.hold())
@@ -139,7 +141,10 @@ class ForwardPass(PhysicsState):
         return data
 
     def hold(self) -> HeldState:
-        """The state of this tick, with the forces of the step that led to it, shared by all who ask at it."""
+        """Store the state of this tick with the forces of the step that led to it.
+
+        All readers of a tick share one stored state.
+        """
         if self.checks_controls:
             self._check_controls()
         if self._held is None or self._held.tick != self.tick:
@@ -161,11 +166,14 @@ class ForwardPass(PhysicsState):
         return self._held
 
     def data_of(self, held: HeldState) -> mujoco.MjData:
-        """An `MjData` with forward pass and accelerations of a held state: a second one, unless it is that of now."""
-        if self.checks_controls:  # those of the held state are others then
+        """Return an `MjData` with forward pass and accelerations of a stored state.
+
+        The result is a second `MjData`, unless the stored state is the present one.
+        """
+        if self.checks_controls:  # a direct write makes the stored state differ from the present one
             self._check_controls()
         if self._held is held and held.tick == self.tick and not (self.sleep.watches or self.shows_applied):
-            return self.fresh_accelerations()  # nothing was written since: the step goes on from it
+            return self.fresh_accelerations()  # unchanged since: the next step continues from this forward pass
         if self._reader_data is None or (self._reader_state is not None and self._reader_state.model is not held.model):
             self._reader_data = mujoco.MjData(held.model)
             self._reader_state = None
@@ -178,9 +186,9 @@ class ForwardPass(PhysicsState):
         return self._reader_data
 
     def _forward_held(self, held: HeldState, data: mujoco.MjData) -> None:
-        """Make the forward pass of a held state as the step did."""
+        """Make the forward pass of a stored state in the same way as the step did."""
         law, shaper, fast = self.law, self.shaper, self.fast_bodies
-        if law.model is not held.model:  # a spawn or a removal has come between
+        if law.model is not held.model:  # a spawn or a removal has replaced the model
             law, shaper, fast = ContactLaw(held.model), None, FastBodyDetector(held.model)
         is_fast = fast.wants(data) if held.is_fast is None else held.is_fast
         set_speculative(held.model, is_fast)
@@ -200,5 +208,5 @@ class ForwardPass(PhysicsState):
             set_speculative(self.model, self._is_fast)
 
     def _has_passed(self) -> bool:
-        """Whether the last step had forces of its own, and none is set for the next."""
+        """Check whether the last step had one-shot forces and the next step has none."""
         return not self.one_shot and bool(self.last_applied.any() or self.last_pushed.any())

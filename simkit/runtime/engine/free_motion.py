@@ -1,9 +1,9 @@
-"""Accurate integration of long chains without damping and of bodies that spin fast.
+"""Accurate integration of long undamped chains and of bodies that spin fast.
 
-The engine's implicit integrators are of first order. A chain of 50 links that falls gains energy under them until it
-diverges; a top of 400 rad/s on a ball joint falls over and diverges. An arm with servos or damping does not notice.
-So these kinematic trees are integrated by the Runge-Kutta method of fourth order, in substeps that follow the fastest
-joint, on a second `MjData`. Trees without constraint forces do not depend on each other, so all others keep their bits.
+MuJoCo's implicit integrators are of first order. With them, a falling chain of 50 links gains energy until it diverges.
+A top with 400 rad/s on a ball joint falls over and diverges. An arm with servos or damping is not affected. These
+kinematic trees are integrated by the Runge-Kutta method of fourth order on a second `MjData`, in substeps that follow
+the fastest joint. Trees without constraint forces do not depend on each other, so all other trees keep their bits.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ import numpy.typing as npt
 from simkit.compiler.state_transfer import JOINT_WIDTHS
 
 MIN_CHAIN_LENGTH: Final = 8
-"""Passive joints in a row from which on a tree counts as a chain; arms have seven."""
+"""Least number of passive joints in a row that make a tree a chain; arms have seven."""
 
 MIN_TURN: Final = 0.005
-"""[rad] of turn in a step from which on a body that may spin, which is no chain, is integrated here."""
+"""Least rotation per step [rad] at which a body that may spin, outside a chain, is integrated here."""
 
 MAX_SUBSTEP_TURN: Final = 0.05
-"""[rad] by which the fastest joint turns within a substep; 0.05 keeps the energy of 50 links within 0.03 %."""
+"""Largest rotation of the fastest joint in a substep [rad]; 0.05 keeps the energy of 50 links within 0.03 %."""
 
 MAX_SUBSTEPS: Final = 16
 
@@ -38,11 +38,11 @@ _FREE, _BALL, _HINGE = (
 
 
 class PassiveTree:
-    """Degrees of freedom and positions of one kinematic tree.
+    """Degrees of freedom and coordinates of one kinematic tree.
 
     Attributes:
-        turning: those degrees of freedom whose velocity is in rad/s.
-        is_chain: whether it holds a chain; else it holds a body that may spin.
+        turning: indices of the degrees of freedom whose velocity is in rad/s.
+        is_chain: True for a tree with a chain; False for a tree with a body that may spin.
     """
 
     def __init__(self, model: mujoco.MjModel, number: int, is_chain: bool) -> None:
@@ -59,9 +59,9 @@ class PassiveTree:
 
 
 class FreeMotionIntegrator:
-    """Integrator of the trees of one compiled model that the engine's own integrator does not suit.
+    """Integrator for the trees of a compiled model that the engine's own integrator does not suit.
 
-    Usage in every step: `prepare`, the engine's own step, `correct`.
+    Use in every step: `prepare`, the engine's own step, `correct`.
     """
 
     def __init__(self, model: mujoco.MjModel, trees: list[PassiveTree]) -> None:
@@ -72,7 +72,7 @@ class FreeMotionIntegrator:
 
     @classmethod
     def of(cls, model: mujoco.MjModel) -> FreeMotionIntegrator | None:
-        """Return the integrator of a model; None where no tree needs it."""
+        """Return the integrator of a model; None if no tree needs it."""
         driven, lengths = _driven_trees(model), _chain_lengths(model)
         found = []
         for number in range(model.ntree):
@@ -106,7 +106,7 @@ class FreeMotionIntegrator:
             option.disableflags, option.enableflags = disabled, enabled
 
     def correct(self, data: mujoco.MjData) -> None:
-        """Write the integrated states of all trees that no constraint has acted on to the stepped data."""
+        """Write the integrated states to the stepped data, for all trees without constraint forces."""
         own, forces = self._data, data.qfrc_constraint
         for tree in self._moving:
             dofs, at = tree.dofs, tree.coordinates
@@ -121,13 +121,13 @@ def _index_range(starts: npt.NDArray[np.int32], counts: npt.NDArray[np.int32], i
 
 
 def _resisting_dofs(model: mujoco.MjModel) -> npt.NDArray[np.bool_]:
-    """Return which degrees of freedom have damping, friction or armature."""
+    """Return a mask of the degrees of freedom that have damping, friction or armature."""
     found: npt.NDArray[np.bool_] = (model.dof_damping != 0) | (model.dof_frictionloss != 0) | (model.dof_armature != 0)
     return found
 
 
 def _chain_lengths(model: mujoco.MjModel) -> dict[int, int]:
-    """Return how many bodies in a row move on passive joints alone, at most, by tree."""
+    """Return the largest number of successive bodies on passive joints alone, by tree."""
     resisting = _resisting_dofs(model)
     longest: dict[int, int] = {}
     length = np.zeros(model.nbody, int)
@@ -143,7 +143,7 @@ def _chain_lengths(model: mujoco.MjModel) -> dict[int, int]:
 
 
 def _may_spin(model: mujoco.MjModel, tree: int) -> bool:
-    """Check whether a tree is passive and turns on a ball joint, or flies and has nothing that collides."""
+    """Check whether a tree is passive and has a ball joint, or moves freely without collisions."""
     dofs = _index_range(model.tree_dofadr, model.tree_dofnum, tree)
     kinds = set(model.jnt_type[model.dof_jntid[dofs]].tolist())
     if _resisting_dofs(model)[dofs].any():
@@ -155,7 +155,7 @@ def _may_spin(model: mujoco.MjModel, tree: int) -> bool:
 
 
 def _driven_trees(model: mujoco.MjModel) -> set[int]:
-    """Return the trees with a joint that an actuator moves; every other kind of actuator drives all of them."""
+    """Return the trees with an actuated joint; an actuator of any other kind counts as driving all trees."""
     driven: set[int] = set()
     joints = (int(mujoco.mjtTrn.mjTRN_JOINT), int(mujoco.mjtTrn.mjTRN_JOINTINPARENT))
     for kind, target in zip(model.actuator_trntype.tolist(), model.actuator_trnid[:, 0].tolist(), strict=True):

@@ -1,4 +1,4 @@
-"""State of the physics between two steps: MuJoCo's model and data, and how much is up to date; report of divergence."""
+"""State of the physics between two steps: MuJoCo's model and data, their stage of update, and divergence errors."""
 
 from __future__ import annotations
 
@@ -25,18 +25,18 @@ _BAD: Final = (BAD_POSITION, BAD_VELOCITY, BAD_ACCELERATION)
 
 
 class EngineWarnings:
-    """Texts of MuJoCo's warnings, which has one place for them in a process."""
+    """Texts of MuJoCo's warnings; MuJoCo has one warning callback per process."""
 
     def __init__(self) -> None:
         self._texts: list[str] = []
 
     def record(self, text: str) -> None:
-        """Keeps a text; an exception here would end the interpreter."""
+        """Store a text; an exception here would end the interpreter."""
         if len(self._texts) < 8:
             self._texts.append(text)
 
     def take_first(self) -> str:
-        """Returns the first text and forgets all."""
+        """Return the first text and clear all texts."""
         text = self._texts[0] if self._texts else ""
         self._texts.clear()
         return text
@@ -46,12 +46,13 @@ ENGINE_WARNINGS: Final = EngineWarnings()
 
 
 def divergence(model: mujoco.MjModel, data: mujoco.MjData, clock: Clock, tick: int) -> SimulationDiverged:
-    """Return the error for a state of which MuJoCo counts NaN or infinite numbers.
+    """Return the error for a state in which MuJoCo counted NaN or infinite numbers.
 
     Args:
-        model, data: of MuJoCo.
-        clock: gives the time of a tick.
-        tick: of the state.
+        model: MuJoCo's model.
+        data: MuJoCo's data.
+        clock: conversion of ticks to time.
+        tick: tick of the state.
     """
     counts = data.warning.number
     first = max(0, tick - max(int(counts[w]) for w in _BAD))
@@ -68,31 +69,31 @@ def divergence(model: mujoco.MjModel, data: mujoco.MjData, clock: Clock, tick: i
 
 
 FRESH, CONTROL, VELOCITY, STALE = range(4)
-"""How much of the forward pass is out of date: nothing, accelerations, velocities on, all."""
+"""Part of the forward pass that is out of date: nothing, accelerations, velocities and later, everything."""
 
 INTEGRATION_STATE = int(mujoco.mjtState.mjSTATE_INTEGRATION)
 
-mj_check_pos, mj_check_vel = mujoco.mj_checkPos, mujoco.mj_checkVel  # looked up once
+mj_check_pos, mj_check_vel = mujoco.mj_checkPos, mujoco.mj_checkVel  # looked up once for speed
 _INTEGRATORS = {
     int(mujoco.mjtIntegrator.mjINT_IMPLICITFAST): mujoco.mj_implicit,
     int(mujoco.mjtIntegrator.mjINT_IMPLICIT): mujoco.mj_implicit,
     int(mujoco.mjtIntegrator.mjINT_EULER): mujoco.mj_Euler,
     int(mujoco.mjtIntegrator.mjINT_RK4): lambda model, data: mujoco.mj_RungeKutta(model, data, 4),
 }
-_MIN_PUSH = 0.2  # [m/s²] of the rims of wheels, by a change of controls, from which contacts are looked at
-_LEVER = 0.1  # [m] of what a hinge moves
+_MIN_PUSH = 0.2  # [m/s²] least acceleration of wheel rims, by a change of controls, that starts a check of the contacts
+_LEVER = 0.1  # [m] assumed radius of a body on a hinge
 
 
 class StepWindow(NamedTuple):
-    """How the steps up to the next look at the contacts are made.
+    """Step method up to the next check of the contacts.
 
     Attributes:
-        uses_law: whether they follow the contact law.
-        until: tick of the next look at the contacts.
-        is_fast: whether they have speculative contacts.
-        fast_until: tick of the next look at the speeds.
-        probes: whether controls or forces have changed so that contacts may begin to slide.
-        probed: the controls at the last look at what they push, shape (nu,); empty for those of now.
+        uses_law: the steps follow the contact law.
+        until: tick of the next check of the contacts.
+        is_fast: the steps have speculative contacts.
+        fast_until: tick of the next check of the speeds.
+        probes: controls or forces have changed so much that contacts may begin to slide.
+        probed: controls at the last check of their effect, shape (nu,); empty for the present controls.
     """
 
     uses_law: bool = False
@@ -105,16 +106,16 @@ class StepWindow(NamedTuple):
 
 @dataclass(slots=True, eq=False)
 class HeldState:
-    """The physics state of one tick, which is kept so that a sensor can be read later.
+    """Stored physics state of one tick, so that a sensor can be read later.
 
     Attributes:
-        tick: the tick.
-        model: of the engine, that the state is of.
-        values: of the engine (`mjSTATE_INTEGRATION`).
-        request: what plugins asked of contacts at that tick, for `ContactShaper.shape`.
-        uses_law, is_fast: whether its step follows the contact law, and has speculative contacts; None where that is
-            still to be found from the state.
-        probes: whether controls or forces have changed before that step so that contacts may begin to slide.
+        tick: tick of the state.
+        model: MuJoCo's model of the state.
+        values: state vector of MuJoCo (`mjSTATE_INTEGRATION`).
+        request: contact changes that plugins requested at that tick, for `ContactShaper.shape`.
+        uses_law: the step follows the contact law; None if the state still has to decide.
+        is_fast: the step has speculative contacts; None if the state still has to decide.
+        probes: controls or forces changed before the step so much that contacts may begin to slide.
     """
 
     tick: int
@@ -130,17 +131,18 @@ class HeldState:
 
 
 class PhysicsState:
-    """`MjModel` and `MjData`, the tick that they belong to, and what of them is up to date.
+    """`MjModel` and `MjData`, their tick, and the parts of the data that are up to date.
 
     Args:
-        model, data: of MuJoCo.
-        clock: gives the length of a step.
-        may_sleep: whether bodies at rest may be left out.
+        model: MuJoCo's model.
+        data: MuJoCo's data.
+        clock: source of the step length.
+        may_sleep: True if bodies at rest may sleep.
 
     Attributes:
-        law: forces of contacts that slide, hit or overlap; of the present model.
-        shaper: changes contacts before they are solved for, if anything does; of the present model.
-        edition: another number after everything that was written, which steps do not count as.
+        law: forces of contacts that slide, hit or overlap; for the present model.
+        shaper: function object that changes contacts before the solve; None without changes; for the present model.
+        edition: counter that changes with every write to the state, but not with steps.
     """
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, clock: Clock, may_sleep: bool = True) -> None:
@@ -150,7 +152,7 @@ class PhysicsState:
         self.rebind(model, data)
 
     def rebind(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
-        """Other engine objects (after a spawn, a removal, a restore)."""
+        """Replace the engine objects (after a spawn, a removal or a restore)."""
         self.model, self.data = model, data
         self._uses_law: bool
         self._until: int
@@ -177,13 +179,13 @@ class PhysicsState:
         self._reader_data: mujoco.MjData | None = None
         self._reader_state: HeldState | None = None
         self._warnings = data.warning.number
-        self.checks_controls = False  # whether the user may write to `data.ctrl` without a word
+        self.checks_controls = False  # True if user code may write to `data.ctrl` directly
         self._controls = data.ctrl.copy()
         self._integrate = _INTEGRATORS.get(int(model.opt.integrator))
         self._has_stages = model.opt.integrator == mujoco.mjtIntegrator.mjINT_RK4
 
     def _analyse(self) -> None:
-        """Find out of the model what decides how steps are made."""
+        """Derive the objects that decide the step method from the model."""
         model = self.model
         self.law, self.fast_bodies = ContactLaw(model), FastBodyDetector(model)
         is_implicit = model.opt.integrator == mujoco.mjtIntegrator.mjINT_IMPLICITFAST
@@ -191,7 +193,10 @@ class PhysicsState:
         self._analysed, self._is_analysed = _step_fields(model), True
 
     def _analyse_if_changed(self) -> None:
-        """Do it once more if a field was written to that it depends on, so that it follows from the present model."""
+        """Repeat the analysis if one of its model fields was written to.
+
+        The step method thus depends on the present model only.
+        """
         self._is_analysed = True
         if _step_fields(self.model) != self._analysed:
             on_approach = self.fast_bodies.on_approach
@@ -201,44 +206,45 @@ class PhysicsState:
     # ------------------------------------------------------------------ writing
 
     def changed(self, stage: int) -> None:
-        """Says that controls or forces (CONTROL), velocities (VELOCITY) or positions (STALE) were written."""
+        """Record a write to controls or forces (CONTROL), velocities (VELOCITY) or positions (STALE)."""
         self.stage = max(self.stage, stage)
         self.edition += 1
         self._held = None
         self._accelerations_tick = -1
         self.sleep.rests = False
         if stage > CONTROL:
-            self._until = self._fast_until = -1  # velocities are others than those that decided how steps are made
+            self._until = self._fast_until = -1  # the step method was chosen for the previous velocities
         elif not self._probes:
             self._probes = self.one_shot or self._is_pushed()
 
     def changed_body(self, stage: int, body: int) -> None:
-        """The same of one body, which wakes where it sleeps."""
+        """Record a write to one body and wake the body if it sleeps."""
         self.changed(STALE if self.sleep.watches and self.sleep.wake(body) else stage)
 
     def set_persistent_wrenches(
         self, wrenches: Mapping[int, npt.NDArray[np.float64]], *, are_applied: bool = False
     ) -> None:
-        """Wrenches (force, torque) on bodies that hold until they are set anew; all others are let go.
+        """Set the wrenches (force, torque) on bodies that persist until they are replaced; clear all others.
 
         Args:
-            are_applied: the data have them already (a restored state).
+            wrenches: wrenches by body id, shape (6,) [N, N·m].
+            are_applied: True if the data already contain the wrenches (a restored state).
         """
         before = self.persistent_wrenches
         self.persistent_wrenches = np.zeros_like(before)
         for body, wrench in wrenches.items():
             self.persistent_wrenches[body] = wrench
             if are_applied and not self.data.xfrc_applied[body].any():
-                self.data.xfrc_applied[body] = wrench  # a link that came back by its name
+                self.data.xfrc_applied[body] = wrench  # a link was spawned again under the same name
         if not are_applied:
             self.data.xfrc_applied += self.persistent_wrenches - before
             for changed in np.flatnonzero((self.persistent_wrenches != before).any(axis=1)):
                 self.changed_body(CONTROL, int(changed))
 
     def applied_forces(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
-        """Forces on joints, shape (nv,), and on bodies, shape (nbody, 6), of the last step [N, N m].
+        """Return the applied forces on joints, shape (nv,), and on bodies, shape (nbody, 6), of the last step [N, N·m].
 
-        Those that hold for one step are gone from the state by then, and remembered.
+        Forces that lasted for one step only are included, although the state no longer contains them.
         """
         applied, pushed = self.data.qfrc_applied, self.data.xfrc_applied
         if self.shows_applied:
@@ -246,19 +252,22 @@ class PhysicsState:
         return applied, pushed
 
     def changed_surface(self) -> None:
-        """Says that a surface runs otherwise than before: whatever may lie on it wakes."""
+        """Record a changed motion of a surface; wake all bodies that may lie on it."""
         if self.sleep.is_drowsy or (self.data.tree_asleep >= 0).any():
             self.sleep.wake_all()
         self.changed(STALE)
 
     def changed_model(self) -> None:
-        """Says that the model itself is about to be written to: everything wakes."""
+        """Record that the model is about to be written to; wake all bodies."""
         self.sleep.wake_all()
         self._reader_data, self._is_analysed = None, False
         self.changed(STALE)
 
     def changed_lights(self) -> None:
-        """Says that lights of the model moved: where bodies may sleep, the engine computes those of the world once."""
+        """Update moved lights in the data.
+
+        MuJoCo computes the lights of the world only once while bodies may sleep.
+        """
         self._reader_data = None
         options = self.model.opt
         flags = options.enableflags
@@ -267,12 +276,12 @@ class PhysicsState:
         options.enableflags = flags
 
     def changed_contacts(self) -> None:
-        """Says that contacts are to be found anew."""
+        """Record that contacts must be detected again."""
         self.changed(STALE)
 
     def check(self) -> None:
-        """Raises SimulationDiverged where the engine met a bad number since the last reset of its counters."""
-        if self.sleep.rests:  # found sound before
+        """Raise SimulationDiverged if the engine met NaN or infinite numbers since the last reset of its counters."""
+        if self.sleep.rests:  # the resting state was checked before
             return
         data = self.data
         mj_check_pos(self.model, data)
@@ -282,7 +291,7 @@ class PhysicsState:
             raise divergence(self.model, data, self.clock, self.tick)
 
     def clear_warnings(self) -> None:
-        """Forgets what the engine warned of (a restored state is sound)."""
+        """Clear the engine's warnings, because a restored state has none."""
         self._warnings[:] = 0
         ENGINE_WARNINGS.take_first()
 
@@ -290,7 +299,7 @@ class PhysicsState:
 
     @property
     def window(self) -> StepWindow:
-        """How the steps up to the next look are made; part of the state."""
+        """Step method up to the next check of the contacts; part of the state."""
         return StepWindow(
             self._uses_law, self._until, self._is_fast, self._fast_until, self._probes, tuple(self._probed.tolist())
         )
@@ -302,7 +311,7 @@ class PhysicsState:
         set_speculative(self.model, self._is_fast)
 
     def _is_pushed(self) -> bool:
-        """Return whether controls differ so much from those of the last look that wheels may begin to slip."""
+        """Check whether controls changed so much since the last check that wheels may begin to slip."""
         change = (self.data.ctrl - self._probed) * self._push
         if change.dot(change) <= _MIN_PUSH * _MIN_PUSH:
             return False
@@ -311,18 +320,19 @@ class PhysicsState:
 
 
 def _step_fields(model: mujoco.MjModel) -> list[bytes]:
-    """Return the fields of a model that are written to in a run and decide how steps are made."""
+    """Return the fields of a model that a run may write to and that decide the step method."""
     fields = model.geom_contype, model.geom_conaffinity, model.jnt_range, model.jnt_limited
     return [field.tobytes() for field in (*fields, model.dof_damping, model.dof_frictionloss)]
 
 
 def set_speculative(model: mujoco.MjModel, is_on: bool) -> None:
+    """Enable or disable MuJoCo's speculative contacts."""
     flags = model.opt.enableflags
     model.opt.enableflags = flags | SPECULATIVE_FLAG if is_on else flags & ~SPECULATIVE_FLAG
 
 
 def _accelerations_by_control(model: mujoco.MjModel) -> npt.NDArray[np.float64]:
-    """Return how fast a unit of each control accelerates what its joint moves [m/s²], shape (nu,)."""
+    """Return the acceleration of the driven body per unit of each control [m/s²], shape (nu,)."""
     found = np.zeros(model.nu)
     for i in range(model.nu):
         if model.actuator_trntype[i] == mujoco.mjtTrn.mjTRN_JOINT:

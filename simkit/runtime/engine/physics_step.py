@@ -1,8 +1,8 @@
-"""The engine's state between two steps, and how it advances.
+"""Steps of the physics: advance MuJoCo's state without repeating forward passes.
 
-After `mj_step` the positions are one step ahead of everything computed from them, so whoever reads first makes the
-forward pass again. To go on from there the engine need not repeat it: integrating the forward that is there, then
-stepping k-1 times, gives the bits of k steps.
+After `mj_step` the positions are one step ahead of all values computed from them. The first reader repeats the forward
+pass. The next step continues from that forward pass: integrating it and then stepping k-1 times gives the bits of k
+steps.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ from simkit.runtime.engine.simulated_time import Clock
 
 __all__ = ["CONTROL", "FRESH", "STALE", "VELOCITY", "Physics"]
 
-# looked up once: the loop calls them every few microseconds
+# looked up once, because the loop calls these functions every few microseconds
 mj_step, mj_forward_skip = mujoco.mj_step, mujoco.mj_forwardSkip
 mj_fwd_position, mj_fwd_velocity = mujoco.mj_fwdPosition, mujoco.mj_fwdVelocity
 mj_check_pos, mj_check_vel, mj_check_acc = mujoco.mj_checkPos, mujoco.mj_checkVel, mujoco.mj_checkAcc
 
-_WALL_LIMIT = 0.04  # [s] of one call into the engine, so that an interrupt is heard
-_SHORT_RUN = 16  # steps; so few are not timed, which costs as much as a small step
+_WALL_LIMIT = 0.04  # [s] of one call into the engine, so that an interrupt is handled soon
+_SHORT_RUN = 16  # steps; fewer steps are not timed, because timing costs as much as a small step
 
 
 Integrator = Callable[[mujoco.MjModel, mujoco.MjData], None]
@@ -34,12 +34,13 @@ Integrator = Callable[[mujoco.MjModel, mujoco.MjData], None]
 
 
 class Physics(ForwardPass):
-    """MuJoCo's model and data, and how they advance.
+    """MuJoCo's model and data, and the functions that advance them.
 
     Args:
-        model, data: of MuJoCo.
-        clock: gives the length of a step.
-        may_sleep: whether bodies at rest may be left out.
+        model: MuJoCo's model.
+        data: MuJoCo's data.
+        clock: source of the step length.
+        may_sleep: True if bodies at rest may sleep.
     """
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, clock: Clock, may_sleep: bool = True) -> None:
@@ -47,7 +48,7 @@ class Physics(ForwardPass):
         super().__init__(model, data, clock, may_sleep)
 
     def advance(self, count: int) -> None:
-        """`count` steps; forces that hold for one step only are gone after the first."""
+        """Make `count` steps; forces that last for one step only are cleared after the first."""
         sleep = self.sleep
         if not (self.shows_applied or self.one_shot or sleep.counts or sleep.wants_all_awake) and count <= self._short:
             if count > 0:
@@ -68,7 +69,7 @@ class Physics(ForwardPass):
             self._clear_one_shot()
             count -= 1
             if not count:
-                # what was applied in the last step is what `Joint.effort` tells of it
+                # `Joint.effort` reports the forces that were applied in this step
                 self.shows_applied = True
                 return
             self.last_applied[:] = self.last_pushed[:] = 0
@@ -83,17 +84,17 @@ class Physics(ForwardPass):
             count -= chunk
 
     def single(self) -> None:
-        """One step."""
-        is_odd = self._uses_law or self._probes or self.one_shot or self.shows_applied or self.sleep.watches
-        is_odd = is_odd or self.shaper is not None or self.free_motion is not None
-        if not is_odd and self.stage == STALE and self.tick < self._until:
+        """Make one step."""
+        is_special = self._uses_law or self._probes or self.one_shot or self.shows_applied or self.sleep.watches
+        is_special = is_special or self.shaper is not None or self.free_motion is not None
+        if not is_special and self.stage == STALE and self.tick < self._until:
             mj_step(self.model, self.data)
             self.tick += 1
         else:
             self.advance(1)
 
     def _rest(self, count: int) -> None:
-        """Time goes on, added up as the engine does."""
+        """Advance the time alone, with the same floating-point sum as the engine."""
         data, step = self.data, self.clock.timestep
         if count < _SHORT_RUN:
             now = data.time
@@ -138,7 +139,7 @@ class Physics(ForwardPass):
                 self._plain_steps(min(end, self._until) - self.tick, integrate)
 
     def _plain_steps(self, count: int, integrate: Integrator) -> None:
-        """Steps by the engine alone, which goes on from what of the forward pass is there."""
+        """Make steps by the engine alone, from the part of the forward pass that is up to date."""
         model, data, stage = self.model, self.data, self.stage
         if stage == STALE:
             mj_step(model, data, count)
@@ -153,21 +154,21 @@ class Physics(ForwardPass):
         self.tick += count
 
     def _step_by_law(self, integrate: Integrator) -> None:
-        """One step that stops at the velocities, to look at the contacts and to solve for them by the law."""
+        """Make one step that checks the contacts after the velocities and solves them by the contact law."""
         model, data, stage, free_motion = self.model, self.data, self.stage, self.free_motion
         if stage == STALE:
             mj_check_pos(model, data)
             mj_check_vel(model, data)
         is_decided = self._uses_law and self.tick < self._until and self.tick < self._fast_until
         if is_decided and stage == STALE and not (self._probes or self.shaper or self.sleep.wants_all_awake):
-            mj_fwd_position(model, data)  # `_forward` without its questions: a tenth of a step with one box
+            mj_fwd_position(model, data)  # inlined `_forward`: saves a tenth of a step with one box
             mj_fwd_velocity(model, data)
             self.law.solve(data, self._closing)
         elif stage:
             self._forward()
         mj_check_acc(model, data)
         self.stage = STALE
-        if free_motion is not None:  # after the forward pass, which wakes who sleeps
+        if free_motion is not None:  # after the forward pass, which wakes bodies
             free_motion.prepare(data)
         if self._has_stages and (self._uses_law or self._acting_shaper is not None):
             with call_before_forces(data, self._correct_stage):
@@ -179,7 +180,7 @@ class Physics(ForwardPass):
         self.tick += 1
 
     def _correct_stage(self) -> None:
-        """Change the contacts of one of the inner stages of an integrator; the engine then solves for them."""
+        """Change the contacts in an inner stage of an integrator; the engine then solves for them."""
         shaper = self._acting_shaper
         if shaper is not None:
             shaper.shape(self.data)

@@ -1,8 +1,7 @@
-"""What becomes of a plugin that raises: it stops the run, or it is left out from then on.
+"""Handling of plugins that raise: an exception stops the run, or disables the plugin from then on.
 
-Everything of a plugin that is called while the run goes, hooks and callbacks, is called through `PluginFaults.guard`.
-Who watches from another thread finds what is being called in the stack (`active_plugin_calls`), so that watching costs
-nothing.
+`PluginFaults.guard` wraps every hook and callback of a plugin that is called during a run. A watcher on another thread
+finds the active call in the stack (`active_plugin_calls`), so that watching costs nothing.
 """
 
 from __future__ import annotations
@@ -28,13 +27,13 @@ PLUGIN_ERROR_POLICIES: Final[tuple[PluginErrorPolicy, ...]] = ("stop", "disable"
 
 @dataclass(frozen=True, slots=True)
 class PluginCall:
-    """A plugin's hook or callback that is at work.
+    """Running hook or callback of a plugin.
 
     Attributes:
-        plugin: whose.
-        hook: which, in words.
-        frame: its frame, another for another call.
-        line: file:line where it is now, and the function.
+        plugin: plugin of the call.
+        hook: name of the hook or callback.
+        frame: stack frame of the call; every call has its own.
+        line: file:line and function that are being executed.
     """
 
     plugin: AttachedPlugin
@@ -47,22 +46,22 @@ class PluginInterfaces(Protocol):
     """Topics, services, actions and parameters of plugins."""
 
     def set_active(self, owners: Sequence[object]) -> None:
-        """Leaves only what these plugins and sensors opened in use."""
+        """Keep only the interfaces that these plugins and sensors opened in use."""
 
     def abandon(self, owner: object, reason: str) -> None:
-        """Ends what a plugin is at work on for others."""
+        """Abort the requests and goals that a plugin is processing."""
 
 
 class PluginFaults:
-    """Calls what plugins are made of, and knows which of them are left out.
+    """Caller of plugin code; keeps the set of disabled plugins.
 
     Args:
-        engine: whose plugins.
-        reschedule: called when a plugin is left out.
-        on_error: what the user asked for, which goes over what files and classes say; None leaves it to them.
+        engine: engine of the plugins.
+        reschedule: function that is called when a plugin is disabled.
+        on_error: policy of the user, with priority over files and classes; None uses theirs.
 
     Attributes:
-        interfaces: what plugins have opened.
+        interfaces: topics, services, actions and parameters that plugins have opened.
     """
 
     interfaces: PluginInterfaces
@@ -73,27 +72,27 @@ class PluginFaults:
         self._engine, self._reschedule, self.on_error = engine, reschedule, on_error
         self._disabled: dict[int, AttachedPlugin] = {}
 
-    # ------------------------------------------------------------------ who is at work
+    # ------------------------------------------------------------------ enabled plugins
 
     def is_disabled(self, plugin: AttachedPlugin) -> bool:
-        """Whether a plugin raised and is left out."""
+        """Check whether a plugin raised and is disabled."""
         return id(plugin) in self._disabled
 
     def living(self, structure: WorldStructure) -> list[AttachedSensor | AttachedPlugin]:
-        """The sensors and plugins of a structure, without the plugins that are left out."""
+        """Return the sensors and plugins of a structure, without disabled plugins."""
         plugins = structure.all_plugins()
         return [*structure.all_sensors(), *(p for p in plugins if id(p) not in self._disabled)]
 
     def policy(self, plugin: AttachedPlugin) -> PluginErrorPolicy:
-        """What becomes of this plugin when it raises: what the user asked for, else the file, else the class."""
+        """Return the error policy of a plugin: that of the user, else of the file, else of the class."""
         return self.on_error or plugin.on_error or "stop"
 
     # ------------------------------------------------------------------ calling
 
     def guard(self, plugin: object, hook: str, method: Callable[..., R]) -> Callable[..., R | None]:
-        """A hook or callback as something to call: what it raises stops the run, or takes the plugin out of it.
+        """Wrap a hook or callback: its exceptions stop the run or disable the plugin.
 
-        Of a plugin that is left out it does nothing and gives None.
+        The wrapper of a disabled plugin does nothing and returns None.
         """
         disabled, key = self._disabled, id(plugin)
 
@@ -109,7 +108,7 @@ class PluginFaults:
         return call
 
     def task(self, plugin: object, hook: str) -> Callable[[int], None]:
-        """A hook without arguments as a task of the scheduler."""
+        """Return a hook without arguments as a task of the scheduler."""
         disabled, key, method = self._disabled, id(plugin), getattr(plugin, hook)
 
         def call(_: int = 0) -> None:
@@ -123,12 +122,12 @@ class PluginFaults:
         return call
 
     def meet(self, plugin: Any, hook: str, error: Exception) -> None:
-        """Stops the run, or goes on without the plugin; to be called while the exception is being handled.
+        """Handle an exception of a plugin: stop the run or disable the plugin. Call it inside the `except` block.
 
         Raises:
-            PluginError: the run is to stop; the exception is its `__cause__`.
-            SimkitError: the exception itself, where it is not of the plugin's making: the physics diverged, there is
-                no renderer, another plugin stopped the run.
+            PluginError: the policy is "stop"; the exception is its `__cause__`.
+            SimkitError: the exception itself, if the plugin did not cause it: the physics diverged, there is no
+                renderer, or another plugin stopped the run.
         """
         if isinstance(error, SimkitError) and not isinstance(error, InputError):
             raise error
@@ -138,11 +137,14 @@ class PluginFaults:
             isinstance(error, RecursionError)
             and sum(c.plugin is plugin for c in active_plugin_calls(sys._getframe())) > 1
         ):
-            raise error  # there is no room left to do anything in; the outermost call of it meets it again
+            raise error  # the stack is full; the outermost call of the plugin handles it
         self.disable(plugin, hook, error)
 
     def state_of(self, plugin: AttachedPlugin) -> AttachedState:
-        """What a snapshot keeps of a plugin; None of one that raised over it and is left out."""
+        """Return the state of a plugin for a snapshot.
+
+        A plugin that raises in `get_state` and is disabled gives None.
+        """
         try:
             return call_plugin(plugin, "get_state", plugin.get_state)
         except Exception as error:  # noqa: BLE001 - a plugin may raise anything
@@ -151,7 +153,7 @@ class PluginFaults:
         return None
 
     def take_back(self, plugin: AttachedPlugin, state: AttachedState) -> None:
-        """Brings a plugin back to what `state_of` gave."""
+        """Restore a plugin to a state from `state_of`."""
         if state is None:
             return
         try:
@@ -160,21 +162,21 @@ class PluginFaults:
             if not self.is_disabled(plugin):
                 self.meet(plugin, "set_state", error)
 
-    # ------------------------------------------------------------------ leaving out
+    # ------------------------------------------------------------------ disabling
 
     def disable(self, plugin: AttachedPlugin, hook: str, error: BaseException) -> None:
-        """Leaves a plugin out from now on: no hook of it runs, nothing it opened is there, its servos let go."""
+        """Disable a plugin: stop calling its hooks, close its interfaces and release its servos."""
         engine = self._engine
         if id(plugin) in self._disabled:
             return
         self._disabled[id(plugin)] = plugin
         last = " ".join(traceback.format_exception_only(error)[-1].split())
-        text = f"plugin {plugin.name!r} raised in {hook} at t={engine.time:.6g} s and is left out from then on: {last}"
-        place = innermost_frame(error.__traceback__)
-        engine.reports.warning("SK-PLUGIN-020", text, plugin.where, f"raised at {place}" if place else "")
-        engine.log.warning("%s: %s (%s)", plugin.where, text, place)
+        text = f"plugin {plugin.name!r} raised in {hook} at t={engine.time:.6g} s and is disabled from then on: {last}"
+        line = innermost_frame(error.__traceback__)
+        engine.reports.warning("SK-PLUGIN-020", text, plugin.where, f"raised at {line}" if line else "")
+        engine.log.warning("%s: %s (%s)", plugin.where, text, line)
         self._apply()
-        self.interfaces.abandon(plugin, f"plugin {plugin.name!r} is left out: {last}")
+        self.interfaces.abandon(plugin, f"plugin {plugin.name!r} is disabled: {last}")
         release_servos(engine, plugin)
         self._reschedule()
 
@@ -184,11 +186,11 @@ class PluginFaults:
     # ------------------------------------------------------------------ state
 
     def get_state(self) -> tuple[AttachedPlugin, ...]:
-        """Who is left out."""
+        """Return the disabled plugins."""
         return tuple(self._disabled.values())
 
     def set_state(self, state: Iterable[AttachedPlugin]) -> None:
-        """Back to a state from `get_state`: a plugin that raised since is at work again."""
+        """Restore a state from `get_state`; a plugin that raised since then is enabled again."""
         before = set(self._disabled)
         self._disabled.clear()
         self._disabled.update({id(plugin): plugin for plugin in state})
@@ -197,9 +199,9 @@ class PluginFaults:
 
 
 def release_servos(engine: EngineState, plugin: AttachedPlugin) -> None:
-    """Lets go of the joints that a plugin's servos and motors hold; snapshots and reset bring them back."""
-    there = {ref.name for record in engine.structure.builder.records.values() for ref in record.actuators}
-    refs = [ref for ref in plugin._actuators if ref.name in there]
+    """Release the joints that a plugin's servos and motors hold; a restore or reset undoes it."""
+    present = {ref.name for record in engine.structure.builder.records.values() for ref in record.actuators}
+    refs = [ref for ref in plugin._actuators if ref.name in present]
     if refs:
         gains, biases = engine.touch("actuator_gainprm"), engine.touch("actuator_biasprm")
         for ref in refs:
@@ -208,40 +210,40 @@ def release_servos(engine: EngineState, plugin: AttachedPlugin) -> None:
 
 
 def innermost_frame(trace: TracebackType | None) -> str:
-    """Where a traceback ends: file:line and function."""
+    """Return file:line and function of the innermost frame of a traceback."""
     frames = traceback.extract_tb(trace)
     return f"{frames[-1].filename}:{frames[-1].lineno} in {frames[-1].name}" if frames else ""
 
 
 def _guard_codes() -> frozenset[CodeType]:
-    """Of the functions through which plugins are called."""
+    """Return the code objects of the functions that call plugins."""
     makers = (PluginFaults.guard.__code__, PluginFaults.task.__code__, call_plugin.__code__)
     inner = [c for code in makers[:2] for c in code.co_consts if isinstance(c, CodeType) and c.co_name == "call"]
     return frozenset((*inner, call_plugin.__code__))
 
 
 def is_guarded(callback: object) -> bool:
-    """Whether it is of `Faults.guard`: what still comes out of it is to go on upwards."""
+    """Check whether a callback comes from `PluginFaults.guard`, so that its exceptions must propagate."""
     return getattr(callback, "__code__", None) in _guard_codes()
 
 
 def call_plugin(plugin: object, hook: str, method: Callable[..., R], *values: object) -> R:  # noqa: ARG001 - `active_plugin_calls` reads
-    """Calls something of a plugin that is not guarded (`prepare`, `load`), so that `active_plugin_calls` finds it."""
+    """Call an unguarded function of a plugin (`prepare`, `load`), so that `active_plugin_calls` finds the call."""
     return method(*values)
 
 
 def active_plugin_calls(frame: FrameType | None) -> list[PluginCall]:
-    """The calls of plugins in a stack, the innermost first; none where no plugin is at work.
+    """Return the calls of plugins in a stack, the innermost first.
 
     Args:
-        frame: the innermost frame of the stack, such as `sys._current_frames()` gives of a thread.
+        frame: innermost frame of the stack, such as an item of `sys._current_frames()`.
     """
     codes, found, now = _guard_codes(), [], frame
     while frame is not None and now is not None:
         if frame.f_code in codes:
             line = f"{now.f_code.co_filename}:{now.f_lineno} in {now.f_code.co_name}"
             names = frame.f_locals
-            if hasattr(names.get("plugin"), "where"):  # not a service that nobody's plugin offers
+            if hasattr(names.get("plugin"), "where"):  # not a service without a plugin
                 found.append(PluginCall(names["plugin"], names["hook"], frame, line))
             now = frame.f_back
         frame = frame.f_back
@@ -252,10 +254,10 @@ _MAX_EXPLANATIONS = 3
 
 
 def add_driver_hints(plugins: Sequence[object], error: SimulationDiverged) -> None:
-    """Adds to the error what plugins have to do with it.
+    """Add the explanations of plugins to a divergence error.
 
-    Those are asked that have a method `explain_divergence(name) -> str`: with the joint where it happened, and where
-    none of them drives that, with the model.
+    A plugin explains with its method `explain_divergence(name) -> str`. The name is that of the diverged joint. If no
+    plugin drives the joint, the name is that of the model.
     """
     found = _explanations(plugins, error.joint) or _explanations(plugins, error.joint.split("::")[0])
     if found:
@@ -267,5 +269,5 @@ def add_driver_hints(plugins: Sequence[object], error: SimulationDiverged) -> No
 
 
 def _explanations(plugins: Sequence[object], name: str) -> list[str]:
-    asked = (getattr(plugin, "explain_divergence", None) for plugin in plugins)
-    return [text for explain in asked if explain is not None and (text := explain(name))]
+    methods = (getattr(plugin, "explain_divergence", None) for plugin in plugins)
+    return [text for explain in methods if explain is not None and (text := explain(name))]

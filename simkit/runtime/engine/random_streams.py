@@ -1,4 +1,4 @@
-"""Randomness with names: a draw depends on (seed, scoped name, channel, sample index) and on nothing else."""
+"""Named random streams: a draw depends only on seed, scoped name, channel and sample index."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ def _stream_key(seed: int, scoped: str, channel: str) -> npt.NDArray[np.uint64]:
 
 
 class RandomStream:
-    """Numbers for the samples of one channel.
+    """Random numbers for the samples of one channel.
 
-    Samples are drawn in blocks, each from its own counter, so that any index can be had without the ones before it
-    while consecutive ones cost a table look-up.
+    Samples are drawn in blocks, each from its own counter. Any index can be drawn without the previous ones, while
+    consecutive indices cost a table look-up.
     """
 
     def __init__(self, seed: int, scoped: str, channel: str, width: int) -> None:
@@ -35,12 +35,12 @@ class RandomStream:
         self._normal_block = self._uniform_block = -1
 
     def generator(self, index: int, purpose: int = 0) -> np.random.Generator:
-        """A fresh generator for one index."""
+        """Return a new generator for one index."""
         counter = np.array((0, 0, index, purpose), dtype=np.uint64)
         return np.random.Generator(np.random.Philox(key=self._key, counter=counter))
 
     def normal(self, index: int) -> Values:
-        """Standard normal numbers of a sample, shape (width,); a view that must not be written to."""
+        """Return the standard normal numbers of a sample, shape (width,); a view that must not be written to."""
         block, row = divmod(index, self._rows)
         if block != self._normal_block:
             self._normals = self.generator(block, 1).standard_normal((self._rows, self.width))
@@ -49,13 +49,16 @@ class RandomStream:
         return values
 
     def normals(self, index: int, most: int) -> Values:
-        """The same of up to `most` samples from `index` on: those that are drawn together, shape (count, width)."""
+        """Return the standard normal numbers of up to `most` samples from `index` on, shape (count, width).
+
+        The result ends at the end of the block.
+        """
         self.normal(index)
         row = index % self._rows
         return self._normals[row : row + most]
 
     def uniform(self, index: int) -> Values:
-        """Numbers of a sample, evenly spread within ±1, shape (width,); a view that must not be written to."""
+        """Return the numbers of a sample, uniform within ±1, shape (width,); a view that must not be written to."""
         block, row = divmod(index, self._rows)
         if block != self._uniform_block:
             self._uniforms = self.generator(block, 2).uniform(-1.0, 1.0, (self._rows, self.width))
@@ -68,13 +71,13 @@ class RandomStream:
 
 
 class RandomStreams:
-    """All streams of a run.
+    """All random streams of a run.
 
     Args:
-        seed: any whole number; its absolute value and sign both count.
+        seed: any integer; its absolute value and its sign both count.
 
     Attributes:
-        seed: the present one.
+        seed: present seed.
     """
 
     def __init__(self, seed: int) -> None:
@@ -87,17 +90,17 @@ class RandomStreams:
         return 2 * seed if seed >= 0 else -2 * seed - 1
 
     def stream(self, scoped: str, channel: str, width: int = 1) -> RandomStream:
-        """The stream of a channel of an entity."""
-        made = RandomStream(self._folded_seed, scoped, channel, width)
-        self._streams.add(made)
-        return made
+        """Return the stream of a channel of an entity."""
+        stream = RandomStream(self._folded_seed, scoped, channel, width)
+        self._streams.add(stream)
+        return stream
 
     def words(self, scoped: str, channel: str, index: int) -> np.random.Generator:
-        """A generator for the bulk numbers (an image's) of one sample."""
+        """Return a generator for the bulk numbers of one sample, such as those of an image."""
         return RandomStream(self._folded_seed, scoped, channel, 1).generator(index)
 
     def reseed(self, seed: int) -> None:
-        """Another seed for every stream there is and will be."""
+        """Set another seed for all present and future streams."""
         self.seed = seed
         self._folded_seed = self._fold(seed)
         for stream in self._streams:

@@ -1,4 +1,4 @@
-"""Who is due when. Due ticks follow from the rate alone, so nothing here needs saving or restoring."""
+"""Schedule of due tasks. Due ticks follow from the rates alone, so that snapshots need not store them."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ _LONGEST_CYCLE = 10_000  # ticks
 
 
 class Timetable(Protocol):
-    """When something is due."""
+    """Due ticks of a task."""
 
     def next(self, tick: int) -> int:
-        """First due tick after a tick."""
+        """Return the first due tick after a tick."""
 
 
 class Agenda:
-    """The tasks of one phase, in the order they were added.
+    """Tasks of one phase, in the order in which they were added.
 
     Attributes:
         every: tasks of every step.
-        next: the next tick at which a periodic task is due.
+        next: next tick at which a periodic task is due.
     """
 
     def __init__(self) -> None:
@@ -45,7 +45,7 @@ class Agenda:
         self._tasks.append((task, grid))
 
     def rewind(self, tick: int) -> None:
-        """What is due after `tick`."""
+        """Compute the tasks that are due after `tick`."""
         self.every = [task for task, grid in self._tasks if grid is None]
         self._heap = [(grid.next(tick), order) for order, (_, grid) in enumerate(self._tasks) if grid is not None]
         heapq.heapify(self._heap)
@@ -53,10 +53,10 @@ class Agenda:
         self._cycle, self._plan = _common_cycle([grid for _, grid in self._tasks if grid is not None]), {}
 
     def due(self, tick: int) -> list[Task]:
-        """Every task due at `tick`, in order of addition; periodic ones move on to their next tick."""
+        """Return every task due at `tick`, in order of addition; periodic tasks advance to their next tick."""
         if self.next > tick:
             return self.every
-        if self._cycle and tick > 1:  # the first tick has more than the rates alone say
+        if self._cycle and tick > 1:  # the first tick has additional samples of sensors
             planned = self._plan.get(tick % self._cycle)
             if planned is None:
                 planned = self._plan[tick % self._cycle] = self._work_out(tick)
@@ -65,7 +65,7 @@ class Agenda:
         return self._by_heap(tick)
 
     def _work_out(self, tick: int) -> tuple[list[Task], int]:
-        """What is due at `tick`, and how long it is then to the next."""
+        """Return the tasks that are due at `tick`, and the number of ticks to the next due tick."""
         due = [task for task, grid in self._tasks if grid is None or grid.next(tick - 1) == tick]
         return due, min(grid.next(tick) for _, grid in self._tasks if grid is not None) - tick
 
@@ -89,7 +89,7 @@ class Agenda:
 
 
 def _common_cycle(timetables: Sequence[Timetable]) -> int:
-    """After how many ticks it all repeats; 0 where that is too long to remember, or not so."""
+    """Return the number of ticks after which all timetables repeat; 0 if it is too long or does not exist."""
     periods = [grid.cycle for grid in timetables if isinstance(grid, TickGrid)]
     if not periods or len(periods) < len(timetables):
         return 0
@@ -98,30 +98,30 @@ def _common_cycle(timetables: Sequence[Timetable]) -> int:
 
 
 class Scheduler:
-    """Tasks before a step, and sensors and hooks after it."""
+    """Tasks before a step, and tasks of sensors and hooks after it."""
 
     def __init__(self, clock: Clock) -> None:
         self.clock = clock
         self.before, self.sense, self.after = Agenda(), Agenda(), Agenda()
 
     def clear(self) -> None:
-        """Forgets every task."""
+        """Remove every task."""
         for agenda in (self.before, self.sense, self.after):
             agenda.clear()
 
     def every(self, rate: float | None, task: Task, phase: Phase) -> None:
-        """Calls `task(tick)` at `rate` [Hz] (None or 0: at every step); takes effect at the next `rewind`.
+        """Call `task(tick)` at `rate` [Hz] (None or 0: at every step); takes effect at the next `rewind`.
 
-        Sensors have a first sample after the first step, then both they and hooks keep to k/rate.
+        Sensors have a first sample after the first step; later samples and all hooks are due at k/rate.
         """
         getattr(self, phase).add(task, self.clock.grid(rate or 0.0, from_start=phase == "sense"))
 
     def on(self, timetable: Timetable | None, task: Task, phase: Phase) -> None:
-        """The same by a timetable of its own; None is every step."""
+        """Call `task(tick)` at the ticks of a timetable; None for every step."""
         getattr(self, phase).add(task, timetable)
 
     def rewind(self, tick: int) -> None:
-        """Says that the readings of `tick` have been dealt with, the commands before its step have not."""
+        """Continue from `tick`: its readings are done, the commands before its step are not."""
         self.before.rewind(max(tick - 1, 0))
         self.sense.rewind(tick)
         self.after.rewind(tick)

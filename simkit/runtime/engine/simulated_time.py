@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 
-_MAX_DENOMINATOR = 1_000_000  # greatest denominator of a rate that is taken for a fraction
+_MAX_DENOMINATOR = 1_000_000  # largest denominator of a rate that is interpreted as a fraction
 
 
 Jitter = Callable[[int], float]
@@ -15,23 +15,25 @@ Jitter = Callable[[int], float]
 
 
 def exact_fraction(value: float | int | str | Fraction) -> Fraction:
-    """The decimal number as written: 0.001 is 1/1000, not the nearest binary fraction."""
+    """Return the decimal number as written: 0.001 is 1/1000, not the nearest binary fraction."""
     return value if isinstance(value, Fraction) else Fraction(str(value))
 
 
 def exact_rate(rate: float) -> Fraction:
-    """A rate [Hz] as it was meant: the decimal number as written, or a third where that was computed as 1/3."""
+    """Return the intended rate [Hz]: the decimal number as written, or 1/3 for a float computed as 1/3."""
     simple = Fraction(rate).limit_denominator(_MAX_DENOMINATOR)
     return simple if float(simple) == rate else exact_fraction(rate)
 
 
 @dataclass(frozen=True, slots=True)
 class SampleTiming:
-    """When something is sampled: at phase + k·period + spread·jitter(k), k = 0, 1, 2, …
+    """Sample times phase + k·period + spread·jitter(k) for k = 0, 1, 2 and so on.
 
     Attributes:
-        period, phase, spread: [s], exactly; a period of 0 is every step.
-        jitter: gives a number within ±1 for every k; None for no jitter.
+        period: period [s], exact; 0 for every step.
+        phase: time of the first sample [s], exact.
+        spread: largest deviation by jitter [s], exact.
+        jitter: function that returns a number within ±1 for every k; None for no jitter.
     """
 
     period: Fraction
@@ -41,7 +43,7 @@ class SampleTiming:
 
 
 class Clock:
-    """Converts ticks to time.
+    """Conversion of ticks to time.
 
     Args:
         timestep: length of a step [s].
@@ -54,25 +56,25 @@ class Clock:
         self._whole_ns = self._step_ns.numerator if self._step_ns.denominator == 1 else 0
 
     def time_ns(self, tick: int) -> int:
-        """Time of a tick [ns], rounded half up where a step is no whole number of nanoseconds."""
+        """Return the time of a tick [ns], rounded half up if a step is not a whole number of nanoseconds."""
         if self._whole_ns:
             return tick * self._whole_ns
         return math.floor(tick * self._step_ns + Fraction(1, 2))
 
     def time(self, tick: int) -> float:
-        """Time of a tick [s]: the float nearest to the exact value."""
+        """Return the time of a tick [s]: the float nearest to the exact value."""
         return tick * self._step.numerator / self._step.denominator
 
     def ticks(self, duration: float) -> int:
-        """Whole steps in a duration [s], rounded to the nearest."""
+        """Return the number of whole steps in a duration [s], rounded to the nearest."""
         return math.floor(exact_fraction(duration) / self._step + Fraction(1, 2))
 
     def grid(self, rate: float, from_start: bool = False) -> TickGrid | None:
-        """The ticks at which something periodic is due; None for every step.
+        """Return the ticks at which a periodic task is due; None for every step.
 
         Args:
-            rate: [Hz].
-            from_start: due after the very first step as well, as Gazebo's sensors are.
+            rate: rate of the task [Hz].
+            from_start: the task is also due after the very first step, like Gazebo's sensors.
         """
         if rate <= 0:
             return None
@@ -80,7 +82,10 @@ class Clock:
         return TickGrid(period, from_start) if period > 1 else None
 
     def samples(self, timing: SampleTiming) -> TickGrid | ShiftedTickGrid | None:
-        """The ticks at which a sensor samples, a grid from the start if not shifted; None for every step."""
+        """Return the ticks at which a sensor samples; None for every step.
+
+        Without a shift, the grid begins with the first step.
+        """
         period = timing.period / self._step
         if not timing.phase and (timing.jitter is None or period < 3):
             return TickGrid(period, from_start=True) if period > 1 else None
@@ -88,15 +93,16 @@ class Clock:
         return ShiftedTickGrid(max(period, Fraction(1)), phase, spread, timing.jitter)
 
     def ticks_to_cover(self, duration: float | Fraction) -> int:
-        """The fewest whole steps that are no shorter than a duration [s]."""
+        """Return the least number of whole steps that last at least a duration [s]."""
         return math.ceil(exact_fraction(duration) / self._step)
 
 
 class TickGrid:
-    """Ticks ceil(k·period), k = 1, 2, …, exactly; and tick 1 where it is wanted from the start.
+    """Ticks ceil(k·period), k = 1, 2, …, exactly; with `from_start` also tick 1.
 
     Args:
-        period: in ticks, more than 1.
+        period: period [ticks], more than 1.
+        from_start: add tick 1.
     """
 
     __slots__ = ("_den", "_from_start", "_num")
@@ -106,19 +112,19 @@ class TickGrid:
 
     @property
     def cycle(self) -> int:
-        """After so many ticks the pattern repeats."""
+        """Number of ticks after which the pattern repeats."""
         return self._num
 
     def tick(self, index: int) -> int:
-        """Tick of the k-th sample."""
+        """Return the tick of the k-th sample."""
         return -(-index * self._num // self._den)
 
     def index(self, tick: int) -> int:
-        """How many samples are due up to and including a tick."""
+        """Return the number of samples that are due up to and including a tick."""
         return tick * self._den // self._num
 
     def next(self, tick: int) -> int:
-        """First due tick after a tick."""
+        """Return the first due tick after a tick."""
         num, den = self._num, self._den
         if tick <= 0 and self._from_start:
             return 1
@@ -128,14 +134,14 @@ class TickGrid:
 class ShiftedTickGrid:
     """Ticks ceil(phase + k·period) + jitter(k), k = 0, 1, 2, …, but not before tick 1.
 
-    Which ticks those are follows from k alone, so any stretch of them can be had without what was before. The jitter is
-    whole ticks, so that it is as often early as late.
+    The ticks follow from k alone, so that any range of them can be computed without the previous ones. The jitter is a
+    whole number of ticks, so that it is early as often as late.
 
     Args:
-        period: in ticks, at least 1.
-        phase: in ticks.
-        spread: of the jitter in ticks; kept so far below half a period that no two samples change places or meet.
-        jitter: gives a number within ±1 for every k.
+        period: period [ticks], at least 1.
+        phase: tick of the first sample.
+        spread: largest jitter [ticks]; limited to less than half a period, so that samples keep their order.
+        jitter: function that returns a number within ±1 for every k.
     """
 
     __slots__ = ("_den", "_jitter", "_most", "_num", "_phase", "_spread")
@@ -148,7 +154,7 @@ class ShiftedTickGrid:
         self._spread, self._jitter = float(spread), jitter
 
     def tick(self, index: int) -> int:
-        """Tick of the k-th sample, k = 0, 1, 2, …"""
+        """Return the tick of the k-th sample, counted from 0."""
         at = -(-(self._phase + index * self._num) // self._den)
         if self._most and self._jitter is not None:
             shift = math.floor(self._spread * self._jitter(index) + 0.5)
@@ -156,7 +162,7 @@ class ShiftedTickGrid:
         return max(1, at)
 
     def next(self, tick: int) -> int:
-        """First due tick after a tick."""
+        """Return the first due tick after a tick."""
         index = max(0, ((tick - self._most) * self._den - self._phase) // self._num)
         while (found := self.tick(index)) <= tick:
             index += 1

@@ -1,16 +1,16 @@
-"""Trees that rest are left out of the physics until something reaches them.
+"""Sleep of bodies at rest: the physics skips their kinematic trees until something reaches them.
 
-The engine can freeze a tree and wakes it when something awake touches it, or when its position, velocity or applied
-force is set. Its own rule for falling asleep, ten steps below a speed, would also stop a ball at the top of a slow
-throw, a slow roller and a drifting satellite. So that rule is off (its tolerance is negative), and the decision is made
-here, by what nobody can tell from rest:
+MuJoCo can freeze a tree. It wakes the tree when an awake body touches it, or when its position, velocity or applied
+force is set. MuJoCo's own rule for falling asleep is ten steps below a speed. That rule would also stop a ball at the
+top of a slow throw, a slow roller and a drifting satellite. Therefore that rule is off (its tolerance is negative), and
+this module decides. A tree may sleep under these conditions, which make sleep indistinguishable from rest:
 
-- the tree is in contact, or held by another constraint, and nothing drives or measures it,
-- it has stayed within 1 nm (1 nrad) for 0.1 s, twice, and the second time no less than the first, or within 10 µm for
-  1 s, twice (the tremor of a pile, which the solver makes),
-- and so has every tree that it touches.
+- The tree is in contact, or held by another constraint, and nothing drives or measures it.
+- The tree has stayed within 1 nm (1 nrad) for 0.1 s, twice, and moved no more the second time than the first. A tree
+  within 10 µm for 1 s, twice, also counts (the solver makes a pile tremble).
+- Every tree that it touches meets the same conditions.
 
-Windows lie on the grid of simulated time, so chunks, readers and processes make no difference.
+The windows lie on the grid of simulated time, so that chunks of steps, readers and processes make no difference.
 """
 
 from __future__ import annotations
@@ -23,18 +23,18 @@ import numpy as np
 import numpy.typing as npt
 
 RestState = tuple[Any, ...]
-"""What `SleepingTrees` remembers of its looks."""
+"""State of the observations of `Sleep`."""
 
 RATE: Final = 10.0
-"""[Hz] at which trees are looked at."""
+"""Rate at which trees are observed [Hz]."""
 
-_STILL, _STILL_FLOOR = 1e-9, 1e-10  # [m or rad] in one look
-_CALM, _CALM_FLOOR = 1e-5, 2e-6  # [m or rad] in one long look
-_LONG = 10  # looks
+_STILL, _STILL_FLOOR = 1e-9, 1e-10  # [m or rad] between two observations
+_CALM, _CALM_FLOOR = 1e-5, 2e-6  # [m or rad] over `_LONG` observations
+_LONG = 10  # observations
 _TWICE = 2
 
-_LEAST_SPEED = 1e-3  # [m/s] below which the engine carries out what was decided here
-_NO_SPEED = -1.0  # of zero it would still put to sleep what stands exactly still
+_LEAST_SPEED = 1e-3  # [m/s] below this speed the engine puts the selected trees to sleep
+_NO_SPEED = -1.0  # with 0 the engine would still put exactly motionless trees to sleep
 _AWAKE = -(1 + mujoco.mjMINAWAKE)
 _READY = -1
 _FLAG = int(mujoco.mjtEnableBit.mjENBL_SLEEP)
@@ -45,16 +45,17 @@ Floats = npt.NDArray[np.float64]
 
 
 class Sleep:
-    """Which trees of a model may sleep, which do, and when nothing at all can move.
+    """State of sleep of a model's trees.
 
     Args:
-        model, data: the engine's; the flag for sleeping is set in them.
-        enabled: whether anything may sleep at all.
+        model: MuJoCo's model; its flag for sleeping is set.
+        data: MuJoCo's data.
+        enabled: True if anything may sleep at all.
 
     Attributes:
-        watches: whether there is anything that could fall asleep; then `look` is wanted at `RATE`.
-        counts: whether anything can ever sleep or rest; else none of this has to be looked at.
-        is_drowsy: the next step is the one in which the engine puts to sleep what has been found to rest.
+        watches: some tree could fall asleep, so that `look` must be called at `RATE`.
+        counts: something can sleep or rest; otherwise nothing here has to be checked.
+        is_drowsy: the next step is the one in which the engine puts the selected trees to sleep.
         rests: every tree sleeps, and nothing has been changed since.
         wants_all_awake: the next forward pass wakes everything.
     """
@@ -63,7 +64,7 @@ class Sleep:
         self._model, self._data = model, data
         self.enabled = enabled
         self.is_drowsy = self.rests = self.wants_all_awake = self.watches = self._can_rest = self.counts = False
-        self._gravity_now = model.opt.gravity  # a view, to be looked at before every stretch of steps
+        self._gravity_now = model.opt.gravity  # a view, compared before every call of `advance`
         self._gravity = self._gravity_now.tolist()
         self._places = [data.qpos, *((data.mocap_pos, data.mocap_quat) if model.nmocap else ())]
         self._pushes = [data.qvel, data.qfrc_applied, data.xfrc_applied]
@@ -71,14 +72,14 @@ class Sleep:
             model.opt.enableflags &= ~_FLAG
             return
         if not model.opt.enableflags & _FLAG:
-            # things that never move are computed once, and that must have happened before the flag is set
+            # the engine computes static bodies only once, which must happen before the flag is set
             mujoco.mj_forward(model, data)
             model.opt.enableflags |= _FLAG
         model.opt.sleep_tolerance = _NO_SPEED
         self.restrict(())
 
     def restrict(self, bodies: Iterable[int]) -> None:
-        """Says that the trees of these bodies never sleep, besides those that an actuator drives."""
+        """Keep the trees of these bodies awake always, besides the trees that an actuator drives."""
         model = self._model
         self._may = np.isin(model.tree_sleep_policy, _MAY)
         for body in bodies:
@@ -94,7 +95,7 @@ class Sleep:
         self._begin()
 
     def _begin(self) -> None:
-        """Looks at everything as if for the first time."""
+        """Start the observations again."""
         trees = self._model.ntree
         self._looks = 0
         self._last = self._data.qpos.copy()
@@ -106,7 +107,11 @@ class Sleep:
     # ------------------------------------------------------------------ falling asleep
 
     def look(self, data: mujoco.MjData) -> None:
-        """Compares with the last look, and makes ready for sleep what rests; `data` has a fresh forward pass."""
+        """Compare with the last observation and select resting trees for sleep.
+
+        Args:
+            data: engine data with a fresh forward pass.
+        """
         qpos = data.qpos.copy()
         asleep = data.tree_asleep >= 0
         self._looks += 1
@@ -132,7 +137,7 @@ class Sleep:
             self.is_drowsy = True
 
     def _pushed(self) -> npt.NDArray[np.intp]:
-        """Trees that a force is applied to."""
+        """Return the trees that a force is applied to."""
         model, data = self._model, self._data
         bodies, dofs = np.flatnonzero(data.xfrc_applied.any(axis=1)), np.flatnonzero(data.qfrc_applied)
         trees = np.concatenate((model.body_treeid[bodies], model.dof_treeid[dofs])).astype(np.intp)
@@ -142,25 +147,25 @@ class Sleep:
         return np.maximum.reduceat(np.abs(a - b), self._starts)
 
     def let_fall_asleep(self) -> None:
-        """Before the step in which the engine puts to sleep what is ready."""
+        """Prepare the step in which the engine puts the selected trees to sleep."""
         self._model.opt.sleep_tolerance = _LEAST_SPEED
 
     def keep_awake(self) -> None:
-        """After that step."""
+        """Finish the step in which the engine put the selected trees to sleep."""
         self._model.opt.sleep_tolerance = _NO_SPEED
         self.is_drowsy = False
 
     # ------------------------------------------------------------------ waking
 
     def wake(self, body: int) -> bool:
-        """Says that something of a body is set; True where it slept, so that positions must be computed anew."""
+        """Wake a body whose state is set; return True if it slept, so that positions must be computed again."""
         tree = int(self._model.body_treeid[body])
         if tree < 0 or not self._may[tree]:
             return False
         self._still[tree] = self._calm[tree] = 0
         asleep = self._data.tree_asleep
         if asleep[tree] >= 0:
-            # the engine wakes what has a velocity, and takes the negative zero for one
+            # the engine wakes a tree with a nonzero velocity; its test also accepts negative zero
             dof = int(self._model.tree_dofadr[tree])
             if self._data.qvel[dof] == 0.0:
                 self._data.qvel[dof] = -0.0
@@ -170,18 +175,18 @@ class Sleep:
         return False
 
     def is_asleep(self, body: int, data: mujoco.MjData) -> bool:
-        """Whether a body sleeps, of data with a fresh forward pass."""
+        """Check whether a body sleeps, in data with a fresh forward pass."""
         tree = int(self._model.body_treeid[body])
         return tree >= 0 and bool(data.tree_asleep[tree] >= 0)
 
     def wake_all(self) -> None:
-        """Before a change of the model: everything is awake from the next forward pass on."""
+        """Wake everything in the next forward pass, before a change of the model."""
         if self.enabled:
             self.wants_all_awake = True
             self.rests = self.is_drowsy = False
 
     def forward(self) -> None:
-        """A forward pass that wakes everything, and computes anew what never moves."""
+        """Make a forward pass that wakes everything and recomputes static bodies."""
         model, data = self._model, self._data
         model.opt.enableflags &= ~_FLAG
         mujoco.mj_forward(model, data)
@@ -190,16 +195,16 @@ class Sleep:
         self.wants_all_awake = False
         self._begin()
 
-    # ------------------------------------------------------------------ when all is quiet
+    # ------------------------------------------------------------------ rest of the whole world
 
     def settle(self) -> None:
-        """After steps: notes whether all is asleep."""
+        """Check after steps whether all trees sleep."""
         if self._can_rest and self._data.ntree_awake == 0:
             self.rests = True
             self._rest = [(now, now.copy()) for now in self._places]
 
     def still_rests(self) -> bool:
-        """Whether nothing was written to the engine's objects behind our back either."""
+        """Check that nothing was written directly to the engine's data either."""
         for values in self._pushes:
             if values.any():
                 self.rests = False
@@ -209,7 +214,7 @@ class Sleep:
         return self.rests
 
     def notice_gravity(self) -> bool:
-        """Wakes everything where gravity is another than before; True then."""
+        """Wake everything if gravity has changed; return whether it did."""
         gravity = self._gravity_now.tolist()
         if gravity == self._gravity:
             return False
@@ -220,7 +225,7 @@ class Sleep:
     # ------------------------------------------------------------------ snapshots
 
     def get_state(self) -> RestState:
-        """What a restored run needs besides the engine's data."""
+        """Return the state that a restored run needs besides the engine's data."""
         if not self.watches:
             return (self.wants_all_awake,)
         return (
@@ -237,7 +242,7 @@ class Sleep:
         )
 
     def set_state(self, state: RestState) -> None:
-        """Back to `get_state`; the engine's data are those of then already."""
+        """Restore a state from `get_state`; the engine's data must already be restored."""
         self.rests = self.is_drowsy = False
         self.wants_all_awake = state[0]
         self._gravity = self._model.opt.gravity.tolist()

@@ -1,4 +1,4 @@
-"""The whole state of a simulation at one tick: take it, restore it, hash it."""
+"""Snapshots of the whole state of a simulation at one tick: take, restore and hash."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Snapshot:
-    """What `restore` brings back; made by `Simulation.snapshot`.
+    """State that `restore` brings back; made by `Simulation.snapshot`.
 
-    One that a hook or a callback asks for is of the end of the step under way: what else is due at its tick belongs to
-    it, or a run restored to it would not repeat. Until then it has only its owner.
+    A snapshot that a hook or callback requests is taken at the end of the present step. The other tasks of that tick
+    belong to it, otherwise a restored run would not repeat. Until then only its attribute `owner` exists.
 
     Attributes:
-        tick: where the run stood.
-        structure: what was in the world.
-        owner: the simulation that it is of.
+        tick: tick of the state.
+        structure: structure of the world.
+        owner: simulation of the snapshot.
     """
 
     tick: int
@@ -52,11 +52,11 @@ class Snapshot:
 
     @property
     def is_complete(self) -> bool:
-        """Whether it can be restored: the step that it was asked for in has ended."""
+        """True if the snapshot can be restored, because the step in which it was requested has ended."""
         return "data" in vars(self)
 
     def __getattr__(self, name: str) -> NoReturn:
-        raise AttributeError(f"a snapshot has no {name!r} before the step in which it was asked for has ended")
+        raise AttributeError(f"a snapshot has no {name!r} before the end of the step in which it was requested")
 
     def __deepcopy__(self, memo: dict[int, object]) -> Snapshot:
         return self
@@ -66,31 +66,31 @@ class Stateful(Protocol):
     """Part of a simulation with a state of its own."""
 
     def get_state(self) -> AttachedState:
-        """Returns the state that a snapshot keeps."""
+        """Return the state for a snapshot."""
 
     def set_state(self, state: AttachedState) -> None:
-        """Goes back to a state from `get_state`."""
+        """Restore a state from `get_state`."""
 
 
 class WaitingCommands(Protocol):
     """Commands that wait for the next step."""
 
     def values(self) -> Iterable[tuple[str, object]]:
-        """Returns them in the order of arrival."""
+        """Return the commands in the order of arrival."""
 
     def refill(self, entries: Iterable[tuple[str, object]]) -> None:
-        """Replaces them all."""
+        """Replace all commands."""
 
 
 class Snapshots:
-    """Takes and restores snapshots of a simulation.
+    """Functions that take and restore snapshots of a simulation.
 
     Args:
         owner: the simulation.
-        engine: its engine.
-        parts: gives every part with a state besides sensors and plugins, in the order in which they are restored.
-        commands: what waits for the next step.
-        adopt: goes on with another structure.
+        engine: engine of the simulation.
+        parts: function that returns every part with a state, except sensors and plugins, in the order of restoring.
+        commands: commands that wait for the next step.
+        adopt: function that switches to another structure.
     """
 
     def __init__(
@@ -104,17 +104,19 @@ class Snapshots:
         self._owner, self._engine, self._parts, self._commands = owner, engine, parts, commands
         self._adopt = adopt
 
-    def promise(self) -> tuple[Snapshot, Callable[[], None]]:
-        """Returns a snapshot that is still to be taken, and what takes it."""
-        promised: Snapshot = object.__new__(Snapshot)
-        vars(promised)["owner"] = self._owner
-        return promised, lambda: vars(promised).update(vars(self.take()))
+    def defer(self) -> tuple[Snapshot, Callable[[], None]]:
+        """Return a snapshot that is not yet taken, and the function that takes it."""
+        pending: Snapshot = object.__new__(Snapshot)
+        vars(pending)["owner"] = self._owner
+        return pending, lambda: vars(pending).update(vars(self.take()))
 
     def take(self) -> Snapshot:
-        """Returns the state as it is now."""
+        """Take a snapshot of the present state."""
         engine = self._engine
         model, structure, physics = engine.mj_model, engine.structure, engine.physics
-        plugins = [(p, engine.faults.state_of(p)) for p in structure.all_plugins()]  # first: it may leave one out
+        plugins = [
+            (p, engine.faults.state_of(p)) for p in structure.all_plugins()
+        ]  # first, because `get_state` may disable a plugin
         data = copy.copy(physics.data)
         fields = {f: getattr(model, f).copy() for f in engine.originals}
         fields["gravity"] = model.opt.gravity.copy()
@@ -137,12 +139,12 @@ class Snapshots:
         )
 
     def restore(self, snapshot: Snapshot, *, with_inbox: bool = True) -> None:
-        """Goes back to a snapshot; the schedule is the caller's to make anew.
+        """Restore a snapshot; the caller must rebuild the schedule.
 
         Args:
-            snapshot: of this simulation.
-            with_inbox: whether what waits for the next step goes back too; without it, what goes back is only a change
-                that failed, and time goes on.
+            snapshot: snapshot of this simulation.
+            with_inbox: restore the commands that wait for the next step too. Without them, the restore only undoes a
+                failed change, and time continues.
         """
         engine = self._engine
         if snapshot.structure is not engine.structure:
@@ -184,7 +186,7 @@ class Snapshots:
 
 
 class HashedSimulation(Protocol):
-    """What a state hash is taken of."""
+    """Interface of a simulation whose state is hashed."""
 
     @property
     def mj_data(self) -> mujoco.MjData:
@@ -192,7 +194,7 @@ class HashedSimulation(Protocol):
 
 
 def state_hash(sim: HashedSimulation) -> str:
-    """SHA-256 of positions and velocities, as bits, in hexadecimal."""
+    """Return the SHA-256 of the bits of positions and velocities, in hexadecimal."""
     digest = hashlib.sha256()
     digest.update(sim.mj_data.qpos.tobytes())
     digest.update(sim.mj_data.qvel.tobytes())

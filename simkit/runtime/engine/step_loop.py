@@ -1,4 +1,4 @@
-"""The one loop in the house: commands in, the engine on, readings out, and only when something is due."""
+"""Step loop of a simulation: deliver commands, advance the physics, run due tasks."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from simkit.runtime.engine.scheduler import Scheduler
 
 ScheduleFiller = Callable[[Scheduler], None]
 
-_LONGEST_WAIT = 5.0  # [s] of wall time, for what runs on other threads at the end of the program
+_LONGEST_WAIT = 5.0  # [s] of wall time that the program waits for the loops of other threads when it exits
 
 
 class CommandSource(Protocol):
@@ -22,19 +22,19 @@ class CommandSource(Protocol):
 
     @property
     def inbox(self) -> Sized:
-        """What waits; empty where nothing does."""
+        """Waiting commands; empty if there are none."""
 
     def deliver_inputs(self) -> None:
-        """Hands what waits to its inputs."""
+        """Pass the waiting commands to their inputs."""
 
 
 class StepLoop:
-    """Advances the physics from one due tick to the next.
+    """Loop that advances the physics from one due tick to the next.
 
     Args:
-        physics: what is advanced.
-        commands: delivered between two steps.
-        fill: puts every task into the scheduler, in document order.
+        physics: physics to advance.
+        commands: source of the commands that are delivered between two steps.
+        fill: function that adds every task to the scheduler, in document order.
     """
 
     def __init__(self, physics: Physics, commands: CommandSource, fill: ScheduleFiller) -> None:
@@ -48,37 +48,39 @@ class StepLoop:
         _OPEN_LOOPS.loops.add(self)
 
     def reschedule(self) -> None:
-        """Takes changed rates, sensors and plugins into account; within a hook, once the tick is dealt with."""
+        """Apply changed rates, sensors and plugins; within a hook, after the other tasks of the tick."""
         self._is_outdated = True
         if not self.is_running:
             self._refill()
 
     def defer(self, call: Callable[[], None]) -> None:
-        """Has something done at the end of the step under way, once all that is due at its tick has been done."""
+        """Call a function at the end of the present step, after all tasks of its tick."""
         self._deferred.append(call)
         self._is_outdated = True
 
     def drop_deferred(self) -> None:
-        """Says that the step under way will not end: the state is set to another one."""
+        """Drop the deferred calls, because another state replaces the present step."""
         self._deferred.clear()
 
     def halt(self) -> None:
-        """Ends the run with the step under way, where it is one that heeds this."""
+        """End the run with the present step, if the run was started with `is_served`."""
         self._halts = self._is_served
 
     def advance(self, target: int, *, is_served: bool = False) -> None:
-        """Runs up to the tick `target`; where a hook goes back or forth in time on the way, as many steps all the same.
+        """Run up to the tick `target`.
+
+        If a hook resets or restores, the total number of steps stays the same.
 
         Args:
-            target: where to.
-            is_served: whether `halt` ends the run earlier.
+            target: last tick.
+            is_served: allow `halt` to end the run earlier.
 
         Raises:
-            InputError: it is advancing already.
-            SystemExit: the program has ended, and this is a thread that nobody waits for.
+            InputError: the loop is already running.
+            SystemExit: the program is ending, and this thread is not waited for.
         """
         if self.is_running:
-            message = "a step is under way: a hook or callback cannot step the simulation, nor a second thread"
+            message = "the simulation is already stepping; a hook, a callback or a second thread cannot step it"
             raise InputError(message, "SK-CORE-003")
         self.is_running, self._is_served, self._halts = True, is_served, False
         self._target = target
@@ -91,7 +93,7 @@ class StepLoop:
             self._idle.set()
 
     def jump(self, ticks: int) -> None:
-        """Told that the run was taken so many ticks further, or back, by a restore or a reset."""
+        """Shift the target by the number of ticks that a restore or reset moved the run."""
         self.jumped += ticks
         self._target += ticks
 
@@ -118,23 +120,23 @@ class StepLoop:
                 continue
             if commands.inbox:
                 commands.deliver_inputs()
-                if self._is_outdated:  # what an input changes counts from this step on, whatever else is due when
+                if self._is_outdated:  # changes by an input apply from this step on
                     self._refill()
                     tick, has_every = physics.tick, bool(before.every or after.every or sense.every)
                     stop = min(self._target, before.next, sense.next, after.next)
-                if commands.inbox:  # what an input sent is taken with the next step
+                if commands.inbox:  # commands that an input sent belong to the next step
                     stop = tick + 1
             if before.every or before.next <= tick:
                 for task in before.due(tick):
                     task(tick)
                 if physics.tick == tick and not (self._is_outdated or commands.inbox):
-                    # what was due is dealt with: on to what is due next, in one go
+                    # all due tasks are done: advance to the next due tick in one call
                     stop = min(self._target, before.next, sense.next, after.next)
             physics.advance(1 if has_every or self._halts else max(1, stop - tick))
             tick = physics.tick
-            # nothing is measured or published of a state with bad numbers
+            # a state with NaN or infinite numbers is neither measured nor published
             physics.check()
-            # who is called back may reset or restore: then the rest of this tick is not to be
+            # a callback may reset or restore: then the remaining tasks of this tick are skipped
             if sense.next <= tick or sense.every:
                 for task in sense.due(tick):
                     task(tick)
@@ -149,7 +151,7 @@ class StepLoop:
                 self._refill()
 
     def _run_single_steps(self, stop: int) -> None:
-        """Up to the tick `stop`, through steps at which only what runs at every step is due."""
+        """Run up to the tick `stop`, through steps at which only the tasks of every step are due."""
         physics, commands, program = self._physics, self._commands, _OPEN_LOOPS
         before, after = self.scheduler.before.every, [*self.scheduler.sense.every, *self.scheduler.after.every]
         tick = physics.tick
@@ -170,11 +172,11 @@ class StepLoop:
 
 
 class _OpenLoops:
-    """Every loop of the process: MuJoCo must not be at work when the interpreter goes away under it.
+    """All loops of the process: MuJoCo must not run while the interpreter shuts down.
 
     Attributes:
-        loops: those that are there.
-        ending: the thread that ends the program, once it does.
+        loops: existing loops.
+        ending: id of the thread that ends the program; None before its end.
     """
 
     def __init__(self) -> None:
@@ -182,7 +184,7 @@ class _OpenLoops:
         self.ending: int | None = None
 
     def end_this_thread(self) -> None:
-        """Ends the calling thread, without a word, unless it is the one that ends the program."""
+        """End the calling thread silently, unless it is the thread that ends the program."""
         if self.ending != threading.get_ident():
             raise SystemExit
 
@@ -191,7 +193,7 @@ _OPEN_LOOPS: Final = _OpenLoops()
 
 
 def stop_other_loops() -> None:
-    """Ends the loops of other threads."""
+    """Stop the loops of other threads."""
     _OPEN_LOOPS.ending = threading.get_ident()
     for loop in list(_OPEN_LOOPS.loops):
         if not loop._idle.wait(_LONGEST_WAIT):

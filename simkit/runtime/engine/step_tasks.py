@@ -1,4 +1,4 @@
-"""What of a simulation is due when, in document order; hooks of plugins of one kind as one task."""
+"""Tasks of a simulation and their rates, in document order; hooks of similar plugins become one task."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ if TYPE_CHECKING:
     from simkit.runtime.engine.plugin_faults import PluginFaults
 
 MIN_GROUP_SIZE = 4
-"""So few are as soon called one by one."""
+"""Least number of plugins in a group; calling fewer plugins one by one is as fast."""
 
 
 class PluginGroup:
-    """The plugins of one task; going through them notes whose turn it is, so that who raises can be named.
+    """Plugins of one task. The iteration records the current plugin, so that an exception can be attributed.
 
     Attributes:
-        plugins: in the order of the document.
-        turn: whose turn it is.
+        plugins: plugins in document order.
+        turn: current plugin.
     """
 
     def __init__(self, plugins: Sequence[AttachedPlugin]) -> None:
@@ -37,31 +37,31 @@ class PluginGroup:
 
 
 GroupHook = Callable[[Sequence["AttachedPlugin"]], Callable[[PluginGroup], None]]
-"""Makes of plugins what calls a hook of all of them."""
+"""Function that makes one function from several plugins, which calls a hook of all of them."""
 
 HookTasks = Iterator[tuple[float | None, Task]]
-"""Rates [Hz] and tasks."""
+"""Pairs of rate [Hz] and task."""
 
 
 def hook_tasks(faults: PluginFaults, plugins: Iterable[AttachedPlugin], hook: str) -> HookTasks:
-    """The hooks of these plugins with their rates [Hz], in the order of the document.
+    """Yield the rates [Hz] and tasks for a hook of these plugins, in document order.
 
-    Hooks of plugins of one kind that are due together are one task where the plugin's class defines beside the hook a
-    class method of the hook's name with `_together` after it:
+    Hooks of plugins of one class that are due together become one task, if the class also defines a class method with
+    the hook's name and the suffix `_together`:
 
         @classmethod
         def before_step_together(cls, plugins):
-            ...                       # once for each schedule: look up what all need
+            ...                       # once for each schedule: look up shared data
             def run(group):
-                for plugin in group:  # the same bits, and in the same order, as one after the other
+                for plugin in group:  # same bits and order as separate calls
                     ...
             return run
 
-    Only plugins that follow on each other are taken together, so that hooks keep the order of the document.
+    Only consecutive plugins are grouped, so that hooks keep the document order.
 
     Args:
-        faults: calls the plugins.
-        plugins: those that are at work.
+        faults: caller of the plugins.
+        plugins: enabled plugins.
         hook: `before_step` or `after_step`.
     """
     run: list[AttachedPlugin] = []
@@ -75,8 +75,8 @@ def hook_tasks(faults: PluginFaults, plugins: Iterable[AttachedPlugin], hook: st
     yield from _group_tasks(faults, run, hook)
 
 
-def _can_group(one: AttachedPlugin, other: AttachedPlugin, hook: str) -> bool:
-    return type(one) is type(other) and _hook_rate(one, hook) == _hook_rate(other, hook)
+def _can_group(first: AttachedPlugin, second: AttachedPlugin, hook: str) -> bool:
+    return type(first) is type(second) and _hook_rate(first, hook) == _hook_rate(second, hook)
 
 
 def _hook_rate(plugin: AttachedPlugin, hook: str) -> float | None:
@@ -86,7 +86,7 @@ def _hook_rate(plugin: AttachedPlugin, hook: str) -> float | None:
 
 def _group_tasks(faults: PluginFaults, run: list[AttachedPlugin], hook: str) -> HookTasks:
     together = _group_hook(type(run[0]), hook) if len(run) >= MIN_GROUP_SIZE else None
-    # who may be left out when it raises is called by itself
+    # a plugin that may be disabled when it raises is called separately
     if together is None or any(faults.policy(plugin) != "stop" for plugin in run):
         for plugin in run:
             yield _hook_rate(plugin, hook), faults.task(plugin, hook)
@@ -95,7 +95,7 @@ def _group_tasks(faults: PluginFaults, run: list[AttachedPlugin], hook: str) -> 
 
 
 def _group_hook(kind: type, hook: str) -> GroupHook | None:
-    """What a class gives for many of its plugins; None where a class below it has another hook than that is for."""
+    """Return the group hook of a class; None if a derived class overrides the single hook."""
     for cls in kind.__mro__:
         if f"{hook}_together" in vars(cls):
             found: GroupHook = getattr(kind, f"{hook}_together")
@@ -105,28 +105,28 @@ def _group_hook(kind: type, hook: str) -> GroupHook | None:
     return None
 
 
-def _guard_group(faults: PluginFaults, rota: PluginGroup, hook: str, run: Callable[[PluginGroup], None]) -> Task:
+def _guard_group(faults: PluginFaults, group: PluginGroup, hook: str, run: Callable[[PluginGroup], None]) -> Task:
     def task(_: int = 0) -> None:
         try:
-            run(rota)
+            run(group)
         except Exception as error:  # noqa: BLE001 - what a plugin calls may raise anything
-            faults.meet(rota.turn, hook, error)
+            faults.meet(group.turn, hook, error)
 
     return task
 
 
-_LIMIT_SHARE = 0.999  # of the sum of squares of velocities over their limits
-_NO_LIMIT = 1e6  # [rad/s or m/s] from which on a limit of the file is none
-_LIMIT_RATE = 100.0  # [Hz] at which a velocity limit of the file is held on a joint that nothing drives
+_LIMIT_SHARE = 0.999  # threshold for the sum of squares of velocities over their limits
+_NO_LIMIT = 1e6  # [rad/s or m/s] a larger limit in a file means no limit
+_LIMIT_RATE = 100.0  # [Hz] at which the velocity limit of an undriven joint is enforced
 _CAMERA_INFO = "sensor_msgs/msg/CameraInfo"
 _RANGE = "sensor_msgs/msg/Range"
-_BLIND_KINDS = frozenset(  # kinds that do not look around
+_BLIND_KINDS = frozenset(  # kinds of sensors that do not see the scene
     ("imu", "force_torque", "contact", "altimeter", "magnetometer", "air_pressure", "air_speed", "navsat", "gps")
 )
 
 
 class LimitedJoint(Protocol):
-    """Joint with a limit of its velocity."""
+    """Joint with a velocity limit."""
 
     @property
     def mj_dofs(self) -> Sequence[int]:
@@ -134,22 +134,22 @@ class LimitedJoint(Protocol):
 
     @property
     def least_velocity_limit(self) -> float:
-        """The least limit of its axes [rad/s or m/s]."""
+        """Least velocity limit of the joint's axes [rad/s or m/s]."""
 
     def clamp_velocity(self, _tick: int = 0) -> None:
-        """Brings the velocity within its limits."""
+        """Clamp the velocity to the limits."""
 
 
 def fill_schedule(
     engine: Engine, scheduler: Scheduler, joints: Iterable[LimitedJoint], exact_limits: Collection[LimitedJoint]
 ) -> None:
-    """Fills an empty scheduler.
+    """Fill an empty scheduler.
 
     Args:
-        engine: whose sensors and plugins are scheduled.
-        scheduler: gets the tasks.
-        joints: all that are there.
-        exact_limits: joints whose velocity limit is held at every step.
+        engine: engine of the sensors and plugins.
+        scheduler: scheduler that receives the tasks.
+        joints: all joints with a velocity limit.
+        exact_limits: joints whose velocity limit is enforced at every step.
     """
     resting = engine.physics.sleep
 
@@ -168,7 +168,7 @@ def fill_schedule(
 
     if coasting:
         scheduler.every(_LIMIT_RATE, _velocity_limiter(engine, coasting), "sense")
-    if engine.velocity_servos.are_there:  # before any command of the step: the last one had no time to be obeyed
+    if engine.velocity_servos.are_there:  # before any command of the step, which has had no time to take effect
         scheduler.every(velocity_servos.RATE, engine.velocity_servos.correct, "before")
     _report_shared_topics(engine)
     _group_sensors(engine)
@@ -179,14 +179,14 @@ def fill_schedule(
     for rate, task in hook_tasks(engine.faults, plugins, "before_step"):
         scheduler.every(rate, task, "before")
     for plugin in plugins:
-        if getattr(plugin, "is_gz_system", False):  # every system's update comes after every system's pre_update
+        if getattr(plugin, "is_gz_system", False):  # all updates of Gazebo systems follow all pre_updates
             scheduler.every(None, engine.faults.task(plugin, "update_step"), "before")
     for rate, task in hook_tasks(engine.faults, plugins, "after_step"):
         scheduler.every(rate, task, "after")
 
 
 def _schedule_scenery(engine: Engine, scheduler: Scheduler, plugins: Sequence[Any]) -> None:
-    """Has what moves by itself put where it is before anything is sensed, and at the ticks at which sensors look."""
+    """Schedule plugins that move scenery, before sensors are sampled and at the ticks at which sensors see it."""
     for plugin in plugins:
         if hasattr(plugin, "move_scenery"):
             task = engine.faults.task(plugin, "move_scenery")
@@ -197,10 +197,10 @@ def _schedule_scenery(engine: Engine, scheduler: Scheduler, plugins: Sequence[An
 
 
 def _velocity_limiter(engine: Engine, joints: Sequence[LimitedJoint]) -> Task:
-    """Holds the velocity limits of joints, as one task: which are beyond them is found in one go."""
+    """Return one task that enforces the velocity limits of joints; one product finds the joints beyond their limits."""
     dofs = np.array([dof for joint in joints for dof in joint.mj_dofs], dtype=np.intp)
     owners = [joint for joint in joints for _ in joint.mj_dofs]
-    # of several axes the least; the joint itself looks closer. Whoever sets one makes a new schedule
+    # least limit of several axes; the joint checks each axis. Setting a limit makes a new schedule
     limits = np.array([joint.least_velocity_limit for joint in owners])
     shares = np.zeros(engine.mj_model.nv)
     shares[dofs] = 1.0 / np.maximum(limits, 1e-9)
@@ -209,16 +209,16 @@ def _velocity_limiter(engine: Engine, joints: Sequence[LimitedJoint]) -> Task:
     def hold(tick: int) -> None:
         velocities = physics.data.qvel
         found = velocities * shares
-        if found.dot(found) < _LIMIT_SHARE:  # then none of them can be beyond its own
+        if found.dot(found) < _LIMIT_SHARE:  # then no velocity exceeds its limit
             return
-        for place in np.flatnonzero(np.abs(velocities[dofs]) > limits).tolist():
-            owners[place].clamp_velocity(tick)
+        for index in np.flatnonzero(np.abs(velocities[dofs]) > limits).tolist():
+            owners[index].clamp_velocity(tick)
 
     return hold
 
 
 def _group_sensors(engine: Engine) -> None:
-    """Has sensors of one kind work together."""
+    """Group the sensors of one kind into batches."""
     kinds: dict[type, list[AttachedSensor]] = {}
     for sensor in engine.structure.all_sensors():
         kinds.setdefault(type(sensor), []).append(sensor)
@@ -227,36 +227,36 @@ def _group_sensors(engine: Engine) -> None:
 
 
 def _report_shared_topics(engine: Engine) -> None:
-    """Tells of a topic on which sensors publish two messages: whoever reads it gets both in turn."""
+    """Report topics on which sensors publish two messages: a subscriber receives both in turn."""
     first: dict[str, tuple[str, str]] = {}
     for sensor in engine.structure.all_sensors():
         types = [(topic, sensor._products[product].type_name) for product, topic in sensor._topics.items()]
-        told: set[str] = set()
-        # what goes with a picture comes last: where the pictures share a topic too, that is enough to say
+        reported: set[str] = set()
+        # camera infos come last: if the images share a topic too, one report is enough
         for topic, kind in sorted(types, key=lambda pair: (pair[1] == _CAMERA_INFO, pair)):
             if topic not in first:
                 first[topic] = sensor.scoped, kind
                 continue
             other, other_kind = first[topic]
             if kind == other_kind == _RANGE and other != sensor.scoped:
-                continue  # as ROS has it for a ring of sonars: each message names its sensor's frame
-            if kind != _CAMERA_INFO or kind != other_kind or other not in told:
+                continue  # usual in ROS for a ring of sonars: each message names its sensor's frame
+            if kind != _CAMERA_INFO or kind != other_kind or other not in reported:
                 _report_shared_topic(engine, sensor, topic, other, {other_kind, kind})
-            told.add(other)
+            reported.add(other)
 
 
 def _report_shared_topic(engine: Engine, sensor: AttachedSensor, topic: str, other: str, kinds: set[str]) -> None:
-    """Tells that a sensor and another, perhaps itself, publish messages of these types on one topic."""
+    """Report that a sensor and another sensor, perhaps the same, publish messages of these types on one topic."""
     where = sensor.scene.where
     if other == sensor.scoped:
         message = f"sensor {other!r} publishes two messages on one topic, {topic!r}"
     else:
         message = f"sensors {other!r} and {sensor.scoped!r} publish on one topic, {topic!r}"
     if len(kinds) > 1:
-        message = f"{message}: {' and '.join(sorted(kinds))}, and ROS gives a reader one type only"
+        message = f"{message}: {' and '.join(sorted(kinds))}, but a ROS topic has only one type"
         engine.reports.warning("SK-SENSOR-128", message, where, "give each a topic of its own")
     elif kinds == {_CAMERA_INFO}:
-        hint = "a <camera_info_topic> for each, where readers have to tell them apart otherwise than by frame"
+        hint = "give each a <camera_info_topic> if subscribers must distinguish them by more than the frame"
         engine.reports.note("SK-SENSOR-127", message, where, hint)
     else:
         own = "camera a name" if other == sensor.scoped else "a <topic>"

@@ -1,4 +1,4 @@
-"""The handles of everything in a simulation, by scoped name."""
+"""Handles of all entities in a simulation, by scoped name."""
 
 from __future__ import annotations
 
@@ -19,24 +19,24 @@ if TYPE_CHECKING:
     from simkit.runtime.engine.snapshot import Stateful
 
 HandleTables = dict[str, dict[str, Any]]
-"""Handles and sensors by scoped name, by kind."""
+"""Handles and sensors by kind and scoped name."""
 
 
 class EntityHandles:
-    """Handles made once per entity of the file and bound anew to each structure.
+    """Handles that are made once per entity of the file and bound to each new structure.
 
     Args:
-        engine: whose entities they are handles of.
-        make_movable: lets a static top-level model be moved, by its name.
+        engine: engine of the entities.
+        make_movable: function that makes a static top-level model movable, by its name.
 
     Attributes:
-        engine: whose entities they are handles of.
-        make_movable: lets a static top-level model be moved, by its name.
+        engine: engine of the entities.
+        make_movable: function that makes a static top-level model movable, by its name.
         models: top-level models by name.
         tables: models, links, joints, lights and sensors, by kind and scoped name.
-        labels: what segmentation and bounding box cameras call things, by scoped name of a model or a visual.
-        temperatures: what thermal cameras see, by scoped name of a model, a link or a visual.
-        exact_limits: joints whose velocity limit is held at every step.
+        labels: labels for segmentation and bounding box cameras, by scoped name of a model or a visual.
+        temperatures: temperatures for thermal cameras, by scoped name of a model, a link or a visual.
+        exact_limits: joints whose velocity limit is enforced at every step.
     """
 
     def __init__(self, engine: Engine, make_movable: Callable[[str], None]) -> None:
@@ -51,7 +51,7 @@ class EntityHandles:
         self.tables: HandleTables = {}
 
     def bind(self, structure: WorldStructure) -> None:
-        """Binds every handle of what is there now; the others say that they were removed."""
+        """Bind the handles of present entities; mark all others as removed."""
         if self._world_joints is None:
             self._world_joints = {j.name: Joint(self, j) for j in self._world.joints}
         for _, model, lights in self._by_scene.values():
@@ -83,9 +83,9 @@ class EntityHandles:
             tables["light"].update(lights)
 
     def forget(self, living: Iterable[SceneModel]) -> None:
-        """Lets go of the handles of models that nothing brings back any more."""
-        there = {id(scene) for scene in living}
-        self._by_scene = {key: made for key, made in self._by_scene.items() if key in there}
+        """Drop the handles of models that nothing can bring back."""
+        kept = {id(scene) for scene in living}
+        self._by_scene = {key: handles for key, handles in self._by_scene.items() if key in kept}
 
     def _model_handles(self, scene: SceneModel) -> tuple[Model, dict[str, Light]]:
         if id(scene) not in self._by_scene:
@@ -98,12 +98,12 @@ class EntityHandles:
             lights.update({li.scoped: Light(self, li) for link in scene.all_links() for li in link.lights})
         return lights
 
-    def find(self, what: str, name: str) -> Any:
-        """A handle by scoped name; KeyError names the closest."""
-        return look_up(self.tables[what], name, what)
+    def find(self, kind: str, name: str) -> Any:
+        """Return a handle by kind and scoped name; a KeyError suggests the closest name."""
+        return look_up(self.tables[kind], name, kind)
 
     def find_visual(self, name: str) -> Visual:
-        """A visual by scoped name; KeyError names the closest."""
+        """Return a visual by scoped name; a KeyError suggests the closest name."""
         link: Link | None = self.tables["link"].get(name.rpartition("::")[0])
         if link is not None:
             found = next((v for v in link.visuals.values() if v.scoped == name), None)
@@ -112,36 +112,36 @@ class EntityHandles:
         return look_up(self.visuals(), name, "visual")
 
     def visuals(self) -> dict[str, Visual]:
-        """All there are, by scoped name."""
+        """Return all visuals by scoped name."""
         return {v.scoped: v for link in self.tables["link"].values() for v in link.visuals.values()}
 
     def scene_link(self, scoped: str) -> SceneLink:
-        """A link of the file by scoped name."""
+        """Return a link of the file by scoped name."""
         link: SceneLink = self.find("link", scoped).scene
         return link
 
     def link(self, name: str) -> Link:
-        """A link by scoped name; KeyError names the closest."""
+        """Return a link by scoped name; a KeyError suggests the closest name."""
         found: Link = self.find("link", name)
         return found
 
     def model(self, name: str) -> Model:
-        """A model by scoped name; KeyError names the closest."""
+        """Return a model by scoped name; a KeyError suggests the closest name."""
         found: Model = self.find("model", name)
         return found
 
     def joint(self, name: str) -> Joint:
-        """A joint by scoped name; KeyError names the closest."""
+        """Return a joint by scoped name; a KeyError suggests the closest name."""
         found: Joint = self.find("joint", name)
         return found
 
     def light(self, name: str) -> Light:
-        """A light by scoped name; KeyError names the closest."""
+        """Return a light by scoped name; a KeyError suggests the closest name."""
         found: Light = self.find("light", name)
         return found
 
     def limit_velocity(self, joint: Joint) -> None:
-        """Holds a joint's velocity limit at every step from now on."""
+        """Enforce a joint's velocity limit at every step from now on."""
         if joint not in self.exact_limits:
             self.exact_limits.append(joint)
         self.engine.reschedule()
@@ -150,6 +150,6 @@ class EntityHandles:
         return self.joint(name).axis_velocity_limit(axis)
 
     def stateful(self) -> list[Stateful]:
-        """Handles with a state of their own, but for models."""
+        """Return the handles with a state of their own, except models."""
         handles = [*self.tables["joint"].values(), *self.tables["light"].values()]
         return [*handles, self.labels, self.temperatures]

@@ -1,4 +1,4 @@
-"""What all handles share: they stay valid while the engine's objects change under them."""
+"""Base class of handles, which stay valid while the engine's objects are replaced."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ T = TypeVar("T")
 
 
 class Handle:
-    """A name in a simulation.
+    """Named entity of a simulation.
 
     Attributes:
-        name: as in the file.
-        scoped: from the world down, joined with `::`.
+        name: name in the file.
+        scoped: names from the world down, joined with `::`.
     """
 
     def __init__(self, handles: EntityHandles, name: str, scoped: str) -> None:
@@ -38,16 +38,16 @@ class Handle:
 
 
 class UnknownName(KeyError):
-    """No such name; the message names the closest one."""
+    """Unknown name; the message suggests the closest name."""
 
     def __str__(self) -> str:
         return str(self.args[0])
 
 
-def look_up(table: dict[str, T], name: str, what: str) -> T:
-    """The entry, or a KeyError that names the closest one."""
+def look_up(table: dict[str, T], name: str, kind: str) -> T:
+    """Return the entry of a table; a KeyError suggests the closest name."""
     try:
         return table[name]
     except KeyError:
         near = did_you_mean(name, table) or ("there is " + ", ".join(list(table)[:20]) if table else "there is none")
-        raise UnknownName(f"no {what} {name!r}; {near}") from None
+        raise UnknownName(f"no {kind} {name!r}; {near}") from None

@@ -24,10 +24,10 @@ JointValue = float | Vector
 
 
 class Joint(Handle):
-    """A joint. One degree of freedom is a float, more are an array; angles rad, lengths m.
+    """Joint. One degree of freedom is a float, more are an array; angles in rad, lengths in m.
 
     Attributes:
-        type: the file's joint type.
+        type: joint type in the file.
     """
 
     def __init__(self, handles: EntityHandles, scene: SceneJoint) -> None:
@@ -54,7 +54,7 @@ class Joint(Handle):
 
     @property
     def dof(self) -> int:
-        """Degrees of freedom."""
+        """Number of degrees of freedom."""
         return len(self._dofs)
 
     @property
@@ -66,7 +66,7 @@ class Joint(Handle):
     def position(self) -> JointValue:
         """Angle [rad] or length [m] of the child's joint frame in the parent's.
 
-        A rotation vector (3,) for a ball joint; x, y and angle for a planar one; x y z qw qx qy qz for a floating one.
+        A ball joint has a rotation vector (3,), a planar joint x, y and angle, a floating joint x y z qw qx qy qz.
         """
         self._check()
         qpos = self._physics.data.qpos
@@ -83,10 +83,10 @@ class Joint(Handle):
 
     @property
     def velocity(self) -> JointValue:
-        """[rad/s] or [m/s]; a ball joint's in the child's joint frame.
+        """Velocity [rad/s] or [m/s]; that of a ball joint in the child's joint frame.
 
-        A floating one's is that of the child's joint origin in the parent's joint frame (3), then the turning in the
-        child's joint frame (3).
+        A floating joint has the velocity of the child's joint origin in the parent's joint frame (3), then the angular
+        velocity in the child's joint frame (3).
         """
         self._check()
         qvel = self._physics.data.qvel
@@ -98,7 +98,7 @@ class Joint(Handle):
 
     @property
     def effort(self) -> JointValue:
-        """Sum of what is applied by commands and actuators [N·m or N], within the effort limit."""
+        """Sum of the efforts of commands and actuators [N·m or N], within the effort limit."""
         self._check()
         physics = self._physics
         data = physics.fresh()
@@ -111,9 +111,9 @@ class Joint(Handle):
 
     @property
     def transmitted_wrench(self) -> tuple[Vector, Vector]:
-        """Force [N] and torque [N·m] by the parent on the child, at the joint origin, in the joint frame.
+        """Force [N] and torque [N·m] of the parent on the child, at the joint origin, in the joint frame.
 
-        All that passes through the joint, what its motor, spring, damper and friction give along its axes included.
+        The wrench includes the efforts of motor, spring, damper and friction along the joint's axes.
         """
         self._check()
         physics = self._physics
@@ -121,7 +121,7 @@ class Joint(Handle):
         body = binding.moved_body
         if not body:
             return np.zeros(3), np.zeros(3)
-        # the engine computes no forces for a sleeper; a copy that is awake has those of rest
+        # the engine computes no forces for a sleeping body; awake separate data have those of rest
         is_asleep = physics.sleep.is_asleep(body, physics.fresh())
         data = physics.data_of(physics.hold()) if is_asleep else physics.fresh_accelerations()
         child = self._engine.names.links.get(self.scene.child_link)
@@ -135,9 +135,12 @@ class Joint(Handle):
     # ------------------------------------------------------------------ commands
 
     def set_position(self, position: float | Sequence[float] | Vector) -> None:
-        """Puts the joint at a position, once; visible in every pose read afterwards.
+        """Set the joint to a position once; poses that are read afterwards include it.
 
-        What mimics it goes along. Raises InputError for a joint that closes a loop.
+        Joints that mimic the joint follow.
+
+        Raises:
+            InputError: the joint closes a loop.
         """
         self._check()
         self._check_settable()
@@ -158,7 +161,11 @@ class Joint(Handle):
         self._physics.changed_body(STALE, self._body)
 
     def set_velocity(self, velocity: float | Sequence[float] | Vector) -> None:
-        """Gives the joint a velocity, once. Raises InputError for a joint that closes a loop."""
+        """Set the joint's velocity once.
+
+        Raises:
+            InputError: the joint closes a loop.
+        """
         self._check()
         self._check_settable()
         values = self._shaped(velocity, self.dof)
@@ -172,10 +179,14 @@ class Joint(Handle):
         self._physics.changed_body(VELOCITY, self._body)
 
     def set_effort(self, effort: float | Sequence[float] | Vector) -> None:
-        """Applies an effort in the next step only, clipped to the effort limit; InputError for a floating joint."""
+        """Apply an effort in the next step only, clipped to the effort limit.
+
+        Raises:
+            InputError: the joint is floating.
+        """
         self._check()
         if self._is_floating:
-            raise InputError(f"joint {self.scoped!r} is floating; Link.apply_wrench pushes its child", "SK-JOINT-012")
+            raise InputError(f"joint {self.scoped!r} is floating; use Link.apply_wrench on its child", "SK-JOINT-012")
         physics = self._physics
         if self._one_dof >= 0 and isinstance(effort, float) and math.isfinite(effort):
             most = self._effort_limit.item(0)
@@ -191,7 +202,7 @@ class Joint(Handle):
 
     @property
     def lower(self) -> JointValue:
-        """Lower limit; -inf where there is none; settable."""
+        """Lower limit; -inf without one; settable."""
         return self._range(0)
 
     @lower.setter
@@ -200,7 +211,7 @@ class Joint(Handle):
 
     @property
     def upper(self) -> JointValue:
-        """Upper limit; inf where there is none; settable."""
+        """Upper limit; inf without one; settable."""
         return self._range(1)
 
     @upper.setter
@@ -209,7 +220,7 @@ class Joint(Handle):
 
     @property
     def effort_limit(self) -> JointValue:
-        """[N·m or N]; settable."""
+        """Effort limit [N·m or N]; settable."""
         return float(self._effort_limit[0]) if len(self._effort_limit) == 1 else self._effort_limit.copy()
 
     @effort_limit.setter
@@ -218,7 +229,7 @@ class Joint(Handle):
 
     @property
     def velocity_limit(self) -> JointValue:
-        """[rad/s or m/s]; settable, and then exact at every step."""
+        """Velocity limit [rad/s or m/s]; settable, and then enforced at every step."""
         return float(self._velocity_limit[0]) if len(self._velocity_limit) == 1 else self._velocity_limit.copy()
 
     @velocity_limit.setter
@@ -228,16 +239,16 @@ class Joint(Handle):
 
     @property
     def least_velocity_limit(self) -> float:
-        """The least limit of its axes [rad/s or m/s]."""
+        """Least velocity limit of the joint's axes [rad/s or m/s]."""
         return float(self._velocity_limit.min())
 
     def axis_velocity_limit(self, axis: int) -> float:
-        """The limit of one of its axes [rad/s or m/s]."""
+        """Return the velocity limit of an axis [rad/s or m/s]."""
         return float(self._velocity_limit[axis])
 
     def clamp_velocity(self, _tick: int = 0) -> None:
-        """Brings the velocity within its limit."""
-        # plain numbers: this is asked often, of every joint with a limit
+        """Clamp the velocity to its limits."""
+        # plain numbers for speed: called often, for every joint with a limit
         qvel, limits = self._physics.data.qvel, self._velocity_limit.tolist()
         for i, dof in enumerate(self._plain_dofs):
             velocity, limit = qvel.item(dof), limits[min(i, len(limits) - 1)]
@@ -246,11 +257,11 @@ class Joint(Handle):
                 self._physics.changed_body(VELOCITY, self._body)
 
     def get_state(self) -> tuple[Vector, Vector]:
-        """The limits that were set, for a snapshot."""
+        """Return the limits for a snapshot."""
         return self._effort_limit.copy(), self._velocity_limit.copy()
 
     def set_state(self, state: tuple[Vector, Vector]) -> None:
-        """Back to limits from `get_state`."""
+        """Restore limits from `get_state`."""
         self._effort_limit, self._velocity_limit = state[0].copy(), state[1].copy()
 
     # ------------------------------------------------------------------ inside
@@ -263,7 +274,7 @@ class Joint(Handle):
     def _shaped(self, value: float | Sequence[float] | Vector, count: int) -> Vector:
         values = np.atleast_1d(np.asarray(value, dtype=float))
         if len(values) != count or not np.isfinite(values).all():
-            raise ValueError(f"joint {self.scoped!r} takes {count} finite number(s), got {value}")
+            raise ValueError(f"joint {self.scoped!r} needs {count} finite number(s), got {value}")
         return values
 
     def _check_settable(self) -> None:
@@ -276,7 +287,7 @@ class Joint(Handle):
             raise InputError(f"joint {self.scoped!r} is floating, but another joint holds its child", "SK-JOINT-012")
 
     def _to_joint(self, stored: Vector) -> Vector:
-        """Velocities or efforts of the engine in the joint's own frame; only a ball joint's differ."""
+        """Convert the engine's velocities or efforts to the joint's own frame; only those of a ball joint differ."""
         return mechanics.ball_rotation(self._binding, self._ball_quat()) @ stored if self._is_ball else stored
 
     def _from_joint(self, values: Vector) -> Vector:

@@ -23,23 +23,23 @@ _LOOP_TOLERANCE: Final = 1e-13
 
 
 def ball_quaternion(binding: JointBinding, stored: Vector) -> Vector:
-    """The child-side frame in the parent-side frame, of the engine's quaternion of the moved body."""
+    """Return the orientation of the child-side frame in the parent-side frame from the engine's stored quaternion."""
     frame = binding.pose_moved.quaternion
     turned = quat_multiply(quat_multiply(quat_conjugate(frame), stored), frame)
     return quat_conjugate(turned) if binding.is_reversed else turned
 
 
 def stored_quaternion(binding: JointBinding, quaternion: Vector) -> Vector:
-    """The engine's quaternion for a wanted one; the inverse of `ball_quaternion`."""
+    """Return the engine's quaternion for a joint orientation; the inverse of `ball_quaternion`."""
     frame = binding.pose_moved.quaternion
     turned = quat_conjugate(quaternion) if binding.is_reversed else quaternion
     return quat_multiply(quat_multiply(frame, turned), quat_conjugate(frame))
 
 
 def ball_rotation(binding: JointBinding, stored: Vector) -> Vector:
-    """The orthogonal matrix (3, 3) from the engine's velocity or torque of a ball joint to those in its own frame.
+    """Return the rotation from the engine's velocity or torque of a ball joint to the child-side frame, shape (3, 3).
 
-    That is the child-side one.
+    The matrix is negated for a joint whose direction is reversed in the engine.
     """
     back = quat_conjugate(binding.pose_moved.quaternion)
     if not binding.is_reversed:
@@ -51,9 +51,9 @@ def ball_rotation(binding: JointBinding, stored: Vector) -> Vector:
 
 
 def joint_position(binding: JointBinding, data: mujoco.MjData) -> Vector:
-    """Position [rad or m] of a joint that binds its links, one number per degree of freedom; of given data.
+    """Return the position [rad or m] of a joint in given data, one number per degree of freedom.
 
-    A ball joint's is a rotation vector.
+    The position of a ball joint is a rotation vector.
     """
     if binding.type == "ball" and binding.qpos:
         start, turn = binding.qpos[0], np.zeros(3)
@@ -63,7 +63,7 @@ def joint_position(binding: JointBinding, data: mujoco.MjData) -> Vector:
 
 
 def joint_velocity(binding: JointBinding, data: mujoco.MjData) -> Vector:
-    """Velocity [rad/s or m/s] of such a joint; a ball joint's is in the child's joint frame."""
+    """Return the velocity [rad/s or m/s] of a joint in given data; that of a ball joint in the child's joint frame."""
     velocity = np.array(data.qvel[list(binding.dofs)])
     if binding.type == "ball" and binding.qpos:
         start = binding.qpos[0]
@@ -75,14 +75,14 @@ def joint_velocity(binding: JointBinding, data: mujoco.MjData) -> Vector:
 
 
 def _link_pose(engine: EngineState, scoped: str) -> Pose:
-    """World pose of a link's frame."""
+    """Return the world pose of a link's frame."""
     binding, data = engine.names.link(scoped), engine.physics.fresh()
     pose = Pose(data.xpos[binding.body], data.xquat[binding.body])
     return pose if binding.offset == IDENTITY else pose @ binding.offset
 
 
 def _joint_frames(engine: EngineState, binding: JointBinding) -> tuple[Pose, Pose]:
-    """World poses of the parent-side and the child-side frame."""
+    """Return the world poses of the parent-side and the child-side frame."""
     parent, child = binding.scene.parent_link, binding.scene.child_link
     return _frame_on_link(engine, parent, binding.pose_parent), _frame_on_link(engine, child, binding.pose_child)
 
@@ -92,13 +92,13 @@ def _frame_on_link(engine: EngineState, link: str, frame: Pose) -> Pose:
 
 
 def relative_pose(engine: EngineState, binding: JointBinding) -> Pose:
-    """The child-side frame in the parent-side frame."""
+    """Return the pose of the child-side frame in the parent-side frame."""
     parent, child = _joint_frames(engine, binding)
     return parent.inverse() @ child
 
 
 def set_relative_pose(engine: EngineState, binding: JointBinding, pose: Pose) -> None:
-    """Moves the free link of a floating joint so that the child-side frame stands there."""
+    """Move the free link of a floating joint so that the child-side frame has this pose in the parent-side frame."""
     parent, child = _joint_frames(engine, binding)
     if binding.is_reversed:
         target = child @ pose.inverse() @ binding.pose_parent.inverse()
@@ -109,7 +109,7 @@ def set_relative_pose(engine: EngineState, binding: JointBinding, pose: Pose) ->
 
 
 def _point_velocity(engine: EngineState, link: str, point: Vector) -> tuple[Vector, Vector]:
-    """Linear velocity of a point that moves with a link, and the link's angular velocity; world frame."""
+    """Return the velocity of a point on a link and the link's angular velocity; world frame."""
     if link not in engine.names.links:
         return np.zeros(3), np.zeros(3)
     body, out, data = engine.names.link(link).body, np.zeros(6), engine.physics.fresh()
@@ -120,7 +120,10 @@ def _point_velocity(engine: EngineState, link: str, point: Vector) -> tuple[Vect
 
 
 def relative_velocity(engine: EngineState, binding: JointBinding) -> Vector:
-    """Of the child-side origin in the parent-side frame [m/s], then the turning in the child-side frame [rad/s]."""
+    """Return the velocity of the child-side origin in the parent-side frame [m/s] and the angular velocity [rad/s].
+
+    The angular velocity is in the child-side frame.
+    """
     parent, child = _joint_frames(engine, binding)
     v_parent, w_parent = _point_velocity(engine, binding.scene.parent_link, child.position)
     v_child, w_child = _point_velocity(engine, binding.scene.child_link, child.position)
@@ -130,7 +133,7 @@ def relative_velocity(engine: EngineState, binding: JointBinding) -> Vector:
 
 
 def set_relative_velocity(engine: EngineState, binding: JointBinding, velocity: Vector) -> None:
-    """Gives the free link of a floating joint the velocity that makes `relative_velocity` this one."""
+    """Set the velocity of a floating joint's free link so that `relative_velocity` has this value."""
     parent, child = _joint_frames(engine, binding)
     linear, angular = quat_rotate(parent.quaternion, velocity[:3]), quat_rotate(child.quaternion, velocity[3:])
     sign = -1.0 if binding.is_reversed else 1.0
@@ -148,10 +151,10 @@ def set_relative_velocity(engine: EngineState, binding: JointBinding, velocity: 
 
 
 def update_loop_joints(engine: EngineState) -> None:
-    """After joints were set: puts the twin of every loop joint where its link is now, and lets it move like it.
+    """Move the twin body of every loop joint to its link after joints were set, and give it the link's velocity.
 
-    The joint's own motions are all that the twin has, so where the new state tears a loop open, the twin comes as near
-    as it can (least squares, Gauss–Newton from where it is).
+    The twin can only move along the joint's own degrees of freedom. If the new state breaks a loop, the twin gets as
+    near as possible (least squares, Gauss–Newton from its present state).
     """
     loops = [b for b in engine.names.joints.values() if b.is_loop and b.dofs]
     if not loops:
@@ -172,13 +175,13 @@ def update_loop_joints(engine: EngineState) -> None:
         dofs, columns, spread = _loop_jacobian(engine, binding)
         data.qvel[dofs] = 0.0
         link = engine.names.link(binding.carried).body
-        wanted = _body_velocity(engine, link) - _body_velocity(engine, binding.moved_body)
-        data.qvel[dofs] = spread @ np.linalg.lstsq(columns, wanted, rcond=None)[0]
+        velocity = _body_velocity(engine, link) - _body_velocity(engine, binding.moved_body)
+        data.qvel[dofs] = spread @ np.linalg.lstsq(columns, velocity, rcond=None)[0]
         engine.physics.changed_body(STALE, binding.moved_body)
 
 
 def _loop_jacobian(engine: EngineState, binding: JointBinding) -> tuple[list[int], Vector, Vector]:
-    """Degrees of freedom of a twin, its Jacobian (6, k) in the joint's free coordinates, and how those spread."""
+    """Return a twin's degrees of freedom, Jacobian (6, k) in the joint's free coordinates, and their distribution."""
     model, data, body = engine.mj_model, engine.mj_data, binding.moved_body
     hidden = [f for f in binding.followers if model.dof_bodyid[f.dof] == body]
     dofs = [*binding.dofs, *(f.dof for f in hidden)]
@@ -192,7 +195,7 @@ def _loop_jacobian(engine: EngineState, binding: JointBinding) -> tuple[list[int
 
 
 def _loop_error(engine: EngineState, binding: JointBinding) -> Vector:
-    """From the twin to its link: a shift [m] and a rotation vector [rad], world frame."""
+    """Return the difference from the twin to its link: shift [m] and rotation vector [rad], world frame."""
     data, link, twin = engine.mj_data, engine.names.link(binding.carried).body, binding.moved_body
     turn = np.zeros(3)
     apart = quat_multiply(data.xquat[link], quat_conjugate(data.xquat[twin]))
@@ -210,18 +213,20 @@ def _body_velocity(engine: EngineState, body: int) -> Vector:
 def transmitted_wrench(
     model: mujoco.MjModel, data: mujoco.MjData, binding: JointBinding, point: Vector
 ) -> tuple[Vector, Vector]:
-    """What the parent link does to the child link through a joint, world axes.
+    """Return the wrench of the parent link on the child link through a joint, world axes.
 
-    That is all that passes: what the joint holds, and along its own motions what motors, springs, dampers, friction and
-    stops give (gz-physics' `GetTransmittedWrench` is the same sum). It is found from the motion: what the bodies beyond
-    the joint need besides the forces that act on them from outside (Newton–Euler).
+    The wrench includes the constraint forces of the joint, and the efforts of motors, springs, dampers, friction and
+    stops along its axes (the same sum as gz-physics' `GetTransmittedWrench`). It is computed from the motion by
+    Newton–Euler: the wrench that the bodies beyond the joint need besides external forces.
 
     Args:
-        data: with a forward pass and `mj_rnePostConstraint`; nobody near the joint sleeps in it.
-        point: that the torque is about [m], world frame.
+        model: MuJoCo's model.
+        data: MuJoCo's data with a forward pass and `mj_rnePostConstraint`; no body near the joint may sleep.
+        binding: joint in the compiled model.
+        point: reference point of the torque [m], world frame.
 
     Returns:
-        Force [N] and torque [N·m]; zeros where the joint moves nothing (both links static, or the joint binds nothing).
+        Force [N] and torque [N·m]; zeros if the joint moves nothing (both links static, or the joint binds nothing).
     """
     body = binding.moved_body
     if body <= 0:
@@ -233,7 +238,7 @@ def transmitted_wrench(
 
 
 def torque_about(wrench: Vector, centre: Vector, point: Vector) -> Vector:
-    """The torque about a point [m] of a wrench (torque, force) that is about another, `centre` [m]."""
+    """Return the torque about a point [m] of a wrench (torque, force) about `centre` [m]."""
     fx, fy, fz = wrench[3:].tolist()
     x, y, z = (centre - point).tolist()
     torque: Vector = wrench[:3] + np.array((y * fz - z * fy, z * fx - x * fz, x * fy - y * fx))

@@ -19,12 +19,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class LightState:
-    """How a light stands and shines at one time.
+    """Pose and brightness of a light at one time.
 
     Attributes:
-        pose: in the world, or in the frame of the link that carries it.
-        on: whether it shines.
-        irradiance: of a surface that faces it [W/m²]; None where nothing says it.
+        pose: pose in the world, or in the frame of the link that carries the light.
+        on: True while the light shines.
+        irradiance: irradiance of a surface that faces the light [W/m²]; None if not specified.
     """
 
     pose: Pose
@@ -33,27 +33,27 @@ class LightState:
 
 
 LightCourse = Callable[[int], LightState]
-"""How a light stands and shines at a simulated time [ns]."""
+"""Function that returns the state of a light at a simulated time [ns]."""
 
 
 @dataclass(frozen=True, slots=True)
 class LightMotion:
-    """What makes a light stand where it stands: a course of the time, or else a state that stays."""
+    """Motion of a light: a function of time, or else a constant state."""
 
     state: LightState
     course: LightCourse | None = None
 
     def at(self, time_ns: int) -> LightState:
-        """How the light stands and shines at a time [ns]."""
+        """Return the state of the light at a time [ns]."""
         return self.state if self.course is None else self.course(time_ns)
 
 
 class Light(Handle):
-    """A light of the world or on a link.
+    """Light of the world or on a link.
 
     Attributes:
-        scene: what it is like: as the file has it, or as it was changed since.
-        motion: what makes it stand where it stands; another object whenever that changes.
+        scene: description of the light, with the changes made during the run.
+        motion: motion of the light; replaced by another object with every change.
     """
 
     def __init__(self, handles: EntityHandles, scene: SceneLight) -> None:
@@ -66,7 +66,7 @@ class Light(Handle):
 
     @property
     def state(self) -> LightState:
-        """How it stands and shines now."""
+        """Present state."""
         return self.motion.at(self._engine.time_ns)
 
     @property
@@ -77,7 +77,7 @@ class Light(Handle):
         return self._handles.link(self.scene.link).pose @ pose if self.scene.link else pose
 
     def set_pose(self, pose: Pose) -> None:
-        """Moves the light; its direction turns with it. What moved it before (a sun's course) has no say any more."""
+        """Move the light and its direction. The pose replaces an earlier motion, for example that of a sun."""
         self._check()
         own = self._handles.link(self.scene.link).pose.inverse() @ pose if self.scene.link else pose
         self.motion = LightMotion(replace(self.state, pose=own))
@@ -85,42 +85,42 @@ class Light(Handle):
 
     @property
     def direction(self) -> Vector:
-        """Unit vector along which it shines, world frame, shape (3,)."""
+        """Unit vector of the light's direction, world frame, shape (3,)."""
         return self.pose.rotate(self.scene.direction)
 
     @property
     def on(self) -> bool:
-        """Whether it shines."""
+        """True while the light shines."""
         return self.state.on
 
     @property
     def irradiance(self) -> float | None:
-        """Of a surface that faces it [W/m²], of a lamp at 1 m; None where nothing says it."""
+        """Irradiance of a surface that faces the light [W/m²], for a lamp at 1 m; None if not specified."""
         return self.state.irradiance
 
     def follow(self, course: LightCourse) -> None:
-        """Lets `course(time_ns)`, which may depend on nothing but the time, say how it stands and shines."""
+        """Let the function `course(time_ns)` set the state of the light; it may depend only on the time."""
         self._check()
         self.motion = LightMotion(self.state, course)
         self.draw()
 
     def change(self, scene: SceneLight) -> None:
-        """Makes it shine as another description says: colours, fading, cone, direction, shadows; its place stays."""
+        """Replace colours, attenuation, cone, direction and shadows by those of another description; the pose stays."""
         self._check()
         for sensor in self._engine.structure.all_sensors():
-            sensor.take_held()  # what waits to be looked at was lit by the old one
+            sensor.take_held()  # pending images belong to the old light
         self.scene = scene
         self._redraw()
         self.draw()
 
     def switch(self, on: bool) -> None:
-        """Lets it shine or not; where a course says so (a sun's), that has no say any more."""
+        """Switch the light on or off. The setting replaces an earlier motion, for example that of a sun."""
         self._check()
         self.motion = LightMotion(replace(self.state, on=on))
         self.draw()
 
     def draw(self) -> None:
-        """Writes to MuJoCo's model where the light stands and whether it shines; one far away is drawn from nearer."""
+        """Write the light's pose and state to MuJoCo's model; a distant light is drawn from nearer."""
         engine, model = self._engine, self._physics.model
         index = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_LIGHT, self.scoped)
         if index >= 0:
@@ -133,7 +133,7 @@ class Light(Handle):
         self._physics.changed_lights()
 
     def _redraw(self) -> None:
-        """Writes to MuJoCo's model what the compiler would have made of the light as it is described now."""
+        """Write the fields that the compiler derives from the present description to MuJoCo's model."""
         index = mujoco.mj_name2id(self._physics.model, mujoco.mjtObj.mjOBJ_LIGHT, self.scoped)
         if index >= 0:
             for field, value in drawn_fields(self.scene, self._engine.world.surroundings.shadows).items():

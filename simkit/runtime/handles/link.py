@@ -23,7 +23,7 @@ _BODY = int(mujoco.mjtObj.mjOBJ_XBODY)
 
 
 class Link(Handle):
-    """A link of a model. Poses and velocities are those of the link frame's origin, in the world frame."""
+    """Link of a model. Poses and velocities are those of the link frame's origin, in the world frame."""
 
     def __init__(self, handles: EntityHandles, scene: SceneLink) -> None:
         super().__init__(handles, scene.name, scene.scoped)
@@ -46,12 +46,12 @@ class Link(Handle):
         return pose @ self._offset if self._offset is not None else pose
 
     def root_state(self) -> tuple[float, ...] | None:
-        """Of a link that moves freely its pose as x, y, z, qw, qx, qy, qz, of which the engine need compute nothing."""
+        """Return the pose of a free link as x, y, z, qw, qx, qy, qz, without a forward pass; None for other links."""
         start = self._binding.root_joint_qpos
         return tuple(self._physics.data.qpos[start : start + 7].tolist()) if start >= 0 else None
 
     def _velocity(self) -> Vector:
-        """Angular and linear velocity of the link origin in the world, shape (6,)."""
+        """Return angular and linear velocity of the link origin in the world, shape (6,)."""
         self._check()
         data = self._physics.fresh()
         out = np.zeros(6)
@@ -61,21 +61,21 @@ class Link(Handle):
 
     @property
     def linear_velocity(self) -> Vector:
-        """Of the link origin [m/s], world frame, shape (3,)."""
+        """Velocity of the link origin [m/s], world frame, shape (3,)."""
         return self._velocity()[3:]
 
     @property
     def angular_velocity(self) -> Vector:
-        """[rad/s], world frame, shape (3,)."""
+        """Angular velocity [rad/s], world frame, shape (3,)."""
         return self._velocity()[:3]
 
     @property
     def linear_acceleration(self) -> Vector:
-        """Of the link origin [m/s²], world frame, gravity not included (0 at rest), shape (3,)."""
+        """Acceleration of the link origin [m/s²], world frame, without gravity (0 at rest), shape (3,)."""
         self._check()
         out = np.zeros(6)
         physics = self._physics
-        # the engine leaves a sleeper's numbers at those of the last time somebody asked
+        # the engine does not update the numbers of a sleeping body
         if not self._body or physics.sleep.is_asleep(self._body, physics.fresh()):
             return out[3:]
         data = physics.fresh_accelerations()
@@ -84,21 +84,21 @@ class Link(Handle):
 
     @property
     def mass(self) -> float:
-        """[kg]"""
+        """Mass [kg]."""
         return float(self.scene.inertial.mass)
 
     # ------------------------------------------------------------------ commands
 
     @property
     def is_free(self) -> bool:
-        """Whether nothing holds it: it moves freely, with what hangs on its joints."""
+        """True if the link moves freely, together with the links on its joints."""
         return int(self._binding.root_joint_qpos) >= 0
 
     def set_pose(self, pose: Pose) -> None:
-        """Moves a link that nothing holds, with all that hangs on its joints; velocities stay.
+        """Move a free link with all links on its joints; velocities stay.
 
         Raises:
-            InputError: joints or the world hold it; its model can be moved, or the joints set.
+            InputError: joints or the world hold the link; move its model, or set its joints.
         """
         self._check()
         if not self.is_free:
@@ -111,10 +111,10 @@ class Link(Handle):
         self._physics.changed_body(STALE, self._body)
 
     def set_velocity(self, linear: VectorLike, angular: VectorLike = (0.0, 0.0, 0.0)) -> None:
-        """Gives a link that nothing holds a twist about its origin, world frame [m/s, rad/s].
+        """Set the twist of a free link about its origin, world frame [m/s, rad/s].
 
         Raises:
-            InputError: joints or the world hold it.
+            InputError: joints or the world hold the link.
         """
         self._check()
         if not self.is_free:
@@ -133,7 +133,7 @@ class Link(Handle):
         return InputError(message, "SK-SERVICE-003")
 
     def apply_wrench(self, force: VectorLike, torque: VectorLike = (0.0, 0.0, 0.0)) -> None:
-        """Force [N] and torque [N·m], world frame, at the centre of mass, for the next step; several add up."""
+        """Add a force [N] and torque [N·m], world frame, at the centre of mass, for the next step."""
         self._check()
         if not self._body:
             return
@@ -146,7 +146,7 @@ class Link(Handle):
 
     @property
     def collisions_enabled(self) -> bool:
-        """Whether the link's collisions make contacts; settable."""
+        """True if the link's collisions make contacts; settable."""
         model = self._physics.model
         return any(model.geom_contype[g] or model.geom_conaffinity[g] for g in self._binding.geoms)
 
@@ -160,17 +160,17 @@ class Link(Handle):
                 values[g] = original[g] if enabled else 0
         self._physics.changed(STALE)
 
-    # ------------------------------------------------------------------ what hangs on it
+    # ------------------------------------------------------------------ sensors and visuals
 
     @property
     def sensors(self) -> dict[str, Any]:
-        """Its sensors by name."""
-        there = self._handles.tables["sensor"]
-        return {s.name: there[s.scoped] for s in self.scene.sensors if s.scoped in there}
+        """Sensors of the link by name."""
+        simulated = self._handles.tables["sensor"]
+        return {s.name: simulated[s.scoped] for s in self.scene.sensors if s.scoped in simulated}
 
     @property
     def visuals(self) -> dict[str, Visual]:
-        """Its visuals by name."""
-        if self._visuals is None:  # a large world has thousands, and few are ever asked for
+        """Visuals of the link by name."""
+        if self._visuals is None:  # made on first use, because a large world has thousands
             self._visuals = {v.name: Visual(self._handles, v, self) for v in self.scene.visuals}
         return dict(self._visuals)

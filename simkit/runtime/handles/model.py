@@ -21,10 +21,10 @@ if TYPE_CHECKING:
 
 
 class Model(Handle):
-    """A model with its links, joints and nested models by their own names; `::` reaches further down.
+    """Model with its links, joints and nested models by their own names; `::` separates nested names.
 
     Attributes:
-        static: whether the file says that it never moves by itself.
+        static: True for a static model in the file.
     """
 
     def __init__(self, handles: EntityHandles, scene: SceneModel) -> None:
@@ -34,13 +34,13 @@ class Model(Handle):
         self.joints: dict[str, Joint] = {s.name: Joint(handles, s) for s in scene.joints}
         self.models: dict[str, Model] = {s.name: Model(handles, s) for s in scene.models}
         self._rest = scene.pose_world
-        # the model frame in its canonical link's frame: fixed for ever
+        # the model frame in its canonical link's frame is constant
         self._canonical = next((li for li in scene.all_links() if li.scoped == scene.canonical_link), None)
         self._in_canonical = self._canonical.pose_world.inverse() @ scene.pose_world if self._canonical else None
         self._is_canonical = self._in_canonical == IDENTITY
 
     def everything(self) -> list[Handle]:
-        """This handle and all below it."""
+        """Return this handle and all handles below it."""
         below = [h for m in self.models.values() for h in m.everything()]
         return [self, *self.links.values(), *self.joints.values(), *below]
 
@@ -56,10 +56,10 @@ class Model(Handle):
         found: Model = look_up(self._below("models"), name, "model")
         return found
 
-    def _below(self, what: str) -> dict[str, Any]:
-        table: dict[str, Any] = dict(getattr(self, what))
+    def _below(self, attribute: str) -> dict[str, Any]:
+        table: dict[str, Any] = dict(getattr(self, attribute))
         for name, nested in self.models.items():
-            table.update({f"{name}::{key}": value for key, value in nested._below(what).items()})
+            table.update({f"{name}::{key}": value for key, value in nested._below(attribute).items()})
         return table
 
     # ------------------------------------------------------------------ pose and velocity
@@ -74,7 +74,7 @@ class Model(Handle):
         return pose if self._is_canonical else pose @ self._in_canonical
 
     def set_pose(self, pose: Pose) -> None:
-        """Moves the whole model; joint positions and velocities stay. A static model may be moved too."""
+        """Move the whole model; joint positions and velocities stay. A static model may be moved too."""
         self._check()
         if self.static:
             self._handles.make_movable(self.scoped.split("::")[0])
@@ -100,13 +100,13 @@ class Model(Handle):
             moved = shift @ Pose(data.qpos[start : start + 3], data.qpos[start + 3 : start + 7])
             data.qpos[start : start + 3], data.qpos[start + 3 : start + 7] = moved.position, moved.quaternion
         elif body and model.body_parentid[body] == 0:
-            # fixed or hinged to the world: the body's own place changes
+            # fixed or hinged to the world: the pose of the body itself changes
             positions, quaternions = self._engine.touch("body_pos"), self._engine.touch("body_quat")
             moved = shift @ Pose(positions[body], quaternions[body])
             positions[body], quaternions[body] = moved.position, moved.quaternion
 
     def set_velocity(self, linear: VectorLike, angular: VectorLike = (0.0, 0.0, 0.0)) -> None:
-        """Gives every free part of the model this twist about the model's origin, world frame [m/s, rad/s]."""
+        """Set the twist of every free part of the model about the model's origin, world frame [m/s, rad/s]."""
         self._check()
         data, names, origin = self._physics.data, self._engine.names, self.pose.position
         linear, angular = np.asarray(linear, float), np.asarray(angular, float)
@@ -123,15 +123,15 @@ class Model(Handle):
         update_loop_joints(self._engine)
 
     def set_joint_positions(self, positions: Mapping[str, float | Sequence[float]]) -> None:
-        """Puts several joints at positions, once."""
+        """Set several joints to positions once."""
         found = [(self.joint(name), value) for name, value in positions.items()]
         for joint, value in found:
             joint.set_position(value)
 
     def get_state(self) -> Pose:
-        """Returns the pose of a model without links, for a snapshot."""
+        """Return the pose of a model without links, for a snapshot."""
         return self._rest
 
     def set_state(self, state: Pose) -> None:
-        """Goes back to a pose from `get_state`."""
+        """Restore a pose from `get_state`."""
         self._rest = state

@@ -21,11 +21,11 @@ if TYPE_CHECKING:
 
 
 class Visual(Handle):
-    """What is drawn of a link for one `<visual>` of the file.
+    """Drawn shape of a link for one `<visual>` of the file.
 
     Attributes:
-        scene: as the file has it.
-        link: that carries it.
+        scene: description in the file.
+        link: link that carries the visual.
     """
 
     def __init__(self, handles: EntityHandles, scene: SceneVisual, link: Link) -> None:
@@ -37,16 +37,16 @@ class Visual(Handle):
 
     @property
     def geoms(self) -> tuple[int, ...]:
-        """Ids of the engine's geoms that draw it, in the present model; none for a shape that is not drawn."""
+        """Ids of the engine's geoms of the visual in the present model; empty for a shape that is not drawn."""
         self.link._check()
         drawn: dict[str, tuple[int, ...]] = self._engine.names.drawn(self.link.scoped)
         return drawn.get(self.scoped, ())
 
     def set_colour(self, red: float, green: float, blue: float, alpha: float = 1.0) -> None:
-        """Paints it, each part from 0 to 1; what it is made of (gloss, glow, a picture it wears) stays."""
+        """Set the colour, each component from 0 to 1; gloss, glow and texture stay."""
         parts = [min(1.0, max(0.0, float(part))) for part in (red, green, blue, alpha)]
         if parts == [0.5, 0.5, 0.5, 1.0]:
-            parts[0] = 0.5001  # exactly MuJoCo's default would be taken for "not given"
+            parts[0] = 0.5001  # MuJoCo interprets its exact default as "not given"
         geoms = list(self.geoms)
         if geoms:
             self._engine.touch("geom_rgba")[geoms] = parts
@@ -61,15 +61,15 @@ Value = TypeVar("Value")
 
 
 class VisualProperty(MutableMapping[str, Value], abc.ABC):
-    """A value by scoped name; may be changed at any time.
+    """Values by scoped name; they may change at any time.
 
-    A visual has its own, else that of what is around it, the innermost first. A model that is removed takes its values
-    along; snapshots and reset bring back what was.
+    A visual has its own value, else that of the innermost entity around it. A removed model takes its values with it;
+    snapshots and reset restore them.
 
     Attributes:
-        entity_kinds: kinds of entities that may have one, besides visuals.
-        read_by: attribute of the sensors that measure it; what they hold is measured before a change.
-        state: all of them; never written to, only replaced, so that whoever worked something out of it knows.
+        entity_kinds: kinds of entities that may have a value, besides visuals.
+        read_by: attribute of the sensors that measure the value; their pending samples are measured before a change.
+        state: all values. The mapping is replaced, never written to, so that readers can detect a change.
     """
 
     entity_kinds: ClassVar[tuple[str, ...]] = ("model",)
@@ -81,13 +81,13 @@ class VisualProperty(MutableMapping[str, Value], abc.ABC):
 
     @abc.abstractmethod
     def checked(self, value: Value) -> Value:
-        """The value as it is kept; raises ValueError."""
+        """Return the value as it is stored; raise ValueError if it is invalid."""
 
     def __getitem__(self, scoped: str) -> Value:
         return self.state[scoped]
 
     def __setitem__(self, scoped: str, value: Value) -> None:
-        """Raises KeyError, which names the closest, and ValueError."""
+        """Set a value; a KeyError suggests the closest name, a ValueError reports an invalid value."""
         value = self.checked(value)
         self._find(scoped)
         if self.state.get(scoped) != value:
@@ -111,10 +111,10 @@ class VisualProperty(MutableMapping[str, Value], abc.ABC):
         return self
 
     def by_visual(self, *, nested: bool = True) -> dict[str, Value]:
-        """The value of every visual that has one, by scoped name, in document order.
+        """Return the values of all visuals that have one, by scoped name, in document order.
 
         Args:
-            nested: whether a model's also counts for the models in it.
+            nested: apply a model's value to the models in it too.
         """
         found: dict[str, Value] = {}
         for model in self._handles.engine.structure.models.values() if self.state else ():
@@ -133,10 +133,10 @@ class VisualProperty(MutableMapping[str, Value], abc.ABC):
         for inner in model.models:
             self._collect(inner, own if nested else None, nested, found)
 
-    # ------------------------------------------------------------------ what the simulation calls
+    # ------------------------------------------------------------------ called by the simulation
 
     def bind(self, structure: WorldStructure) -> None:
-        """Forgets the values of models that are not there any more."""
+        """Drop the values of removed models."""
         kept = {k: v for k, v in self.state.items() if k.split("::", 1)[0] in structure.models}
         if len(kept) != len(self.state):
             self.state = MappingProxyType(kept)
@@ -147,7 +147,7 @@ class VisualProperty(MutableMapping[str, Value], abc.ABC):
     def set_state(self, state: Mapping[str, Value]) -> None:
         self.state = state
 
-    # ------------------------------------------------------------------ within
+    # ------------------------------------------------------------------ internals
 
     def _find(self, scoped: str) -> None:
         handles = self._handles
@@ -160,7 +160,7 @@ class VisualProperty(MutableMapping[str, Value], abc.ABC):
             look_up({**known, **handles.visuals()}, scoped, f"{', '.join(self.entity_kinds)} or visual")
 
     def _change(self, values: dict[str, Value]) -> None:
-        """Samples that wait to be looked at are measured with the values of their time."""
+        """Replace the values after the pending samples of sensors have been measured with the old ones."""
         found: list[Any] = [s for s in self._handles.engine.structure.all_sensors() if getattr(s, self.read_by, False)]
         for camera in found:
             camera.finish_samples()
@@ -171,14 +171,14 @@ MAX_LABEL: Final = 255
 
 
 class Labels(VisualProperty[int]):
-    """Label by scoped name of a model or a visual; may be changed at any time.
+    """Labels by scoped name of a model or a visual; they may change at any time.
 
         sim.contents.labels["shelf"] = 40                    # the model and all that is in it
         sim.contents.labels["shelf::base::handle"] = 41      # one visual
         del sim.contents.labels["shelf"]
 
-    A visual wears its own label, else that of the innermost model around it that has one. A model that is removed
-    takes its labels along; snapshots and reset bring back what was.
+    A visual has its own label, else that of the innermost model around it. A removed model takes its labels with it;
+    snapshots and reset restore them.
     """
 
     read_by = "reads_labels"
@@ -192,10 +192,11 @@ class Labels(VisualProperty[int]):
 
 @dataclass(frozen=True, slots=True)
 class HeatSignature:
-    """A picture that a surface wears by its texture coordinates; its red tells the temperature.
+    """Image on a surface by its texture coordinates; its red channel is the temperature.
 
     Attributes:
-        coldest, hottest: where red is 0 and where it is full [K].
+        coldest: temperature at red 0 [K].
+        hottest: temperature at full red [K].
     """
 
     picture: Path
@@ -207,13 +208,13 @@ Temperature = float | HeatSignature
 
 
 class Temperatures(VisualProperty[Temperature]):
-    """Temperature [K] or heat signature by scoped name of a model, a link or a visual; may be changed at any time.
+    """Temperature [K] or heat signature by scoped name of a model, a link or a visual; may change at any time.
 
         sim.contents.temperatures["stove::base::plate"] = 450.0     # one visual
-        sim.contents.temperatures["stove"] = 310.0                  # all that has none of its own
+        sim.contents.temperatures["stove"] = 310.0                  # all visuals without their own
 
-    A visual has its own, else that of its link, else that of the innermost model around it that has one. A model that
-    is removed takes them along; snapshots and reset bring back what was.
+    A visual has its own temperature, else that of its link, else that of the innermost model around it. A removed model
+    takes its temperatures with it; snapshots and reset restore them.
     """
 
     entity_kinds = ("model", "link")

@@ -177,7 +177,7 @@ def test_a_goal_ends_when_the_model_behind_it_is_removed_and_goes_on_with_a_rest
         sim.step()
         before = sim.snapshot()
         sim.remove("m")
-        assert goal.status is GoalStatus.ABORTED and goal.reason == "the action is gone" and ended == [goal]
+        assert goal.status is GoalStatus.ABORTED and goal.reason == "the action was removed" and ended == [goal]
         sim.restore(before)
         assert goal.status is GoalStatus.EXECUTING and goal.reason == ""
 
@@ -185,7 +185,7 @@ def test_a_goal_ends_when_the_model_behind_it_is_removed_and_goes_on_with_a_rest
 def test_a_goal_that_was_taken_cannot_be_rejected_and_one_that_has_ended_has_no_feedback(sim: Any) -> None:
     goal = sim.send_goal("/fibonacci", {"order": 3})
     sim.step()
-    with pytest.raises(ActionError, match="was taken already; abort it"):
+    with pytest.raises(ActionError, match="was accepted already; abort it"):
         goal.reject()
     sim.run(1.0)
     goal.publish_feedback({"sequence": [7]})

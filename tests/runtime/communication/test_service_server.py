@@ -38,7 +38,7 @@ def test_a_message_is_taken_as_well_as_a_dict() -> None:
     with simkit.load(EMPTY, plugins=[lamp := Lamp()]) as sim:
         sim.call("lamp/switch", msgs.make("std_srvs/srv/SetBool_Request", data=True))
         assert lamp.is_on
-        with pytest.raises(MessageError, match="takes std_srvs/srv/SetBool_Request, got std_msgs/msg/Bool"):
+        with pytest.raises(MessageError, match="needs std_srvs/srv/SetBool_Request, got std_msgs/msg/Bool"):
             sim.call("lamp/switch", msgs.make("std_msgs/msg/Bool"))
         with pytest.raises(MessageError, match="did you mean 'data'"):
             sim.call("lamp/switch", {"dta": True})

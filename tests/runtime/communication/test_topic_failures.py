@@ -248,7 +248,7 @@ def test_a_snapshot_of_a_step_under_way_cannot_be_restored_before_its_end():
         sim.restore(sim.snapshot())
 
     sim.subscribe("/imu", back)
-    with pytest.raises(SubscriberError, match="within a step that has not ended"):
+    with pytest.raises(SubscriberError, match="in a step that has not ended"):
         sim.step()
 
 
@@ -359,7 +359,7 @@ def test_a_topic_that_a_plugin_opens_later_is_refused_where_it_has_another_type(
         def after_step(self):
             self.advertise("imu", "std_msgs/msg/Float64")
 
-    told = "wants std_msgs/msg/Float64 on '/imu'.*Imu"
+    told = "uses std_msgs/msg/Float64 on '/imu'.*Imu"
     with simkit.load(clashing(tmp_path), plugins=[Late()]) as sim, pytest.raises(simkit.SimkitError, match=told):
         sim.step()
 
