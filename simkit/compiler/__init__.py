@@ -1,8 +1,8 @@
-"""Compiler: a `Scene` becomes a MuJoCo model.
+"""Compiler from a `Scene` to a MuJoCo model.
 
-A scene enters, then what sensors and plugins add through `SpecBuilder`; an `MjModel` with its first state and the map
-of names leaves. `MjSpec` is made in this room only. Nothing here steps a simulation or knows a kind of sensor or
-plugin.
+- Input: a scene, and the elements that sensors and plugins add through `SpecBuilder`.
+- Output: an `MjModel` with its first state and the name map.
+- Not known here: stepping, and kinds of sensors and plugins. Only this package creates an `MjSpec`.
 """
 
 from simkit.mujoco_import import mujoco  # noqa: F401, I001  (before any module imports MuJoCo by itself)

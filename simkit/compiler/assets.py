@@ -1,4 +1,4 @@
-"""Meshes, textures and materials of a spec, named by their content so that equal ones are one, and colours of geoms."""
+"""Meshes, textures and materials of a spec, named by their content so that equal ones are shared; colours of geoms."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from simkit.compiler.meshes.mesh_part import Colour, Floats, Ints, MeshPart
 from simkit.scene import Material, SceneVisual
 
 AssetKey = tuple[str, str]
-"""(kind, MuJoCo's name)."""
+"""Kind and MuJoCo name of an asset."""
 
 _names: WeakKeyDictionary[MeshPart, dict[bool, str]] = WeakKeyDictionary()
 
 
 class Assets:
-    """Adds assets once. `used` collects what the model under construction refers to."""
+    """Writer that adds each asset once. `used` collects the assets of the model under construction."""
 
     def __init__(self, spec: mujoco.MjSpec, known: set[AssetKey] | None = None) -> None:
         self.spec = spec
@@ -41,14 +41,17 @@ class Assets:
         return True
 
     def surface(self, vertices: Floats, faces: Ints, uv: Floats | None = None) -> str:
-        """A triangle mesh, which may be flat or open."""
+        """Add a triangle mesh, which may be flat or open, and return its name."""
         name = "mesh#" + _digest(vertices, faces, uv)
         if self._is_new("mesh", name):
             self._add_mesh(name, mesh_bytes(vertices, faces, uv))
         return name
 
     def part(self, part: MeshPart, has_uv: bool) -> str:
-        """The triangles of a part as they are; its name is kept, since a part of the cache comes with every load."""
+        """Add the triangles of a part and return their name.
+
+        The name is cached, because every load returns the same parts.
+        """
         uv = part.uv if has_uv else None
         names = _names.setdefault(part, {})
         if has_uv not in names:
@@ -58,9 +61,9 @@ class Assets:
         return names[has_uv]
 
     def _add_mesh(self, name: str, content: bytes) -> None:
-        """A mesh by way of a file in memory: MuJoCo keeps what it made of a file and does not repeat that work.
+        """Add a mesh as a file in memory: MuJoCo caches the conversion of a file and does not repeat it.
 
-        Its inertia as a shell is never used (masses are given), is cheap, and exists for open and flat meshes too.
+        Its shell inertia is never used (masses are given), costs little, and exists for open and flat meshes too.
         """
         mesh = self.spec.add_mesh(name=name)
         mesh.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL
@@ -68,13 +71,17 @@ class Assets:
         self.spec.assets[mesh.file] = content
 
     def picture(self, file: Path) -> Pixels:
-        """A texture file, read once. Raises MeshFileError."""
+        """Return the image of a texture file, read once.
+
+        Raises:
+            MeshFileError: the file cannot be used.
+        """
         if file not in self._pictures:
             self._pictures[file] = read_pixels(file)
         return self._pictures[file]
 
     def texture(self, pixels: Pixels) -> str:
-        """An image that is mapped by texture coordinates."""
+        """Add an image that is mapped by texture coordinates, and return its name."""
         name = "texture#" + _digest(pixels)
         if self._is_new("texture", name):
             texture = self.spec.add_texture(name=name)
@@ -84,13 +91,13 @@ class Assets:
         return name
 
     def material(self, emission: float, look: GeomColours, texture: str, repeat: tuple[float, float]) -> str:
-        """How a geom reflects; its colour stays with the geom.
+        """Add the reflection properties of a geom and return their name; the colour stays with the geom.
 
         Args:
-            emission: under the scene's ambient light.
-            look: tells what the material mirrors.
-            texture: an image that it wears.
-            repeat: how often the image is there, across and up, on shapes without texture coordinates of their own.
+            emission: emission under the scene's ambient light.
+            look: reflection properties of the material.
+            texture: name of the texture; empty for none.
+            repeat: repetitions of the image, across and up, on shapes without texture coordinates of their own.
         """
         values = (round(emission, 4), round(look.specular, 4), round(look.shininess, 4))
         name = _material_name(*values, texture, *repeat)
@@ -107,11 +114,11 @@ class Assets:
 
     @staticmethod
     def has_texture(material: str) -> bool:
-        """Whether a material, by its name, wears an image."""
+        """Check by its name whether a material has a texture."""
         return material.endswith("#textured")
 
     def heights(self, rows: npt.NDArray[np.float64], size: tuple[float, float, float]) -> str:
-        """A height field over `size` (x, y, highest); rows from -y to +y, values from 0 to 1."""
+        """Add a height field over `size` (x, y, highest); rows from -y to +y, values from 0 to 1."""
         name = "heights#" + _digest(rows, size)
         if self._is_new("hfield", name):
             field = self.spec.add_hfield(name=name)
@@ -121,7 +128,7 @@ class Assets:
         return name
 
     def drop(self, keys: set[AssetKey]) -> None:
-        """Deletes assets that nothing refers to any more; materials before the textures they use."""
+        """Delete unused assets; materials before the textures they use."""
         order = {"material": 0, "mesh": 1, "hfield": 2, "texture": 3}
         for kind, name in sorted(keys & self.known, key=lambda k: (order[k[0]], k[1])):
             self.spec.delete(getattr(self.spec, kind)(name))
@@ -130,13 +137,16 @@ class Assets:
 
 
 def file_of(name: str) -> str:
-    """Name of the file in memory (`spec.assets`) that a mesh is read from."""
+    """Return the name of the file in memory (`spec.assets`) of a mesh."""
     return name.replace("#", "_") + ".msh"
 
 
 def mesh_bytes(vertices: Floats, faces: Ints, uv: Floats | None = None) -> bytes:
-    """A mesh in MuJoCo's MSH format: counts, then vertices and texture coordinates in single precision, then faces."""
-    if len(vertices) < 4:  # MuJoCo wants four; the last are in no face
+    """Return a mesh in MuJoCo's MSH format.
+
+    The format has counts, then vertices and texture coordinates in single precision, then faces.
+    """
+    if len(vertices) < 4:  # MuJoCo needs four vertices; the added ones are in no face
         vertices = np.vstack([vertices, np.repeat(vertices[:1], 4 - len(vertices), axis=0)])
         uv = None if uv is None else np.vstack([uv, np.repeat(uv[:1], len(vertices) - len(uv), axis=0)])
     counts = np.array([len(vertices), 0, 0 if uv is None else len(uv), len(faces)], "<i4")
@@ -153,7 +163,7 @@ def _material_name(*values: object) -> str:
     return "material#" + _digest(*values) + ("#textured" if texture else "")
 
 
-_written = lru_cache(maxsize=64)(str)  # NumPy takes ten times as long to write a type as to hash it
+_written = lru_cache(maxsize=64)(str)  # cached, because NumPy needs ten times as long to format a type as to hash it
 
 
 def _digest(*values: object) -> str:
@@ -174,15 +184,15 @@ _SHININESS: Final = 0.3
 
 @dataclass(frozen=True, slots=True)
 class GeomColours:
-    """A geom's colour, and its material's shares from 0 to 1: how much of the light it mirrors and how much it glows.
+    """Colour of a geom, and fractions from 0 to 1 of its material: how much light it reflects and emits.
 
-    The renderer lights every surface as diffuse + specular + emission in the style of OpenGL. The ambient colour of a
-    material is not separate there: it is the diffuse one. Where a file's is darker or brighter than that, emission
-    makes up for it under the scene's own ambient light (it may be negative), as Gazebo Classic would have it; a hue of
-    its own it cannot have. PBR's roughness sets the size of highlights; metalness and further maps have no counterpart.
+    The renderer computes diffuse + specular + emission in the style of OpenGL. It has no separate ambient colour; the
+    diffuse one counts. If a file's ambient colour is darker or brighter, emission compensates for it under the scene's
+    ambient light (it may be negative), as in Gazebo Classic. A different hue is not possible. PBR's roughness sets the
+    size of highlights; metalness and further maps have no counterpart.
 
     Attributes:
-        ambient: brightness under ambient light, in parts of that of its colour; 1 is as bright.
+        ambient: brightness of the ambient colour relative to that of the diffuse colour.
     """
 
     rgba: tuple[float, float, float, float]
@@ -192,12 +202,15 @@ class GeomColours:
     ambient: float = 1.0
 
     def emission_under(self, ambient: Colour) -> float:
-        """Emission that makes up for a material's own ambient colour under the scene's ambient light."""
+        """Return the emission that compensates for a material's own ambient colour under the scene's ambient light."""
         return self.emission + (self.ambient - 1.0) * brightness(ambient)
 
 
 def geom_colours(visual: SceneVisual, part: MeshPart | None) -> GeomColours:
-    """How a visual (or one part of its mesh) looks; the file's material wins over the mesh's own."""
+    """Return the colours of a visual or of one part of its mesh.
+
+    The file's material has priority over the mesh's own.
+    """
     material = visual.material
     emission, specular, shininess, ambient = 0.0, 0.0, _SHININESS, 1.0
     if material is not None:
@@ -215,12 +228,15 @@ def geom_colours(visual: SceneVisual, part: MeshPart | None) -> GeomColours:
     r, g, b, a = colour
     a *= 1.0 - min(1.0, max(0.0, visual.transparency))
     if (r, g, b, a) == (0.5, 0.5, 0.5, 1.0):
-        r = 0.5001  # exactly MuJoCo's default would be taken for "not given"
+        r = 0.5001  # MuJoCo interprets its exact default as "not given"
     return GeomColours((r, g, b, a), min(1.0, emission), min(1.0, specular), shininess, ambient)
 
 
 def _ambient_share(material: Material) -> float:
-    """How bright the ambient colour is, in parts of the diffuse one; 1 where that is black or what glows decides."""
+    """Return the brightness of the ambient colour relative to the diffuse one.
+
+    The result is 1 for a black or mostly emissive material.
+    """
     own = brightness(material.diffuse)
     if own <= 0.0 or brightness(material.emissive) > own:
         return 1.0
@@ -228,7 +244,10 @@ def _ambient_share(material: Material) -> float:
 
 
 def _glowing(material: Material) -> tuple[Colour, float]:
-    """Colour and emission: MuJoCo glows in the surface's own colour, so what glows more than it shines keeps that."""
+    """Return colour and emission.
+
+    MuJoCo emits in the surface's own colour, so a mostly emissive material uses its emissive colour.
+    """
     own, glow = brightness(material.diffuse), brightness(material.emissive)
     if glow <= 0.0:
         return material.diffuse, 0.0
@@ -240,5 +259,5 @@ def _glowing(material: Material) -> tuple[Colour, float]:
 
 
 def brightness(colour: Colour) -> float:
-    """Relative luminance of linear red, green and blue (Rec. 709)."""
+    """Return the relative luminance of linear red, green and blue (Rec. 709)."""
     return 0.2126 * colour[0] + 0.7152 * colour[1] + 0.0722 * colour[2]

@@ -1,4 +1,4 @@
-"""Links as bodies: frame, mass, inertia."""
+"""Bodies of links: frame, mass, inertia."""
 
 from __future__ import annotations
 
@@ -15,21 +15,26 @@ LEAST_INERTIA: Final = 1e-12
 
 
 KINEMATIC_ARMATURE: Final = 1e9
-"""[kg and kg·m²] added to the inertia, not to the weight, of a free kinematic link."""
+"""Armature [kg and kg·m²] of a free kinematic link; it adds to the inertia, not to the weight."""
 
 SPLIT_MASS_SHARE: Final = 0.1
-"""Part of a link's mass that the twin of a loop joint takes over. A lighter twin makes the loop softer: under a load
-the weld gives way in proportion to 1 / mass."""
+"""Fraction of a link's mass that the twin of a loop joint receives.
+
+A lighter twin makes the loop softer: under a load the weld yields in proportion to 1 / mass.
+"""
 
 
 def add_body(
     parent: mujoco.MjsBody, link: SceneLink, pose: Pose, written: BodyInertia | None, *, needs_mass: bool = True
 ) -> mujoco.MjsBody:
-    """A body whose frame is the link frame, `pose` in the parent body's frame; returns MuJoCo's handle.
+    """Add a body whose frame is the link frame, at `pose` in the parent body's frame; return MuJoCo's handle.
 
     Args:
-        written: its mass and inertia (`simkit.compiler.refused_inertias.plan_inertials`); None for a link without mass.
-        needs_mass: whether it moves by itself; a link without mass that does not is a frame and weighs nothing.
+        parent: parent body.
+        link: link of the file.
+        pose: pose of the link in the parent body's frame.
+        written: mass and inertia (`simkit.compiler.refused_inertias.plan_inertials`); None for a link without mass.
+        needs_mass: True if the link moves by itself. A link without mass that does not move by itself is a frame.
     """
     body = parent.add_body(name=link.scoped, pos=pose.position, quat=pose.quaternion)
     body.explicitinertial = True
@@ -39,7 +44,7 @@ def add_body(
         return body
     body.mass, body.ipos = written.mass, written.com
     if written.exact is not None:
-        body.simple = 0  # its axes are turned after the compile, which a body marked as simple does not survive
+        body.simple = 0  # its axes are rotated after the compile, which is invalid for a body marked as simple
     if any(written.inertia):
         body.fullinertia = written.inertia
     else:
@@ -50,20 +55,22 @@ def add_body(
 
 
 def is_massless(inertial: Inertial) -> bool:
-    """Whether a link is but a frame: without mass and without inertia."""
+    """Check whether a link is only a frame: without mass and without inertia."""
     return inertial.mass == 0.0 and not any(inertial.inertia)
 
 
 def add_split_body(
     spec: mujoco.MjSpec, name: str, body: str, under: str, pose: Pose, has_motion: bool
 ) -> mujoco.MjsBody:
-    """A second body for a link, hung `under` another body; it takes over a part of the link's mass.
+    """Add a twin body for a link under another body; the twin receives a fraction of the link's mass.
 
     Args:
         spec: MuJoCo's specification.
+        name: name of the twin.
         body: MuJoCo body of the link.
-        pose: of the link's body in that of `under`.
-        has_motion: whether joints will move it; a twin that is rigidly one with `under` needs no mass.
+        under: parent body of the twin.
+        pose: pose of the link's body in the frame of `under`.
+        has_motion: True if joints will move the twin; a twin fixed to `under` needs no mass.
     """
     twin = spec.body(under).add_body(name=name, pos=pose.position, quat=pose.quaternion)
     twin.explicitinertial = True
@@ -85,7 +92,7 @@ def add_split_body(
 
 
 def remove_split_body(spec: mujoco.MjSpec, name: str, body: str) -> None:
-    """Takes a twin out again, and gives the link its mass back where that is still there."""
+    """Remove a twin and return its mass to the link, if the link still exists."""
     twin = spec.body(name)
     has_motion = twin is not None and len(twin.joints) > 0
     if twin is not None:

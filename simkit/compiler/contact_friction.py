@@ -1,8 +1,8 @@
-"""Contact properties of a surface: friction by rank, softness, bounce, masks.
+"""Contact properties of a surface: friction by priority, softness, bounce, masks.
 
-Of two surfaces Gazebo's engines take the smaller friction coefficient, MuJoCo the larger, unless their `priority`
-differs: then the higher one's. So the priority rises as the coefficient falls. It is a fixed function of the
-coefficient, so a model that is spawned changes no other's.
+Gazebo's engines use the smaller friction coefficient of two surfaces. MuJoCo uses the larger one, unless their
+`priority` differs: then it uses that of the higher priority. Therefore the priority rises as the coefficient falls. It
+is a fixed function of the coefficient, so that a spawned model changes no other model.
 """
 
 from __future__ import annotations
@@ -18,19 +18,20 @@ from simkit.diagnostics import Diagnostics
 from simkit.scene import Surface
 
 MU_MOST: Final = 2.0
-"""Larger coefficients (people write 100000 for "never slips") are taken as this.
+"""Largest friction coefficient; larger ones (often 100000 for "never slips") are reduced to it.
 
-With a pyramidal cone a larger one couples into the normal force: wheels bounce and slip (2.7 % at 10, 0.04 % at 2).
+With a pyramidal cone a larger coefficient couples into the normal force: wheels bounce and slip (2.7 % at 10, 0.04 % at
+2).
 """
 
 STIFF_KP: Final = 1e5
-"""From this stiffness [N/m] on a contact counts as rigid: the world-wide softness stands."""
+"""Stiffness [N/m] from which a contact counts as rigid and uses the world-wide softness."""
 
 BOUNCE_SOLIMP: Final = (0.9995, 0.9995, 0.001, 0.5, 2.0)
-"""Impedance of a contact that rebounds: it loses 0.05 % of the change of velocity, where 0.95 loses 5 %."""
+"""Impedance of a contact that rebounds: it loses 0.05 % of the velocity change, where 0.95 loses 5 %."""
 
 _ALL_BITS: Final = 0xFFFF
-_DECIDING_IMPEDANCE: Final = 1e6  # the engine takes the mean of both surfaces with these weights
+_DECIDING_IMPEDANCE: Final = 1e6  # weight of the surface in the engine's mean of both surfaces
 _TORSION, _ROLL, _LEAST = 0.005, 0.0001, 1e-5
 
 
@@ -49,24 +50,25 @@ class ContactProperties(NamedTuple):
 
 @lru_cache(maxsize=1024)
 def friction_priority(mu: float) -> int:
-    """A rank that rises strictly as `mu` [0, 10] falls: the order of float32 numbers is that of their bits."""
+    """Return a priority that rises strictly as `mu` [0, 10] falls, from the order of the bits of float32 numbers."""
     return int(np.float32(MU_MOST).view(np.int32)) - int(np.float32(max(0.0, min(mu, MU_MOST))).view(np.int32))
 
 
 def contact_properties(surface: Surface, timestep: float, mass: float, diagnostics: Diagnostics) -> ContactProperties:
-    """MuJoCo's contact properties of one collision.
+    """Return MuJoCo's contact properties of one collision.
 
     Args:
-        timestep: [s].
-        mass: of the moving tree that carries the collision [kg]; 0 for a static one.
-        diagnostics: gets a note for each thing that MuJoCo has not.
+        surface: surface of the collision.
+        timestep: length of a step [s].
+        mass: mass of the moving tree that carries the collision [kg]; 0 for a static one.
+        diagnostics: collection for a note about each property that MuJoCo does not support.
     """
     mu = _sliding_friction(surface, diagnostics)
     solref = _softness(surface, timestep, mass, diagnostics)
     solimp, solmix = _impedance(surface.restitution, solref, timestep)
     contype, conaffinity = contact_masks(surface)
     if surface.collide_without_contact:
-        message = "collide_without_contact: the collision is left out of all contacts"
+        message = "collide_without_contact: the collision makes no contacts"
         diagnostics.warning("SK-PHYS-014", message, surface.where)
         contype = conaffinity = 0
     torsion, roll = _turning_friction(surface, diagnostics) if mu > 0.0 else (0.0, 0.0)
@@ -83,7 +85,7 @@ def contact_properties(surface: Surface, timestep: float, mass: float, diagnosti
 
 
 def contact_masks(surface: Surface) -> tuple[int, int]:
-    """contype and conaffinity: two surfaces touch when their bit masks share a bit."""
+    """Return contype and conaffinity: two surfaces touch if their bit masks share a bit."""
     collide = _int32(surface.collide_bitmask)
     if surface.category_bitmask == _ALL_BITS:
         return collide, collide
@@ -96,13 +98,16 @@ def _int32(bits: int) -> int:
 
 
 def has_directional_friction(surface: Surface) -> bool:
-    """Check whether friction or slip of a surface differ along and across a direction that it gives."""
+    """Check whether friction or slip of a surface differ along and across its direction."""
     along, across = directional_friction(surface, has_one=True)
     return any(surface.fdir1) and (along != across or surface.slip1 != surface.slip2)
 
 
 def directional_friction(surface: Surface, *, has_one: bool | None = None) -> tuple[float, float]:
-    """Sliding friction along and across the direction, as far as the engine takes it; without one twice the smaller."""
+    """Return the friction along and across the direction, within the engine's limits.
+
+    Without a direction both are the smaller coefficient.
+    """
     mu, mu2 = (min(max(0.0, m), MU_MOST) if math.isfinite(m) else MU_MOST for m in (surface.mu, surface.mu2))
     if has_one is None:
         has_one = has_directional_friction(surface)
@@ -110,32 +115,38 @@ def directional_friction(surface: Surface, *, has_one: bool | None = None) -> tu
 
 
 def directional_slip(surface: Surface) -> tuple[float, float]:
-    """How fast a surface slips per force [m/s/N], along and across its direction; nothing where that is not known."""
+    """Return the slip of a surface per force [m/s/N], along and across its direction.
+
+    The slip is zero if it differs along and across and the surface has no direction.
+    """
     slips = max(0.0, surface.slip1), max(0.0, surface.slip2)
     return slips if slips[0] == slips[1] or any(surface.fdir1) else (0.0, 0.0)
 
 
 def _sliding_friction(surface: Surface, diagnostics: Diagnostics) -> float:
-    """The larger coefficient of a surface with a direction: its contacts get both as the run goes."""
+    """Return the sliding friction of a surface.
+
+    For a directional surface it is the larger one, because its contacts get both coefficients during the run.
+    """
     most = max((m if math.isfinite(m) else MU_MOST for m in (surface.mu, surface.mu2)), default=0.0)
     if most > MU_MOST:
-        diagnostics.note("SK-PHYS-002", f"friction coefficient {most:g} is taken as {MU_MOST:g}", surface.where)
+        diagnostics.note("SK-PHYS-002", f"friction coefficient {most:g} is reduced to {MU_MOST:g}", surface.where)
     mu, mu2 = directional_friction(surface, has_one=True)
     if has_directional_friction(surface):
         return max(mu, mu2)
     if mu != mu2:
-        message = f"friction differs along (mu {mu:g}) and across (mu2 {mu2:g}): the smaller one is used both ways"
+        message = f"friction differs along (mu {mu:g}) and across (mu2 {mu2:g}): the smaller one is used for both"
         diagnostics.warning("SK-PHYS-005", message, surface.where)
     if surface.slip1 != surface.slip2:
-        message = "slip1 and slip2 differ and there is no <fdir1>: they are not used"
+        message = "slip1 and slip2 differ without <fdir1>: they are ignored"
         diagnostics.warning("SK-PHYS-006", message, surface.where)
     return min(mu, mu2)
 
 
 def _turning_friction(surface: Surface, diagnostics: Diagnostics) -> tuple[float, float]:
-    """Torque per normal force [m] against spinning on the spot and against rolling; 0 where the file asks for none.
+    """Return torque per normal force [m] against spinning on the spot and against rolling; 0 if the file has none.
 
-    A patch of radius a under Hertz' pressure resists spinning with 3π/16 · a · coefficient · N, as Gazebo has it.
+    A patch of radius a under Hertz pressure resists spinning with 3π/16 · a · coefficient · N, as in Gazebo.
     """
     roll = max(0.0, surface.rolling or 0.0)
     torsion = 0.0
@@ -144,8 +155,8 @@ def _turning_friction(surface: Surface, diagnostics: Diagnostics) -> tuple[float
             torsion = 3.0 * math.pi / 16.0 * max(0.0, surface.patch_radius) * surface.torsional
         elif surface.surface_radius > 0.0:
             message = (
-                "torsional friction of a patch that grows with the depth (surface_radius) is not used; that of a fixed "
-                "patch_radius is"
+                "torsional friction of a patch that grows with the depth (surface_radius) is ignored; only a fixed "
+                "patch_radius is supported"
             )
             diagnostics.note("SK-PHYS-007", message, surface.where)
     if roll > 0.0 and torsion == 0.0:
@@ -156,7 +167,7 @@ def _turning_friction(surface: Surface, diagnostics: Diagnostics) -> tuple[float
 def _impedance(
     restitution: float, solref: tuple[float, float], timestep: float
 ) -> tuple[tuple[float, float, float, float, float], float]:
-    """Return impedance and its weight: of two surfaces the one that rebounds or is soft decides."""
+    """Return impedance and its weight: of two surfaces, the one that rebounds or is soft decides."""
     if restitution > 0.0:
         return BOUNCE_SOLIMP, _DECIDING_IMPEDANCE
     if solref[0] > rigid_time_constant(timestep):
@@ -172,11 +183,11 @@ def _softness(surface: Surface, timestep: float, mass: float, diagnostics: Diagn
         return bounce_solref(surface.restitution, timestep)
     if surface.kp is None or surface.kp >= STIFF_KP or surface.kp <= 0.0:
         if surface.kp is not None and surface.kp != 1e12:
-            text = f"contact stiffness {surface.kp:g} N/m counts as rigid: {world * 1e3:g} ms, critically damped"
+            text = f"contact stiffness {surface.kp:g} N/m is simulated as rigid: {world * 1e3:g} ms, critically damped"
             diagnostics.note("SK-PHYS-004", text, surface.where)
         return rigid_time_constant(timestep), 1.0
     if mass <= 0.0:
-        text = f"contact stiffness {surface.kp:g} N/m of a static surface is not used; that of what touches it is"
+        text = f"contact stiffness {surface.kp:g} N/m of a static surface is ignored; that of the other surface counts"
         diagnostics.note("SK-PHYS-004", text, surface.where)
         return rigid_time_constant(timestep), 1.0
     omega = math.sqrt(surface.kp / mass)
@@ -190,10 +201,10 @@ def _softness(surface: Surface, timestep: float, mass: float, diagnostics: Diagn
 def bounce_solref(restitution: float, timestep: float) -> tuple[float, float]:
     """Return direct stiffness and damping (negative solref) of a contact that rebounds within one step.
 
-    MuJoCo asks of a contact the acceleration −b v − k r. With b = (1 + e) / dt, the velocity v that a step begins
-    with becomes −e v in that step, at any speed, mass and number of contact points. MuJoCo divides b by the impedance.
-    The spring only lets the body come to rest. Its part of one rebound is at most a quarter of what the impedance
-    takes, so the energy of a single contact never rises.
+    MuJoCo requests the acceleration −b v − k r of a contact. With b = (1 + e) / dt, the velocity v at the beginning of
+    a step becomes −e v in that step, at any speed, mass and number of contact points. MuJoCo divides b by the
+    impedance. The spring only lets the body come to rest. Its part of one rebound is at most a quarter of the loss by
+    the impedance, so that the energy of a single contact never rises.
     """
     impedance = BOUNCE_SOLIMP[1]
     rate = (1.0 + min(restitution, 1.0)) / timestep

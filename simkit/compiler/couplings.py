@@ -14,13 +14,14 @@ from simkit.pose import Vector
 from simkit.scene import Mimic, SceneJoint
 
 STIFF_SOLIMP: Final = (0.9999, 0.9999, 0.001, 0.5, 2.0)
-"""Impedance of equality constraints that stand for a mechanism: as hard as the solver takes."""
+"""Impedance of equality constraints for mechanisms: the hardest that the solver supports."""
 
 LOOP_DAMPING: Final = 0.5
 """Damping ratio of the weld that closes a loop.
 
-With a time constant of two steps it corrects a gap within one step. The engine's step goes along a chord of the path,
-which opens a joint on a circle of radius R at speed omega by omega² R · step · time constant · damping ratio².
+With a time constant of two steps the weld corrects a gap within one step. The engine's step follows a chord of the
+path. The chord opens a joint on a circle of radius R at speed omega by omega² R · step · time constant · damping
+ratio².
 """
 
 _ONE_NUMBER: Final = ("revolute", "continuous", "prismatic", "universal", "revolute2", "screw", "planar")
@@ -28,13 +29,13 @@ _ALONG: Final = 1.0 - 1e-6
 
 
 class Couplings:
-    """Writes equality constraints and notes them in the record of their model."""
+    """Writer of equality constraints, which it adds to the record of their model."""
 
     def __init__(self, spec: mujoco.MjSpec, record: ModelRecord, timestep: float, diagnostics: Diagnostics) -> None:
         self.spec, self.record, self.timestep, self.diagnostics = spec, record, timestep, diagnostics
 
     def couple(self, name: str, follower: str, leader: str, offset: float, ratio: float) -> None:
-        """Ties one MuJoCo joint to another: follower = offset + ratio · leader."""
+        """Couple one MuJoCo joint to another: follower = offset + ratio · leader."""
         equality = self._equality(name, mujoco.mjtEq.mjEQ_JOINT, mujoco.mjtObj.mjOBJ_JOINT, follower, leader)
         data = np.zeros(len(equality.data))
         data[:2] = offset, ratio
@@ -43,20 +44,22 @@ class Couplings:
     def weld(
         self, name: str, body: str, other: str, anchor_in_other: Vector, active: bool = True, damping: float = 1.0
     ) -> None:
-        """Holds two MuJoCo bodies as they stand in the specification, with a damping ratio."""
+        """Hold two MuJoCo bodies at their relative pose in the specification, with a damping ratio."""
         equality = self._equality(name, mujoco.mjtEq.mjEQ_WELD, mujoco.mjtObj.mjOBJ_BODY, body, other)
         data = np.zeros(len(equality.data))
-        # a relative pose of zeros lets MuJoCo take the one of the specification
+        # with a relative pose of zeros, MuJoCo uses that of the specification
         data[:3] = anchor_in_other
         data[10] = 1.0
         equality.data = data
         equality.solref = (equality.solref[0], damping)
         equality.active = active
 
-    def _equality(self, name: str, kind: mujoco.mjtEq, of: mujoco.mjtObj, one: str, other: str) -> mujoco.MjsEquality:
+    def _equality(
+        self, name: str, kind: mujoco.mjtEq, object_type: mujoco.mjtObj, first: str, second: str
+    ) -> mujoco.MjsEquality:
         equality = self.spec.add_equality(name=name)
-        equality.type, equality.objtype = kind, of
-        equality.name1, equality.name2 = one, other
+        equality.type, equality.objtype = kind, object_type
+        equality.name1, equality.name2 = first, second
         equality.solref = (max(2.0 * self.timestep, 0.002), 1.0)
         equality.solimp = STIFF_SOLIMP
         self.record.equalities.append(name)
@@ -65,16 +68,16 @@ class Couplings:
     # ------------------------------------------------------------------ gearboxes
 
     def gear(self, joint: SceneJoint) -> tuple[str, ...]:
-        """A gearbox: theta_2 = −ratio · theta_1, both measured from the reference link (SDF's definition).
+        """Add a gearbox: theta_2 = −ratio · theta_1, both measured from the reference link (SDF's definition).
 
         Returns:
-            Names of the constraints that stand for it.
+            Names of the gearbox's constraints.
         """
         first = self._gear_hinge(joint, joint.parent_link, 0)
         second = self._gear_hinge(joint, joint.child_link, 1)
         if first is None or second is None:
             message = (
-                f"gearbox {joint.scoped} is left out: its links need a revolute joint to the reference link "
+                f"gearbox {joint.scoped} is ignored: its links need a revolute joint to the reference link "
                 f"{joint.gearbox_reference or '(none)'} along its axes"
             )
             self.diagnostics.warning("SK-PHYS-021", message, joint.where)
@@ -88,7 +91,11 @@ class Couplings:
         return (name,)
 
     def _gear_hinge(self, joint: SceneJoint, link: str, axis: int) -> tuple[str, float, JointBinding] | None:
-        """The hinge between reference and `link`, the sign of its angle along the gearbox' axis, its binding."""
+        """Return the hinge between the reference and `link`.
+
+        Returns:
+            MuJoCo joint, sign of its angle on the gearbox axis, and its binding; None without a hinge.
+        """
         for other in self.record.joints.values():
             ends = {other.scene.parent_link, other.scene.child_link}
             turns = other.type in ("revolute", "continuous") and bool(other.joint_names)
@@ -105,31 +112,34 @@ class Couplings:
     # ------------------------------------------------------------------ mimics
 
     def mimics(self, joints: list[SceneJoint]) -> None:
-        """Couples every axis with a `<mimic>` to the axis at the head of its chain of leaders."""
-        wanted = {(j.scoped, i): (j, a.mimic) for j in joints for i, a in enumerate(j.axes) if a.mimic is not None}
-        for (scoped, axis), (joint, _) in wanted.items():
-            law = self._first_leader(joint, axis, wanted)
+        """Couple every axis with a `<mimic>` to the axis at the head of its chain of leaders."""
+        mimics = {(j.scoped, i): (j, a.mimic) for j in joints for i, a in enumerate(j.axes) if a.mimic is not None}
+        for (scoped, axis), (joint, _) in mimics.items():
+            law = self._first_leader(joint, axis, mimics)
             if law is None:
                 continue
-            leader, of, ratio, offset = law
+            leader, leader_axis, ratio, offset = law
             follower = self.record.joints[scoped].joint_names[axis]
-            self.couple(f"{scoped}#mimic{axis}", follower, leader.joint_names[of], offset, ratio)
-            self._add_follower(leader, Follower(follower, ratio, offset=offset, axis=of))
+            self.couple(f"{scoped}#mimic{axis}", follower, leader.joint_names[leader_axis], offset, ratio)
+            self._add_follower(leader, Follower(follower, ratio, offset=offset, axis=leader_axis))
 
     def tie(self, follower: str, leader: str, ratio: float, offset: float) -> None:
-        """Has one joint of one axis follow another, by their scoped names: follower = offset + ratio · leader."""
-        ahead, behind = self.record.joints[leader], self.record.joints[follower].joint_names[0]
-        self.couple(f"{follower}#mimic0", behind, ahead.joint_names[0], offset, ratio)
-        self._add_follower(ahead, Follower(behind, ratio, offset=offset))
+        """Make one joint of one axis follow another, by their scoped names: follower = offset + ratio · leader."""
+        binding, follower_name = self.record.joints[leader], self.record.joints[follower].joint_names[0]
+        self.couple(f"{follower}#mimic0", follower_name, binding.joint_names[0], offset, ratio)
+        self._add_follower(binding, Follower(follower_name, ratio, offset=offset))
 
     def _first_leader(
-        self, joint: SceneJoint, axis: int, wanted: dict[tuple[str, int], tuple[SceneJoint, Mimic]]
+        self, joint: SceneJoint, axis: int, mimics: dict[tuple[str, int], tuple[SceneJoint, Mimic]]
     ) -> tuple[JointBinding, int, float, float] | None:
-        """The axis that leads in the end, with ratio and offset of the whole chain; None, reported, without one."""
+        """Return the last leader of a mimic chain, its axis, and ratio and offset of the chain.
+
+        The result is None, with a report, if a chain has no valid leader.
+        """
         ratio, offset = 1.0, 0.0
         at, seen = (joint.scoped, axis), {(joint.scoped, axis)}
-        while at in wanted:
-            follower, law = wanted[at]
+        while at in mimics:
+            follower, law = mimics[at]
             leader = self._leader(follower, at[1], law)
             if leader is None:
                 return None
@@ -138,12 +148,12 @@ class Couplings:
             at = (leader.scoped, law.axis)
             if at in seen:
                 ring = " -> ".join(name for name, _ in sorted(seen))
-                message = f"joint {joint.scoped} mimics itself in a ring: {ring}"
+                message = f"joint {joint.scoped} mimics itself in a cycle: {ring}"
                 self.diagnostics.error("SK-JOINT-001", message, joint.where)
                 return None
             seen.add(at)
         if not (np.isfinite(ratio) and np.isfinite(offset)):
-            message = f"joint {joint.scoped}: multiplier, offset or reference is not finite"
+            message = f"joint {joint.scoped}: multiplier, offset or reference is NaN or infinite"
             self.diagnostics.error("SK-JOINT-003", message, joint.where)
             return None
         return self.record.joints[at[0]], at[1], ratio, offset
@@ -155,7 +165,7 @@ class Couplings:
         if own is not None and leader is not None and _has_axis(own, axis) and _has_axis(leader, law.axis):
             return leader
         hint = did_you_mean(law.joint, [j.name for j in (b.scene for b in known.values())]) if leader is None else ""
-        message = f"joint {joint.scoped} mimics {law.joint}, which has no such axis; left out"
+        message = f"joint {joint.scoped} mimics a missing joint or axis of {law.joint}; the mimic is ignored"
         self.diagnostics.warning("SK-PHYS-022", message, joint.where, hint)
         return None
 

@@ -15,22 +15,22 @@ from simkit.scene import SceneWorld
 CONTACT_SOLIMP: Final = (0.9, 0.999, 0.0005, 0.5, 2.0)
 """Impedance of rigid contacts: 0.9 at the surface, 0.999 from a penetration of 0.5 mm on.
 
-A body rests on the ground with a penetration of 4 to 10 µm at any mass, where the impedance is still 0.9. A higher one
-there settles no better and makes a robot rock longer on its casters. Only a heavy body on a light one reaches 0.999:
-1 kg carries 10⁴ kg with 0.8 mm of penetration, where an impedance of 0.95 gives 36 mm.
+A body rests on the ground with a penetration of 4 to 10 µm at any mass, where the impedance is still 0.9. A higher
+impedance there settles no better and makes a robot rock longer on its casters. Only a heavy body on a light one reaches
+0.999: 1 kg carries 10⁴ kg with 0.8 mm of penetration, where an impedance of 0.95 gives 36 mm.
 """
 
 SOFT_SOLIMP: Final = (0.9, 0.95, 0.001, 0.5, 2.0)
 """Impedance of joint limits, of dry friction in joints and of contacts with a stiffness of their own."""
 
 CONTACT_LAW: Final = "simkit:contact_law"
-"""Name of the text in a model that says "mujoco" where contacts are to be as the engine alone has them."""
+"""Name of the text in a model whose value "mujoco" selects the engine's own contacts."""
 
 SHORTEST_STEP: Final = 1e-9
-"""[s]; time is counted in nanoseconds."""
+"""Shortest step [s]; time is counted in nanoseconds."""
 
 LONGEST_STEP: Final = 100.0
-"""[s]; nobody means more."""
+"""Longest step [s] that is plausible."""
 
 _MEMORY_BASE: Final = 32 << 20
 _MEMORY_PER_GEOM: Final = 64 << 10
@@ -38,9 +38,9 @@ _MEMORY_MOST: Final = 4 << 30
 
 
 def contact_time_constant(timestep: float) -> float:
-    """Time constant [s] of the one world-wide contact softness.
+    """Return the time constant [s] of the world-wide contact softness.
 
-    A shorter one rings at steps of 2 ms and more; a longer one lets what is gripped creep.
+    A shorter one oscillates at steps of 2 ms and more; with a longer one a gripped object creeps.
     """
     return max(0.004, 2.0 * timestep)
 
@@ -48,16 +48,16 @@ def contact_time_constant(timestep: float) -> float:
 def rigid_time_constant(timestep: float) -> float:
     """Return the time constant [s] that gives a rigid contact the stiffness and damping of the world-wide softness.
 
-    The engine divides both by the largest impedance, which rigid contacts have higher; it takes at least two steps.
+    The engine divides both by the largest impedance, which is higher for rigid contacts; it needs at least two steps.
     """
     return max(contact_time_constant(timestep) * SOFT_SOLIMP[1] / CONTACT_SOLIMP[1], 2.0 * timestep)
 
 
 def apply_options(spec: mujoco.MjSpec, world: SceneWorld, diagnostics: Diagnostics) -> None:
-    """Sets step, gravity, integrator, solver flags, compiler conventions and the surroundings' light."""
+    """Set step, gravity, integrator, solver flags, compiler conventions and ambient light."""
     step = world.physics.max_step_size
     if not (math.isfinite(step) and SHORTEST_STEP <= step <= LONGEST_STEP):
-        text = f"max_step_size is {step}; a positive number of seconds is needed, {SHORTEST_STEP:g} to {LONGEST_STEP:g}"
+        text = f"max_step_size is {step}; it must be from {SHORTEST_STEP:g} to {LONGEST_STEP:g} s"
         diagnostics.error("SK-PHYS-015", text, world.physics.where)
         step = 0.001
     option = spec.option
@@ -65,7 +65,7 @@ def apply_options(spec: mujoco.MjSpec, world: SceneWorld, diagnostics: Diagnosti
     option.gravity = world.gravity
     option.magnetic = world.magnetic_field
     option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
-    # a pyramid has 0.7 of the friction on its diagonals; with 100, what is gripped creeps 100 times less than with 1
+    # a pyramid has 0.7 of the friction on its diagonals; with 100, a gripped object creeps 100 times less than with 1
     option.cone, option.impratio = mujoco.mjtCone.mjCONE_ELLIPTIC, 100.0
     option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
     if world.physics.contact_law != "simkit":
@@ -82,7 +82,7 @@ def apply_options(spec: mujoco.MjSpec, world: SceneWorld, diagnostics: Diagnosti
 
 
 def has_engine_contacts(model: mujoco.MjModel) -> bool:
-    """Return whether a compiled model asks for contacts and integration as the engine alone has them."""
+    """Check whether a compiled model uses the engine's own contacts and integration."""
     number = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_TEXT, CONTACT_LAW)
     if number < 0:
         return False
@@ -91,14 +91,17 @@ def has_engine_contacts(model: mujoco.MjModel) -> bool:
 
 
 def apply_size(spec: mujoco.MjSpec, colliding_geoms: int) -> None:
-    """Arena memory for contacts, by the number of geoms that collide (only what is used is ever touched)."""
-    wanted = min(_MEMORY_MOST, _MEMORY_BASE + _MEMORY_PER_GEOM * colliding_geoms)
-    if int(spec.memory) < wanted:
-        spec.memory = wanted
+    """Set the arena memory for contacts by the number of colliding geoms; only used memory is ever touched."""
+    memory = min(_MEMORY_MOST, _MEMORY_BASE + _MEMORY_PER_GEOM * colliding_geoms)
+    if int(spec.memory) < memory:
+        spec.memory = memory
 
 
 def choose_islands(spec: mujoco.MjSpec, trees: int) -> None:
-    """Constraint islands cost a single robot 8 % and pay only where several trees move; without them nothing sleeps."""
+    """Enable constraint islands for several moving trees.
+
+    Islands cost a single robot 8 % and pay only with several trees; without islands nothing sleeps.
+    """
     flag = int(mujoco.mjtDisableBit.mjDSBL_ISLAND)
     if trees < 2:
         spec.option.disableflags |= flag
@@ -107,9 +110,9 @@ def choose_islands(spec: mujoco.MjSpec, trees: int) -> None:
 
 
 def set_extent(model: mujoco.MjModel) -> None:
-    """Centre and size of the scene from its bounded geoms alone; planes, far lights and outliers count for nothing.
+    """Set centre and size of the scene from its bounded geoms alone; planes, far lights and outliers do not count.
 
-    They scale the clip planes and the shadow map of whoever draws with MuJoCo's defaults.
+    Both scale the clip planes and the shadow map of renderers that use MuJoCo's defaults.
     """
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
@@ -129,7 +132,7 @@ def set_extent(model: mujoco.MjModel) -> None:
 
 
 def _median(values: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-    """Along the first axis, as `np.median`, which brings the masked arrays along, 20 ms."""
+    """Return the median along the first axis without `np.median`, whose import of masked arrays takes 20 ms."""
     ordered, half = np.sort(values, axis=0), len(values) // 2
     middle: npt.NDArray[np.float64] = ordered[half] if len(values) % 2 else (ordered[half - 1] + ordered[half]) / 2
     return middle

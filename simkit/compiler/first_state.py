@@ -1,4 +1,4 @@
-"""The first state of a compiled model, and the inertia that a joint feels in it."""
+"""First state of a compiled model, and the effective inertia of a joint in it."""
 
 from __future__ import annotations
 
@@ -23,7 +23,13 @@ def first_mass_matrix(model: mujoco.MjModel) -> mujoco.MjData:
 
 
 def inverse_inertia(model: mujoco.MjModel, data: mujoco.MjData, dof: int) -> float:
-    """Return (M⁻¹)_jj [1/(kg·m²) or 1/kg] of a degree of freedom, all else free to move; data with the factors of M."""
+    """Return (M⁻¹)_jj [1/(kg·m²) or 1/kg] of a degree of freedom, with all others free to move.
+
+    Args:
+        model: MuJoCo's model.
+        data: MuJoCo's data with the factors of M.
+        dof: degree of freedom.
+    """
     unit, solved = np.zeros((1, model.nv)), np.zeros((1, model.nv))
     unit[0, dof] = 1.0
     mujoco.mj_solveM(model, data, solved, unit)

@@ -1,23 +1,23 @@
-"""Geom groups: who sees what. Cameras see VISUAL; rays against collisions see COLLISION and COLLISION_RAY."""
+"""Geom groups for cameras and rays: cameras see VISUAL; rays against collisions see COLLISION and COLLISION_RAY."""
 
 from __future__ import annotations
 
 from typing import Final
 
 DRAWN_COLLISION: Final = 1
-"""Drawn, and collides: one geom for both, seen by cameras and by every ray."""
+"""Group of geoms that are drawn and collide; cameras and all rays see them."""
 
 VISUAL: Final = 2
-"""Drawn, never collides."""
+"""Group of geoms that are drawn and never collide."""
 
 COLLISION: Final = 3
-"""Collides, and is seen by rays against collisions."""
+"""Group of geoms that collide; rays against collisions see them."""
 
 COLLISION_RAY: Final = 4
-"""The exact copy of a non-convex static mesh: seen by rays against collisions, never collides."""
+"""Group of exact copies of non-convex static meshes: rays against collisions see them, they never collide."""
 
 COLLISION_CONTACT: Final = 5
-"""The convex pieces that collide in place of such a mesh; seen by no ray."""
+"""Group of convex pieces that collide instead of such a mesh; no ray sees them."""
 
 SEEN_AS_COLLISIONS: Final = (COLLISION, COLLISION_RAY, DRAWN_COLLISION)
-"""All that rays against collisions see."""
+"""Groups that rays against collisions see."""

@@ -25,22 +25,22 @@ from simkit.pose import Pose
 from simkit.scene import Cone, Empty, Geometry, Heightmap, Material, Mesh, Plane, Polyline, SceneCollision, SceneVisual
 
 _HALF_SPACE = (50.0, 50.0, 0.05)
-_OVER = Pose((0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0))  # what is below comes to the top
+_OVER = Pose((0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0))  # rotated by 180° about x
 _HEIGHTS_HINT = "save the heights as an 8- or 16-bit grey PNG"
 LEAST_AREA: Final = 1e-12
-"""[m²]; triangles with less in all are not drawn."""
+"""Least total area [m²] of triangles that are drawn."""
 
 
 @dataclass(slots=True)
 class GeomParent:
-    """Body and frame that the geoms of one link are added to.
+    """Body and frame that receive the geoms of one link.
 
     Attributes:
         body: MuJoCo body handle.
-        offset: the link frame in the body's frame.
-        fixed: nothing moves it but the user (world geoms and mocap bodies).
-        mass: of the moving tree [kg]; 0 where fixed.
-        axis: line about which the link turns freely.
+        offset: link frame in the body's frame.
+        fixed: True if only the user moves the body (world geoms and mocap bodies).
+        mass: mass of the moving tree [kg]; 0 if fixed.
+        axis: axis about which the link turns freely; None without one.
     """
 
     body: mujoco.MjsBody
@@ -56,10 +56,14 @@ GeomSettings = dict[str, Any]
 
 
 class GeomWriter:
-    """Writes the geoms of one top-level model and notes whose they are.
+    """Writer of the geoms of one top-level model, which it adds to the record with their owners.
 
     Args:
-        ambient: the scene's ambient light.
+        assets: assets of the spec.
+        record: record of the model.
+        timestep: length of a step [s].
+        diagnostics: collection for problems.
+        ambient: ambient light of the scene.
     """
 
     def __init__(
@@ -80,7 +84,7 @@ class GeomWriter:
     # ------------------------------------------------------------------ collisions
 
     def collision(self, place: GeomParent, collision: SceneCollision) -> None:
-        """Adds what collides for one `<collision>`."""
+        """Add the geoms of one `<collision>`."""
         shape = collision.geometry
         if isinstance(shape, Empty) or not self._has_size(shape, collision.where):
             return
@@ -108,7 +112,7 @@ class GeomWriter:
     def _outlines(
         self, place: GeomParent, owner: GeomOwner, collision: SceneCollision, shape: Polyline, solid: GeomSettings
     ) -> None:
-        """Extruded outlines, which fall into convex pieces exactly."""
+        """Add extruded outlines, which consist of exact convex pieces."""
         try:
             pieces = shape_geometry.polyline_pieces(shape)
         except ValueError as problem:
@@ -148,7 +152,7 @@ class GeomWriter:
     ) -> None:
         size = (wheel.radius, wheel.length / 2, 0.0)
         cylinder = f"a cylinder of radius {wheel.radius:.4g} m and length {wheel.length:.4g} m"
-        text = f"{_collision_title(collision.geometry)} is round about the axis of its joint: it collides as {cylinder}"
+        text = f"{_collision_title(collision.geometry)} is round about its joint axis: it collides as {cylinder}"
         report_once(self.diagnostics, "note", "SK-MESH-016", text, collision.where)
         kind = mujoco.mjtGeom.mjGEOM_CYLINDER
         self._add(place, owner, collision.pose_link @ wheel.pose, type=kind, size=size, **solid)
@@ -156,21 +160,21 @@ class GeomWriter:
     # ------------------------------------------------------------------ visuals
 
     def visual(self, place: GeomParent, visual: SceneVisual) -> None:
-        """Adds what is drawn for one `<visual>`."""
+        """Add the geoms of one `<visual>`."""
         shape = visual.geometry
         if isinstance(shape, Empty) or not self._has_size(shape, visual.where):
             return
         owner = GeomOwner(place.link, visual.scoped, True)
         pixels = self._pixels(visual.material, visual.where)
-        # the engine's own shapes, planes apart, have no inner side
-        is_lined = visual.material is not None and visual.material.double_sided and not isinstance(shape, Plane)
-        worn = shape_geometry.textured_triangles(shape) if pixels is not None or is_lined else None
-        primitive = shape_geometry.primitive_of(shape, True) if worn is None else None
+        # the engine's own shapes, except planes, have no inner side
+        has_inner_side = visual.material is not None and visual.material.double_sided and not isinstance(shape, Plane)
+        textured = shape_geometry.textured_triangles(shape) if pixels is not None or has_inner_side else None
+        primitive = shape_geometry.primitive_of(shape, True) if textured is None else None
         pose = visual.pose_link
         if isinstance(shape, Heightmap):
             self._heightmap(place, owner, pose, shape, visual.where, self._visual_settings(visual, None, pixels))
         elif primitive is None:
-            for part in self._visual_parts(shape, visual.where) if worn is None else [worn]:
+            for part in self._visual_parts(shape, visual.where) if textured is None else [textured]:
                 self._add_visual_part(place, owner, visual, part, pixels)
         else:
             size, kind = primitive.size, primitive.type
@@ -185,7 +189,7 @@ class GeomWriter:
     def _add_visual_part(
         self, place: GeomParent, owner: GeomOwner, visual: SceneVisual, part: MeshPart, pixels: Pixels | None
     ) -> None:
-        """Triangles of one material: the file's material wins over the mesh's own."""
+        """Add triangles of one material; the file's material has priority over the mesh's own."""
         if not has_area(part, LEAST_AREA):
             name = f" ({part.name})" if part.name else ""
             text = f"{_collision_title(visual.geometry)}: a part{name} whose triangles have no area is not drawn"
@@ -196,7 +200,7 @@ class GeomWriter:
         self._add(place, owner, visual.pose_link, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=mesh, **look)
 
     def _surface_mesh(self, visual: SceneVisual, part: MeshPart, is_textured: bool) -> str:
-        """The name of a part's triangles as the visual wears them."""
+        """Return the name of a part's triangles with the visual's texture scale and sides."""
         if visual.material is None or not (is_textured or visual.material.double_sided):
             return self.assets.part(part, is_textured)
         vertices, faces, uv = part.vertices, part.faces, part.uv if is_textured else None
@@ -208,7 +212,7 @@ class GeomWriter:
         return self.assets.surface(vertices, faces, uv)
 
     def _visual_settings(self, visual: SceneVisual, part: MeshPart | None, pixels: Pixels | None) -> GeomSettings:
-        """Settings of a drawn geom; `pixels` is the file's texture where it can be worn."""
+        """Return the settings of a drawn geom; `pixels` is the file's texture if the geom can have one."""
         look = geom_colours(visual, part)
         if visual.material is None and part is not None:
             pixels = part.texture
@@ -221,13 +225,13 @@ class GeomWriter:
             "material": self.assets.material(emission, look, texture, repeat),
             "contype": 0,
             "conaffinity": 0,
-            # who is moved by a script touches nothing, and lidars that see collisions see it as it is drawn
+            # a scripted model touches nothing; lidars that see collisions see its drawn shape
             "group": VISUAL if self.record.scene.moved_by is None else DRAWN_COLLISION,
             "castshadow": visual.cast_shadows,
         }
 
     def _pixels(self, material: Material | None, where: Where) -> Pixels | None:
-        """The texture that the file names for a visual; None where it names none or it cannot be read."""
+        """Return the texture that the file names for a visual; None without one or if it cannot be read."""
         if material is None or material.texture is None:
             return None
         try:
@@ -241,7 +245,7 @@ class GeomWriter:
     def _has_size(self, shape: Geometry, where: Where) -> bool:
         if all(0.0 < s < math.inf for s in shape_geometry.shape_sizes(shape)):
             return True
-        message = f"a {type(shape).__name__.lower()} without size is left out: {shape}"
+        message = f"a {type(shape).__name__.lower()} without size is ignored: {shape}"
         self.diagnostics.warning("SK-PHYS-017", message, where)
         return False
 

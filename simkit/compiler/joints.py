@@ -24,16 +24,16 @@ _RIGID: Final = 1e8
 
 
 def is_valid_axis(joint: SceneJoint, axis: Axis, diagnostics: Diagnostics) -> bool:
-    """Whether an axis can be simulated; reports what is wrong or has an effect that few expect."""
+    """Check whether an axis can be simulated; report errors and values with an unexpected effect."""
     numbers = (axis.damping, axis.friction, axis.stiffness, axis.spring_ref)
     limits = (axis.lower, axis.upper, axis.effort, axis.velocity)
     if not all(map(math.isfinite, (*axis.xyz_world, *numbers))) or any(map(math.isnan, limits)):
-        message = f"joint {joint.scoped}: a number of its axis, limits or dynamics is not finite"
+        message = f"joint {joint.scoped}: a number of its axis, limits or dynamics is NaN or infinite"
         diagnostics.error("SK-JOINT-003", message, joint.where)
         return False
     if abs(math.hypot(*axis.xyz_world) - 1.0) > _UNIT:
         message = f"joint {joint.scoped}: its axis {axis.xyz_world} has a length of {math.hypot(*axis.xyz_world):g}"
-        diagnostics.error("SK-JOINT-002", message, joint.where, "an axis points somewhere: 0 0 1, for example")
+        diagnostics.error("SK-JOINT-002", message, joint.where, "write a unit vector, for example 0 0 1")
         return False
     _report_odd_values(joint, axis, diagnostics)
     return True
@@ -43,27 +43,25 @@ def _report_odd_values(joint: SceneJoint, axis: Axis, diagnostics: Diagnostics) 
     if axis.lower > axis.upper:
         message = (
             f"joint {joint.scoped}: its lower limit {axis.lower:g} is above its upper limit {axis.upper:g}; "
-            "it is taken as unlimited"
+            "both limits are ignored"
         )
         diagnostics.warning("SK-JOINT-006", message, joint.where)
     elif axis.lower > 0.0 or axis.upper < 0.0:
         message = (
-            f"joint {joint.scoped} begins at 0, outside its limits [{axis.lower:g}, {axis.upper:g}]: "
-            "it is pushed inside in the first steps"
+            f"joint {joint.scoped} starts at 0, outside its limits [{axis.lower:g}, {axis.upper:g}]: "
+            "the first steps push it inside"
         )
-        diagnostics.warning("SK-JOINT-007", message, joint.where, "limits count from the pose in the file")
+        diagnostics.warning("SK-JOINT-007", message, joint.where, "limits are relative to the pose in the file")
     if axis.limit_stiffness is not None and axis.limit_stiffness < _RIGID and math.isfinite(axis.upper - axis.lower):
-        message = (
-            f"joint {joint.scoped}: the stops at its limits are rigid; stiffness {axis.limit_stiffness:g} is not used"
-        )
+        message = f"joint {joint.scoped}: its limits are rigid; limit stiffness {axis.limit_stiffness:g} is ignored"
         diagnostics.note("SK-JOINT-014", message, joint.where)
     if axis.velocity == 0.0:
-        message = f"joint {joint.scoped} has a velocity limit of 0: it stands still"
-        diagnostics.warning("SK-JOINT-008", message, joint.where, "leave the limit out for a joint without one")
+        message = f"joint {joint.scoped} has a velocity limit of 0: it never moves"
+        diagnostics.warning("SK-JOINT-008", message, joint.where, "remove <velocity> for a joint without a limit")
     if axis.damping < 0.0 or axis.friction < 0.0 or axis.stiffness < 0.0:
         message = (
             f"joint {joint.scoped}: damping {axis.damping:g}, friction {axis.friction:g}, spring stiffness "
-            f"{axis.stiffness:g}: the negative ones are taken as 0"
+            f"{axis.stiffness:g}: negative values are replaced by 0"
         )
         diagnostics.warning("SK-JOINT-009", message, joint.where)
 
@@ -86,7 +84,7 @@ _KINDS: Final = {
 
 @dataclass(frozen=True, slots=True)
 class _JointMotion:
-    """One MuJoCo joint to be: its axis in the moved body's frame, and the file's axis whose dynamics it has."""
+    """MuJoCo joint to add: its axis in the moved body's frame, and the file's axis with its dynamics."""
 
     name: str
     kind: mujoco.mjtJoint
@@ -95,11 +93,11 @@ class _JointMotion:
 
 
 class JointWriter:
-    """Writes the joints of one top-level model and notes where each of them lives.
+    """Writer of the joints of one top-level model, which it adds to the record.
 
     Attributes:
-        links: the links that joints may name, by scoped name.
-        carriers: of each link the heaviest that is rigidly one with it.
+        links: links that joints may name, by scoped name.
+        carriers: heaviest link of each rigid group, by the scoped names of the group's links.
     """
 
     def __init__(self, spec: mujoco.MjSpec, record: ModelRecord, timestep: float, diagnostics: Diagnostics) -> None:
@@ -111,7 +109,7 @@ class JointWriter:
     # ------------------------------------------------------------------ in the tree
 
     def add_tree_joint(self, body: mujoco.MjsBody, link: SceneLink, edge: TreeEdge) -> None:
-        """Adds the joint by which `link` hangs in the tree to its body."""
+        """Add the joint that connects `link` to its parent in the tree to the link's body."""
         joint = edge.joint
         names, followers = self._add_motions(body, joint, link.pose_world, edge.is_reversed)
         self._bind(
@@ -126,7 +124,10 @@ class JointWriter:
         )
 
     def bind_floating(self, joint: SceneJoint) -> None:
-        """A floating joint: it binds nothing, and reads and sets how its child stands to its parent."""
+        """Bind a floating joint, which constrains nothing.
+
+        The joint reads and sets the pose of its child relative to its parent.
+        """
         child, parent = (self.record.links.get(n) for n in (joint.child_link, joint.parent_link))
         is_reversed = not (child and child.free_joint) and bool(parent and parent.free_joint)
         free = parent if is_reversed else child
@@ -139,7 +140,7 @@ class JointWriter:
         self._bind(self._binding(joint))
 
     def bind_static(self, joint: SceneJoint, is_expected: bool = True) -> None:
-        """Notes a joint between links that never move: it is there by name and has no degree of freedom."""
+        """Record a joint between links that never move: it has a name and no degree of freedom."""
         if not is_expected and joint.type != "fixed":
             message = (
                 f"joint {joint.scoped} ({joint.type}) joins {joint.parent_link} and {joint.child_link}, "
@@ -151,12 +152,13 @@ class JointWriter:
     def _add_motions(
         self, body: mujoco.MjsBody, joint: SceneJoint, at: Pose, is_reversed: bool
     ) -> tuple[tuple[str, ...], tuple[Follower, ...]]:
-        """Adds the motions of a joint to a body that stands `at` a pose in the world.
+        """Add the motions of a joint to a body at the world pose `at`.
 
-        Turned round, the body is the file's parent: the same motions in the other order and direction.
+        If the joint is reversed, the body is the file's parent: the same motions are added in opposite order and
+        direction.
 
         Returns:
-            Names of the MuJoCo joints in the order of the file's axes, and the hidden ones that follow.
+            Names of the MuJoCo joints in the order of the file's axes, and the hidden followers.
         """
         motions = self._motions(joint, at, is_reversed)
         frame = at.inverse() @ joint.pose_world
@@ -171,7 +173,7 @@ class JointWriter:
 
     def _motions(self, joint: SceneJoint, at: Pose, is_reversed: bool) -> list[_JointMotion]:
         if joint.type not in _KINDS:
-            message = f"joint {joint.scoped}: type {joint.type} is taken as fixed"
+            message = f"joint {joint.scoped}: unknown type {joint.type} is simulated as fixed"
             self.diagnostics.warning("SK-PHYS-013", message, joint.where)
             return []
         kinds = _KINDS[joint.type]
@@ -225,7 +227,7 @@ class JointWriter:
             made.range = (lower, upper)
 
     def _thread(self, body: mujoco.MjsBody, joint: SceneJoint, frame: Pose, direction: Vector) -> Follower:
-        """The sliding of a screw, tied to its turning."""
+        """Add the sliding motion of a screw, coupled to its rotation."""
         slide, ratio = f"{joint.scoped}#slide", joint.thread_pitch / (2.0 * math.pi)
         self._joint(body, slide, _SLIDE, frame, direction)
         self.couplings.couple(f"{joint.scoped}#thread", slide, joint.scoped, 0.0, ratio)
@@ -236,10 +238,10 @@ class JointWriter:
     # ------------------------------------------------------------------ loops
 
     def add_loop_joint(self, joint: SceneJoint) -> None:
-        """A joint that closes a loop: it moves a twin of its child link, and a weld holds the twin on the link.
+        """Add a joint that closes a loop: it moves a twin of its child link, and a weld holds the twin on the link.
 
-        So the joint has a coordinate, limits, dynamics and drives like any other. The twin has a part of the link's
-        mass, which the link gives up.
+        The joint thus has a coordinate, limits, dynamics and drives like any other. The twin receives a fraction of the
+        link's mass.
         """
         is_reversed = self._body_name(joint.child_link) == WORLD
         moved, under = (joint.parent_link, joint.child_link) if is_reversed else (joint.child_link, joint.parent_link)
@@ -271,19 +273,19 @@ class JointWriter:
         )
 
     def add_gearbox(self, joint: SceneJoint) -> None:
-        """A gearbox, as a constraint between two joints."""
+        """Add a gearbox as a constraint between two joints."""
         names = self.couplings.gear(joint)
         self._bind(replace(self._binding(joint), equalities=names))
 
     def add_weld(self, name: str, parent: str, child: str, active: bool) -> None:
-        """A weld between two links as they stand in the file, without a joint."""
+        """Add a weld between two links at their poses in the file, without a joint."""
         anchor = self._body_pose(parent).inverse() @ self.links[child].pose_world
         self.couplings.weld(name, self._body_name(child), self._body_name(parent), anchor.position, active)
 
     # ------------------------------------------------------------------ bindings
 
     def _body_pose(self, link: str) -> Pose:
-        """World pose, in the file, of the body that carries a link."""
+        """Return the world pose, in the file, of the body that carries a link."""
         binding = self.record.links.get(link)
         return self.links[link].pose_world @ binding.offset.inverse() if binding else IDENTITY
 
@@ -307,7 +309,10 @@ class JointWriter:
 
 
 def _plane_axes(joint: SceneJoint, at: Pose) -> list[Vector]:
-    """x, y and normal of a plane of which the file names the normal alone: the joint frame's axes as near as can be."""
+    """Return x, y and normal of a plane whose normal alone is given.
+
+    x and y are as near to the axes of the joint frame as possible.
+    """
     back = at.inverse()
     normal = np.asarray(joint.axes[0].xyz_world if joint.axes else joint.pose_world.rotate((0.0, 0.0, 1.0)))
     x = joint.pose_world.rotate((1.0, 0.0, 0.0))

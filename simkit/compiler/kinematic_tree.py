@@ -1,4 +1,4 @@
-"""The joint graph of a model as a tree, and the joints that close loops."""
+"""Kinematic tree of a model's joint graph, and the joints that close loops."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _CONSTRAINTS: Final = {"gearbox"}
 
 @dataclass(frozen=True, slots=True)
 class TreeEdge:
-    """How a link hangs in the tree: by `joint` under `parent` (`world` for the world or a static link).
+    """Connection of a link to its parent in the tree by `joint`; `parent` is `world` for the world or a static link.
 
     `is_reversed`: the file's child is the tree's parent.
     """
@@ -26,18 +26,18 @@ class TreeEdge:
 
 @dataclass(slots=True)
 class KinematicTree:
-    """Links in an order where parents come first; a link without an edge is a root.
+    """Links with parents first; a link without an edge is a root.
 
     Attributes:
         loops: joints that close a loop.
         constraints: joints that couple others (gearboxes).
-        floating: joints that bind nothing; they only say how two links stand to each other.
-        roots: the link at the foot of the tree that carries a link.
-        rigid: of each link the one at the foot of those that are rigidly one with it.
-        carriers: of each link the heaviest of those that are rigidly one with it.
-        masses: of the whole tree, by its root [kg].
-        carried: of each link and all that hangs below it [kg].
-        deepest: the link at the end of the longest chain, and how many links that has (`depth`).
+        floating: joints that constrain nothing; they only give the relative pose of two links.
+        roots: root link of the tree of each link.
+        rigid: first link of the rigid group of each link (links joined by fixed joints).
+        carriers: heaviest link of the rigid group of each link.
+        masses: mass of the whole tree by its root [kg].
+        carried: mass of each link and all links below it [kg].
+        deepest: link at the end of the longest chain; `depth` is the number of links of the chain.
     """
 
     order: list[SceneLink] = field(default_factory=list)
@@ -55,12 +55,12 @@ class KinematicTree:
     depth: int = 0
 
     def root_of(self, link: str) -> str:
-        """The link at the foot of the tree that carries `link`."""
+        """Return the root link of the tree of `link`."""
         return self.roots[link]
 
 
-class _Rings:
-    """Which links are connected already (union by halving paths)."""
+class _ConnectedLinks:
+    """Groups of connected links (union-find with path halving)."""
 
     def __init__(self) -> None:
         self._above: dict[str, str] = {}
@@ -79,19 +79,20 @@ class _Rings:
 
 
 def plan_tree(links: Iterable[SceneLink], joints: Iterable[SceneJoint], static: Iterable[str] = ()) -> KinematicTree:
-    """Chooses for every link the joint it hangs on.
+    """Choose the tree joint of every link.
 
-    A joint to the world wins over others. A joint whose child already hangs elsewhere is turned round while its parent
-    is still free (every type turns exactly: its motions in the other order and direction); what is left closes a loop.
+    A joint to the world has priority over others. A joint whose child already has a tree joint is reversed if its
+    parent has none. Every type can be reversed exactly: its motions in opposite order and direction. All other joints
+    close a loop.
 
     Args:
-        links: the moving links.
+        links: moving links.
         joints: joints between them, the world and static links.
         static: scoped names of links that belong to the world.
     """
     by_name = {link.scoped: link for link in links}
     fixed = {WORLD, *static}
-    tree, rings = KinematicTree(), _Rings()
+    tree, connected = KinematicTree(), _ConnectedLinks()
     ends = fixed | set(by_name)
     usable = [j for j in joints if j.parent_link in ends and j.child_link in ends]
     for joint in sorted(usable, key=lambda j: not ({j.parent_link, j.child_link} & fixed)):
@@ -103,14 +104,14 @@ def plan_tree(links: Iterable[SceneLink], joints: Iterable[SceneJoint], static: 
             tree.floating.append(joint)
         elif parent == child:
             continue
-        elif rings.find(parent) == rings.find(child):
+        elif connected.find(parent) == connected.find(child):
             tree.loops.append(joint)
         elif child != WORLD and child not in tree.edges:
             tree.edges[child] = TreeEdge(parent, joint)
-            rings.join(child, parent)
+            connected.join(child, parent)
         elif parent != WORLD and parent not in tree.edges:
             tree.edges[parent] = TreeEdge(child, joint, True)
-            rings.join(parent, child)
+            connected.join(parent, child)
         else:
             tree.loops.append(joint)
     _sort_joints(tree, by_name)
@@ -140,7 +141,7 @@ def _sort_joints(tree: KinematicTree, links: dict[str, SceneLink]) -> None:
 
 
 def _carried_masses(tree: KinematicTree) -> None:
-    """Masses of trees and of what each link carries, and who carries whom rigidly."""
+    """Compute the masses of trees and below each link, and the rigid groups."""
     group: dict[str, str] = {}
     heaviest: dict[str, SceneLink] = {}
     for link in tree.order:

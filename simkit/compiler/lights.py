@@ -14,24 +14,24 @@ from simkit.pose import IDENTITY, Pose
 from simkit.scene import SceneLight, SceneWorld
 
 FARTHEST: Final = 100.0
-"""Directional lights are drawn from at most this far [m]: their place only frames the shadow map."""
+"""Largest distance [m] from which directional lights are drawn: their position only frames the shadow map."""
 
 MOST_LIGHTS: Final = 7
-"""So many are drawn at once, beside the ambient light: OpenGL has eight."""
+"""Largest number of lights in an image besides the ambient light: OpenGL has eight."""
 
-_MOST_LEFT: Final = 0.1  # of a lamp at its range; SDF's own defaults leave 9 %
+_MOST_LEFT: Final = 0.1  # fraction of a lamp's light at its range; SDF's own defaults leave 9 %
 _FARTHEST_LAMP: Final = 1e4
-_MOST_FADING: Final = 1e9  # of ranges and attenuations, which the engine holds in single precision
-_EVERYWHERE: Final = 180.0  # the cutoff at which OpenGL's spot is a point light
-_FINEST, _COARSEST, _SQUARES = 0.1, 1.0, 200  # [m], [m], along a plane
-_MOST_QUADS: Final = 20_000  # of all boxes
-_LEAST_SLICES, _MOST_SLICES = 4, 16  # along an edge of a box; the renderer's own are 4
+_MOST_FADING: Final = 1e9  # largest range and attenuation, which the engine stores in single precision
+_EVERYWHERE: Final = 180.0  # [degrees] cutoff at which OpenGL's spot is a point light
+_FINEST, _COARSEST, _SQUARES = 0.1, 1.0, 200  # squares of a plane: size [m], size [m], number
+_MOST_QUADS: Final = 20_000  # of all boxes together
+_LEAST_SLICES, _MOST_SLICES = 4, 16  # along an edge of a box; the renderer's default is 4
 _DRAWN_FIELDS: Final = ("diffuse", "specular", "attenuation", "range", "cutoff", "exponent", "castshadow")
-_SPOT: Final = (math.radians(30.0), math.radians(40.0))  # the renderers' own cone where a file gives none
+_SPOT: Final = (math.radians(30.0), math.radians(40.0))  # default cone of the renderers
 
 
 def drawn_position(light: SceneLight, position: npt.ArrayLike) -> npt.NDArray[np.float64]:
-    """Where MuJoCo draws a light from: its position, pulled in along the line to the origin when it is far away.
+    """Return the position from which MuJoCo draws a light: a distant light is moved towards the origin.
 
     Suns at 256e9 m, which worlds have, overflow the renderer's matrices.
     """
@@ -42,15 +42,15 @@ def drawn_position(light: SceneLight, position: npt.ArrayLike) -> npt.NDArray[np
 
 
 def add_light(body: mujoco.MjsBody, light: SceneLight, pose: Pose, shadows: bool) -> None:
-    """Adds a light at `pose` in the frame of `body`."""
+    """Add a light at `pose` in the frame of `body`."""
     made = body.add_light(name=light.scoped)
     kinds = mujoco.mjtLightType
-    # the renderer knows no point lights: one is a spot that is open all around
+    # the renderer has no point lights: a spot with a cutoff of 180° replaces one
     made.type = kinds.mjLIGHT_DIRECTIONAL if light.type == "directional" else kinds.mjLIGHT_SPOT
     made.pos = drawn_position(light, pose.position)
     made.dir = pose.rotate(light.direction)
     made.active = light.on
-    # the renderer's shadow map is one cone, which for a lamp that shines all around would leave out most of its light
+    # the renderer's shadow map is one cone, which would omit most of the light of a point light
     made.castshadow = bool(shadows and light.cast_shadows and light.type != "point")
     made.ambient = (0.0, 0.0, 0.0)
     made.diffuse = np.clip(np.asarray(light.diffuse[:3]) * light.intensity, 0.0, 10.0)
@@ -66,7 +66,7 @@ def add_light(body: mujoco.MjsBody, light: SceneLight, pose: Pose, shadows: bool
 
 
 def drawn_fields(light: SceneLight, shadows: bool) -> dict[str, npt.NDArray[np.float64]]:
-    """Return the fields of MuJoCo's light that a description decides, without its place, direction and state."""
+    """Return the fields of MuJoCo's light that a description decides, without position, direction and state."""
     spec = mujoco.MjSpec()
     add_light(spec.worldbody, light, IDENTITY, shadows)
     drawn = spec.worldbody.lights[0]
@@ -74,38 +74,39 @@ def drawn_fields(light: SceneLight, shadows: bool) -> dict[str, npt.NDArray[np.f
 
 
 def report_light(light: SceneLight, world: SceneWorld, diagnostics: Diagnostics) -> None:
-    """Says what of a light is not drawn: where its range would end it, and shadows all around a lamp."""
+    """Report the parts of a light that are not drawn: the end of its range, and shadows of a point light."""
     if light.type == "directional":
         return
     reach, constant, linear, quadratic = light.attenuation
     left = 1.0 / max(constant + reach * (linear + reach * quadratic), 1e-9) if math.isfinite(reach) else 0.0
     if left > _MOST_LEFT:
         message = (
-            f"light {light.scoped!r} has a range of {reach:g} m, where {100.0 * min(left, 1.0):.0f} % of it is left; "
-            "in pictures it fades on from there, and does not end"
+            f"light {light.scoped!r} still has {100.0 * min(left, 1.0):.0f} % at its range of {reach:g} m; "
+            "in images it does not end at its range"
         )
-        diagnostics.note("SK-RENDER-013", message, light.where, "a <linear> or <quadratic> that has faded it by there")
+        diagnostics.note("SK-RENDER-013", message, light.where, "raise <linear> or <quadratic> until it fades there")
     if light.type == "point" and light.cast_shadows and world.surroundings.shadows and world.quality != "fast":
-        message = f"the point light {light.scoped!r} throws no shadows: they are drawn for directional lights and spots"
+        message = f"the point light {light.scoped!r} casts no shadows; only directional lights and spots do"
         diagnostics.note("SK-RENDER-014", message, light.where)
 
 
 def report_lights(model: mujoco.MjModel, diagnostics: Diagnostics, where: Where) -> None:
-    """Says that there are more lights than a picture has."""
+    """Report more lights than an image can have."""
     shining = int(np.count_nonzero(model.light_active))
     if shining > MOST_LIGHTS:
         message = (
-            f"{shining} lights shine; a picture has the {MOST_LIGHTS} of them that its camera gets most of, "
-            "directional ones before all"
+            f"{shining} lights shine; an image has only the {MOST_LIGHTS} that are brightest for its camera, "
+            "directional ones first"
         )
         diagnostics.note("SK-RENDER-012", message, where)
 
 
 def spot_parameters(light: SceneLight) -> tuple[float, float]:
-    """Cutoff [degrees, half of the cone] and exponent of a spot.
+    """Return cutoff [degrees, half of the cone] and exponent of a spot.
 
-    Gazebo's light falls from full at half the inner angle to none at half the outer one, as a straight line to the
-    power of `falloff`; OpenGL's is the cosine to the power of `exponent`. They agree half-way between the two angles.
+    Gazebo's light falls from full at half the inner angle to zero at half the outer one, as a straight line to the
+    power of `falloff`. OpenGL's light is the cosine to the power of `exponent`. They agree half-way between the two
+    angles.
     """
     inner, outer, falloff = _cone(light)
     cutoff = min(90.0, max(1.0, math.degrees(outer) / 2))
@@ -116,10 +117,10 @@ def spot_parameters(light: SceneLight) -> tuple[float, float]:
 
 
 def spot_share(light: SceneLight, angle: float) -> float:
-    """Share of a spot's light at an angle [rad] from its axis, as Gazebo draws it.
+    """Return the fraction of a spot's light at an angle [rad] from its axis, as in Gazebo.
 
-    All within half the inner angle, none beyond half the outer one, between them a straight line to the power of
-    `falloff`.
+    The fraction is 1 within half the inner angle and 0 beyond half the outer one. Between them it is a straight line to
+    the power of `falloff`.
     """
     inner, outer, falloff = _cone(light)
     if angle <= inner / 2:
@@ -130,7 +131,7 @@ def spot_share(light: SceneLight, angle: float) -> float:
 
 
 def _cone(light: SceneLight) -> tuple[float, float, float]:
-    """Inner and outer angle [rad], in order, and falloff of a spot."""
+    """Return the inner and outer angle [rad], in order, and the falloff of a spot."""
     inner, outer, falloff = light.spot
     if outer <= 0.0:
         inner, outer = _SPOT
@@ -138,9 +139,10 @@ def _cone(light: SceneLight) -> tuple[float, float, float]:
 
 
 def refine_for_lamps(model: mujoco.MjModel) -> None:
-    """Divides planes and boxes more finely where there are lamps: the renderer lights corners, and blends between them.
+    """Divide planes and boxes more finely in worlds with lamps.
 
-    A spot that falls between the corners of the squares of 1 m would not be seen at all.
+    The renderer lights corners and interpolates between them. A spot between the corners of 1 m squares would be
+    invisible.
     """
     lamps = np.asarray(model.light_type) != int(mujoco.mjtLightType.mjLIGHT_DIRECTIONAL)
     if not lamps.any():

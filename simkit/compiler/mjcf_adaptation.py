@@ -1,7 +1,7 @@
-"""What of a file in MuJoCo's own format has to be different in a world that is not its own.
+"""Changes to a file in MuJoCo's own format when it becomes part of another world.
 
-The settings of the engine are the world's; the geoms get the friction ranks of everything else, so that of two
-surfaces the smaller coefficient counts; a static model has no joints; a base is fixed or free as the caller says.
+The world's engine settings count. The geoms get the friction priorities of all other geoms, so that the smaller
+coefficient of two surfaces counts. A static model has no joints. A base is fixed or free, as the caller requires.
 """
 
 from __future__ import annotations
@@ -32,14 +32,14 @@ _VISUALS: Final = ("global_", "quality", "headlight", "map", "scale", "rgba")
 _REPORTED_OPTIONS: Final = frozenset(
     ("gravity", "wind", "density", "viscosity", "o_margin", "o_solref", "o_solimp", "o_friction")
 )
-"""Options without which a model means something else; the rest choose how exactly and how fast it is computed."""
+"""Options that change the meaning of a model; the others only set accuracy and speed."""
 
 _FIRST: Final = friction_priority(0.0) + 1
-"""Above every rank of a friction coefficient: for geoms whose own file says that they have the last word."""
+"""Priority above that of every friction coefficient, for geoms whose file gives them priority."""
 
 
 def copy_settings(source: mujoco.MjSpec, target: mujoco.MjSpec) -> None:
-    """Sizes and looks of one specification to another."""
+    """Copy sizes and visual settings of one specification to another."""
     for name in _GLOBAL:
         setattr(target, name, getattr(source, name))
     for group in _VISUALS:
@@ -50,7 +50,7 @@ def copy_settings(source: mujoco.MjSpec, target: mujoco.MjSpec) -> None:
 
 
 def match_settings(child: mujoco.MjSpec, spec: mujoco.MjSpec) -> None:
-    """Makes the settings of both the same: the world's count, and nothing is left to be merged."""
+    """Make the settings of both specifications equal to the world's, so that attaching merges nothing."""
     for name in OPTIONS:
         setattr(child.option, name, getattr(spec.option, name))
     copy_settings(spec, child)
@@ -59,13 +59,13 @@ def match_settings(child: mujoco.MjSpec, spec: mujoco.MjSpec) -> None:
 
 
 def _write_inferred_limits(child: mujoco.MjSpec) -> None:
-    """Writes down what the file leaves to be inferred: a written-out world has one rule for all its parts."""
-    said = {
+    """Write inferred limits explicitly, because a written world has one rule for all its parts."""
+    switches = {
         "joints": (("limited", "range"), ("actfrclimited", "actfrcrange")),
         "tendons": (("limited", "range"), ("actfrclimited", "actfrcrange")),
         "actuators": (("ctrllimited", "ctrlrange"), ("forcelimited", "forcerange"), ("actlimited", "actrange")),
     }
-    for kind, pairs in said.items():
+    for kind, pairs in switches.items():
         for element in getattr(child, kind):
             for switch, ends in pairs:
                 if int(getattr(element, switch)) == int(mujoco.mjtLimited.mjLIMITED_AUTO):
@@ -74,7 +74,7 @@ def _write_inferred_limits(child: mujoco.MjSpec) -> None:
 
 
 def report_settings(child: mujoco.MjSpec, spec: mujoco.MjSpec, model: SceneModel, diagnostics: Diagnostics) -> None:
-    """Says which of the file's own settings give way to the world's."""
+    """Report the settings of the file that the world's settings replace."""
     lost: dict[str, list[str]] = {"warning": [], "note": []}
     places = {"warning": NOWHERE, "note": NOWHERE}
     for name, place in model.mjcf.settings.items() if model.mjcf is not None else ():
@@ -90,9 +90,9 @@ def report_settings(child: mujoco.MjSpec, spec: mujoco.MjSpec, model: SceneModel
         else:
             continue
         places[severity] = place
-    for severity, what in lost.items():
-        if what:
-            message = f"model {model.scoped}: the world's settings stand, not the file's {', '.join(what)}"
+    for severity, names in lost.items():
+        if names:
+            message = f"model {model.scoped}: the world's settings replace the file's {', '.join(names)}"
             diagnostics.add("warning" if severity == "warning" else "note", "SK-MJCF-009", message, places[severity])
 
 
@@ -116,7 +116,7 @@ def _text(name: str, value: Any) -> str:
 
 
 def rank_friction(child: mujoco.MjSpec, model: SceneModel, diagnostics: Diagnostics) -> None:
-    """Ranks each geom by its friction, as all others in the world are; one with a priority of its own stays first."""
+    """Give each geom a priority by its friction, like all others in the world; a priority in the file stays higher."""
     first = 0
     for geom in child.geoms:
         if int(geom.priority) > 0:
@@ -126,12 +126,12 @@ def rank_friction(child: mujoco.MjSpec, model: SceneModel, diagnostics: Diagnost
             slides = float(geom.friction[0]) if int(geom.condim) > 1 else 0.0
             geom.priority = friction_priority(min(slides, MU_MOST))
     if first:
-        message = f"model {model.scoped}: {first} geoms have a priority, so their friction counts against everything"
+        message = f"model {model.scoped}: {first} geoms have a priority, so their friction always counts"
         diagnostics.note("SK-MJCF-013", message, model.where)
 
 
 def write_masses(child: mujoco.MjSpec, source: MjcfSource) -> None:
-    """Writes down the masses that the file's geoms, bounds and total come to."""
+    """Write the masses that follow from the file's geoms, bounds and total."""
     for name, (mass, centre, axes, moments) in source.masses.items():
         body = child.body(name)
         body.explicitinertial = True
@@ -144,41 +144,42 @@ def write_masses(child: mujoco.MjSpec, source: MjcfSource) -> None:
 
 
 def drop_lights(child: mujoco.MjSpec, model: SceneModel, diagnostics: Diagnostics) -> None:
-    """The light of a file's own world stays there: the world that it comes into has its own."""
+    """Remove the lights of a file's own world, because the new world has its own."""
     lights = list(child.worldbody.lights)
     for light in lights:
         child.delete(light)
     if lights:
-        message = f"model {model.scoped}: {len(lights)} lights of the file's own world are left out"
+        message = f"model {model.scoped}: {len(lights)} lights of the file's own world are ignored"
         diagnostics.note("SK-MJCF-011", message, model.where)
 
 
 def rename_lights(child: mujoco.MjSpec, source: MjcfSource, prefix: str = "") -> None:
-    """Lights on bodies get the names by which they are asked for."""
+    """Rename lights on bodies to the names that users know."""
     for scoped, (name, link) in source.lights.items():
         if link:
             child.light(name).name = scoped.removeprefix(prefix)
 
 
 def make_static(child: mujoco.MjSpec, model: SceneModel, diagnostics: Diagnostics) -> None:
-    """A static model has no joints, and nothing that moves, ties or measures them."""
-    gone = [f"{n} joints"] if (n := len(list(child.joints))) else []
+    """Remove all joints of a static model, and all elements that move, couple or measure them."""
+    removed = [f"{n} joints"] if (n := len(list(child.joints))) else []
     for kind in ("keys", "sensors", "actuators", "tendons", "equalities"):
         elements = list(getattr(child, kind))
         if elements:
-            gone.append(f"{len(elements)} {kind}")
+            removed.append(f"{len(elements)} {kind}")
         for element in elements:
             child.delete(element)
     for joint in list(child.joints):
         child.delete(joint)
     for body in list(child.bodies)[1:]:
         body.mocap = False
-    if gone:
-        diagnostics.note("SK-MJCF-012", f"model {model.scoped} is static: without its {', '.join(gone)}", model.where)
+    if removed:
+        message = f"model {model.scoped} is static: its {', '.join(removed)} are ignored"
+        diagnostics.note("SK-MJCF-012", message, model.where)
 
 
 def set_base(child: mujoco.MjSpec, source: MjcfSource, fixed: bool) -> None:
-    """Takes the free joints away, or adds those that are missing."""
+    """Remove the free joints, or add missing ones."""
     for root in source.roots if fixed or source.base == "fixed" else ():
         for joint in list(child.body(root).joints):
             if joint.type == mujoco.mjtJoint.mjJNT_FREE:
@@ -187,13 +188,13 @@ def set_base(child: mujoco.MjSpec, source: MjcfSource, fixed: bool) -> None:
                 child.delete(joint)
     for name in source.free.values() if source.base == "floating" and not fixed else ():
         if child.joint(name) is None:
-            for key in list(child.keys):  # they do not say where the base is
+            for key in list(child.keys):  # keyframes do not contain the pose of the base
                 child.delete(key)
             child.body(name.removesuffix("_free")).add_freejoint(name=name)
 
 
 def _shorten_keys(child: mujoco.MjSpec, joint: str) -> None:
-    """Takes a joint's numbers out of the keyframes."""
+    """Remove a joint's numbers from the keyframes."""
     q = v = 0
     for other in child.joints:
         wide = JOINT_WIDTHS.get(int(other.type), (1, 1))
@@ -218,7 +219,7 @@ def _drop_users(child: mujoco.MjSpec, joint: str) -> None:
 
 
 def keep_only_model(child: mujoco.MjSpec, source: MjcfSource) -> None:
-    """Of a world's file what belongs to one model."""
+    """Remove everything from a world's file that does not belong to one model."""
     for body in list(child.worldbody.bodies):
         if body.name not in source.roots:
             child.delete(body)

@@ -1,7 +1,7 @@
-"""Models in MuJoCo's own format: the file's specification is attached as it is, under a prefix of its names.
+"""Models in MuJoCo's own format: the file's specification is attached unchanged, with a prefix for its names.
 
-So tendons, actuators, equalities, sensors, keyframes, contact pairs and whatever else the scene has no words for come
-along. What has to be different in another world is changed before, in `mjcf_changes`.
+Tendons, actuators, equalities, sensors, keyframes, contact pairs and other elements without a scene type are thus kept.
+`mjcf_adaptation` makes the changes that another world needs.
 """
 
 from __future__ import annotations
@@ -26,11 +26,14 @@ from simkit.scene.mjcf_source import MjcfSource
 
 _HIDDEN: Final = COLLISION_CONTACT
 _MARK: Final = "#mjcf"
-"""Ends the names of the frames and bodies that stand for a file's world; no file can have such a name."""
+"""Suffix of the frames and bodies that represent a file's world; no name in a file can end with it."""
 
 
 def adopt_settings(spec: mujoco.MjSpec, world: SceneWorld) -> None:
-    """Gives the world's specification the engine settings of its file; step, gravity and field are the scene's."""
+    """Copy the engine settings of the world's file to its specification.
+
+    Step, gravity and magnetic field are those of the scene.
+    """
     if world.mjcf is None:
         return
     source = world.mjcf()
@@ -39,25 +42,25 @@ def adopt_settings(spec: mujoco.MjSpec, world: SceneWorld) -> None:
     for name in adaptation.OPTIONS:
         setattr(option, name, getattr(source.option, name))
     option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
-    option.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)  # the runtime's business
+    option.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)  # the runtime decides about sleep
     option.timestep, option.gravity, option.magnetic = (
         world.physics.max_step_size,
         world.gravity,
         world.magnetic_field,
     )
     if spec.text(CONTACT_LAW) is not None and source.text(CONTACT_LAW) is not None:
-        spec.delete(spec.text(CONTACT_LAW))  # the file's own comes with its bodies
+        spec.delete(spec.text(CONTACT_LAW))  # the attached file brings its own text
     for name in ("center", "extent", "meansize", "meanmass", "meaninertia"):
         setattr(spec.stat, name, getattr(source.stat, name))
 
 
 def models_of_own_file(world: SceneWorld) -> list[SceneModel]:
-    """The models that the world's own file makes."""
+    """Return the models of the world's own file."""
     return [m for m in world.models if m.mjcf is not None and not m.mjcf.prefix]
 
 
 def attach_world(spec: mujoco.MjSpec, records: Iterable[ModelRecord]) -> None:
-    """Attaches the file that is the world itself, once for all models that it makes; its names stay as they are."""
+    """Attach the file of the world itself, once for all its models; its names stay unchanged."""
     records = list(records)
     child = _mjcf_source(records[0].scene).document()
     for record in records:
@@ -76,19 +79,22 @@ def attach_world(spec: mujoco.MjSpec, records: Iterable[ModelRecord]) -> None:
 def attach_model(
     spec: mujoco.MjSpec, record: ModelRecord, model: SceneModel, diagnostics: Diagnostics, joints: Iterable[SceneJoint]
 ) -> list[SceneJoint]:
-    """Attaches one model where its pose says, or under the link that a fixed joint holds it on.
+    """Attach one model at its pose, or under the link that a fixed joint connects it to.
 
     Args:
-        record: of the top-level model that it is or belongs to.
+        spec: MuJoCo's specification.
+        record: record of the top-level model.
+        model: model to attach.
+        diagnostics: collection for problems.
         joints: joints of outer models, some of which may end in this one.
 
     Returns:
-        Those of the joints that are done by the way it was attached.
+        Joints that the attachment itself has realised.
     """
     source = _mjcf_source(model)
     child = source.document()
     prefix = source.prefix or f"{model.scoped}::"
-    if not source.prefix:  # a part of the world's own file that was taken out and comes back
+    if not source.prefix:  # a part of the world's own file that was removed and is added again
         adaptation.keep_only_model(child, source)
     else:
         adaptation.report_settings(child, spec, model, diagnostics)
@@ -123,7 +129,7 @@ def _mjcf_source(model: SceneModel) -> MjcfSource:
 def _holding_joint(
     record: ModelRecord, model: SceneModel, source: MjcfSource, joints: Iterable[SceneJoint]
 ) -> SceneJoint | None:
-    """The fixed joint that holds a model of one loose root on a link that is there already."""
+    """Return the fixed joint that connects a model with one free root to a present link; None without one."""
     roots = [scoped for scoped, body in source.bodies.items() if body in source.roots]
     held = {j.child_link for j in model.joints if source.joints.get(j.scoped)}
     if len(roots) != 1 or roots[0] in held or WORLD in source.bodies.values():
@@ -136,7 +142,7 @@ def _holding_joint(
 def _attachment_frame(
     spec: mujoco.MjSpec, record: ModelRecord, source: MjcfSource, prefix: str, wrapper: str, holder: SceneJoint | None
 ) -> mujoco.MjsFrame:
-    """The frame that stands for the file's world: in the world, in a body that can be moved, or in a link's body."""
+    """Return the frame for the file's world: in the world, in a movable body, or in a link's body."""
     pose, body = source.place, spec.worldbody
     if wrapper:
         body = spec.worldbody.add_body(name=wrapper, pos=pose.position, quat=pose.quaternion, mocap=True)
@@ -154,7 +160,7 @@ def _attachment_frame(
 
 
 def detach_model(spec: mujoco.MjSpec, record: ModelRecord) -> None:
-    """Takes out what the files of a model brought beside their bodies, which must be gone already."""
+    """Remove the elements that a model's files added besides their bodies, which must be removed first."""
     for prefix in record.attached.values():
         if prefix:
             _delete_elements(spec, prefix)
@@ -178,15 +184,18 @@ def _delete_elements(spec: mujoco.MjSpec, prefix: str) -> None:
         del spec.assets[name]
 
 
-# ---------------------------------------------------------------------- who is who
+# ---------------------------------------------------------------------- bindings
 
 
 def _bind_elements(record: ModelRecord, model: SceneModel, prefix: str, wrapper: str, free: bool = True) -> None:
-    """Notes whose each body, joint, geom and light is.
+    """Record the owner of each body, joint, geom and light.
 
     Args:
-        wrapper: body that stands for the file's world body; empty where that is the world's.
-        free: whether the file's free joints are there.
+        record: record of the top-level model.
+        model: attached model.
+        prefix: prefix of its names.
+        wrapper: body that represents the file's world body; empty for the world itself.
+        free: True if the file's free joints are kept.
     """
     source = _mjcf_source(model)
     record.attached[model.scoped] = prefix
@@ -232,14 +241,14 @@ def _joint_binding(record: ModelRecord, joint: SceneJoint, name: str) -> JointBi
 
 
 def assign_geom_groups(model: mujoco.MjModel, records: Iterable[ModelRecord]) -> None:
-    """Sorts the geoms of attached files into the groups by which cameras and rays know them.
+    """Assign the geoms of attached files to the groups that cameras and rays use.
 
-    In the compiled model, not before: a group may decide which geoms weigh something.
+    The groups are set in the compiled model, because before the compile a group may decide which geoms have mass.
     """
     for record in records:
-        for one in record.scene.all_models() if record.attached else ():
-            for name, geom in one.mjcf.geoms.items() if one.mjcf is not None else ():
-                full = f"{record.attached[one.scoped]}{name}"
+        for nested in record.scene.all_models() if record.attached else ():
+            for name, geom in nested.mjcf.geoms.items() if nested.mjcf is not None else ():
+                full = f"{record.attached[nested.scoped]}{name}"
                 number = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_GEOM, full)
                 if geom.collides:
                     model.geom_group[number] = DRAWN_COLLISION if geom.drawn else COLLISION
@@ -247,12 +256,12 @@ def assign_geom_groups(model: mujoco.MjModel, records: Iterable[ModelRecord]) ->
                     model.geom_group[number] = VISUAL if geom.drawn else _HIDDEN
 
 
-# ---------------------------------------------------------------------- what the engine says
+# ---------------------------------------------------------------------- warnings of the engine
 
 
 @contextmanager
 def silence_engine_warnings() -> Iterator[None]:
-    """Keeps the engine's warnings of a compile off the terminal and out of a log file; Python's own still come."""
+    """Keep the engine's warnings of a compile off the terminal and out of a log file; Python warnings still appear."""
     before = mujoco.get_mju_user_warning()
     mujoco.set_mju_user_warning(ignore_warning)
     try:
@@ -262,12 +271,12 @@ def silence_engine_warnings() -> Iterator[None]:
 
 
 def is_expected_warning(text: str) -> bool:
-    """Whether the engine only says that a world's own file keeps its names, which is meant."""
+    """Check whether the engine only warns that a world's own file keeps its names, which is intended."""
     return text.startswith("Attaching a spec with an empty prefix")
 
 
 def without_attached(model: SceneModel) -> SceneModel:
-    """A model without those nested in it that have a specification of their own."""
+    """Return a model without nested models that have a specification of their own."""
     if all(nested.mjcf is None for nested in model.all_models()[1:]):
         return model
     kept = tuple(without_attached(nested) for nested in model.models if nested.mjcf is None)

@@ -1,7 +1,7 @@
-"""Parse and compile an MJCF file with MuJoCo; its messages become diagnostics at the user's own lines.
+"""Parser for MJCF files with MuJoCo; its messages become diagnostics at the user's own lines.
 
-MuJoCo's parser alone can say what defaults, classes, replication and attachment make of a file. The loader of MJCF gets
-this parser passed in, so that no loader imports MuJoCo.
+Only MuJoCo's parser can resolve the defaults, classes, replication and attachment of a file. The MJCF loader receives
+this parser as an argument, so that no loader imports MuJoCo.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from simkit.diagnostics import Diagnostics, Where, did_you_mean
 from simkit.loaders.resources.loader import MjcfText
 
 RANGE_TIMEOUT: Final = 30.0
-"""[s] of wall time."""
+"""Wall-time limit [s] for measuring length ranges."""
 
 _MESSAGE_PLACE: Final = re.compile(r"\n?Element (?:name )?'([^']*)'(?:, id \d+)?(?:, line (\d+))?(?:, column \d+)?\s*$")
 _MESSAGE_LINE: Final = re.compile(r"\bline (?:number=)?(\d+)", re.IGNORECASE)
@@ -51,7 +51,7 @@ else:
 
 @dataclass(frozen=True)
 class CompiledFile:
-    """An MJCF file as MuJoCo compiles it on its own; see `simkit.loaders.resources.loader.CompiledMjcf`."""
+    """MJCF file compiled by MuJoCo on its own; see `simkit.loaders.resources.loader.CompiledMjcf`."""
 
     spec: mujoco.MjSpec
     model: mujoco.MjModel
@@ -60,35 +60,35 @@ class CompiledFile:
 
     @property
     def is_aligned(self) -> bool:
-        """Whether compiling turns a free body into the axes of its inertia."""
+        """True if compiling rotates a free body to the axes of its inertia."""
         free = [j for j in self.spec.joints if int(j.type) == 0]
         return any(int(j.align) == 1 or (int(j.align) == 2 and self.spec.compiler.alignfree) for j in free)
 
     @property
     def has_gravity(self) -> bool:
-        """Whether the file's flags leave gravity on."""
+        """True if the file's flags enable gravity."""
         return not int(self.model.opt.disableflags) & int(mujoco.mjtDisableBit.mjDSBL_GRAVITY)
 
     @property
     def allows_sleep(self) -> bool:
-        """Whether the file's flags let sleep what rests."""
+        """True if the file's flags allow bodies at rest to sleep."""
         return bool(int(self.model.opt.enableflags) & int(mujoco.mjtEnableBit.mjENBL_SLEEP))
 
     def name(self, kind: str, number: int) -> str:
-        """The name of an element; `kind` is MuJoCo's word (`BODY`, `JOINT`, ...)."""
+        """Return the name of an element; `kind` is MuJoCo's word (`BODY`, `JOINT`, ...)."""
         return str(mujoco.mj_id2name(self.model, getattr(mujoco.mjtObj, f"mjOBJ_{kind}"), number))
 
 
 class MjcfParser:
-    """MuJoCo's parser and compiler, for the loader of MJCF; see `simkit.loaders.resources.loader.MjcfParser`."""
+    """MuJoCo's parser and compiler, for the MJCF loader; see `simkit.loaders.resources.loader.MjcfParser`."""
 
     def schema_text(self) -> str:
-        """MuJoCo's own table of elements and attributes."""
+        """Return MuJoCo's own table of elements and attributes."""
         return str(mujoco.mj_printSchema(False, False))
 
     def compile(self, file: MjcfText, diagnostics: Diagnostics, in_axes_of_file: bool = False) -> CompiledFile | None:
-        """The specification of a file and the model it compiles to; None, with an error recorded, where it does not."""
-        with _collect_warnings() as said:
+        """Compile a file; return its specification and model, or None with an error recorded."""
+        with _collect_warnings() as engine_warnings:
             try:
                 spec = open_specification(file)
                 ranges: LengthRanges | None = None
@@ -103,7 +103,7 @@ class MjcfParser:
             except (ValueError, RuntimeError, MemoryError, mujoco.FatalError) as problem:
                 _report_refusal(str(problem), file, diagnostics)
                 return None
-        for text in dict.fromkeys(said):
+        for text in dict.fromkeys(engine_warnings):
             message, where = _locate_message(text, file)
             diagnostics.warning("SK-MJCF-008", f"MuJoCo warns: {message}", where)
         data = mujoco.MjData(model)
@@ -114,20 +114,21 @@ class MjcfParser:
 def open_specification(
     file: MjcfText, ranges: LengthRanges | None = None, in_axes_of_file: bool = False
 ) -> mujoco.MjSpec:
-    """A fresh `mujoco.MjSpec` of a file in which every element has a name.
+    """Return a new `mujoco.MjSpec` of a file in which every element has a name.
 
     Args:
+        file: the file.
         ranges: length ranges of actuators, so that compiling need not measure them.
-        in_axes_of_file: bodies with a free joint keep the frame that the file gives them, whatever it says of aligning
-            them with their inertia.
+        in_axes_of_file: keep the file's frame of bodies with a free joint, even if the file aligns them with their
+            inertia.
 
     Raises:
-        ValueError: MuJoCo refuses it.
+        ValueError: MuJoCo refuses the file.
     """
     with _collect_warnings():
         spec = mujoco.MjSpec.from_string(file.text, include=dict(file.models), assets=dict(file.assets))
         name_everything(spec)
-        spec.compiler.fusestatic = spec.compiler.discardvisual = False  # all of it can be asked for by name
+        spec.compiler.fusestatic = spec.compiler.discardvisual = False  # every element must be accessible by name
         for actuator in spec.actuators if ranges is not None else ():
             actuator.lengthrange = ranges[actuator.name] if ranges else actuator.lengthrange
         if ranges is not None:
@@ -140,7 +141,7 @@ def open_specification(
 
 
 def _wants_ranges(spec: mujoco.MjSpec) -> bool:
-    """Whether compiling would measure the length of an actuator (a muscle, or whatever the file's mode says)."""
+    """Check whether compiling would measure the length of an actuator (a muscle, or as the file's mode requires)."""
     mode, gain, bias = int(spec.compiler.LRopt.mode), mujoco.mjtGain, mujoco.mjtBias
     gains, biases = [gain.mjGAIN_MUSCLE], [bias.mjBIAS_MUSCLE]
     if mode == int(mujoco.mjtLRMode.mjLRMODE_MUSCLEUSER):
@@ -156,17 +157,17 @@ def _wants_ranges(spec: mujoco.MjSpec) -> bool:
 def measure_length_ranges(
     file: MjcfText, names: list[str], where: Where, diagnostics: Diagnostics
 ) -> LengthRanges | None:
-    """The length ranges of a file's actuators by name; None, with an error recorded, where they cannot be found.
+    """Return the length ranges of a file's actuators by name; None, with an error recorded, if they cannot be measured.
 
-    A file that does not compile for another reason has none, and says why when it is compiled here.
+    A file that does not compile for another reason has no ranges; compiling it here reports the reason.
     """
     files = {"models": file.models, "assets": file.assets}
     texts = {kind: {k: base64.b64encode(v).decode() for k, v in held.items()} for kind, held in files.items()}
-    given = json.dumps({"text": file.text, **texts})
+    task = json.dumps({"text": file.text, **texts})
     try:
         done = subprocess.run(
             [sys.executable, "-I", "-c", _RANGE_SCRIPT],
-            input=given.encode(),
+            input=task.encode(),
             capture_output=True,
             timeout=RANGE_TIMEOUT,
             check=False,
@@ -176,10 +177,10 @@ def measure_length_ranges(
         found = {}
     if "ranges" in found:
         return {name: (low, high) for name, (low, high) in zip(names, found["ranges"], strict=False)}
-    why = found.get("problem", f"it did not come to rest within {RANGE_TIMEOUT:g} s")
+    reason = found.get("problem", f"the measurement did not converge within {RANGE_TIMEOUT:g} s")
     diagnostics.error(
         "SK-MJCF-014",
-        f"the length ranges of the muscles cannot be found: {' '.join(str(why).split())}",
+        f"the length ranges of the muscles cannot be measured: {' '.join(str(reason).split())}",
         where,
         "give each muscle its lengthrange, or its tendon or joint a range and <lengthrange uselimit='true'/>",
     )
@@ -188,15 +189,15 @@ def measure_length_ranges(
 
 @contextmanager
 def _collect_warnings() -> Iterator[list[str]]:
-    """What the engine warns of, instead of on the terminal and in a log file in the working folder."""
-    said: list[str] = []
+    """Collect the engine's warnings instead of writing them to the terminal and to a log file."""
+    texts: list[str] = []
     before = mujoco.get_mju_user_warning()
-    mujoco.set_mju_user_warning(said.append)
+    mujoco.set_mju_user_warning(texts.append)
     try:
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
-            yield said
-        said += [str(w.message) for w in caught if str(w.message) not in said]
+            yield texts
+        texts += [str(w.message) for w in caught if str(w.message) not in texts]
     finally:
         mujoco.set_mju_user_warning(before)
 
@@ -212,7 +213,7 @@ def _report_refusal(text: str, file: MjcfText, diagnostics: Diagnostics) -> None
 
 
 def _locate_message(text: str, file: MjcfText) -> tuple[str, Where]:
-    """A message of the engine in one line, without its line number, and the place that this number means."""
+    """Return a message of the engine in one line, without its line number, and the file position of that number."""
     text = text.strip().removeprefix("XML Error: ").removeprefix("Error: ")
     where = file.root.where
     place = _MESSAGE_PLACE.search(text)
@@ -239,7 +240,7 @@ def _element_names(file: MjcfText) -> Iterable[str]:
 
 
 def name_everything(spec: mujoco.MjSpec) -> None:
-    """Gives a name to each element without one, always the same: bodies by number, others by what they belong to."""
+    """Name each unnamed element reproducibly: bodies by number, others by their owner."""
     bodies = list(spec.bodies)
     _name_elements(bodies[1:], lambda _, i: f"body{i + 1}")
     for body in bodies:
@@ -276,7 +277,7 @@ def _name_elements(elements: Iterable[Any], make_name: Callable[..., str]) -> No
 
 
 def _make_names_unique(spec: mujoco.MjSpec) -> None:
-    """A name made for one body's part may be another body's own: those made later step aside."""
+    """Rename generated names that equal a name in the file."""
     for kind in ("joints", "geoms", "sites", "cameras", "lights"):
         seen: set[str] = set()
         for element in getattr(spec, kind):

@@ -1,4 +1,4 @@
-"""Compile a world's specification, and adjust and check the model that comes of it in its first state."""
+"""Compilation of a world's specification, and changes to and checks of the compiled model in its first state."""
 
 from __future__ import annotations
 
@@ -19,17 +19,20 @@ from simkit.diagnostics import Diagnostics, Where
 from simkit.scene import SceneWorld
 
 _NO_INERTIA: Final = 1e-9
-"""Inertia [kg·m² or kg] that a joint feels below which it moves nothing; ten times less is what a frame is given."""
+"""Least effective inertia of a joint [kg·m² or kg] that counts as moving something; a frame gets ten times less."""
 
 IDLE_ROTARY: Final = 1e-4
-"""[kg·m²] that a hinge is given which moves nothing with mass: a finger's, so that 1 ms steps and contacts are calm."""
+"""Armature [kg·m²] of a hinge that moves no mass: that of a finger, so that 1 ms steps and contacts are stable."""
 
 IDLE_LINEAR: Final = 1e-2
-"""[kg] that a slider is given which moves nothing with mass."""
+"""Armature [kg] of a slider that moves no mass."""
 
 
 def apply_velocity_decay(model: mujoco.MjModel, records: Iterable[ModelRecord]) -> None:
-    """Damping of free joints for `velocity_decay`: mass, or moment about each axis of the link, times the rate."""
+    """Set the damping of free joints for `velocity_decay`.
+
+    The damping is mass, or moment about each axis of the link, times the rate.
+    """
     for record in records:
         for name, (linear, angular) in record.damped.items():
             joint = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, name)
@@ -45,16 +48,16 @@ def apply_velocity_decay(model: mujoco.MjModel, records: Iterable[ModelRecord]) 
 def add_idle_armature(
     spec: mujoco.MjSpec, model: mujoco.MjModel, records: Iterable[ModelRecord], diagnostics: Diagnostics
 ) -> None:
-    """Gives each joint that moves nothing but links without mass an armature, in the model and in the spec.
+    """Give an armature to each joint that moves only links without mass, in the model and in the spec.
 
-    Such a joint is one below which nothing has mass, or one that feels nothing where all else stays: 1 / (M⁻¹)_jj ≈ 0.
-    What it carries then moves without pushing back on the rest. A link that hangs on no joint is an error.
+    Such a joint has no mass below it, or no effective inertia with all other joints fixed: 1 / (M⁻¹)_jj ≈ 0. Its links
+    then move without a reaction on the rest. A free link without mass is an error.
     """
     suspects = [(r, link, joint) for r in records for link, joint in r.massless.items()]
     if not suspects:
         return
     data = first_mass_matrix(model)
-    steadied = False
+    is_changed = False
     for record, link, joint in suspects:
         binding = record.links[link]
         body = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, binding.body_name)
@@ -63,27 +66,30 @@ def add_idle_armature(
         if link not in record.unladen and all(_joint_inertia(model, data, dof) >= _NO_INERTIA for dof in dofs):
             continue
         if not joint:
-            text = f"link {link} moves freely and has no mass; what it carries turns by itself and does not weigh on it"
+            text = f"link {link} moves freely and has no mass; the links that it carries do not load it"
             diagnostics.error("SK-JOINT-010", text, binding.scene.where, "give the link an <inertial>, or fix it")
             continue
-        given = _give_armature(spec, model, body)
-        steadied = steadied or bool(given)
-        if given:
+        armature = _give_armature(spec, model, body)
+        is_changed = is_changed or bool(armature)
+        if armature:
             scene = record.joints[joint].scene
             diagnostics.warning(
                 "SK-JOINT-016",
-                f"link {link} moves on joint {joint} ({scene.type}) and nothing that it carries weighs on that joint: "
-                f"the joint gets an armature of {given}",
+                f"joint {joint} ({scene.type}) of link {link} moves no mass: the joint gets an armature of {armature}",
                 scene.where if scene.where.line else binding.scene.where,
                 "give the link an <inertial>, or fix it",
             )
-    if steadied:
+    if is_changed:
         mujoco.mj_setConst(model, data)
 
 
 def _give_armature(spec: mujoco.MjSpec, model: mujoco.MjModel, body: int) -> str:
-    """Sets the least armature on a body's joints that have less; says what they got, nothing where all had enough."""
-    given = ""
+    """Set the least armature on a body's joints that have less.
+
+    Returns:
+        Text of the armature; empty if nothing changed.
+    """
+    armature = ""
     for joint in range(int(model.body_jntadr[body]), int(model.body_jntadr[body] + model.body_jntnum[body])):
         is_slide = int(model.jnt_type[joint]) == mujoco.mjtJoint.mjJNT_SLIDE
         least, unit = (IDLE_LINEAR, "kg") if is_slide else (IDLE_ROTARY, "kg m²")
@@ -93,8 +99,8 @@ def _give_armature(spec: mujoco.MjSpec, model: mujoco.MjModel, body: int) -> str
             continue
         model.dof_armature[first : first + count] = least
         spec.joint(mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_JOINT, joint)).armature = least
-        given = f"{least:g} {unit}"
-    return given
+        armature = f"{least:g} {unit}"
+    return armature
 
 
 def _joint_inertia(model: mujoco.MjModel, data: mujoco.MjData, dof: int) -> float:
@@ -103,7 +109,7 @@ def _joint_inertia(model: mujoco.MjModel, data: mujoco.MjData, dof: int) -> floa
 
 
 def place_followers(data: mujoco.MjData, joints: Iterable[JointBinding]) -> None:
-    """Puts what follows a joint with an offset where the law says at the start, so that nothing jerks."""
+    """Set the initial positions of followers with an offset, so that nothing jerks."""
     for joint in joints:
         for follower in joint.followers:
             if follower.offset and follower.qpos >= 0:
@@ -111,19 +117,19 @@ def place_followers(data: mujoco.MjData, joints: Iterable[JointBinding]) -> None
 
 
 REPORTED_DEPTH: Final = 0.005
-"""Overlaps up to this depth [m] at the start are ordinary and push things apart gently."""
+"""Depth [m] up to which initial overlaps are common; contact separates them gently."""
 
 _REPORTED_MOST: Final = 20
 
 
 def report_overlaps(model: mujoco.MjModel, names: NameMap, diagnostics: Diagnostics, where: Where) -> None:
-    """Warns of each pair of collisions that overlap deeply in the first state; the deepest contact of a pair counts."""
+    """Warn of each pair of collisions that overlap deeply in the first state; the deepest contact of a pair counts."""
     data = first_state(model)
     mujoco.mj_collision(model, data)
     deepest: dict[tuple[str, str], float] = {}
     for i in (data.contact.dist < -REPORTED_DEPTH).nonzero()[0] if data.ncon else ():
         first, second = (names.geom_owner(g)[1] for g in data.contact.geom[i])
-        if not (first and second):  # a cloth or the like, of a file of the engine's own
+        if not (first and second):  # a flexible body of an MJCF file
             continue
         pair = (first, second)
         deepest[pair] = max(deepest.get(pair, 0.0), -float(data.contact.dist[i]))
@@ -148,37 +154,37 @@ _DERIVED: Final[tuple[tuple[str, Callable[[mujoco.MjModel, int], str]], ...]] = 
 
 
 def check_derived_numbers(model: mujoco.MjModel, diagnostics: Diagnostics, where: Where) -> None:
-    """Raises LoadError (SK-PHYS-028) where masses, inertias or distances are so far apart that sums leave the numbers.
+    """Raise LoadError (SK-PHYS-028) if masses, inertias or distances differ so much that sums overflow.
 
-    Each number of the file is sound by itself by now; but a mass matrix of 1e-9 kg on a lever of 1e8 m has no inverse
-    in double precision, and everything that the engine computes with it would be NaN.
+    Each number of the file is valid by itself. But a mass matrix of 1e-9 kg on a lever of 1e8 m has no inverse in
+    double precision, and the engine would compute NaN.
     """
     for name, owner in _DERIVED:
         values = np.asarray(getattr(model, name), float)
         rows = values.reshape(max(1, len(values)), -1)
         bad = np.flatnonzero(~np.isfinite(rows).all(axis=1))
         if bad.size:
-            text = f"{owner(model, int(bad[0]))}: its masses, inertias and distances are too far apart to compute with"
+            text = f"{owner(model, int(bad[0]))}: its masses, inertias and distances differ too much in size"
             diagnostics.error("SK-PHYS-028", text, where, "check the units: metres, kilograms and kg·m²")
             diagnostics.raise_if_errors()
 
 
 MOST_MOVING: Final = 10_000
-"""Links; the engine's compiler takes time in proportion to their square, 7 s for 4000 that are free."""
+"""Largest number of moving links; the engine's compile time is quadratic, 7 s for 4000 free links."""
 
 
 def compile_spec(
     spec: mujoco.MjSpec, world: SceneWorld, records: Sequence[ModelRecord], diagnostics: Diagnostics
 ) -> mujoco.MjModel:
-    """The model that a specification compiles to.
+    """Compile a specification.
 
     Raises:
         LoadError: there are too many moving links, or MuJoCo refuses the model.
     """
     moving = sum(not link.static for r in records for link in r.links.values())
     if moving > MOST_MOVING:
-        text = f"there are {moving} moving links; at most {MOST_MOVING} are compiled, which takes the engine a minute"
-        diagnostics.error("SK-PHYS-029", text, world.where, "make what never moves <static>")
+        text = f"the world has {moving} moving links; at most {MOST_MOVING} are supported (a minute of compile time)"
+        diagnostics.error("SK-PHYS-029", text, world.where, "make models that never move <static>")
         diagnostics.raise_if_errors()
     apply_size(spec, sum(not o.is_visual for r in records for o in r.geoms.values()))
     if world.mjcf is None:
@@ -195,7 +201,11 @@ def compile_spec(
 def finish_model(
     spec: mujoco.MjSpec, model: mujoco.MjModel, world: SceneWorld, records: list[ModelRecord], diagnostics: Diagnostics
 ) -> None:
-    """Sets what only the compiled model tells: inertias, groups, damping, gains. Raises LoadError (SK-PHYS-028)."""
+    """Set the fields that need the compiled model: inertias, groups, damping, gains.
+
+    Raises:
+        LoadError: SK-PHYS-028.
+    """
     restore_file_inertias(model, {name: exact for r in records for name, exact in r.exact.items()})
     check_derived_numbers(model, diagnostics, world.where)
     set_extent(model)

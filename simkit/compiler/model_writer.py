@@ -1,4 +1,4 @@
-"""One top-level model into the specification: bodies, joints, geoms, lights, and which of its links never touch."""
+"""Writer of one top-level model: bodies, joints, geoms, lights, and pairs of links that never touch."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ from simkit.pose import IDENTITY
 from simkit.scene import SceneJoint, SceneLink, SceneModel, SceneWorld
 
 DEEPEST: Final = 1000
-"""Links below each other; MuJoCo takes 1024 bodies."""
+"""Largest number of links in a chain; MuJoCo supports 1024 bodies."""
 
 
 class ModelWriter:
-    """Writes one model and fills its record."""
+    """Writer of one model that fills its record."""
 
     def __init__(
         self, spec: mujoco.MjSpec, assets: Assets, record: ModelRecord, world: SceneWorld, diagnostics: Diagnostics
@@ -38,7 +38,7 @@ class ModelWriter:
         self.joints = JointWriter(spec, record, step, diagnostics)
 
     def write(self, joints: list[SceneJoint]) -> None:
-        """Adds the whole model with `joints` (its own and those that tie it to the world)."""
+        """Add the whole model with `joints` (its own and those to the world)."""
         model = self.record.scene
         links = list(_links(model, False))
         static = {link.scoped for link, is_static in links if is_static}
@@ -65,7 +65,7 @@ class ModelWriter:
         exclude_self_collisions(self.spec, self.record, moving, joints)
 
     def join(self, joints: list[SceneJoint], links: Mapping[str, LinkBinding]) -> None:
-        """Adds joints between models as constraints."""
+        """Add joints between models as constraints."""
         self._bind_links(links)
         for joint in joints:
             ends = {joint.parent_link, joint.child_link}
@@ -83,14 +83,17 @@ class ModelWriter:
         self._unbind_links(links)
 
     def _exclude(self, joint: SceneJoint, links: Mapping[str, LinkBinding]) -> None:
-        """Links across a joint never touch; of a static link that cannot be told from the rest of the world."""
+        """Exclude contacts between the links of a joint.
+
+        This is impossible for a static link, which is part of the world body.
+        """
         bodies = [links[end].body_name for end in (joint.parent_link, joint.child_link) if end != WORLD]
         if len(bodies) == 2 and WORLD not in bodies:
             self.spec.add_exclude(name=joint.scoped, bodyname1=bodies[0], bodyname2=bodies[1])
             self.record.excludes.append(joint.scoped)
 
     def weld(self, name: str, parent: str, child: str, links: Mapping[str, LinkBinding], active: bool) -> None:
-        """Adds a weld between two links, of this model or of others."""
+        """Add a weld between two links, of this model or of others."""
         known = dict(self.record.links)
         self._bind_links(links)
         self.joints.add_weld(name, parent, child, active)
@@ -107,7 +110,7 @@ class ModelWriter:
     # ------------------------------------------------------------------ links
 
     def _static_link(self, link: SceneLink) -> None:
-        """A static link: geoms of the world, or of a mocap body when it is to be movable."""
+        """Add a static link: geoms of the world, or of a mocap body if it is movable."""
         binding = LinkBinding(link.scoped, WORLD, link.pose_world, link, self.record.scene.scoped, True)
         body: mujoco.MjsBody = self.spec.worldbody
         if self.record.movable:
@@ -156,7 +159,10 @@ class ModelWriter:
             self.joints.bind_floating(joint)
 
     def _inertials(self, tree: KinematicTree, free: set[str]) -> dict[str, BodyInertia]:
-        """Mass and inertia of every link that has any, as the compiler takes them; exact ones go to the record."""
+        """Return the mass and inertia of every link that has any, as the compiler accepts them.
+
+        Exact tensors that the compiler refuses go to the record.
+        """
         rigid: dict[str, str] = {}
         still = set()
         for link in tree.order:
@@ -174,11 +180,11 @@ class ModelWriter:
         return written
 
     def _add_free_joint(self, body: mujoco.MjsBody, link: SceneLink) -> str:
-        """Lets a link move freely; returns the name of the joint."""
+        """Make a link move freely; return the name of the joint."""
         name = f"{link.scoped}#free"
         joint = body.add_freejoint(name=name)
         if link.kinematic:
-            # so heavy to push that nothing moves it but a velocity that is set
+            # so large that only a set velocity moves the link
             joint.armature = KINEMATIC_ARMATURE
         if any(link.velocity_decay):
             step = float(self.spec.option.timestep)
@@ -187,23 +193,27 @@ class ModelWriter:
             linear, angular = (part / (1.0 - part) / step for part in parts)
             self.record.damped[name] = (linear, angular)
             message = (
-                f"velocity_decay of link {link.scoped} is a damping of {linear:g}/s along and {angular:g}/s in turning"
+                f"velocity_decay of link {link.scoped} is simulated as a damping of {linear:g}/s linear and "
+                f"{angular:g}/s angular"
             )
             self.diagnostics.note("SK-PHYS-026", message, link.where)
         return name
 
     def _report_kinematic(self, link: SceneLink) -> None:
         if link.kinematic:
-            text = f"kinematic: link {link.scoped} hangs on a joint; it is not pulled by gravity, but it can be pushed"
+            text = f"kinematic: link {link.scoped} is on a joint; gravity does not act on it, but contacts push it"
             self.diagnostics.warning("SK-PHYS-012", text, link.where)
         if any(link.velocity_decay):
-            text = f"velocity_decay of link {link.scoped} is not used: the link hangs on a joint"
-            self.diagnostics.warning("SK-PHYS-027", text, link.where, "<dynamics><damping> of the joint slows it down")
+            text = f"velocity_decay of link {link.scoped} is ignored: the link is on a joint"
+            self.diagnostics.warning("SK-PHYS-027", text, link.where, "use <dynamics><damping> of the joint")
 
     def _report_depth(self, tree: KinematicTree) -> None:
-        """An error instead of a model; its links and joints are noted, for whoever looks for them meanwhile."""
+        """Report an error instead of writing a model.
+
+        Its links and joints are recorded, so that later look-ups succeed.
+        """
         last = self.joints.links[tree.deepest]
-        message = f"link {last.scoped} hangs on a chain of {tree.depth} links; at most {DEEPEST} can be simulated"
+        message = f"link {last.scoped} is at the end of a chain of {tree.depth} links; at most {DEEPEST} are supported"
         self.diagnostics.error("SK-JOINT-015", message, last.where)
         for link in tree.order:
             self.record.links[link.scoped] = LinkBinding(
@@ -213,10 +223,10 @@ class ModelWriter:
             self.joints.bind_static(joint)
 
     def _needs_mass(self, link: SceneLink, tree: KinematicTree, is_free: bool) -> bool:
-        """Whether a link has to weigh something: it moves by itself, and no link that is one with it has mass.
+        """Check whether a link needs mass: it moves by itself, and no link of its rigid group has mass.
 
-        Without mass anywhere below there is nothing that an effort could move: an error where the link moves freely;
-        a joint gets an armature (`model_compilation.add_idle_armature`).
+        Without any mass below, no effort could move the link. This is an error for a free link; a joint gets an
+        armature (`model_compilation.add_idle_armature`).
         """
         edge = tree.edges.get(link.scoped)
         moves = is_free or (edge is not None and edge.joint.type != "fixed")
@@ -226,9 +236,9 @@ class ModelWriter:
             if edge is None:
                 self.diagnostics.error(
                     "SK-JOINT-010",
-                    f"link {link.scoped} moves freely and has no mass, nor has anything that it carries",
+                    f"link {link.scoped} moves freely, but neither it nor any link that it carries has mass",
                     link.where,
-                    "give the link an <inertial>, or fix it: it belongs to a model whose base can be 'fixed'",
+                    "give the link an <inertial>, or load the model with base='fixed'",
                 )
                 return True
             self.record.unladen.add(link.scoped)
@@ -240,7 +250,7 @@ class ModelWriter:
         return False
 
     def _has_rigid_mass(self, link: str, tree: KinematicTree) -> bool:
-        """Whether a link below by fixed joints alone has mass; that is all that the engine asks for."""
+        """Check whether a link below, connected by fixed joints alone, has mass; the engine requires no more."""
         stack = list(tree.children.get(link, ()))
         while stack:
             name = stack.pop()
@@ -264,7 +274,7 @@ class ModelWriter:
 
 
 def _links(model: SceneModel, in_static: bool) -> Iterator[tuple[SceneLink, bool]]:
-    """Every link and whether it is static, in document order."""
+    """Yield every link and whether it is static, in document order."""
     is_static = in_static or model.static
     for link in model.links:
         yield link, is_static
@@ -273,10 +283,10 @@ def _links(model: SceneModel, in_static: bool) -> Iterator[tuple[SceneLink, bool
 
 
 FIRST_OWN_BIT: Final = 16
-"""Files' masks have 16 bits; those above tell models apart."""
+"""First bit for models; the masks of files have 16 bits."""
 
 PAIRS_MOST: Final = 2000
-"""From so many pairs on, the links of a model know each other by a bit instead of by a list of pairs."""
+"""Number of link pairs from which a model uses a bit instead of a list of pairs."""
 
 _ALL_BITS: Final = 0xFFFF
 _ALL_OWN: Final = 0x7FFF0000
@@ -285,12 +295,12 @@ _ALL_OWN: Final = 0x7FFF0000
 def exclude_self_collisions(
     spec: mujoco.MjSpec, record: ModelRecord, moving: list[SceneLink], joints: list[SceneJoint]
 ) -> None:
-    """Links of one model touch only where one of them collides with its own model, and never across a joint.
+    """Exclude contacts between the links of one model, unless one of them has self-collision, and across joints.
 
-    A nested model that no joint ties to the rest is a stranger to it, as in Gazebo: their links touch.
+    A nested model without joints to the rest is treated as another model, as in Gazebo: their links touch.
 
-    Either by excludes, a pair of bodies each; or, for a model of very many links that never touch each other and have
-    the format's plain masks, by a bit of its own: what has it meets everything but what has it too.
+    Usually each pair of bodies gets an exclude. A model with very many links, no self-collision and default masks uses
+    a bit of its own instead: geoms with the bit collide with everything except each other.
     """
     model = record.scene
     joined = {frozenset((j.parent_link, j.child_link)) for j in joints}
@@ -315,7 +325,7 @@ def exclude_self_collisions(
 
 
 def _jointed_groups(model: SceneModel, joints: list[SceneJoint]) -> dict[str, str]:
-    """Of each link a name of the whole that it belongs to: links of one model, and models that joints tie together."""
+    """Return a group name for each link: links of one model, and models connected by joints, form a group."""
     of_link = {link.scoped: m.scoped for m in model.all_models() for link in m.links}
     above: dict[str, str] = {}
 
@@ -326,9 +336,9 @@ def _jointed_groups(model: SceneModel, joints: list[SceneJoint]) -> dict[str, st
 
     for joint in joints:
         if joint.parent_link in of_link and joint.child_link in of_link:
-            one, other = top(of_link[joint.parent_link]), top(of_link[joint.child_link])
-            if one != other:
-                above[other] = one
+            parent, child = top(of_link[joint.parent_link]), top(of_link[joint.child_link])
+            if parent != child:
+                above[child] = parent
     return {link: top(owner) for link, owner in of_link.items()}
 
 

@@ -1,4 +1,4 @@
-"""The name map: scoped names of the file to what MuJoCo calls them, and after a compile to its ids."""
+"""Name map: scoped names of the file to MuJoCo's names, and after a compile to its ids."""
 
 from __future__ import annotations
 
@@ -19,16 +19,17 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, slots=True)
 class LinkBinding:
-    """Where a link lives in MuJoCo.
+    """Link in the MuJoCo model.
 
     Attributes:
         body_name: MuJoCo body, `world` for a static link.
-        body: its id; 0 for a static link; -1 before the compile.
-        offset: the link frame in the body frame (identity for links that are bodies).
+        body: id of the body; 0 for a static link; -1 before the compile.
+        offset: link frame in the body frame (identity for links that are bodies).
         model: scoped name of the top-level model.
         mocap: index among the mocap bodies, or -1.
         free_joint: name of the free joint of the link's own body, or empty.
-        root_joint_qpos, root_joint_dof: addresses of that free joint, or -1.
+        root_joint_qpos: address of the free joint's position, or -1.
+        root_joint_dof: address of the free joint's velocity, or -1.
         geoms: ids of the geoms that collide (groups COLLISION and COLLISION_CONTACT).
         ray_geoms: ids of the geoms that rays against collisions see (COLLISION and COLLISION_RAY).
         visuals: ids of the drawn geoms.
@@ -52,13 +53,13 @@ class LinkBinding:
 
 @dataclass(frozen=True, slots=True)
 class Follower:
-    """A degree of freedom that an equality ties to an axis of a joint: value = offset + ratio · leader.
+    """Degree of freedom that an equality couples to an axis of a joint: value = offset + ratio · leader.
 
-    Whoever sets the leader's state sets this one too, so that the equality starts without an error.
+    Code that sets the leader's state must set the follower too, so that the equality starts without an error.
 
     Attributes:
         name: MuJoCo joint.
-        axis: which axis of the leader.
+        axis: axis index of the leader.
     """
 
     name: str
@@ -71,23 +72,27 @@ class Follower:
 
 @dataclass(frozen=True, slots=True)
 class JointBinding:
-    """Where a joint lives in MuJoCo.
+    """Joint in the MuJoCo model.
 
     Attributes:
-        joint_names, joint_ids: MuJoCo joints, one per axis (one for a ball or floating joint, none for a fixed one).
-        qpos, dofs: addresses of the first coordinate and of every degree of freedom, in axis order.
-        parent_body, child_body: ids of the bodies of the file's parent and child link (0: world).
-        pose_child: the joint frame in the file's child link frame at load.
-        pose_parent: the joint frame in the file's parent link frame at load (in the world for `world`).
-        is_reversed: the tree hangs the parent link under the child; positions and axes keep the file's meaning.
+        joint_names: MuJoCo joints, one per axis (one for a ball or floating joint, none for a fixed one).
+        joint_ids: ids of these joints.
+        qpos: address of the first coordinate of each joint, in axis order.
+        dofs: addresses of every degree of freedom, in axis order.
+        parent_body: body id of the file's parent link (0: world).
+        child_body: body id of the file's child link (0: world).
+        pose_child: joint frame in the file's child link frame at load.
+        pose_parent: joint frame in the file's parent link frame at load (in the world for `world`).
+        is_reversed: the tree has the parent link below the child; positions and axes keep the file's meaning.
         is_loop: the joint closes a loop: it moves a twin of its child link, which a weld holds on the link itself.
-        equalities: names of the equality constraints that stand for it.
-        twin: name of that body; empty where the joint is part of the tree.
-        carried: scoped name of the link whose body the joint moves in the tree (or whose twin); it is rigidly one with
-            the file's child link, or with its parent link where the joint is turned round.
-        moved_body: id of the body that the joint moves (the twin's for a loop); 0 where it moves none.
-        pose_moved: the joint frame in that body's frame.
-        free: a floating joint: scoped name of the link whose free joint it reads and sets; empty where none is free.
+        equalities: names of the joint's equality constraints.
+        twin: name of the twin body; empty if the joint is part of the tree.
+        carried: scoped name of the link whose body (or twin) the joint moves in the tree. The link is in the rigid
+            group of the file's child link, or of its parent link if the joint is reversed.
+        moved_body: id of the body that the joint moves (the twin's for a loop); 0 without one.
+        pose_moved: joint frame in that body's frame.
+        free: for a floating joint the scoped name of the link whose free joint it reads and sets; empty if none is
+            free.
     """
 
     scoped: str
@@ -115,7 +120,7 @@ class JointBinding:
 
 @dataclass(frozen=True, slots=True)
 class LightBinding:
-    """A light: MuJoCo's light has the scoped name of the file's; `id` is -1 before the compile or when it is off."""
+    """Light in the MuJoCo model, under the file's scoped name; `id` is -1 before the compile or if it is off."""
 
     scoped: str
     scene: SceneLight
@@ -126,14 +131,16 @@ class LightBinding:
 
 @dataclass(frozen=True, slots=True)
 class ActuatorRef:
-    """An actuator that a plugin asked for; stays valid over every structure change.
+    """Actuator that a plugin requested; the reference stays valid over every change of the structure.
 
     Attributes:
         name: MuJoCo's name.
-        kind: velocity, position, motor or drive (a motor whose effort goes on by itself, for servos).
-        joint, axis: scoped joint and the index of its axis.
-        max_effort: what the actuator may give at most [N or N·m].
-        kp, kv: wanted gains; None lets the servo rule choose.
+        kind: velocity, position, motor or drive (a motor that integrates its effort, for servos).
+        joint: scoped name of the joint.
+        axis: index of the joint's axis.
+        max_effort: effort limit [N or N·m].
+        kp: requested position gain; None for the servo rule.
+        kv: requested velocity gain; None for the servo rule.
     """
 
     name: str
@@ -151,7 +158,7 @@ class ActuatorRef:
 
 @dataclass(frozen=True, slots=True)
 class GeomOwner:
-    """Whose geom it is: (link, collision or visual, drawn or not)."""
+    """Owner of a geom: link, collision or visual, and True in `is_visual` for a drawn geom."""
 
     link: str
     scoped: str
@@ -160,15 +167,15 @@ class GeomOwner:
 
 @dataclass(slots=True)
 class ModelRecord:
-    """All that a top-level model put into the spec, by name, so that it can be taken out again.
+    """Elements of a top-level model in the spec, by name, so that the model can be removed.
 
     Attributes:
-        damped: free joint -> decay rates [1/s] of its linear and angular velocity.
-        exact: link -> the mass it was written with [kg] and the tensor [kg·m²] that the compiled model gets.
-        massless: link without mass on a moving joint -> that joint's scoped name.
-        unladen: those of them that carry nothing with mass either.
-        own_bit: the collision bit by which the model's links know each other; 0 where excludes do that.
-        attached: of models in MuJoCo's own format: scoped name -> prefix of what they brought.
+        damped: decay rates [1/s] of linear and angular velocity by free joint.
+        exact: written mass [kg] and final tensor [kg·m²] of the compiled model, by link.
+        massless: scoped name of the joint of each link without mass on a moving joint.
+        unladen: links of `massless` that carry no mass either.
+        own_bit: collision bit of the model's links; 0 if excludes are used instead.
+        attached: prefix of the elements of each model in MuJoCo's own format, by scoped name.
     """
 
     scene: SceneModel
@@ -193,26 +200,26 @@ class ModelRecord:
     attached: dict[str, str] = field(default_factory=dict)
 
     def copy(self) -> ModelRecord:
-        """A record of its own; the bindings in it are immutable and shared."""
+        """Return an independent record; its immutable bindings are shared."""
         same = replace(self)
-        for name in (one.name for one in fields(self)):
+        for name in (item.name for item in fields(self)):
             content = getattr(self, name)
             if isinstance(content, (dict, list, set)):
                 setattr(same, name, content.copy())
         return same
 
 
-def lookup(items: Mapping[str, T], name: str, what: str) -> T:
-    """`items[name]`, or a KeyError that names the closest."""
+def lookup(items: Mapping[str, T], name: str, kind: str) -> T:
+    """Return `items[name]`; a KeyError suggests the closest name."""
     try:
         return items[name]
     except KeyError:
         hint = did_you_mean(name, items)
-        raise KeyError(f"no {what} {name!r}" + (f"; {hint}" if hint else "")) from None
+        raise KeyError(f"no {kind} {name!r}" + (f"; {hint}" if hint else "")) from None
 
 
 class NameMap:
-    """Scoped names to bindings. Before a compile the ids in them are -1."""
+    """Map from scoped names to bindings. The ids are -1 before a compile."""
 
     def __init__(
         self, links: dict[str, LinkBinding], joints: dict[str, JointBinding], lights: dict[str, LightBinding]
@@ -222,52 +229,52 @@ class NameMap:
         self._model: mujoco.MjModel | None = None
         self._shared: dict[str, Any] = {}
 
-    def shared(self, what: str, make: Callable[[], T]) -> T:
-        """What many sensors find out of the compiled model in the same way, made once for all of them."""
-        if what not in self._shared:
-            self._shared[what] = make()
-        found: T = self._shared[what]
-        return found
+    def shared(self, key: str, make: Callable[[], T]) -> T:
+        """Return a value that many sensors derive from the compiled model; it is computed once."""
+        if key not in self._shared:
+            self._shared[key] = make()
+        value: T = self._shared[key]
+        return value
 
     def link(self, scoped: str) -> LinkBinding:
-        """Raises KeyError, which names the closest."""
+        """Return a link; a KeyError suggests the closest name."""
         return lookup(self.links, scoped, "link")
 
     def joint(self, scoped: str) -> JointBinding:
-        """Raises KeyError, which names the closest."""
+        """Return a joint; a KeyError suggests the closest name."""
         return lookup(self.joints, scoped, "joint")
 
     def light(self, scoped: str) -> LightBinding:
-        """Raises KeyError, which names the closest."""
+        """Return a light; a KeyError suggests the closest name."""
         return lookup(self.lights, scoped, "light")
 
     def site(self, name: str) -> int:
-        """MuJoCo's id of a site. Raises KeyError."""
+        """Return MuJoCo's id of a site, or raise KeyError."""
         return self._id("SITE", name)
 
     def camera(self, name: str) -> int:
-        """MuJoCo's id of a camera. Raises KeyError."""
+        """Return MuJoCo's id of a camera, or raise KeyError."""
         return self._id("CAMERA", name)
 
     def equality(self, name: str) -> int:
-        """MuJoCo's id of an equality constraint. Raises KeyError."""
+        """Return MuJoCo's id of an equality constraint, or raise KeyError."""
         return self._id("EQUALITY", name)
 
     def actuator(self, ref: ActuatorRef | str) -> int:
-        """MuJoCo's id of an actuator. Raises KeyError."""
+        """Return MuJoCo's id of an actuator, or raise KeyError."""
         return self._id("ACTUATOR", ref if isinstance(ref, str) else ref.name)
 
     def geom_owner(self, geom_id: int) -> tuple[str, str, bool]:
-        """(link, collision or visual, drawn or not) of a geom; empty names for one that is no model's."""
+        """Return (link, collision or visual, True if drawn) of a geom; empty names for a geom without a model."""
         owner = self._owners.get(int(geom_id))
         return (owner.link, owner.scoped, owner.is_visual) if owner else ("", "", False)
 
     def geom_owner_link(self, scoped: str) -> str:
-        """The link of a collision or visual by its scoped name; empty where there is none."""
+        """Return the link of a collision or visual by its scoped name; empty without one."""
         return next((o.link for o in self._owners.values() if o.scoped == scoped), "")
 
     def drawn(self, link: str) -> dict[str, tuple[int, ...]]:
-        """The drawn geoms of a link by the scoped name of their visual; what is not drawn is not in it."""
+        """Return the drawn geoms of a link by the scoped name of their visual."""
         found: dict[str, tuple[int, ...]] = {}
         for geom in self.link(link).visuals:
             scoped = self.geom_owner(geom)[1]
@@ -275,7 +282,10 @@ class NameMap:
         return found
 
     def model_frame(self, model: SceneModel) -> tuple[int, Pose]:
-        """The body that moves with a model's frame, and the frame in it; in the world for a model without links."""
+        """Return the body that moves with a model's frame, and the frame in it.
+
+        The body is the world for a model without links.
+        """
         canonical = self.links.get(model.canonical_link)
         if canonical is None:
             return 0, model.pose_world
@@ -291,7 +301,7 @@ class NameMap:
 
     @classmethod
     def of(cls, records: Iterable[ModelRecord], model: mujoco.MjModel | None = None) -> NameMap:
-        """The map over all records, bound to the ids of `model` when there is one."""
+        """Return the map of all records, bound to the ids of `model` if given."""
         links: dict[str, LinkBinding] = {}
         joints: dict[str, JointBinding] = {}
         lights: dict[str, LightBinding] = {}

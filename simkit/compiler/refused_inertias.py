@@ -1,17 +1,17 @@
-"""Inertias that MuJoCo's compiler refuses: stand-ins, the repair within a bound, and what is said about both.
+"""Inertias that MuJoCo's compiler refuses: substitutes, limited repairs, and reports about both.
 
-A rigid body's principal moments are positive and A + B >= C (the largest). Files break this by rounding, by wrong
-units, or because whoever wrote them never needed it. What counts is the sum of all links that are rigidly one (joined
-by fixed joints), about their common centre of mass:
+A rigid body's principal moments are positive and A + B >= C (the largest). Files violate this by rounding, by wrong
+units, or because their authors never needed it. The sum of all links of a rigid group (joined by fixed joints) about
+their common centre of mass counts:
 
-* The sum is that of a body: nothing is lost and nothing is said. A link whose own tensor is refused hands it to the
-  heaviest of the others, to which it adds up exactly.
-* Its moments are positive but A + B < C: the engine's equations hold for such a tensor too, only its compiler refuses
-  it. It gets the nearest one that a body has, and after the compile the file's own is put back, so that the motion is
-  what the file says. Reported, as a note up to `SLIGHT_VIOLATION` of C, else as a warning.
-* A moment is zero, or negative by at most `REPAIRABLE_VIOLATION` of the largest: it is raised to what the smallest body
-  of that mass would have, the largest is kept. Reported with old and new numbers.
-* Beyond that it is an error with the moments.
+* The sum is valid: nothing is lost and nothing is reported. A link with a refused tensor passes it to the heaviest of
+  the others, so that the sum stays exact.
+* The moments are positive but A + B < C: the engine's equations are valid for such a tensor too, only its compiler
+  refuses it. The compiler gets the nearest valid tensor, and after the compile the file's own tensor is restored. The
+  motion is therefore that of the file. Reported as a note up to `SLIGHT_VIOLATION` of C, else as a warning.
+* A moment is zero, or negative by at most `REPAIRABLE_VIOLATION` of the largest: it is raised to that of the smallest
+  body of that mass, and the largest is kept. Reported with old and new numbers.
+* Anything beyond is an error with the moments.
 """
 
 from __future__ import annotations
@@ -32,20 +32,22 @@ Matrix = npt.NDArray[np.float64]
 Six = tuple[float, float, float, float, float, float]
 
 SLIGHT_VIOLATION: Final = 0.01
-"""A + B short of C by at most this part of C is rounding in the file: a note."""
+"""Largest shortfall of A + B, as a fraction of C, that counts as rounding in the file: a note."""
 
 REPAIRABLE_VIOLATION: Final = 0.01
-"""A negative moment of at most this part of the largest is repaired; beyond it is an error."""
+"""Largest negative moment, as a fraction of the largest moment, that is repaired; beyond it is an error."""
 
 LEAST_RADIUS: Final = 1e-4
-"""Radius of gyration [m] of the smallest body that a moment is raised to: a robot of point masses keeps its dynamics
-to a millionth."""
+"""Radius of gyration [m] of the smallest body that a moment is raised to.
+
+A robot of point masses keeps its dynamics to a millionth.
+"""
 
 LEAST_MASS: Final = 1e-9
-"""[kg]; MuJoCo moves nothing lighter than 1e-15."""
+"""Least mass [kg]; MuJoCo moves nothing lighter than 1e-15."""
 
 LEAST_MOMENT: Final = 1e-12
-"""[kg·m²]; MuJoCo refuses moments below 1e-14."""
+"""Least moment of inertia [kg·m²]; MuJoCo refuses moments below 1e-14."""
 
 _NONE: Final[Six] = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 _ROUNDING: Final = 1e-12
@@ -53,13 +55,14 @@ _ROUNDING: Final = 1e-12
 
 @dataclass(frozen=True, slots=True)
 class InertiaRepair:
-    """What becomes of one mass and tensor.
+    """Result of checking one mass and tensor.
 
     Attributes:
-        inertial: the nearest that MuJoCo takes; the same object where it takes it as it is.
-        verdict: "sound"; "unbalanced": A + B < C; "mended": a moment was raised; "beyond": outside of the bounds.
-        old, new: principal moments in rising order [kg·m²].
-        lack: by how much A + B falls short of C, as a part of C; 0 where it does not.
+        inertial: nearest values that MuJoCo accepts; the same object if it accepts the original.
+        verdict: "sound"; "unbalanced": A + B < C; "mended": a moment was raised; "beyond": outside the limits.
+        old: original principal moments in rising order [kg·m²].
+        new: accepted principal moments in rising order [kg·m²].
+        lack: shortfall of A + B as a fraction of C; 0 without one.
     """
 
     inertial: Inertial
@@ -70,7 +73,7 @@ class InertiaRepair:
 
     @property
     def why(self) -> str:
-        """The fault in words with numbers; empty where there is none."""
+        """Text of the fault with numbers; empty without a fault."""
         moments = format_moments(self.old)
         if self.verdict == "unbalanced":
             return f"principal moments {moments} kg m2: A + B falls short of C by {100 * self.lack:.3g} % of C"
@@ -81,11 +84,11 @@ class InertiaRepair:
 
 @dataclass(frozen=True, slots=True)
 class BodyInertia:
-    """What a link's body gets.
+    """Mass and inertia of a link's body.
 
     Attributes:
-        inertia: for MuJoCo's compiler; all zeros for a link that hands its tensor to another.
-        exact: what is put into the model after the compile, in link axes; None where the compiler took it.
+        inertia: tensor for MuJoCo's compiler; all zeros for a link that passes its tensor to another.
+        exact: tensor to set after the compile, in link axes; None if the compiler accepted it.
     """
 
     mass: float
@@ -95,15 +98,16 @@ class BodyInertia:
 
 
 def repair_inertia(inertial: Inertial, slack: float = 2 * _ROUNDING) -> InertiaRepair:
-    """Judges a mass and tensor, and gives the nearest that a body can have.
+    """Check a mass and tensor, and return the nearest valid ones.
 
-    The nearest tensor with A + B >= C moves each moment by a third of what is missing (least squares). Where a moment
-    is not positive the small ones are raised to `LEAST_RADIUS`² · mass and balanced against the largest, which stays.
+    The nearest tensor with A + B >= C moves each moment by a third of the shortfall (least squares). If a moment is not
+    positive, the small ones are raised to `LEAST_RADIUS`² · mass and balanced against the largest, which stays.
 
     Args:
-        slack: by how much A + B exceeds C in what is mended, as a part of C.
+        inertial: mass and tensor.
+        slack: excess of A + B over C in a repaired tensor, as a fraction of C.
     """
-    if not any(inertial.inertia[3:]):  # as most tensors are; spares thousands of links an eigenvalue problem
+    if not any(inertial.inertia[3:]):  # fast path: most tensors are diagonal and need no eigenvalues
         a, b, c = sorted(float(v) for v in inertial.inertia[:3])
         if a > 1e-14 and c - b - a <= -_ROUNDING * c:
             return InertiaRepair(inertial, "sound", (a, b, c), (a, b, c))
@@ -129,13 +133,13 @@ def repair_inertia(inertial: Inertial, slack: float = 2 * _ROUNDING) -> InertiaR
 def plan_inertials(
     links: Sequence[SceneLink], rigid: Mapping[str, str], still: frozenset[str], diagnostics: Diagnostics
 ) -> dict[str, BodyInertia]:
-    """What each link's body gets, so that MuJoCo takes it and every moving sum is what the file says.
+    """Return the mass and inertia of each link's body that MuJoCo accepts and that keep every moving sum of the file.
 
     Args:
-        links: the moving links.
-        rigid: scoped name of each link -> that of the link at the foot of those that are rigidly one with it.
-        still: feet that nothing moves.
-        diagnostics: gets one line for each sum that is not that of a body.
+        links: moving links.
+        rigid: scoped name of the first link of the rigid group, by scoped name of each link.
+        still: first links of groups that nothing moves.
+        diagnostics: collection for one line about each invalid sum.
     """
     groups: dict[str, list[SceneLink]] = {}
     for link in links:
@@ -147,7 +151,7 @@ def plan_inertials(
             written |= {link.scoped: _file_inertia(Inertial()) for link in members}
             for link in members:
                 if not _is_finite(link.inertial):
-                    text = f"link {link.scoped}: mass, centre of mass or inertia is not finite"
+                    text = f"link {link.scoped}: mass, centre of mass or inertia is NaN or infinite"
                     diagnostics.error("SK-PHYS-018", text, link.where)
         else:
             written |= _rigid_groups(members, foot not in still, diagnostics)
@@ -155,7 +159,7 @@ def plan_inertials(
 
 
 def _rigid_groups(members: list[SceneLink], moves: bool, diagnostics: Diagnostics) -> dict[str, BodyInertia]:
-    """Links that are rigidly one; the first is their foot."""
+    """Return the inertias of one rigid group; its first link comes first."""
     if moves and sum(m.inertial.mass for m in members) < LEAST_MASS:
         return _with_some_mass(members, diagnostics)
     judged = {link.scoped: repair_inertia(link.inertial) for link in members}
@@ -174,9 +178,9 @@ def _rigid_groups(members: list[SceneLink], moves: bool, diagnostics: Diagnostic
 
 
 def _with_some_mass(members: list[SceneLink], diagnostics: Diagnostics) -> dict[str, BodyInertia]:
-    """Links with an inertia and without mass: the foot gets the least that moves."""
+    """Return the inertias of links without mass but with an inertia: the first link gets the least movable mass."""
     foot = members[0]
-    message = f"link {foot.scoped}: {foot.inertial.mass:g} kg cannot be moved; {LEAST_MASS:g} kg are used"
+    message = f"link {foot.scoped}: {foot.inertial.mass:g} kg is too light to move; {LEAST_MASS:g} kg are used"
     diagnostics.warning("SK-PHYS-011", message, foot.where)
     written = {m.scoped: _file_inertia(repair_inertia(m.inertial).inertial) for m in members}
     own = written[foot.scoped]
@@ -185,7 +189,7 @@ def _with_some_mass(members: list[SceneLink], diagnostics: Diagnostics) -> dict[
 
 
 def _move_to_heaviest(members: list[SceneLink], refused: list[SceneLink]) -> dict[str, BodyInertia] | None:
-    """The refused tensors added to that of the heaviest member; None where the sum is refused as well."""
+    """Add the refused tensors to that of the heaviest member; None if the sum is refused as well."""
     taker = max(members, key=lambda m: (m.inertial.mass, m is members[0]))
     givers = [m for m in refused if m is not taker]
     inertia = inertia_matrix(taker.inertial.inertia)
@@ -203,53 +207,54 @@ def _move_to_heaviest(members: list[SceneLink], refused: list[SceneLink]) -> dic
 def _report_stand_ins(
     members: list[SceneLink], judged: Mapping[str, InertiaRepair], diagnostics: Diagnostics
 ) -> dict[str, BodyInertia]:
-    """Stand-ins for the compiler, the file's own tensors for the engine; the sum is judged and said."""
+    """Return substitutes for the compiler and the file's own tensors for the engine; report an invalid sum."""
     foot = members[0]
     mass, tensor = rigid_sum(members)
     total = repair_inertia(Inertial(mass, (0.0, 0.0, 0.0), inertia_moments(tensor)))
     written = {}
     for m in members:
-        given, stand_in = m.inertial, judged[m.scoped].inertial
-        exact = None if stand_in is given or judged[m.scoped].verdict == "sound" else given.inertia
-        written[m.scoped] = BodyInertia(stand_in.mass, stand_in.com, stand_in.inertia, exact)
+        original, substitute = m.inertial, judged[m.scoped].inertial
+        exact = None if substitute is original or judged[m.scoped].verdict == "sound" else original.inertia
+        written[m.scoped] = BodyInertia(substitute.mass, substitute.com, substitute.inertia, exact)
     others = [m.name for m in members[1:]]
-    what = f"link {foot.scoped}" + (f" (with {', '.join(others)}, fixed to it)" if others else "")
-    hint = "simkit check --fix-inertia shows numbers that a body can have"
+    owner = f"link {foot.scoped}" + (f" (with {', '.join(others)}, fixed to it)" if others else "")
+    hint = "simkit check --fix-inertia prints valid numbers"
     if mass <= 0:
-        return written  # whoever writes the joints says that nothing without mass can be moved
+        return written  # the writer of the joints reports links without mass
     if total.verdict == "unbalanced":
-        say = diagnostics.note if total.lack <= SLIGHT_VIOLATION else diagnostics.warning
-        text = f"{what}: {total.why}; no solid has them, they are simulated as written"
-        say("SK-INERTIA-001", text, foot.where, hint)
+        report = diagnostics.note if total.lack <= SLIGHT_VIOLATION else diagnostics.warning
+        text = f"{owner}: {total.why}; no rigid body has such moments, they are simulated as written"
+        report("SK-INERTIA-001", text, foot.where, hint)
     elif total.verdict == "mended":
         extra = inertia_matrix(total.inertial.inertia) - tensor
         own = judged[foot.scoped].inertial
         exact = inertia_moments(inertia_matrix(foot.inertial.inertia) + _rotate_from_world(foot, extra))
         written[foot.scoped] = BodyInertia(own.mass, own.com, own.inertia, exact)
-        text = f"{what}: {total.why}; {format_moments(total.new)} are used"
+        text = f"{owner}: {total.why}; {format_moments(total.new)} are used"
         diagnostics.warning("SK-PHYS-011", text, foot.where, hint)
     elif total.verdict == "beyond":
-        text = f"{what} of {mass:g} kg: {total.why}, and this is far from it{_likely_cause(foot.inertial, total)}"
+        text = f"{owner} of {mass:g} kg: {total.why}; the error is too large{_likely_cause(foot.inertial, total)}"
         diagnostics.error("SK-INERTIA-002", text, foot.where, hint)
     return written
 
 
 def _likely_cause(inertial: Inertial, found: InertiaRepair) -> str:
-    """What such numbers most often come from."""
+    """Return the most frequent cause of such numbers."""
     i = inertial.inertia
     if min(i[:3]) > 0 and found.old[0] < 0:
         return "; the products of inertia (ixy, ixz, iyz) are too large: check their signs and units"
     if found.old[2] <= 0:
-        return "; all are negative: the sign is wrong"
+        return "; all moments are negative: check their signs"
     return "; check the signs on the diagonal"
 
 
 def restore_file_inertias(model: mujoco.MjModel, exact: Mapping[str, tuple[float, Six]]) -> None:
-    """Gives bodies of a compiled model the tensors that its compiler refused.
+    """Set the tensors that the compiler refused on the bodies of a compiled model.
 
     Args:
-        exact: body -> the mass it was written with [kg] and its tensor [kg·m², link axes]. A body that has handed a
-            part of its mass to a twin since then gets that much less of the tensor.
+        model: MuJoCo's model.
+        exact: written mass [kg] and tensor [kg·m², link axes] by body. The tensor is scaled if a twin has received a
+            fraction of the body's mass.
     """
     if not exact:
         return
@@ -267,7 +272,7 @@ def restore_file_inertias(model: mujoco.MjModel, exact: Mapping[str, tuple[float
 
 
 def rigid_sum(links: Sequence[SceneLink]) -> tuple[float, Matrix]:
-    """Mass [kg] and tensor [kg·m²] of links that are rigidly one, about their centre of mass, in world axes."""
+    """Return mass [kg] and tensor [kg·m²] of a rigid group of links, about its centre of mass, in world axes."""
     mass = sum(m.inertial.mass for m in links)
     centres = [m.pose_world.transform(m.inertial.com) for m in links]
     middle = (
@@ -284,17 +289,17 @@ def rigid_sum(links: Sequence[SceneLink]) -> tuple[float, Matrix]:
 
 
 def inertia_matrix(v: Sequence[float]) -> Matrix:
-    """ixx, iyy, izz, ixy, ixz, iyz as a symmetric matrix."""
+    """Return ixx, iyy, izz, ixy, ixz, iyz as a symmetric matrix."""
     return np.array(((v[0], v[3], v[4]), (v[3], v[1], v[5]), (v[4], v[5], v[2])))
 
 
 def inertia_moments(m: Matrix) -> Six:
-    """A symmetric matrix as ixx, iyy, izz, ixy, ixz, iyz."""
+    """Return a symmetric matrix as ixx, iyy, izz, ixy, ixz, iyz."""
     return float(m[0, 0]), float(m[1, 1]), float(m[2, 2]), float(m[0, 1]), float(m[0, 2]), float(m[1, 2])
 
 
 def format_moments(values: Sequence[float]) -> str:
-    """Moments as `(1.8e-05, 0.000223, 0.000244)`."""
+    """Return moments as `(1.8e-05, 0.000223, 0.000244)`."""
     return "(" + ", ".join(f"{v:.4g}" for v in values) + ")"
 
 
@@ -303,13 +308,13 @@ def _file_inertia(inertial: Inertial) -> BodyInertia:
 
 
 def _rotate_tensor(taker: SceneLink, giver: SceneLink, tensor: Matrix) -> Matrix:
-    """A tensor in the axes of one link, in those of another."""
+    """Rotate a tensor from the axes of one link to those of another."""
     turn = taker.pose_world.matrix.T @ giver.pose_world.matrix
     return turn @ tensor @ turn.T
 
 
 def _rotate_from_world(link: SceneLink, tensor: Matrix) -> Matrix:
-    """A tensor in world axes, in those of a link."""
+    """Rotate a tensor from world axes to those of a link."""
     turn = link.pose_world.matrix
     return turn.T @ tensor @ turn
 

@@ -1,4 +1,4 @@
-"""Actuators and drives of joints: gains that cannot ring, armature, and the inertia that a joint feels."""
+"""Actuators and drives of joints: stable gains, armature, and the effective inertia of a joint."""
 
 from __future__ import annotations
 
@@ -17,22 +17,22 @@ from simkit.diagnostics import Diagnostics, Where
 from simkit.pose import Vector
 
 FULL_EFFORT_ERROR_ROTARY: Final = 0.01
-"""[rad] off its reference a drive gives all that it may."""
+"""Position error [rad] at which a drive gives its full effort."""
 
 FULL_EFFORT_ERROR_LINEAR: Final = 0.001
-"""[m] for a slider."""
+"""Position error [m] at which a drive on a slider gives its full effort."""
 
 RISE_TIME: Final = 0.01
-"""[s] from standstill to the velocity limit at the effort limit, at least."""
+"""Least time [s] from rest to the velocity limit at the effort limit."""
 
 DRIVE_ARMATURE_ROTARY: Final = 2e-3
-"""[kg·m²] at least."""
+"""Least armature of a drive on a hinge [kg·m²]."""
 
 DRIVE_ARMATURE_LINEAR: Final = 2e-2
-"""[kg] at least."""
+"""Least armature of a drive on a slider [kg]."""
 
 DRIVE_ARMATURE_LINEAR_MAX: Final = 1.0
-"""[kg]; a slow slider with much force (a lift) is heavy anyway."""
+"""Largest armature of a drive on a slider [kg]; a slow slider with much force (a lift) is heavy anyway."""
 
 _POSES: Final = 16
 _STRIDES: Final = np.sqrt(np.array((2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53), float))
@@ -41,11 +41,15 @@ _STRIDES: Final = np.sqrt(np.array((2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 
 def add_drive_armature(
     joint: mujoco.MjsJoint, max_effort: float, max_velocity: float, scoped: str, diagnostics: Diagnostics, where: Where
 ) -> None:
-    """Gives a joint the armature that its drive has, and reports it.
+    """Set the armature of a joint's drive and report it.
 
     Args:
-        max_effort: [N·m or N]; infinite where there is no limit.
-        max_velocity: [rad/s or m/s]; likewise.
+        joint: MuJoCo joint.
+        max_effort: effort limit [N·m or N]; infinite without one.
+        max_velocity: velocity limit [rad/s or m/s]; infinite without one.
+        scoped: scoped name of the joint.
+        diagnostics: collection for the report.
+        where: file position of the joint.
     """
     is_slide = joint.type == mujoco.mjtJoint.mjJNT_SLIDE
     rotor = DRIVE_ARMATURE_LINEAR if is_slide else DRIVE_ARMATURE_ROTARY
@@ -62,12 +66,14 @@ def add_drive_armature(
 def drive_gains(
     max_effort: Vector, is_slide: npt.NDArray[np.bool_], least: Vector, most: Vector, timestep: float
 ) -> tuple[Vector, Vector]:
-    """(kp, kv) of position drives on joints that feel inertias from `least` to `most` [kg·m² or kg], armature included.
+    """Return (kp, kv) of position drives on joints with effective inertias from `least` to `most` [kg·m² or kg].
 
     Args:
-        max_effort: [N·m or N]; infinite where there is no limit.
-        is_slide: which of the joints slide.
-        timestep: [s].
+        max_effort: effort limits [N·m or N]; infinite without one.
+        is_slide: mask of the sliding joints.
+        least: smallest inertias, including armature.
+        most: largest inertias, including armature.
+        timestep: length of a step [s].
     """
     stable_kv = least / timestep
     stable_kp = np.minimum(0.25 * least / timestep**2, stable_kv**2 / (4.0 * most))
@@ -77,9 +83,9 @@ def drive_gains(
 
 
 def felt_inertias(model: mujoco.MjModel, joints: npt.ArrayLike) -> tuple[Vector, Vector]:
-    """Smallest and largest inertia at each of some one-axis joints, over poses spread through the joints' ranges.
+    """Return the smallest and largest effective inertia of one-axis joints, over poses in the joints' ranges.
 
-    The smallest is felt with all else free to move, 1 / (M⁻¹)_jj, the largest with all else held, M_jj.
+    The smallest is that with all other joints free, 1 / (M⁻¹)_jj; the largest that with all others fixed, M_jj.
     """
     joints = np.asarray(joints, np.intp)
     data = mujoco.MjData(model)
@@ -96,7 +102,7 @@ def felt_inertias(model: mujoco.MjModel, joints: npt.ArrayLike) -> tuple[Vector,
     for pose in range(_POSES):
         share = (0.5 + pose * strides) % 1.0
         data.qpos[:] = model.qpos0
-        if pose:  # the first is the file's own
+        if pose:  # the first pose is that of the file
             data.qpos[places] = low + share * (high - low)
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
@@ -109,10 +115,10 @@ def felt_inertias(model: mujoco.MjModel, joints: npt.ArrayLike) -> tuple[Vector,
 
 
 ARMATURE_ROTARY: Final = 2e-3
-"""[kg·m²] at least, on a hinge that a servo drives."""
+"""Least armature of a hinge with a servo [kg·m²]."""
 
 ARMATURE_LINEAR: Final = 2e-2
-"""[kg] at least, on a slider that a servo drives."""
+"""Least armature of a slider with a servo [kg]."""
 
 GAIN: Final = 1.5
 
@@ -123,13 +129,13 @@ _SLIDE: Final = int(mujoco.mjtJoint.mjJNT_SLIDE)
 
 @dataclass(frozen=True, slots=True)
 class ServoTraits:
-    """What the integral action of a velocity servo goes by (SI units of a hinge; N and m for a slider).
+    """Constants for the integral action of a velocity servo (SI units of a hinge; N and m for a slider).
 
     Attributes:
         gain: kv [N·m·s/rad].
-        max_effort: [N·m]; infinite where there is no limit.
-        largest_load: greatest constant load that is worth a correction [N·m].
-        response_time: time constant of the servo when it moves all of the robot [s].
+        max_effort: effort limit [N·m]; infinite without one.
+        largest_load: largest constant load that is corrected [N·m].
+        response_time: time constant of the servo when it moves the whole robot [s].
     """
 
     gain: float
@@ -139,7 +145,7 @@ class ServoTraits:
 
 
 def add_actuator(spec: mujoco.MjSpec, ref: ActuatorRef, joint_name: str) -> None:
-    """Adds the actuator; its gains come from `tune_servos` after the compile."""
+    """Add an actuator; `tune_servos` sets its gains after the compile."""
     actuator = spec.add_actuator(name=ref.name)
     actuator.trntype = mujoco.mjtTrn.mjTRN_JOINT
     actuator.target = joint_name
@@ -157,7 +163,7 @@ def add_actuator(spec: mujoco.MjSpec, ref: ActuatorRef, joint_name: str) -> None
 
 
 def add_armature(joint: mujoco.MjsJoint, scoped: str, diagnostics: Diagnostics, where: Where) -> None:
-    """Gives a driven joint the armature that its servo needs, and reports it."""
+    """Set the armature that a driven joint's servo needs, and report it."""
     is_slide = joint.type == mujoco.mjtJoint.mjJNT_SLIDE
     least = ARMATURE_LINEAR if is_slide else ARMATURE_ROTARY
     if joint.armature < least:
@@ -168,7 +174,7 @@ def add_armature(joint: mujoco.MjsJoint, scoped: str, diagnostics: Diagnostics, 
 
 
 def tune_servos(spec: mujoco.MjSpec, model: mujoco.MjModel, refs: Iterable[ActuatorRef]) -> None:
-    """Sets the gains of all servos in the model and in the spec."""
+    """Set the gains of all servos in the model and in the spec."""
     refs = [r for r in refs if r.kind in ("position", "velocity")]
     if not refs:
         return
@@ -186,7 +192,13 @@ def tune_servos(spec: mujoco.MjSpec, model: mujoco.MjModel, refs: Iterable[Actua
 
 
 def servo_gains(ref: ActuatorRef, inertia: float, timestep: float) -> tuple[float, float]:
-    """(kp, kv) of a servo on a joint that feels `inertia` (armature included): as wanted, but never ringing."""
+    """Return (kp, kv) of a servo: the requested gains, limited to stable ones.
+
+    Args:
+        ref: the servo.
+        inertia: effective inertia of the joint [kg·m² or kg], including armature.
+        timestep: length of a step [s].
+    """
     most = GAIN * inertia / timestep
     kv = most if ref.kv is None else min(ref.kv, most)
     if ref.kind == "velocity":
@@ -200,14 +212,14 @@ def servo_traits(
 ) -> list[ServoTraits]:
     """Return the traits of the velocity servos of a model, in its first pose.
 
-    A wheel on the ground moves the robot's mass at its radius, shared with the other servos of the robot. The largest
-    load is twice the robot's weight at that radius: no tyre transmits more. On a fixed base it is ten times the weight
-    of what the joint moves.
+    A wheel on the ground moves the robot's mass at its radius, shared with the robot's other servos. The largest load
+    is twice the robot's weight at that radius: no tyre transmits more. On a fixed base it is ten times the weight of
+    the links that the joint moves.
 
     Args:
-        model: of the engine.
+        model: MuJoCo's model.
         refs: the servos.
-        compiled: as they were compiled, the fields of the model that were written to since, by name.
+        compiled: compiled values of the model fields that were written to, by name.
     """
     names = "actuator_gainprm", "actuator_forcerange", "actuator_forcelimited"
     strengths, ranges, limited = ((compiled or {}).get(name, getattr(model, name)) for name in names)
@@ -232,7 +244,7 @@ def servo_traits(
 
 
 def _joint_reach(model: mujoco.MjModel, data: mujoco.MjData, joint: int) -> float:
-    """Return how far what a hinge moves reaches from its axis [m]: the radius of a wheel."""
+    """Return the largest distance of the links that a hinge moves from its axis [m]: the radius of a wheel."""
     first, axis = int(model.jnt_bodyid[joint]), data.xaxis[joint]
     moved = {first}
     for body in range(first + 1, model.nbody):
@@ -247,7 +259,7 @@ def _joint_reach(model: mujoco.MjModel, data: mujoco.MjData, joint: int) -> floa
 
 
 def _felt_inertia(model: mujoco.MjModel, refs: list[ActuatorRef]) -> list[float]:
-    """Inertia at each driven degree of freedom, all else free to move: 1 / (M⁻¹)_jj at the start."""
+    """Return the inertia at each driven degree of freedom with all others free: 1 / (M⁻¹)_jj at the start."""
     data, felt = first_mass_matrix(model), []
     for ref in refs:
         i = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_ACTUATOR, ref.name)

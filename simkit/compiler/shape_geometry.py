@@ -1,6 +1,4 @@
-"""Shapes of the file as MuJoCo's primitives, as points and triangles, with texture coordinates, or as a field
-of heights.
-"""
+"""Shapes of the file as MuJoCo's primitives, points, triangles with texture coordinates, or height fields."""
 
 from __future__ import annotations
 
@@ -24,7 +22,7 @@ _SIDES = 48
 
 @dataclass(frozen=True, slots=True)
 class Primitive:
-    """MuJoCo type and size, and the shape's pose in the file's shape frame."""
+    """MuJoCo type and size of a shape, and its pose in the file's shape frame."""
 
     type: mujoco.mjtGeom
     size: tuple[float, float, float]
@@ -32,7 +30,7 @@ class Primitive:
 
 
 def primitive_of(shape: Geometry, is_visual: bool) -> Primitive | None:
-    """The primitive for a shape, or None when it needs a mesh."""
+    """Return the primitive for a shape, or None if it needs a mesh."""
     kind = mujoco.mjtGeom
     match shape:
         case Box(size=(x, y, z)):
@@ -53,7 +51,7 @@ def primitive_of(shape: Geometry, is_visual: bool) -> Primitive | None:
 
 
 def shape_sizes(shape: Geometry) -> tuple[float, ...]:
-    """The numbers that must be positive for the shape to exist."""
+    """Return the numbers that must be positive for a valid shape."""
     match shape:
         case Box(size=size):
             return size
@@ -74,7 +72,7 @@ def shape_sizes(shape: Geometry) -> tuple[float, ...]:
 
 
 def turn_z_to(normal: tuple[float, float, float]) -> tuple[float, float, float, float]:
-    """The shortest rotation (w, x, y, z) that takes +z to a direction; none for a zero vector."""
+    """Return the shortest rotation (w, x, y, z) from +z to a direction; the identity for a zero vector."""
     length = math.sqrt(sum(c * c for c in normal))
     if length < 1e-12:
         return 1.0, 0.0, 0.0, 0.0
@@ -86,7 +84,7 @@ def turn_z_to(normal: tuple[float, float, float]) -> tuple[float, float, float, 
 
 
 def cone_triangles(shape: Cone) -> tuple[Floats, Ints]:
-    """Triangles of a cone with 48 sides."""
+    """Return the triangles of a cone with 48 sides."""
     angle = np.linspace(0.0, 2.0 * np.pi, _SIDES, endpoint=False)
     bottom = np.full(_SIDES, -shape.length / 2)
     ring = np.column_stack([shape.radius * np.cos(angle), shape.radius * np.sin(angle), bottom])
@@ -99,7 +97,11 @@ def cone_triangles(shape: Cone) -> tuple[Floats, Ints]:
 
 
 def polyline_triangles(shape: Polyline) -> tuple[Floats, Ints]:
-    """Triangles of extruded outlines; an outline inside another is a hole. Raises ValueError."""
+    """Return the triangles of extruded outlines; an outline inside another is a hole.
+
+    Raises:
+        ValueError: the outlines enclose no area or cross themselves.
+    """
     import trimesh
 
     meshes = [trimesh.creation.extrude_triangulation(*flat, shape.height) for flat in _outline_areas(shape)]
@@ -108,7 +110,11 @@ def polyline_triangles(shape: Polyline) -> tuple[Floats, Ints]:
 
 
 def polyline_pieces(shape: Polyline) -> list[Floats]:
-    """Convex bodies that together are the extruded outlines, exactly: corners of each. Raises ValueError."""
+    """Return the corners of convex bodies that together are exactly the extruded outlines.
+
+    Raises:
+        ValueError: the outlines enclose no area or cross themselves.
+    """
     pieces = []
     for points, faces in _outline_areas(shape):
         for polygon in _convex_polygons(points, faces):
@@ -118,7 +124,7 @@ def polyline_pieces(shape: Polyline) -> list[Floats]:
 
 
 def _outline_areas(shape: Polyline) -> list[tuple[Floats, Ints]]:
-    """Triangles in the plane of each outline that is no hole, without its holes."""
+    """Return plane triangles of each outline that is not a hole, without its holes."""
     rings = [np.asarray(outline, float) for outline in shape.outlines]
     rings = [r[:-1] if len(r) > 1 and np.array_equal(r[0], r[-1]) else r for r in rings]
     rings = [r for r in rings if len(r) >= 3 and abs(_signed_area(r)) > 0.0]
@@ -134,7 +140,7 @@ def _outline_areas(shape: Polyline) -> list[tuple[Floats, Ints]]:
 
 
 def _convex_polygons(points: Floats, faces: Ints) -> list[list[int]]:
-    """Triangles joined across their common edges as long as what comes of it is convex (Hertel and Mehlhorn)."""
+    """Merge triangles across their common edges while the result is convex (Hertel and Mehlhorn)."""
     polygons: dict[int, list[int]] = dict(enumerate(faces.tolist()))
     for i, (a, b, c) in polygons.items():
         if _turn_direction(points[a], points[b], points[c]) < 0.0:
@@ -167,7 +173,7 @@ def _is_convex(ring: Floats) -> bool:
 
 
 def _triangulate(rings: list[Floats]) -> tuple[Floats, Ints]:
-    """Triangles of an outline (first) with holes (the others)."""
+    """Return triangles of an outline (first) with holes (the others)."""
     import mapbox_earcut
 
     points = np.concatenate(rings)
@@ -184,7 +190,7 @@ def _signed_area(ring: Floats) -> float:
 
 
 def _encloses(ring: Floats, point: Floats) -> bool:
-    """Whether a point lies inside an outline: a ray to the right crosses it an odd number of times."""
+    """Check whether a point is inside an outline: a ray to the right crosses the outline an odd number of times."""
     a, b = ring, np.roll(ring, -1, axis=0)
     crosses = (a[:, 1] > point[1]) != (b[:, 1] > point[1])
     rise = np.where(b[:, 1] == a[:, 1], 1.0, b[:, 1] - a[:, 1])
@@ -193,13 +199,13 @@ def _encloses(ring: Floats, point: Floats) -> bool:
 
 
 _SEGMENTS_AROUND: Final = 96
-"""Sides of what is round: a cylinder's surface is 0.05 % of its radius inside the true one."""
+"""Number of sides of a round shape: a cylinder's surface is 0.05 % of its radius inside the true one."""
 
 _SEGMENTS_UP: Final = 48
 
 
 def textured_triangles(shape: Geometry) -> MeshPart | None:
-    """The shape as triangles with texture coordinates; None for shapes that are drawn as they are."""
+    """Return the shape as triangles with texture coordinates; None for other shapes."""
     match shape:
         case Box(size=size):
             return MeshPart("box", *_textured_box(np.asarray(size, float) / 2))
@@ -216,9 +222,9 @@ def textured_triangles(shape: Geometry) -> MeshPart | None:
 
 
 def _textured_box(half: Floats) -> tuple[Floats, Ints, Floats]:
-    """Six sides, the whole picture on each; seen from outside, with z up (on top and below: y up)."""
+    """Return six sides with the whole image on each, seen from outside with z up (y up on top and bottom)."""
     sides = [
-        # outward normal, the picture's right, its up
+        # outward normal, right and up of the image
         ((1, 0, 0), (0, 1, 0), (0, 0, 1)),
         ((-1, 0, 0), (0, -1, 0), (0, 0, 1)),
         ((0, 1, 0), (-1, 0, 0), (0, 0, 1)),
@@ -236,7 +242,7 @@ def _textured_box(half: Floats) -> tuple[Floats, Ints, Floats]:
 
 
 def _unit_circle() -> tuple[Floats, Floats]:
-    """Angles once around, and the points there; the last point is the first."""
+    """Return angles of a full turn and the points there; the last point is the first."""
     turn = np.linspace(0.0, 2.0 * np.pi, _SEGMENTS_AROUND + 1)
     points = np.column_stack([np.cos(turn), np.sin(turn)])
     points[-1] = points[0]
@@ -244,7 +250,10 @@ def _unit_circle() -> tuple[Floats, Floats]:
 
 
 def _grid_triangles(rows: int, columns: int) -> Ints:
-    """Triangles between rows of `columns` + 1 points, each row above the one before, counter-clockwise outside."""
+    """Return triangles between rows of `columns` + 1 points, counter-clockwise seen from outside.
+
+    Each row is above the previous one.
+    """
     i, j = np.meshgrid(np.arange(rows - 1), np.arange(columns), indexing="ij")
     a = (i * (columns + 1) + j).reshape(-1)
     b, c, d = a + 1, a + columns + 2, a + columns + 1
@@ -252,7 +261,7 @@ def _grid_triangles(rows: int, columns: int) -> Ints:
 
 
 def _textured_ellipsoid(radii: Floats, length: float) -> tuple[Floats, Ints, Floats]:
-    """A ball, stretched, its halves `length` apart; the picture goes once around and from pole to pole."""
+    """Return an ellipsoid whose halves are `length` apart; the image covers it once around and from pole to pole."""
     turn, circle = _unit_circle()
     rise = np.linspace(-np.pi / 2, np.pi / 2, _SEGMENTS_UP + 1)
     height = radii[2] * np.sin(rise) + np.sign(rise) * length / 2
@@ -269,12 +278,12 @@ def _textured_ellipsoid(radii: Floats, length: float) -> tuple[Floats, Ints, Flo
     vertices = np.stack([x, y, z], axis=-1).reshape(-1, 3)
     faces = _grid_triangles(len(ring), _SEGMENTS_AROUND)
     lowest, highest = faces < _SEGMENTS_AROUND + 1, faces >= len(vertices) - (_SEGMENTS_AROUND + 1)
-    faces = faces[(lowest.sum(axis=1) < 2) & (highest.sum(axis=1) < 2)]  # without those that end at a pole as a line
+    faces = faces[(lowest.sum(axis=1) < 2) & (highest.sum(axis=1) < 2)]  # without degenerate triangles at the poles
     return vertices, faces, np.stack([u, v], axis=-1).reshape(-1, 2)
 
 
 def _textured_cylinder(radius: float, half: float) -> tuple[Floats, Ints, Floats]:
-    """The picture once around the side, and once on each end."""
+    """Return a cylinder with the image once around the side, and once on each end."""
     turn, ring = _unit_circle()
     sides = [np.column_stack([radius * ring, np.full(len(turn), z)]) for z in (-half, half)]
     side_uv = [np.column_stack([turn / (2.0 * np.pi), np.full(len(turn), v)]) for v in (0.0, 1.0)]
@@ -296,12 +305,12 @@ _FORMATS: Final = ("PNG", "JPEG", "TIFF", "BMP", "TGA", "GIF", "PPM", "WEBP")
 
 
 def heightmap_rows(shape: Heightmap) -> Floats:
-    """Rows from -y to +y, scaled so that the highest value is 1, as Gazebo does.
+    """Return rows from -y to +y, scaled so that the highest value is 1, as in Gazebo.
 
-    8-bit and 16-bit images, and TIFF with floating point numbers; colours count by their brightness.
+    8-bit and 16-bit images and TIFF with floating-point numbers are supported; colours are converted to brightness.
 
     Raises:
-        MeshFileError: the file is no such image, or too large; its size is known before anything is unpacked.
+        MeshFileError: the file is not such an image, or is too large; the size is checked before decoding.
     """
     from PIL import Image
 
@@ -312,19 +321,19 @@ def heightmap_rows(shape: Heightmap) -> Floats:
             warnings.simplefilter("ignore")
             with Image.open(shape.file, formats=_FORMATS) as image:
                 if image.width > LARGEST or image.height > LARGEST:
-                    raise MeshFileError(f"is {image.width}×{image.height}; at most {LARGEST}×{LARGEST} is taken")
+                    raise MeshFileError(f"is {image.width}×{image.height}; at most {LARGEST}×{LARGEST} is supported")
                 grey = _grey_values(image)
     except MeshFileError:
         raise
     except OSError as problem:
-        text = problem.strerror or "it is no PNG, JPEG or TIFF image"
+        text = problem.strerror or "it is not a PNG, JPEG or TIFF image"
         raise MeshFileError(f"cannot be read: {text}") from None
-    except Exception as problem:  # noqa: BLE001 -- a decoder of broken data raises whatever it likes
+    except Exception as problem:  # noqa: BLE001 -- a decoder of broken data may raise anything
         raise MeshFileError(f"cannot be read: {' '.join(str(problem).split())[:200]}") from None
     if grey.ndim != 2 or min(grey.shape) < 2:
         raise MeshFileError("is smaller than 2×2")
     if not np.isfinite(grey).all():
-        raise MeshFileError("has heights that are not finite")
+        raise MeshFileError("has NaN or infinite heights")
     most = float(np.abs(grey).max()) if float(grey.max()) <= 0.0 else float(grey.max())
     return np.ascontiguousarray(grey[::-1]) / (most if most > 0.0 else 1.0)
 

@@ -1,4 +1,4 @@
-"""The one door to MuJoCo's model specification: scenes go in, sensors and plugins add to it, a model comes out."""
+"""Builder of MuJoCo's model specification from scenes and from the additions of sensors and plugins."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ FileFinder = Callable[[str, Path | None], Path | None]
 
 @dataclass(frozen=True, slots=True)
 class Compiled:
-    """A compiled model with its state, the names bound to its ids, and the builder it came from."""
+    """Compiled model with its state, the names bound to its ids, and its builder."""
 
     model: mujoco.MjModel
     data: mujoco.MjData
@@ -39,24 +39,24 @@ class Compiled:
 
 
 def _existing_file(uri: str, folder: Path | None) -> Path | None:
-    """A file by its path alone."""
+    """Return a file by its path alone; None if it does not exist."""
     path = Path(uri) if folder is None else folder / uri
     return path if path.is_file() else None
 
 
 class SpecBuilder:
-    """Builds and changes the specification of one world.
+    """Builder that creates and changes the specification of one world.
 
     Args:
-        world: what to build: options, lights and all models.
-        diagnostics: gets what was approximated, and errors.
+        world: world to build: options, lights and all models.
+        diagnostics: collection for approximations and errors.
 
     Attributes:
-        spec: MuJoCo's specification. Handles into it die with `copy`; look elements up by name.
-        records: what each top-level model put into it, by scoped name; the world's own under the empty name.
-        find_file: the file that a URI names beside the file in that folder; None where there is none.
-        files_read: what plugins have found so.
-        parameter_files: what the run was given for the control plugins, which alone know what it is.
+        spec: MuJoCo's specification. Handles into it become invalid with `copy`; look elements up by name.
+        records: elements of each top-level model, by scoped name; those of the world under the empty name.
+        find_file: function that returns the file of a URI, relative to a folder; None for a missing one.
+        files_read: files that plugins have read.
+        parameter_files: parameter files of the run, which only the control plugins interpret.
     """
 
     def __init__(self, world: SceneWorld, diagnostics: Diagnostics) -> None:
@@ -89,15 +89,11 @@ class SpecBuilder:
     # ------------------------------------------------------------------ models
 
     def add_model(self, model: SceneModel, *, movable: bool = False) -> None:
-        """Adds a top-level model where its poses say.
-
-        Args:
-            movable: a static model becomes mocap bodies, which can be set elsewhere while it runs.
-        """
+        """Add a top-level model at its poses; `movable` makes a static model movable during the run."""
         movable = movable or model.moved_by is not None
         record = ModelRecord(model, movable)
         if model.scoped in self.records:
-            raise ValueError(f"there is a model {model.scoped!r} already")
+            raise ValueError(f"a model {model.scoped!r} exists already")
         self.records[model.scoped] = record
         self._names = None
         self.assets.used = record.assets
@@ -105,7 +101,9 @@ class SpecBuilder:
             mjcf_attachment.attach_model(self.spec, record, model, self.diagnostics, ())
         else:
             links = len(list(model.all_links()))
-            if links * (links - 1) // 2 > PAIRS_MOST:  # else nobody wants it, and there may be thousands of models
+            if (
+                links * (links - 1) // 2 > PAIRS_MOST
+            ):  # only then, because a world may have thousands of models and few bits
                 record.own_bit = self._free_bit()
             self._write_model(record)
         if movable:
@@ -115,7 +113,7 @@ class SpecBuilder:
         return ModelWriter(self.spec, self.assets, record, self.world, self.diagnostics)
 
     def _write_model(self, record: ModelRecord) -> None:
-        """Writes a model, then those nested in it that have a specification of their own, then what joins them."""
+        """Write a model, then nested models with a specification of their own, then the joints between them."""
         model = record.scene
         joints = self._joints_of(model)
         attached = [nested for nested in model.all_models() if nested.mjcf is not None]
@@ -134,7 +132,7 @@ class SpecBuilder:
             record.links.update(links)
 
     def remove_model(self, scoped: str) -> None:
-        """Takes a top-level model out again, with all that was added to it. Raises KeyError."""
+        """Remove a top-level model with everything that was added to it; raise KeyError for an unknown one."""
         record = lookup(self.records, scoped, "model")
         self._cut_joints_to(record)
         spec = self.spec
@@ -161,13 +159,13 @@ class SpecBuilder:
         self._names = None
 
     def _joints_of(self, model: SceneModel) -> list[SceneJoint]:
-        """The model's joints and those joints of the world that tie it to the world alone."""
+        """Return the model's joints, and the joints of the world between the model and the world."""
         own = {link.scoped for link in model.all_links()} | {WORLD}
         ends = ((joint, {joint.parent_link, joint.child_link}) for joint in self.world.joints)
         return [*model.all_joints(), *(joint for joint, links in ends if links <= own and links != {WORLD})]
 
     def _join_models(self, only: set[str] | None = None) -> None:
-        """Joints of the world between two models, as constraints; `only` some of them by name."""
+        """Add the joints of the world between two models as constraints; `only` selects some by name."""
         record = self.records[""]
         done = {name for r in self.records.values() for name in r.joints}
         rest = [j for j in self.world.joints if j.scoped not in done and (only is None or j.scoped in only)]
@@ -176,7 +174,7 @@ class SpecBuilder:
             self._names = None
 
     def _rejoin_model(self, model: SceneModel) -> None:
-        """Ties a model that was written anew to the others as before."""
+        """Connect a rewritten model to the others as before."""
         own = {link.scoped for link in model.all_links()}
         cut, self._cut = self._cut, []
         self._join_models({joint.scoped for joint, _ in cut})
@@ -204,21 +202,21 @@ class SpecBuilder:
                 del world.joints[scoped]
 
     def _free_bit(self) -> int:
-        """A collision bit that no model has, above those of the files' masks; 0 when they are used up."""
+        """Return a collision bit that no model has, above those of the files' masks; 0 if all are used."""
         taken = {record.own_bit for record in self.records.values()}
         return next((1 << i for i in range(FIRST_OWN_BIT, 31) if 1 << i not in taken), 0)
 
-    # ------------------------------------------------------------------ what sensors and plugins add
+    # ------------------------------------------------------------------ additions of sensors and plugins
 
     @property
     def names(self) -> NameMap:
-        """Names to bindings; without ids (see `Compiled.names` for those)."""
+        """Names with their bindings, without ids (see `Compiled.names` for those)."""
         if self._names is None:
             self._names = NameMap.of(self.records.values())
         return self._names
 
     def add_site(self, link_scoped: str, pose_link: Pose, name: str) -> str:
-        """Adds a frame to a link; on a static link it lands in the world body. Raises KeyError."""
+        """Add a frame to a link, on a static link to the world body; raise KeyError for an unknown link."""
         link = self.names.link(link_scoped)
         record = self.records[link.model]
         pose = link.offset @ pose_link
@@ -231,13 +229,15 @@ class SpecBuilder:
     def add_velocity_servo(
         self, joint_scoped: str, *, axis: int = 0, max_effort: float, owner: str, kv: float | None = None
     ) -> ActuatorRef:
-        """Adds a servo whose control is a velocity [rad/s or m/s].
+        """Add a servo whose control is a velocity [rad/s or m/s].
 
         Args:
-            max_effort: [N·m or N]; the joint's own effort limit counts too.
-            owner: who drives it; part of the actuator's name.
-            kv: wanted gain, with which a load slows the joint down; None takes the highest that does not ring, and
-                integral action, so that a constant load does not.
+            joint_scoped: scoped name of the joint.
+            axis: index of the axis.
+            max_effort: effort limit [N·m or N]; the joint's own effort limit counts too.
+            owner: name of the driver; part of the actuator's name.
+            kv: requested gain, with which a load slows the joint down. None uses the highest stable gain and integral
+                action, which compensates a constant load.
 
         Raises:
             KeyError: no such joint or axis.
@@ -254,7 +254,7 @@ class SpecBuilder:
         kp: float | None = None,
         kv: float | None = None,
     ) -> ActuatorRef:
-        """Adds a servo whose control is a position [rad or m]; gains that would ring are capped. Raises KeyError."""
+        """Add a servo whose control is a position [rad or m], with unstable gains limited; raise KeyError."""
         return self._add_actuator("position", joint_scoped, axis, max_effort, owner, kp, kv)
 
     def add_drive(
@@ -267,18 +267,18 @@ class SpecBuilder:
         owner: str,
         has_rotor: bool = True,
     ) -> ActuatorRef:
-        """Adds a motor or servo by turns: its state is an effort, its control the rate at which that goes on.
+        """Add an actuator that is a motor or a servo: its state is an effort, its control the rate of that effort.
 
-        Its force is the state and what `actuator_biasprm` adds (-kp, -kv), within the limit.
+        Its force is the state plus the terms of `actuator_biasprm` (-kp, -kv), within the limit. It raises KeyError for
+        an unknown joint or axis.
 
         Args:
-            max_effort: [N·m or N]; the joint's own effort limit counts too.
-            max_velocity: [rad/s or m/s]; with the effort it says how heavy the drive's rotor is.
-            owner: who drives it; part of the actuator's name.
-            has_rotor: whether the joint may get an armature, as servos need it.
-
-        Raises:
-            KeyError: no such joint or axis.
+            joint_scoped: scoped name of the joint.
+            axis: index of the axis.
+            max_effort: effort limit [N·m or N]; the joint's own effort limit counts too.
+            max_velocity: velocity limit [rad/s or m/s]; with the effort it gives the inertia of the drive's rotor.
+            owner: name of the driver; part of the actuator's name.
+            has_rotor: True if the joint may get an armature, which servos need.
         """
         ref = self._add_actuator("drive", joint_scoped, axis, max_effort, owner, None, None)
         if has_rotor:
@@ -290,7 +290,7 @@ class SpecBuilder:
     def add_motor(
         self, joint_scoped: str, axis: int = 0, max_effort: float = float("inf"), owner: str = "motor"
     ) -> ActuatorRef:
-        """Adds an actuator whose control is an effort [N·m or N]. Raises KeyError."""
+        """Add an actuator whose control is an effort [N·m or N]; raise KeyError for an unknown joint or axis."""
         return self._add_actuator("motor", joint_scoped, axis, max_effort, owner, None, None)
 
     def _add_actuator(
@@ -303,9 +303,9 @@ class SpecBuilder:
         if axis < len(joint.scene.axes):
             max_effort = min(max_effort, joint.scene.axes[axis].effort)
         if max_effort == 0.0:
-            message = f"joint {scoped} is driven by {owner}, but its effort limit is 0: nothing moves it"
+            message = f"{owner} drives joint {scoped}, but the joint's effort limit is 0: it never moves"
             self.diagnostics.warning(
-                "SK-JOINT-011", message, joint.scene.where, "leave <effort> out for a joint without a limit"
+                "SK-JOINT-011", message, joint.scene.where, "remove <effort> for a joint without a limit"
             )
         base, k = f"{owner}/{joint.joint_names[axis]}/{kind}", 1
         taken = {ref.name for r in self.records.values() for ref in r.actuators}
@@ -321,7 +321,7 @@ class SpecBuilder:
         return ref
 
     def add_weld(self, name: str, parent_link: str, child_link: str, *, active: bool = True) -> str:
-        """Welds two links as they stand in the file; `active` can be changed while it runs. Raises KeyError."""
+        """Weld two links at their poses in the file, `active` or not at first; raise KeyError for unknown links."""
         parent, child = self.names.link(parent_link), self.names.link(child_link)
         record = self.records[parent.model if parent.model == child.model else ""]
         links = {n: b for r in self.records.values() for n, b in r.links.items()}
@@ -332,11 +332,11 @@ class SpecBuilder:
             self._names = None
         return name
 
-    # ------------------------------------------------------------------ out
+    # ------------------------------------------------------------------ compilation
 
     def compile(self) -> Compiled:
-        """The model with its first state. Raises LoadError when MuJoCo refuses it."""
-        with warnings.catch_warnings(record=True) as said:
+        """Compile the model with its first state; raise LoadError if MuJoCo refuses it."""
+        with warnings.catch_warnings(record=True) as engine_warnings:
             warnings.simplefilter("always")
             model = compile_spec(self.spec, self.world, list(self.records.values()), self.diagnostics)
             self._finish(model)
@@ -345,17 +345,17 @@ class SpecBuilder:
             place_followers(data, names.joints.values())
             report_lights(model, self.diagnostics, self.world.where)
             report_overlaps(model, names, self.diagnostics, self.world.where)
-        for text in dict.fromkeys(str(w.message) for w in said):
+        for text in dict.fromkeys(str(w.message) for w in engine_warnings):
             if not mjcf_attachment.is_expected_warning(text):
                 self.diagnostics.warning("SK-PHYS-025", f"the engine warns: {text}", self.world.where)
         return Compiled(model, data, names, self)
 
     def recompile(self, compiled: Compiled, data: mujoco.MjData) -> Compiled:
-        """The model after a change; what stays keeps its state bit for bit, in new model and data objects.
+        """Compile the model after a change; kept elements keep their state bit for bit, in new model and data objects.
 
         Args:
-            compiled: what this specification (or the one it was copied from) compiled to before.
-            data: the state to keep; it stays as it is.
+            compiled: previous result of this specification, or of the one it was copied from.
+            data: state to keep; it stays unchanged.
 
         Raises:
             LoadError: MuJoCo refuses the changed model.
@@ -371,7 +371,7 @@ class SpecBuilder:
         finish_model(self.spec, model, self.world, list(self.records.values()), self.diagnostics)
 
     def copy(self) -> SpecBuilder:
-        """An independent builder with the same content: change it, and this one stays what it was."""
+        """Return an independent builder with the same content."""
         other = SpecBuilder.__new__(SpecBuilder)
         other.world, other.diagnostics = self.world, self.diagnostics
         other.find_file, other.parameter_files = self.find_file, self.parameter_files

@@ -1,4 +1,4 @@
-"""State and changed fields from one compiled model to another: everything that exists in both keeps its bits."""
+"""Transfer of state and changed fields between compiled models: common elements keep their bits."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 JOINT_WIDTHS: Final = {int(mujoco.mjtJoint.mjJNT_FREE): (7, 6), int(mujoco.mjtJoint.mjJNT_BALL): (4, 3)}
-"""Numbers of the position and of the velocity of a joint by MuJoCo's type; types that are not here have one of each."""
+"""Numbers of position and velocity coordinates of a joint by MuJoCo's type; other types have one of each."""
 _KINDS: Final = {
     "geom": mujoco.mjtObj.mjOBJ_GEOM,
     "body": mujoco.mjtObj.mjOBJ_BODY,
@@ -23,9 +23,9 @@ _KINDS: Final = {
 
 
 def transfer_state(old: mujoco.MjModel, source: mujoco.MjData, new: mujoco.MjModel, target: mujoco.MjData) -> None:
-    """Copies what both models have, by name: joints, mocap bodies, actuators, equalities, applied forces, time.
+    """Copy common elements by name: joints, mocap bodies, actuators, equalities, applied forces, time.
 
-    The solver's warm start is carried as well, so a trajectory goes on as if nothing had happened around it.
+    The solver's warm start is copied as well, so that the trajectory continues without a change.
     """
     target.time = source.time
     copy_state(old, source, new, target, ("qvel", "qacc", "qacc_warmstart", "qfrc_applied"))
@@ -39,7 +39,7 @@ def transfer_state(old: mujoco.MjModel, source: mujoco.MjData, new: mujoco.MjMod
 def copy_state(
     old: mujoco.MjModel, source: mujoco.MjData, new: mujoco.MjModel, target: mujoco.MjData, dof_fields: Sequence[str]
 ) -> None:
-    """Copies joints, poses of mocap bodies, controls, activations and active equalities of what both models have."""
+    """Copy joints, poses of mocap bodies, controls, activations and active equalities that both models have."""
     for i, j in _pair_by_name("jnt", old.njnt, old, new):
         if old.jnt_type[i] == new.jnt_type[j]:
             positions, velocities = JOINT_WIDTHS.get(int(old.jnt_type[i]), (1, 1))
@@ -63,10 +63,10 @@ def copy_state(
 
 
 def copy_fields_by_name(old: mujoco.MjModel, new: mujoco.MjModel, fields: Iterable[str]) -> None:
-    """Copies changed model fields to a recompiled model, element by element by name."""
+    """Copy changed model fields to a recompiled model, element by element by name."""
     for field in fields:
         source, target = getattr(old, field), getattr(new, field)
-        if field.startswith("dof_"):  # degrees of freedom have the names of their joints
+        if field.startswith("dof_"):  # degrees of freedom are matched by the names of their joints
             for i, j in _pair_by_name("jnt", old.njnt, old, new):
                 _, width = JOINT_WIDTHS.get(int(old.jnt_type[i]), (1, 1))
                 a, b = int(old.jnt_dofadr[i]), int(new.jnt_dofadr[j])
@@ -77,13 +77,13 @@ def copy_fields_by_name(old: mujoco.MjModel, new: mujoco.MjModel, fields: Iterab
 
 
 def restore_compiled_fields(model: mujoco.MjModel, originals: Mapping[str, npt.NDArray[np.float64]]) -> None:
-    """Writes the compiled values back to a model that is left: who returns to it brings the changes of then."""
+    """Restore the compiled values of a model that is no longer used; a later restore sets the changes again."""
     for field, original in originals.items():
         getattr(model, field)[:] = original
 
 
 def _pair_by_name(prefix: str, count: int, old: mujoco.MjModel, new: mujoco.MjModel) -> list[tuple[int, int]]:
-    """Return (id in the old model, id in the new one) of everything of a kind that both have under one name."""
+    """Return (id in the old model, id in the new one) of all elements of a kind that both models have."""
     kind, found = _KINDS[prefix], []
     for i in range(count):
         name = mujoco.mj_id2name(old, kind, i)

@@ -1,9 +1,9 @@
-"""Collision meshes of wheels, as cylinders.
+"""Cylinders for the collision meshes of wheels.
 
-A mesh of a wheel is a prism of many sides. The engine rolls it over its edges: the loads on the wheels of a vehicle
-jump at every edge, and skid steering on the spot reaches 0.55 instead of 0.61 of the yaw rate of the wheels (48 sides,
-wheels 0.5 m apart and 0.4 m behind each other, friction coefficient 1). The shape that such a mesh approximates rolls
-evenly, so the engine gets that shape.
+A mesh of a wheel is a prism of many sides, which the engine rolls over its edges. The loads on the wheels of a vehicle
+then jump at every edge. Skid steering on the spot reaches 0.55 instead of 0.61 of the yaw rate of the wheels (48 sides,
+wheels 0.5 m apart and 0.4 m behind each other, friction coefficient 1). The cylinder that such a mesh approximates
+rolls evenly, so the engine gets the cylinder.
 """
 
 from __future__ import annotations
@@ -23,24 +23,24 @@ from simkit.pose import Pose
 from simkit.scene import SceneLink
 
 LEAST_ROUND: Final = 0.98
-"""Radius of the inscribed circle of a wheel's outline in parts of that of its corners; 16 sides have 0.981."""
+"""Least ratio of the inscribed circle's radius to that of the corners of a wheel's outline; 16 sides have 0.981."""
 
 LEAST_FILLED: Final = 0.985
-"""Volume of a wheel in parts of that of the prism which has the wheel's outline and width: the rims may be bevelled."""
+"""Least ratio of a wheel's volume to that of the prism with its outline and width: the rims may be bevelled."""
 
 _ALIGNED: Final = math.cos(math.radians(1.0))
-"""Cosine of the angle between the normals of a wheel's end faces and the axis of its joint, at least."""
+"""Least cosine of the angle between the normals of a wheel's end faces and the axis of its joint."""
 
 _CENTRED: Final = 0.01
-"""Distance of a wheel's centre from the axis of its joint, in radii, at most."""
+"""Largest distance of a wheel's centre from the axis of its joint, in radii."""
 
 _INSIDE: Final = 1.01
-"""How far other pieces of the mesh, such as a rim, may reach, in parts of the radius and of the half width."""
+"""Largest extent of other pieces of the mesh, such as a rim, in units of the radius and of the half width."""
 
 
 @dataclass(frozen=True, slots=True)
 class TurningAxis:
-    """The line about which a link turns freely: a point [m] and a unit vector, in the link frame."""
+    """Axis about which a link turns freely: a point [m] and a unit vector, in the link frame."""
 
     point: Floats
     direction: Floats
@@ -48,10 +48,10 @@ class TurningAxis:
 
 @dataclass(frozen=True, slots=True)
 class RoundMesh:
-    """The cylinder that a mesh approximates: radius and length [m], and its pose in the mesh's frame.
+    """Cylinder that a mesh approximates: radius and length [m], and its pose in the mesh's frame.
 
-    The radius is that of the mesh's corners, as a cylinder is tessellated in design programs. The axle is therefore
-    never lower than on the corners of the mesh.
+    The radius is that of the mesh's corners, because design programs tessellate a cylinder in this way. The axle is
+    therefore never lower than on the corners of the mesh.
     """
 
     radius: float
@@ -60,7 +60,7 @@ class RoundMesh:
 
 
 def turning_axis(link: SceneLink, tree: KinematicTree) -> TurningAxis | None:
-    """Return the axis of the joint without limits that a link, or what it is rigidly one with, hangs on; else None."""
+    """Return the axis of the unlimited joint of a link or of its rigid group; None without one."""
     edge = tree.edges.get(tree.rigid[link.scoped])
     if edge is None or edge.joint.type not in ("revolute", "continuous") or len(edge.joint.axes) != 1:
         return None
@@ -72,15 +72,15 @@ def turning_axis(link: SceneLink, tree: KinematicTree) -> TurningAxis | None:
 
 
 def round_mesh(shapes: Sequence[tuple[Floats, Ints]], pose: Pose, axis: TurningAxis) -> RoundMesh | None:
-    """Return the cylinder that the largest of a mesh's convex shapes approximates and that holds the others.
+    """Return the cylinder that the largest convex shape of a mesh approximates and that contains the others.
 
     Args:
-        shapes: vertices [m] and outward faces of each.
-        pose: of the mesh in the link frame.
-        axis: in the link frame.
+        shapes: vertices [m] and outward faces of each shape.
+        pose: pose of the mesh in the link frame.
+        axis: axis in the link frame.
 
     Returns:
-        None where the mesh is not round about the axis.
+        The cylinder; None if the mesh is not round about the axis.
     """
     if not shapes:
         return None
@@ -95,11 +95,14 @@ def round_mesh(shapes: Sequence[tuple[Floats, Ints]], pose: Pose, axis: TurningA
 
 
 def _cylinder(vertices: Floats, faces: Ints, point: Floats, direction: Floats) -> RoundMesh | None:
-    """Return the cylinder that a convex shape approximates about a line, in the frame of the vertices; else None."""
+    """Return the cylinder that a convex shape approximates about a line; None without one.
+
+    All values are in the frame of the vertices.
+    """
     from scipy.spatial import ConvexHull, QhullError
 
     corners = vertices[faces]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])  # as long as twice the area
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])  # length: twice the area
     along = normals @ direction
     ends = np.abs(along) > _ALIGNED * np.linalg.norm(normals, axis=1)
     own = (normals[ends] * np.sign(along[ends])[:, None]).sum(axis=0)

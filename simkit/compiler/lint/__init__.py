@@ -1,7 +1,7 @@
-"""Lint of a compiled world: reports what will most likely make trouble, before the first step.
+"""Lint of a compiled world: reports probable problems before the first step.
 
-A scene and its compiled model enter, diagnostics leave; nothing is stepped and nothing is changed. Every finding names
-the numbers it was made from. `simkit check` alone uses it: a world that loads is run as it is written.
+A scene and its compiled model enter, diagnostics leave; nothing is stepped or changed. Every finding contains its
+numbers. Only `simkit check` uses it: a load simulates a world as written.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ __all__ = ["lint_world"]
 
 
 def lint_world(world: SceneWorld, compiled: Compiled) -> Diagnostics:
-    """Report what is likely to go wrong with a world; nothing is stepped and nothing is changed."""
+    """Report probable problems of a world; nothing is stepped or changed."""
     found = Diagnostics()
     for check in (check_time_step, check_joints, check_links):
         check(world, compiled, found)

@@ -1,4 +1,4 @@
-"""Check gains and springs of joints against inertia and time step, their ranges, and loads on light links."""
+"""Checks of joint gains and springs against inertia and time step, of joint ranges, and of loads on light links."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from simkit.params import Params
 from simkit.scene import SceneWorld
 
 _GAIN_LIMIT: Final = 1.5  # as in simkit.compiler.servo_gains: gains beyond this are capped
-_RINGING_DAMPING: Final = 2.0  # of d·dt/I, for a force that is computed once a step
-_RINGING_STIFFNESS: Final = 4.0  # of k·dt²/I, likewise
+_RINGING_DAMPING: Final = 2.0  # largest d·dt/I for a force that is computed once a step
+_RINGING_STIFFNESS: Final = 4.0  # largest k·dt²/I for a force that is computed once a step
 LARGEST_LOAD_RATIO: Final = 1e4
-"""Ratio of the mass that stands on a moving body to its own, beyond which it sinks in by more than 1 mm."""
+"""Ratio of the mass on a moving body to its own, beyond which it sinks in by more than 1 mm."""
 
 
 @dataclass(frozen=True, slots=True)
 class JointGains:
-    """Gains that a plugin of the file asks of one joint: per error [N·m/rad or N/m] and per its rate."""
+    """Gains that a plugin of the file requests for one joint: per error [N·m/rad or N/m] and per its rate."""
 
     plugin: str
     joint: str
@@ -34,7 +34,7 @@ class JointGains:
 
 
 def check_joints(world: SceneWorld, compiled: Compiled, found: Diagnostics) -> None:
-    """Reports gains that ring, springs too stiff for the step, ranges of no width, and heavy loads on light links."""
+    """Report unstable gains, springs too stiff for the step, ranges of no width, and heavy loads on light links."""
     inertias = _JointInertia(compiled.model)
     step = world.physics.max_step_size
     for joint in compiled.names.joints.values():
@@ -50,7 +50,7 @@ def check_joints(world: SceneWorld, compiled: Compiled, found: Diagnostics) -> N
 
 
 class _JointInertia:
-    """Inertia [kg·m² or kg] at a degree of freedom, all else free to move: 1 / (M⁻¹)_jj at the start."""
+    """Inertia [kg·m² or kg] at a degree of freedom with all others free: 1 / (M⁻¹)_jj at the start."""
 
     def __init__(self, model: mujoco.MjModel) -> None:
         self._model = model
@@ -68,9 +68,9 @@ class _JointInertia:
 def _check_range(joint: JointBinding, found: Diagnostics) -> None:
     for axis in joint.scene.axes:
         if joint.type in ("revolute", "prismatic", "universal", "revolute2") and axis.lower == axis.upper:
-            message = f"joint {joint.scoped!r} is {joint.type} and has no room to move: both limits are {axis.lower:g}"
+            message = f"joint {joint.scoped!r} is {joint.type} but cannot move: both limits are {axis.lower:g}"
             found.note(
-                "SK-LINT-005", message, joint.scene.where, "a joint of type fixed says the same and costs nothing"
+                "SK-LINT-005", message, joint.scene.where, "use a joint of type fixed, which costs no computing time"
             )
 
 
@@ -80,15 +80,15 @@ def _check_spring(joint: JointBinding, inertias: _JointInertia, step: float, fou
             found.warning(
                 "SK-LINT-004",
                 f"joint {joint.scoped!r}: its spring of {axis.stiffness:g} on an inertia of "
-                f"{inertias.at(dof):.3g} swings faster than the step of {step * 1e3:g} ms can follow "
-                f"(k·dt²/I is {number:.3g}, up to 1 is good)",
+                f"{inertias.at(dof):.3g} oscillates too fast for the step of {step * 1e3:g} ms "
+                f"(k·dt²/I is {number:.3g}, it should be at most 1)",
                 joint.scene.where,
-                f"a spring of at most {inertias.at(dof) / step**2:.3g}, or a smaller step",
+                f"use a spring of at most {inertias.at(dof) / step**2:.3g}, or a smaller step",
             )
 
 
 def _check_servos(compiled: Compiled, inertias: _JointInertia, step: float, found: Diagnostics) -> None:
-    """Gains that a plugin asked for and that its servo does not get."""
+    """Report gains that a plugin requested and that its servo does not get."""
     for record in compiled.builder.records.values():
         for ref in record.actuators:
             joint = compiled.names.joints.get(ref.joint)
@@ -98,14 +98,14 @@ def _check_servos(compiled: Compiled, inertias: _JointInertia, step: float, foun
             most = _GAIN_LIMIT * inertia / step
             if ref.kv > most:
                 message = (
-                    f"joint {joint.scoped!r}: the velocity gain {ref.kv:g} that {ref.owner} asks for would ring at a "
+                    f"joint {joint.scoped!r}: the velocity gain {ref.kv:g} of {ref.owner} would oscillate at a "
                     f"step of {step * 1e3:g} ms on an inertia of {inertia:.3g}; {most:.3g} is used"
                 )
-                found.warning("SK-LINT-003", message, joint.scene.where, "ask for less, or take a smaller step")
+                found.warning("SK-LINT-003", message, joint.scene.where, "use a smaller gain or a smaller step")
 
 
 def controller_gains(params: Params, name: str, where: Where) -> Iterator[JointGains]:
-    """The gains of gz's joint controllers: one joint with `p_gain`, or several with `position_p_gain`."""
+    """Yield the gains of Gazebo's joint controllers: one joint with `p_gain`, or several with `position_p_gain`."""
     joints = [c.value for c in params.children if c.name == "joint_name"]
     p = _numbers(params, "p_gain") or _numbers(params, "position_p_gain")
     d = _numbers(params, "d_gain") or _numbers(params, "position_d_gain")
@@ -149,14 +149,14 @@ def _check_gains(
             else ("p_gain", gains.p, _RINGING_STIFFNESS * inertia / step**2)
         )
         message = (
-            f"plugin {gains.plugin!r}: <{which}> {value:g} on joint {joint.scoped!r}, which feels {inertia:.3g} "
-            f"(kg m2 or kg), rings or diverges at a step of {step * 1e3:g} ms"
+            f"plugin {gains.plugin!r}: <{which}> {value:g} on joint {joint.scoped!r} with an inertia of {inertia:.3g} "
+            f"(kg m2 or kg) oscillates or diverges at a step of {step * 1e3:g} ms"
         )
-        found.warning("SK-LINT-003", message, gains.where, f"at most {most:.3g}, or a smaller step")
+        found.warning("SK-LINT-003", message, gains.where, f"use at most {most:.3g}, or a smaller step")
 
 
 def _check_loads(compiled: Compiled, found: Diagnostics) -> None:
-    """Contacts of the first state between bodies of very different mass."""
+    """Report contacts of the first state between bodies of very different mass."""
     model = compiled.model
     data = first_state(model)
     mujoco.mj_collision(model, data)
@@ -175,7 +175,7 @@ def _check_loads(compiled: Compiled, found: Diagnostics) -> None:
             found.warning(
                 "SK-LINT-006",
                 f"{owners[heavy]} ({masses[heavy]:.4g} kg) stands on {owners[light]} ({masses[light]:.4g} kg): a ratio "
-                f"of {masses[heavy] / masses[light]:.0f}, above {LARGEST_LOAD_RATIO:g} it sinks in by more than 1 mm",
+                f"of {masses[heavy] / masses[light]:.0f}; above {LARGEST_LOAD_RATIO:g} it sinks in by more than 1 mm",
                 compiled.names.link(owners[light]).scene.where,
-                "give the lower one more mass",
+                "give the lower link more mass",
             )

@@ -1,4 +1,4 @@
-"""Check masses and inertias of links against the size of their collisions and visuals."""
+"""Checks of masses and inertias of links against the size of their collisions and visuals."""
 
 from __future__ import annotations
 
@@ -18,24 +18,24 @@ from simkit.scene import SceneModel, SceneWorld
 Floats = npt.NDArray[np.float64]
 
 LARGEST_GYRATION_RATIO: Final = 2.0
-"""Radius of gyration of a link over the distance from its centre of mass to its farthest corner: beyond it is wrong."""
+"""Largest ratio of a link's radius of gyration to the distance from its centre of mass to its farthest corner."""
 
 LARGEST_DENSITY: Final = 25_000.0
-"""[kg/m³], of the box around a link's collisions; osmium has 22 600."""
+"""Largest density of the box around a link's collisions [kg/m³]; osmium has 22 600."""
 
 SMALLEST_DENSITY: Final = 0.1
-"""[kg/m³], of the box around a link's collisions; air has 1.2, and cubes of 1 m and 1 kg are common in worlds."""
+"""Smallest density of the box around a link's collisions [kg/m³]; air has 1.2, and cubes of 1 m and 1 kg are common."""
 
 LARGEST_COLLISION_RATIO: Final = 5.0
-"""Longest edge of the box around a link's collisions over that around its visuals."""
+"""Largest ratio of the longest edge of the box around a link's collisions to that around its visuals."""
 
 LEAST_VOLUME: Final = 1e-9
 LEAST_EXTENT: Final = 1e-9
-"""[m³]; a density of less is about rounding."""
+"""Least extent [m]; ratios to a smaller one are only rounding. Likewise `LEAST_VOLUME` [m³] for densities."""
 
 
 def check_links(world: SceneWorld, compiled: Compiled, found: Diagnostics) -> None:
-    """Reports masses and inertias that do not go with the size of their links."""
+    """Report masses and inertias that do not fit the size of their links."""
     for model in world.models:
         _check_default_masses(model, found)
     groups: dict[int, list[LinkBinding]] = {}
@@ -51,7 +51,7 @@ def check_links(world: SceneWorld, compiled: Compiled, found: Diagnostics) -> No
 
 
 def _check_default_masses(top: SceneModel, found: Diagnostics) -> None:
-    """Kilograms that nobody has written: SDF gives a link without `<inertial>` one."""
+    """Report masses that no file contains: SDF gives 1 kg to a link without `<inertial>`."""
     links = [] if top.static else [link for m in top.all_models() if not m.static for link in m.links]
     default = [link for link in links if not link.inertial.given and link.inertial.mass > 0]
     if not default or len(default) == len(links):
@@ -64,7 +64,7 @@ def _check_default_masses(top: SceneModel, found: Diagnostics) -> None:
 
 
 def _check_inertia(model: mujoco.MjModel, state: mujoco.MjData, links: list[LinkBinding], found: Diagnostics) -> None:
-    """Mass and inertia of links that are rigidly one against the box around them."""
+    """Compare mass and inertia of a rigid group of links with its bounding box."""
     foot = min(links, key=lambda link: link.body)
     mass, centre, tensor = _total_inertia(model, state, [link.body for link in links])
     corners = _corners(model, state, (g for link in links for g in (*link.geoms, *link.visuals)))
@@ -75,8 +75,8 @@ def _check_inertia(model: mujoco.MjModel, state: mujoco.MjData, links: list[Link
     if gyration > LARGEST_GYRATION_RATIO * farthest:
         found.warning(
             "SK-LINT-008",
-            f"link {foot.scoped!r}: its inertia is that of {mass:.4g} kg spread over {gyration:.3g} m, but nothing of "
-            f"it is farther than {farthest:.3g} m from its centre of mass: {(gyration / farthest) ** 2:.0f} times too "
+            f"link {foot.scoped!r}: its inertia is that of {mass:.4g} kg at a radius of {gyration:.3g} m, but the link "
+            f"reaches only {farthest:.3g} m from its centre of mass: {(gyration / farthest) ** 2:.0f} times too "
             "much",
             foot.scene.where,
             "check the units: a part in mm and g gives an inertia in g·mm², 1e-9 kg·m²",
@@ -96,7 +96,7 @@ def _check_inertia(model: mujoco.MjModel, state: mujoco.MjData, links: list[Link
 
 
 def _check_collision_size(model: mujoco.MjModel, state: mujoco.MjData, link: LinkBinding, found: Diagnostics) -> None:
-    """A collision much larger than what is drawn."""
+    """Report a collision that is much larger than the visuals."""
     solid, drawn = (_corners(model, state, ids) for ids in (link.geoms, link.visuals))
     if solid is None or drawn is None or any(_is_unbounded(model, g) for g in (*link.geoms, *link.visuals)):
         return
@@ -104,13 +104,13 @@ def _check_collision_size(model: mujoco.MjModel, state: mujoco.MjData, link: Lin
     if a > LARGEST_COLLISION_RATIO * b:
         message = (
             f"link {link.scoped!r}: its collisions fill {_box_in_words(solid)} m, "
-            f"what is drawn of it {_box_in_words(drawn)} m"
+            f"its visuals only {_box_in_words(drawn)} m"
         )
         found.warning("SK-LINT-010", message, link.scene.where, "check the scale of the collision's mesh")
 
 
 def _total_inertia(model: mujoco.MjModel, data: mujoco.MjData, bodies: Iterable[int]) -> tuple[float, Floats, Floats]:
-    """Mass, centre of mass and tensor of bodies as they stand, in world axes, about that centre."""
+    """Return mass, centre of mass and tensor of bodies in world axes, about that centre."""
     ids = list(bodies)
     masses = np.array([model.body_mass[b] for b in ids])
     if masses.sum() <= 0:
@@ -125,7 +125,11 @@ def _total_inertia(model: mujoco.MjModel, data: mujoco.MjData, bodies: Iterable[
 
 
 def _corners(model: mujoco.MjModel, data: mujoco.MjData, geoms: Iterable[int]) -> Floats | None:
-    """Corners of the boxes around geoms in the first state, in the world, shape (8 n, 3); None where there is none."""
+    """Return the corners of the bounding boxes of geoms in the first state; None without any.
+
+    Returns:
+        Corners in the world frame, shape (8 n, 3).
+    """
     signs = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
     found = []
     for g in geoms:

@@ -1,4 +1,4 @@
-"""Check the time step, and the update rates of sensors against it."""
+"""Checks of the time step, and of the update rates of sensors against it."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from simkit.diagnostics import Diagnostics
 from simkit.scene import SceneWorld
 
 LONGEST_STEP: Final = 0.005
-"""[s]; with a longer one a body falling at 1 m/s enters the ground by more than 5 mm before contact sees it."""
+"""Longest step [s]; with a longer one a body at 1 m/s penetrates the ground by more than 5 mm before contact."""
 
 
 def check_time_step(world: SceneWorld, compiled: Compiled, found: Diagnostics) -> None:
-    """Reports a step too long for contacts, and rates that the step cannot keep."""
+    """Report a step too long for contacts, and rates that the step cannot keep."""
     step = world.physics.max_step_size
     _check_step(world, compiled, found)
     for model in world.models:
         for sensor in model.all_sensors():
             text = rate_pattern(sensor.rate, step)
-            if text and sensor.rate * step <= 1:  # a load has told of more
+            if text and sensor.rate * step <= 1:  # a load reports higher rates
                 found.note("SK-LINT-002", f"sensor {sensor.scoped!r}: {text}", sensor.where, _rate_hint(sensor.rate))
 
 
@@ -32,15 +32,15 @@ def _check_step(world: SceneWorld, compiled: Compiled, found: Diagnostics) -> No
     if step > LONGEST_STEP and moving:
         found.warning(
             "SK-LINT-001",
-            f"the step is {step * 1e3:g} ms and {len(moving)} moving links collide: contacts get soft or throw things "
-            f"about beyond {LONGEST_STEP * 1e3:g} ms",
+            f"the step is {step * 1e3:g} ms and {len(moving)} moving links collide: contacts get soft or unstable "
+            f"beyond {LONGEST_STEP * 1e3:g} ms",
             world.physics.where,
             "write <max_step_size>0.001</max_step_size>, or try --set physics.max_step_size=0.001",
         )
 
 
 def rate_pattern(rate: float, step: float) -> str:
-    """Describe the stamps of a rate [Hz] at a step [s]; empty where the steps divide evenly.
+    """Describe the stamps of a rate [Hz] at a step [s]; empty if the period is a whole number of steps.
 
     A sample lies on the first step at or after k / rate.
     """

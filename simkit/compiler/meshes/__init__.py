@@ -1,5 +1,5 @@
-"""Mesh files: read into triangles, made into convex bodies that collide, and kept in a cache.
+"""Mesh files: reading triangles, making convex collision bodies, and caching both.
 
-A mesh file and its companions enter; `MeshPart`s in metres and convex bodies leave. Files come from anywhere, so
-sizes, depths and references are bounded. MuJoCo is not used here.
+A mesh file and its companion files enter; `MeshPart`s in metres and convex bodies leave. Files may be hostile, so
+sizes, depths and references are limited. MuJoCo is not used here.
 """

@@ -1,4 +1,7 @@
-"""COLLADA (`.dae`), as Gazebo reads it: the unit counts, the up axis does not; one part for each node and material."""
+"""Reader for COLLADA (`.dae`) with Gazebo's rules: the unit counts, the up axis does not.
+
+The result has one part for each node and material.
+"""
 
 from __future__ import annotations
 
@@ -25,17 +28,24 @@ from simkit.compiler.meshes.mesh_part import (
     unique_rows,
 )
 
-_DEEPEST: Final = 500  # levels of elements, of which a node takes one and what it draws a few
+_DEEPEST: Final = 500  # levels of elements; a node takes one, its geometry a few
 _PRIMITIVES: Final = ("triangles", "polylist", "polygons", "tristrips", "trifans")
 
 
 def read_collada(content: bytes, companions: Companions) -> list[MeshPart]:
-    """The parts of the file's scene, in metres. Raises MeshFileError."""
+    """Return the parts of the file's scene, in metres.
+
+    Raises:
+        MeshFileError: the file cannot be used.
+    """
     return ColladaFile(read_root(content), companions).parts()
 
 
 def read_root(content: bytes) -> XmlElement:
-    """The document without entities: nothing outside of the file is read and nothing in it multiplies."""
+    """Return the root element of a document without entities.
+
+    Nothing outside the file is read, and nothing in the file expands.
+    """
     from lxml import etree
 
     kind = partial(
@@ -47,7 +57,7 @@ def read_root(content: bytes) -> XmlElement:
         recover=True,
         remove_comments=True,
     )
-    target: Any = _BoundedTreeBuilder()  # the stubs ask for more callbacks than lxml does
+    target: Any = _BoundedTreeBuilder()  # the stubs require more callbacks than lxml
     try:
         etree.fromstring(content, kind(target=target))
         root = etree.fromstring(content, kind())
@@ -61,10 +71,10 @@ def read_root(content: bytes) -> XmlElement:
 
 
 class _BoundedTreeBuilder:
-    """Reads a document without keeping it, and refuses one with entities, or with elements that are too deep.
+    """Parser target that stores nothing and refuses documents with entities or with elements nested too deeply.
 
-    What lxml itself lets pass depends on the libxml2 that a process has loaded first: an old one, which comes with some
-    GL libraries, has no limit for levels, and to walk through a million of them takes hours.
+    lxml's own limits depend on the libxml2 that a process loads first. An old one, which comes with some GL libraries,
+    has no limit for levels, and walking through a million levels takes hours.
     """
 
     def __init__(self) -> None:
@@ -82,11 +92,11 @@ class _BoundedTreeBuilder:
         self._level -= 1
 
     def close(self) -> None:
-        """Nothing is kept."""
+        """Return nothing."""
 
 
 class ColladaFile:
-    """One document; elements by id, and what has been read of them."""
+    """COLLADA document: elements by id, and their converted content."""
 
     def __init__(self, root: XmlElement, companions: Companions) -> None:
         self.root, self.companions = root, companions
@@ -144,7 +154,7 @@ class ColladaFile:
             self._place(self._skinned(self._target(instance)), instance, node, name, matrix)
 
     def _skinned(self, controller: XmlElement | None) -> XmlElement:
-        """The geometry under skins and morphs, in its bind pose."""
+        """Return the geometry under skins and morphs, in its bind pose."""
         for _ in range(8):
             if controller is None or not controller.tag.endswith("controller"):
                 return controller
@@ -188,7 +198,7 @@ class ColladaFile:
     # ------------------------------------------------------------------ geometry
 
     def _geometry(self, geometry: XmlElement) -> list[tuple[MeshPart, str]]:
-        """The parts of a `<geometry>` in its own frame, each with its material's symbol."""
+        """Return the parts of a `<geometry>` in its own frame, each with the symbol of its material."""
         key = geometry.get("id", "") or str(id(geometry))
         if key not in self.geometries:
             mesh = geometry.find("{*}mesh")
@@ -198,7 +208,7 @@ class ColladaFile:
         return self.geometries[key]
 
     def _primitives(self, element: XmlElement) -> Any:
-        """Vertices, faces and texture coordinates of one list of primitives, and its material's symbol."""
+        """Return vertices, faces and texture coordinates of a list of primitives, and the symbol of its material."""
         inputs = [
             (e.get("semantic"), e, _whole(e, "offset", 0), _whole(e, "set", 0)) for e in element.iterfind("{*}input")
         ]
@@ -238,7 +248,7 @@ class ColladaFile:
         raise MeshFileError("has faces without vertex positions")
 
     def _source(self, source: XmlElement) -> Floats:
-        """Rows of a `<source>`, as its accessor cuts them."""
+        """Return the rows of a `<source>`, as its accessor defines them."""
         if source is None:
             raise MeshFileError("names a source that it does not have")
         if source not in self.arrays:
@@ -257,7 +267,7 @@ class ColladaFile:
 
 
 def _corners(element: XmlElement, width: int) -> tuple[Indices, Indices]:
-    """Indices of all corners, shape (c, width), and triangles as positions in that list."""
+    """Return the indices of all corners, shape (c, width), and triangles as positions in that list."""
     kind = _local(element)
     lists = [integers_of(p.text or "", "faces") for p in element.iterfind("{*}p")]
     lists += [integers_of(p.text or "", "faces") for p in element.iterfind("{*}ph/{*}p")]
@@ -274,14 +284,14 @@ def _corners(element: XmlElement, width: int) -> tuple[Indices, Indices]:
         listed = element.find("{*}vcount")
         counts = integers_of("" if listed is None else listed.text or "", "polygon sizes")
         if len(counts) and (counts.min() < 0 or int(counts.sum()) > len(corners)):
-            raise MeshFileError("promises more corners than it has")
+            raise MeshFileError("declares more corners than it has")
         return corners, fan_triangles(counts)
     whole = len(corners) // 3
     return corners, np.arange(3 * whole).reshape(-1, 3)
 
 
 def strip_triangles(counts: npt.ArrayLike) -> Indices:
-    """Triangles of strips that lie one behind the other: every second one turned round."""
+    """Return the triangles of consecutive strips; every second triangle is reversed."""
     out, start = [], 0
     for count in np.asarray(counts).tolist():
         i = start + np.arange(max(0, count - 2))
@@ -292,7 +302,7 @@ def strip_triangles(counts: npt.ArrayLike) -> Indices:
 
 
 def node_transform(node: XmlElement) -> Floats:
-    """A node's transform as Gazebo takes it: its matrix alone, else move, then turn, then stretch."""
+    """Return a node's transform with Gazebo's rules: its matrix alone, else translation, rotation, scale."""
     found = node.find("{*}matrix")
     if found is not None:
         return _exact_count(found, 16).reshape(4, 4)
@@ -310,7 +320,7 @@ def node_transform(node: XmlElement) -> Floats:
 
 
 def _rotation(axis: tuple[float, float, float], angle: float) -> Floats:
-    """Rodrigues' formula."""
+    """Return a rotation matrix by Rodrigues' formula."""
     length = math.sqrt(sum(c * c for c in axis))
     matrix = np.eye(4)
     if length > 0.0 and math.isfinite(angle):

@@ -9,14 +9,14 @@ from simkit.compiler.meshes.companion_files import Companions, Pixels
 from simkit.compiler.meshes.mesh_part import Colour
 
 XmlElement = Any
-"""An element of lxml."""
+"""Element of lxml."""
 
 _SHADERS: Final = ("phong", "lambert", "blinn", "constant")
 
 
 @dataclass(frozen=True)
 class MaterialLook:
-    """How a part of the mesh looks; `colour` None where the file says nothing."""
+    """Appearance of a part of the mesh; `colour` is None if the file does not specify it."""
 
     colour: Colour | None = None
     texture: Pixels | None = None
@@ -25,14 +25,14 @@ class MaterialLook:
 
 
 class ColladaMaterials:
-    """The materials of one document, read when they are first asked for."""
+    """Materials of one document, read on first use."""
 
     def __init__(self, by_id: dict[str, XmlElement], companions: Companions) -> None:
         self.by_id, self.companions = by_id, companions
         self._read: dict[str, MaterialLook] = {}
 
     def of(self, material: str) -> MaterialLook:
-        """The look of a material by its id; the plain one where it is not there."""
+        """Return the appearance of a material by its id; the default for an unknown id."""
         if material not in self._read:
             self._read[material] = self._look(self.by_id.get(material))
         return self._read[material]
@@ -78,9 +78,10 @@ class ColladaMaterials:
         return r, g, b, numbers[3] if len(numbers) > 3 else 1.0
 
     def _opacity(self, shader: XmlElement, alpha: float) -> float:
-        """Opacity of the effect: A_ONE (the default) takes `transparent`'s alpha, RGB_ZERO its brightness turned round.
+        """Return the opacity of an effect.
 
-        Exporters differ in which way round they write it. What comes out as (nearly) invisible is drawn opaque.
+        A_ONE (the default) uses the alpha of `transparent`, RGB_ZERO its inverse brightness. Exporters differ in the
+        direction of these values. A result that is (nearly) invisible is drawn opaque.
         """
         transparent, amount = shader.find("{*}transparent"), shader.find("{*}transparency/{*}float")
         if transparent is None and amount is None:
@@ -100,7 +101,7 @@ class ColladaMaterials:
         return opacity if 0.01 < opacity <= 1.0 else 1.0
 
     def _texture(self, diffuse: XmlElement, effect: XmlElement) -> Pixels | None:
-        """The picture behind `<texture>`: by way of its sampler and surface, or straight by the image's id."""
+        """Return the image of `<texture>`: by its sampler and surface, or directly by the image's id."""
         used = None if diffuse is None else diffuse.find("{*}texture")
         if used is None:
             return None

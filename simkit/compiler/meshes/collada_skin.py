@@ -1,7 +1,7 @@
-"""Skins of COLLADA files: what each bone of a skeleton carries, and how the bones move.
+"""Skins of COLLADA files: the faces that each bone of a skeleton carries, and the motion of the bones.
 
-A vertex goes with the bone that holds it most; a face goes with every bone that holds one of its corners, so that no
-gaps open where a limb bends. A bone that carries next to nothing (of a finger) leaves it to the bone above.
+A vertex moves with the bone that has its largest weight. A face is carried by every bone of its corners, so that no
+gaps open at a bent joint. A bone with almost no faces (of a finger) passes them to its parent bone.
 """
 
 from __future__ import annotations
@@ -28,19 +28,20 @@ from simkit.compiler.meshes.mesh_part import (
 )
 
 _LEAST_SHARE: Final = 0.012
-"""Of all faces: a bone that holds less gives them to the bone above it."""
+"""Least fraction of all vertices for a bone; a smaller bone passes its vertices to its parent bone."""
 
 _MOST_FRAMES: Final = 20_000
 
 
 @dataclass(frozen=True, eq=False)
 class Bone:
-    """One joint of the skeleton.
+    """Joint of the skeleton.
 
     Attributes:
-        name: of the node, and every other word for it in the file.
-        parent: its place in the list of bones, or -1.
-        rest: its transform in the frame of what is above, shape (4, 4), in the file's unit.
+        name: name of the node.
+        words: all names of the node in the file.
+        parent: index of the parent in the list of bones, or -1.
+        rest: transform in the parent's frame, shape (4, 4), in the file's unit.
     """
 
     name: str
@@ -51,15 +52,15 @@ class Bone:
 
 @dataclass(frozen=True, eq=False)
 class Skin:
-    """A skeleton with what it carries, and its animation.
+    """Skeleton with its mesh pieces and its animation.
 
     Attributes:
-        bones: outermost first.
-        pieces: what a bone carries, in its frame and in the file's unit; by its place in `bones`.
-        times: of the animation's frames [s], shape (f,); empty where there is none.
-        frames: transforms of the bones that move, each shape (f, 4, 4), by place in `bones`.
+        bones: bones, parents first.
+        pieces: mesh parts in the bone's frame and in the file's unit, by index in `bones`.
+        times: times of the animation's frames [s], shape (f,); empty without animation.
+        frames: transforms of the moving bones, each of shape (f, 4, 4), by index in `bones`.
         unit: length of the file's unit [m].
-        notes: what could not be read.
+        notes: texts about parts that could not be read.
     """
 
     bones: tuple[Bone, ...]
@@ -71,7 +72,11 @@ class Skin:
 
 
 def read_skin(file: Path) -> Skin:
-    """The skeleton, its pieces and its animation of a COLLADA file. Raises MeshFileError."""
+    """Read the skeleton, its mesh pieces and its animation from a COLLADA file.
+
+    Raises:
+        MeshFileError: the file cannot be used.
+    """
     try:
         stat = file.stat()
     except (OSError, ValueError) as problem:
@@ -84,7 +89,11 @@ def read_skin(file: Path) -> Skin:
 
 
 def bone_parts(file: Path, bone: str) -> list[MeshPart]:
-    """What one bone carries, in its own frame and in the file's unit. Raises MeshFileError."""
+    """Return the mesh parts of one bone, in its own frame and in the file's unit.
+
+    Raises:
+        MeshFileError: the file cannot be used, or the bone carries nothing.
+    """
     skin = read_skin(file)
     for place, parts in skin.pieces.items():
         if skin.bones[place].name == bone:
@@ -133,7 +142,7 @@ class _SkinFile(ColladaFile):
         for child in node.iterfind("{*}node"):
             self._skeleton(child, above, parent, depth + 1)
 
-    # ------------------------------------------------------------------ what the bones carry
+    # ------------------------------------------------------------------ mesh pieces of the bones
 
     def _pieces(self) -> dict[int, tuple[MeshPart, ...]]:
         found: dict[int, list[MeshPart]] = {}
@@ -175,14 +184,14 @@ class _SkinFile(ColladaFile):
                 found.setdefault(places[local], []).append(piece)
 
     def _vertex_bones(self, skin: XmlElement) -> tuple[list[int], Floats, Indices]:
-        """Places of the skin's joints among the bones, their inverse bind matrices, and who holds each vertex."""
+        """Return bone indices of the skin's joints, their inverse bind matrices, and the joint of each vertex."""
         inputs = {e.get("semantic"): self._target(e, "source") for e in skin.iterfind("{*}joints/{*}input")}
         names = next(iter(inputs["JOINT"].iterfind("{*}Name_array")), None)
         names = inputs["JOINT"].find("{*}IDREF_array") if names is None else names
         by_word = {word: i for i, bone in reversed(list(enumerate(self.bones))) for word in bone.words}
         unknown = [n for n in names.text.split() if n not in by_word]
         if unknown:
-            raise MeshFileError(f"has a skin that hangs on {unknown[0]!r}, which is no bone of its skeleton")
+            raise MeshFileError(f"has a skin that hangs on {unknown[0]!r}, which is not a bone of its skeleton")
         places = [by_word[n] for n in names.text.split()]
         inverses = self._source(inputs["INV_BIND_MATRIX"]).reshape(-1, 4, 4)
         element = skin.find("{*}vertex_weights")
@@ -200,7 +209,7 @@ class _SkinFile(ColladaFile):
         return places, inverses, self._merge_light_bones(places, held)
 
     def _merge_light_bones(self, places: list[int], held: Indices) -> Indices:
-        """Bones that hold hardly anything give it to the nearest bone above them that the skin knows."""
+        """Move the vertices of bones with almost none to the nearest ancestor in the skin."""
         share = np.bincount(held, minlength=len(places)) / max(1, len(held))
         local = {place: i for i, place in enumerate(places)}
         for i in sorted(range(len(places)), key=lambda k: -places[k]):
@@ -212,10 +221,10 @@ class _SkinFile(ColladaFile):
                 share[local[above]] += share[i]
         return held
 
-    # ------------------------------------------------------------------ how they move
+    # ------------------------------------------------------------------ animation
 
     def _animation(self) -> tuple[Floats, dict[int, Floats]]:
-        """Frames of every bone that moves, at the times of all of them."""
+        """Return the frames of every moving bone, at the union of all times."""
         by_id = {node.get("id"): place for node, place in self.of_node.items() if node.get("id")}
         found: dict[int, tuple[Floats, Floats]] = {}
         for channel in self.root.iterfind(".//{*}library_animations//{*}channel"):
@@ -233,7 +242,7 @@ class _SkinFile(ColladaFile):
         if not found:
             return np.zeros(0), {}
         times = np.unique(np.concatenate([t for t, _ in found.values()]))
-        # the nearest frame: bones of one file share their times
+        # the previous frame is enough, because bones of one file share their times
         frames = {
             place: matrices[np.clip(np.searchsorted(own, times + 1e-9, side="right") - 1, 0, len(own) - 1)]
             for place, (own, matrices) in found.items()

@@ -1,8 +1,8 @@
-"""What collides in place of a mesh: convex bodies, worked out once for each content and kept in the cache.
+"""Convex collision bodies of a mesh, computed once for each content and cached.
 
-MuJoCo collides a mesh as its convex hull. A convex mesh is that. A moving one that is not becomes the hull of each of
-its connected pieces, or its convex decomposition where the file asks for one. A static one keeps its true surface.
-CoACD (the extra `decompose`) makes the decomposition; the same mesh and settings give the same pieces.
+MuJoCo collides a mesh as its convex hull, which is exact for a convex mesh. A moving non-convex mesh becomes the hulls
+of its connected pieces, or its convex decomposition if the file requests it. A static mesh keeps its true surface.
+CoACD (the extra `decompose`) computes the decomposition; the same mesh and settings give the same pieces.
 """
 
 from __future__ import annotations
@@ -36,16 +36,16 @@ from simkit.compiler.meshes.mesh_cache import FORMAT, load_arrays, store_arrays
 from simkit.compiler.meshes.mesh_part import Floats, Ints
 
 THRESHOLD: Final = 0.05
-"""CoACD's concavity at which a piece counts as convex, relative to the mesh's size."""
+"""CoACD's concavity below which a piece counts as convex, relative to the mesh's size."""
 
 MOST_HULLS: Final = 256
 _SEED: Final = 0
-_PATIENCE: Final = 600.0
+_WALL_LIMIT: Final = 600.0  # [s]
 _SCRIPT: Final = Path(__file__).with_name("run_coacd.py")
 
 
 class DecompositionError(Exception):
-    """No decomposition; the text says why, `hint` what helps."""
+    """Failed decomposition; the text has the reason, `hint` the remedy."""
 
     def __init__(self, text: str, hint: str = "") -> None:
         super().__init__(text)
@@ -53,11 +53,16 @@ class DecompositionError(Exception):
 
 
 def is_available() -> bool:
+    """Check whether CoACD is installed."""
     return importlib.util.find_spec("coacd") is not None
 
 
 def decompose(vertices: Floats, faces: Ints, most: int) -> list[Floats]:
-    """Point sets whose hulls together make up the mesh, at most `most` of them. Raises DecompositionError."""
+    """Return at most `most` point sets whose hulls together make up the mesh.
+
+    Raises:
+        DecompositionError: CoACD is missing or failed.
+    """
     if not is_available():
         raise DecompositionError(
             "convex decomposition needs CoACD, which is not installed", "pip install 'simkit-robotics[decompose]'"
@@ -68,8 +73,8 @@ def decompose(vertices: Floats, faces: Ints, most: int) -> list[Floats]:
         np.savez(source, vertices=vertices.astype(float), faces=faces.astype(np.int32), **settings)  # type: ignore[arg-type]
         _run(source, target)
         try:
-            with np.load(target, allow_pickle=False) as made:
-                return [np.asarray(made[f"p{i}"], float) for i in range(len(made.files))]
+            with np.load(target, allow_pickle=False) as result:
+                return [np.asarray(result[f"p{i}"], float) for i in range(len(result.files))]
         except (OSError, ValueError, KeyError):
             raise DecompositionError("CoACD gave no result") from None
 
@@ -82,41 +87,41 @@ def _run(source: Path, target: Path) -> None:
             env=environment,
             stdin=subprocess.DEVNULL,
             capture_output=True,
-            timeout=_PATIENCE,
+            timeout=_WALL_LIMIT,
             check=False,
         )
     except subprocess.TimeoutExpired:
-        raise DecompositionError(f"CoACD did not end within {_PATIENCE:g} s") from None
+        raise DecompositionError(f"CoACD did not end within {_WALL_LIMIT:g} s") from None
     except OSError as problem:
         raise DecompositionError(f"CoACD could not be started: {problem.strerror}") from None
     if done.returncode:
-        said = done.stderr.decode("utf-8", "replace").strip().splitlines()
-        raise DecompositionError(f"CoACD failed ({said[-1][:200] if said else f'exit code {done.returncode}'})")
+        output = done.stderr.decode("utf-8", "replace").strip().splitlines()
+        raise DecompositionError(f"CoACD failed ({output[-1][:200] if output else f'exit code {done.returncode}'})")
 
 
 LARGEST_RATIO: Final = 1.1
-"""Hulls with more than this share of the mesh's volume are a warning instead of a note."""
+"""Largest ratio of the hulls' volume to the mesh's volume for a note; a larger one is a warning."""
 
 LARGEST_ESTIMATE: Final = 1.25
-"""The same for meshes that are not closed, whose volume is an estimate."""
+"""Largest ratio for meshes that are not closed, whose volume is an estimate."""
 
-_REPORTS: Final = 2  # counted up when findings change, which are kept with the bodies
+_REPORTS: Final = 2  # version of the findings, which are cached with the bodies
 _DECOMPOSE: Final = 'give the collision simple shapes, or <mesh optimization="convex_decomposition">'
 _KEPT: Final = 128
 _memory: OrderedDict[str, ConvexBodies] = OrderedDict()
 
 CollisionFinding = tuple[str, str, str, str]
-"""Severity, code, text without the mesh's name, hint."""
+"""Severity, code, text without the mesh's name, and hint."""
 
 
 @dataclass(frozen=True, eq=False)
 class ConvexBodies:
-    """Convex bodies that collide for one mesh.
+    """Convex collision bodies of one mesh.
 
     Attributes:
-        shapes: vertices, shape (n, 3) [m], and faces of each; no faces where MuJoCo is to find them.
-        is_exact: whether rays may be cast at them; else rays need the mesh itself.
-        findings: what a user should hear.
+        shapes: vertices, shape (n, 3) [m], and faces of each body; no faces if MuJoCo has to compute them.
+        is_exact: True if rays may hit the bodies; otherwise rays need the mesh itself.
+        findings: diagnostics for the user.
     """
 
     shapes: tuple[tuple[Floats, Ints], ...]
@@ -127,13 +132,14 @@ class ConvexBodies:
 def convex_bodies(
     vertices: Floats, faces: Ints, *, fixed: bool, optimization: str = "", most: int = 16
 ) -> ConvexBodies:
-    """The bodies for a mesh.
+    """Return the collision bodies of a mesh.
 
     Args:
-        vertices, faces: equal vertices merged.
-        fixed: nothing moves it but the user.
-        optimization: "", "convex_hull" or "convex_decomposition", as SDF's `<mesh>` says.
-        most: pieces of a decomposition.
+        vertices: vertices with equal ones merged, shape (n, 3) [m].
+        faces: vertex indices, shape (m, 3).
+        fixed: True if only the user moves the mesh.
+        optimization: "", "convex_hull" or "convex_decomposition", as in SDF's `<mesh>`.
+        most: largest number of pieces of a decomposition.
     """
     settings = (FORMAT, _REPORTS, fixed, optimization, most if optimization == "convex_decomposition" else 0, THRESHOLD)
     key = _key(vertices, faces, (*settings, is_available() if optimization == "convex_decomposition" else None))
@@ -165,8 +171,8 @@ def _compute_bodies(vertices: Floats, faces: Ints, fixed: bool, optimization: st
             return ConvexBodies(pieces, not fixed, (_decompose_mesh(vertices, faces, pieces),))
         except DecompositionError as problem:
             rest = _surface(vertices, faces) if fixed else _by_pieces(vertices, faces)
-            said = ("warning", "SK-MESH-014", f"is not decomposed: {problem}", problem.hint)
-            return ConvexBodies(rest.shapes, rest.is_exact, (said, *rest.findings))
+            finding = ("warning", "SK-MESH-014", f"is not decomposed: {problem}", problem.hint)
+            return ConvexBodies(rest.shapes, rest.is_exact, (finding, *rest.findings))
     return _surface(vertices, faces) if fixed else _by_pieces(vertices, faces)
 
 
@@ -181,7 +187,7 @@ def _by_pieces(vertices: Floats, faces: Ints) -> ConvexBodies:
     sets = [points for points in piece_hulls(vertices, faces) if hull_volume(points) > 0.0] or [vertices]
     own = mesh_volume(vertices, faces)
     whole = sum(hull_volume(points) for points in sets)
-    what = "its convex hull" if len(sets) == 1 else f"the convex hulls of its {len(sets)} pieces"
+    hulls = "its convex hull" if len(sets) == 1 else f"the convex hulls of its {len(sets)} pieces"
     if own:
         ratio = whole / own
         severity = "warning" if ratio > LARGEST_RATIO else "note"
@@ -189,10 +195,10 @@ def _by_pieces(vertices: Floats, faces: Ints) -> ConvexBodies:
     else:
         ratio = filled_ratio(vertices, faces, sets)
         severity = "warning" if ratio > LARGEST_ESTIMATE else "note"
-        share = f"about {ratio:.1f} times what the mesh encloses (it is not closed)"
-    text = f"collides as {what}, {share}"
-    said = severity, "SK-MESH-004", text, _DECOMPOSE if severity == "warning" else ""
-    findings = (said,) if not own or whole > 1.005 * own else ()
+        share = f"about {ratio:.1f} times the volume that the mesh encloses (it is not closed)"
+    text = f"collides as {hulls}, {share}"
+    finding = severity, "SK-MESH-004", text, _DECOMPOSE if severity == "warning" else ""
+    findings = (finding,) if not own or whole > 1.005 * own else ()
     return ConvexBodies(_hulls(sets), True, findings)
 
 
@@ -211,8 +217,8 @@ def _surface(vertices: Floats, faces: Ints) -> ConvexBodies:
 
 
 def _surface_plates(vertices: Floats, faces: Ints) -> ConvexBodies:
-    said = "note", "SK-MESH-007", "is flat: it collides as a thin plate", ""
-    return ConvexBodies(_hulls(surface_prisms(vertices, faces)), False, (said,))
+    finding = "note", "SK-MESH-007", "is flat: it collides as a thin plate", ""
+    return ConvexBodies(_hulls(surface_prisms(vertices, faces)), False, (finding,))
 
 
 # ---------------------------------------------------------------------- hulls
@@ -223,7 +229,7 @@ def _hulls(sets: list[Floats]) -> tuple[tuple[Floats, Ints], ...]:
 
 
 def convex_hull(points: Floats) -> tuple[Floats, Ints] | None:
-    """Vertices and outward faces of the convex hull; None for a sliver, which touches nothing."""
+    """Return vertices and outward faces of the convex hull; None for a degenerate hull without contacts."""
     from scipy.spatial import ConvexHull, QhullError
 
     if _is_stout_prism(points):
@@ -243,7 +249,7 @@ def convex_hull(points: Floats) -> tuple[Floats, Ints] | None:
 
 
 def _is_stout_prism(points: Floats) -> bool:
-    """Whether six points are a triangle and its shifted copy, and far from flat: the usual case, quickly told."""
+    """Check whether six points are a triangle and its shifted copy, far from flat: a fast test of the usual case."""
     if len(points) != 6:
         return False
     shift = points[3:] - points[:3]
@@ -276,7 +282,7 @@ def _load(key: str) -> ConvexBodies | None:
         shapes = tuple(zip(vertices, faces, strict=True)) if len(arrays["vertex_counts"]) else ()
         findings = tuple((str(a), str(b), str(c), str(d)) for a, b, c, d in header["findings"])
         return ConvexBodies(shapes, bool(header["is_exact"]), findings)
-    except Exception:  # noqa: BLE001 -- whatever a foreign file does, the bodies are simply worked out again
+    except Exception:  # noqa: BLE001 -- after any error with a foreign file, the bodies are computed again
         return None
 
 
@@ -288,7 +294,7 @@ def _store(key: str, bodies: ConvexBodies) -> ConvexBodies:
         "vertex_counts": np.array([len(v) for v, _ in shapes], np.int64),
         "face_counts": np.array([len(f) for _, f in shapes], np.int64),
     }
-    is_passing = any(code == "SK-MESH-014" for _, code, _, _ in bodies.findings)
-    if not is_passing:  # a failed decomposition is tried again the next time
+    has_failed = any(code == "SK-MESH-014" for _, code, _, _ in bodies.findings)
+    if not has_failed:  # a failed decomposition is tried again the next time
         store_arrays("collisions", key, {"is_exact": bodies.is_exact, "findings": bodies.findings}, arrays)
     return bodies

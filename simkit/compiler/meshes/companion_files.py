@@ -1,4 +1,4 @@
-"""Files that a mesh names: materials, buffers, pictures. Only those beside it or in its own model are read."""
+"""Companion files of a mesh: materials, buffers, images. Only files beside the mesh or in its model are read."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ Pixels = npt.NDArray[np.uint8]
 
 
 class Companions:
-    """What one mesh file may read besides itself, what it did read, and what was wrong with it.
+    """Companion files of one mesh file, with a list of those that were read and of problems.
 
     Args:
-        file: the mesh file; its folder is where relative names start.
+        file: mesh file; relative names start from its folder.
 
     Attributes:
-        read: path -> (size, modification time) of each companion that was asked for; None where it is not there.
-        notes: one sentence for each thing that was left out.
+        read: (size, modification time) of each requested companion by path; None for a missing file.
+        notes: one sentence for each omitted element.
     """
 
     def __init__(self, file: Path) -> None:
@@ -47,16 +47,17 @@ class Companions:
 
     @cached_property
     def _roots(self) -> tuple[Path, Path, Path]:
-        """The folders of the model that the file belongs to: as written, really, and that of the real file."""
+        """Folders of the file's model: as written, resolved, and that of the resolved file."""
         written = model_folder(_normal(self.file))
         return written, Path(os.path.realpath(written)), model_folder(Path(os.path.realpath(self.file)))
 
     def note(self, text: str) -> None:
+        """Record an omitted element once."""
         if text not in self.notes and len(self.notes) < MOST_NOTES:
             self.notes.append(text)
 
     def find(self, name: str) -> Path | None:
-        """The companion that `name` means, or None where there is none or it lies outside of the mesh's model."""
+        """Return the path of a companion; None if it is missing or outside the mesh's model."""
         name = name.strip().replace("\\", "/")
         if not name or "\0" in name or len(name) > 1000:
             return None
@@ -102,7 +103,7 @@ class Companions:
         return any(_holds(r, place) for r in self._roots) and any(_holds(r, real) for r in self._roots[1:])
 
     def content(self, name: str) -> bytes | None:
-        """A companion's bytes; None, with a note, where it cannot be had."""
+        """Return a companion's bytes; None, with a note, if they cannot be read."""
         place = self.find(name)
         if place is None:
             return None
@@ -116,13 +117,14 @@ class Companions:
             return None
 
     def picture(self, name: str) -> Pixels | None:
-        """A texture by its name; None, with a note, where it cannot be used."""
+        """Return a texture by its name; None, with a note, if it cannot be used."""
         if name not in self._pictures:
             content = self.content(name)
             self._pictures[name] = None if content is None else self.picture_in(content, name)
         return self._pictures[name]
 
     def picture_in(self, content: bytes, name: str) -> Pixels | None:
+        """Return the texture in some bytes; None, with a note, if it cannot be used."""
         try:
             return read_pixels(content)
         except MeshFileError as problem:
@@ -131,7 +133,7 @@ class Companions:
 
 
 def model_folder(file: Path) -> Path:
-    """The outermost model or package that a file belongs to, else the parent of its own folder."""
+    """Return the outermost model or package of a file, else the parent of its folder."""
     found = file.parent.parent if len(file.parent.parts) > 2 else file.parent
     for ancestor in (file.parent, *list(file.parents)[1:6]):
         if any((ancestor / name).is_file() for name in _MANIFESTS):
@@ -140,10 +142,10 @@ def model_folder(file: Path) -> Path:
 
 
 def read_pixels(source: bytes | Path) -> Pixels:
-    """A picture as uint8 rows from the top, shape (h, w, 3), not larger than MuJoCo draws comfortably.
+    """Read an image as uint8 rows from the top, shape (h, w, 3), limited to a size that MuJoCo draws well.
 
     Raises:
-        MeshFileError: it is none, or it is too large; the size is known before anything is unpacked.
+        MeshFileError: the file is not an image or is too large; the size is checked before decoding.
     """
     from PIL import Image
 
@@ -157,7 +159,7 @@ def read_pixels(source: bytes | Path) -> Pixels:
                 return _rgb(image)
     except MeshFileError:
         raise
-    except Exception as problem:  # noqa: BLE001 -- a decoder of broken data raises whatever it likes
+    except Exception as problem:  # noqa: BLE001 -- a decoder of broken data may raise anything
         raise MeshFileError(f"is not a readable picture ({_short(str(problem) or type(problem).__name__)})") from None
 
 

@@ -1,4 +1,4 @@
-"""Convex pieces for the contacts of a mesh that is not convex, and how much a mesh encloses."""
+"""Convex pieces for the contacts of a non-convex mesh, and the volume that a mesh encloses."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy.typing as npt
 from simkit.compiler.meshes.mesh_part import Floats, Ints
 
 PRISMS_MOST: Final = 10_000
-"""More patches than this are thinned out first (and reported)."""
+"""Largest number of patches; a larger mesh is simplified first (and reported)."""
 
 HULLS_MOST: Final = 64
 THICKNESS: Final = 0.05
@@ -20,14 +20,14 @@ _THINNEST: Final = 0.002
 
 @dataclass(frozen=True, eq=False)
 class ConvexPiece:
-    """A convex body: points, shape (n, 3) [m], and whether it is an exact closed piece of the mesh."""
+    """Convex body: points, shape (n, 3) [m], and True in `exact` for an exact closed piece of the mesh."""
 
     points: Floats
     exact: bool
 
 
 def is_convex(vertices: Floats, faces: Ints) -> bool:
-    """Whether a mesh is closed and fills its hull to 0.1 %."""
+    """Check whether a mesh is closed and fills its hull to 0.1 %."""
     import trimesh
 
     mesh = trimesh.Trimesh(vertices, faces, process=False)
@@ -38,7 +38,7 @@ def is_convex(vertices: Floats, faces: Ints) -> bool:
 
 
 def hull_volume(vertices: Floats) -> float:
-    """Volume of the convex hull [m³]; 0 for points in a plane."""
+    """Return the volume of the convex hull [m³]; 0 for points in a plane."""
     from scipy.spatial import ConvexHull, QhullError
 
     try:
@@ -48,7 +48,7 @@ def hull_volume(vertices: Floats) -> float:
 
 
 def connected_pieces(vertices: Floats, faces: Ints) -> list[tuple[Floats, Ints]]:
-    """The connected pieces of a mesh, in the order of their first face."""
+    """Return the connected pieces of a mesh, in the order of their first face."""
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import connected_components
 
@@ -57,14 +57,14 @@ def connected_pieces(vertices: Floats, faces: Ints) -> list[tuple[Floats, Ints]]
     _, label = connected_components(coo_matrix((np.ones(len(row), bool), (row, column)), shape=(n, n)), directed=False)
     of_face = label[faces[:, 0]]
     pieces = []
-    for one in dict.fromkeys(of_face.tolist()):
-        used, inverse = np.unique(faces[of_face == one], return_inverse=True)
+    for piece in dict.fromkeys(of_face.tolist()):
+        used, inverse = np.unique(faces[of_face == piece], return_inverse=True)
         pieces.append((vertices[used], np.asarray(inverse).reshape(-1, 3).astype(np.int32)))
     return pieces
 
 
 def piece_hulls(vertices: Floats, faces: Ints) -> list[Floats]:
-    """Point sets whose hulls collide for a moving mesh: one for each connected piece, or one for all."""
+    """Return point sets whose hulls collide for a moving mesh: one for each connected piece, or one for all."""
     pieces = connected_pieces(vertices, faces)
     if len(pieces) > HULLS_MOST:
         return [vertices]
@@ -72,7 +72,7 @@ def piece_hulls(vertices: Floats, faces: Ints) -> list[Floats]:
 
 
 def convex_pieces(vertices: Floats, faces: Ints) -> list[ConvexPiece]:
-    """Convex bodies that together have the surface of a static mesh."""
+    """Return convex bodies that together have the surface of a static mesh."""
     pieces: list[ConvexPiece] = []
     parts = connected_pieces(vertices, faces)
     low, high = (np.array([end(v, axis=0) for v, _ in parts]) for end in (np.min, np.max))
@@ -87,13 +87,13 @@ def convex_pieces(vertices: Floats, faces: Ints) -> list[ConvexPiece]:
 
 
 def is_inside_out(vertices: Floats, faces: Ints) -> bool:
-    """Whether a closed piece turns its faces inwards: the walls of a room or of a cavity, not a body."""
+    """Check whether a closed piece has inward faces: the walls of a room or of a cavity, not a body."""
     a, b, c = (np.asarray(vertices, float)[np.asarray(faces)[:, i]] for i in range(3))
     return float(np.einsum("ij,ij->", a, np.cross(b, c))) < 0.0  # six times the volume
 
 
 def thin_mesh(vertices: Floats, faces: Ints, most: int) -> tuple[Floats, Ints]:
-    """A mesh of at most `most` faces: corners in one cell of an ever coarser grid become their mean."""
+    """Simplify a mesh to at most `most` faces: all vertices in one cell of an ever coarser grid become their mean."""
     low, size = vertices.min(axis=0), float(np.ptp(vertices, axis=0).max())
     cells = 1024.0
     while True:
@@ -110,7 +110,7 @@ def thin_mesh(vertices: Floats, faces: Ints, most: int) -> tuple[Floats, Ints]:
 
 
 def surface_prisms(vertices: Floats, faces: Ints) -> list[Floats]:
-    """One prism per flat convex patch: the patch itself and its copy pushed inwards."""
+    """Return one prism for each flat convex patch: the patch and its copy moved inwards."""
     import trimesh
 
     mesh = trimesh.Trimesh(vertices, faces, process=False)
@@ -129,12 +129,12 @@ def surface_prisms(vertices: Floats, faces: Ints) -> list[Floats]:
 
 
 Trimesh = Any
-"""A mesh of trimesh, whose own types are not complete."""
+"""Mesh of trimesh, whose own types are incomplete."""
 Patch = Ints | npt.NDArray[np.int64]
 
 
 def _patches(mesh: Trimesh) -> list[Patch]:
-    """Groups of face indices that lie in one plane and have a convex outline; other faces stand alone."""
+    """Return groups of coplanar faces with a convex outline; every other face is its own group."""
     patches: list[Patch] = []
     grouped = np.zeros(len(mesh.faces), bool)
     for facet, boundary in zip(mesh.facets, mesh.facets_boundary, strict=True):
@@ -149,7 +149,7 @@ def _fills_its_hull(mesh: Trimesh, facet: Patch, boundary: Patch) -> bool:
     from scipy.spatial import ConvexHull, QhullError
 
     points = mesh.vertices[np.unique(boundary)]
-    if len(points) < 3:  # faces that lie on each other bound nothing
+    if len(points) < 3:  # coincident faces have no outline
         return False
     u, v, normal = _patch_axes(mesh.face_normals[facet[0]])
     if np.ptp(points @ normal) > 1e-6 * max(1.0, float(mesh.scale)):
@@ -162,7 +162,7 @@ def _fills_its_hull(mesh: Trimesh, facet: Patch, boundary: Patch) -> bool:
 
 
 def _patch_outline(mesh: Trimesh, patch: Patch) -> tuple[Floats, Floats]:
-    """Corner points and outward normal of a patch."""
+    """Return the corner points and the outward normal of a patch."""
     points = mesh.vertices[np.unique(mesh.faces[patch])]
     return np.asarray(points, float), np.asarray(mesh.face_normals[patch[0]], float)
 
@@ -175,7 +175,7 @@ def _patch_axes(normal: Floats) -> tuple[Floats, Floats, Floats]:
 
 
 def _room_inwards(mesh: Trimesh, probes: list[Floats], normals: Floats) -> Floats:
-    """Distance [m] from each patch, along its inward normal, to the next surface; inf where there is none."""
+    """Return the distance [m] from each patch, along its inward normal, to the next surface; inf without one."""
     counts = [len(p) for p in probes]
     inward = -np.repeat(normals, counts, axis=0)
     skin = 1e-5 * max(1e-3, float(mesh.scale))
@@ -183,7 +183,7 @@ def _room_inwards(mesh: Trimesh, probes: list[Floats], normals: Floats) -> Float
     distance = np.full(len(origins), np.inf)
     try:
         points, rays, _ = mesh.ray.intersects_location(origins, inward, multiple_hits=False)
-    except ImportError:  # no ray tracer on this platform: stay thin everywhere
+    except ImportError:  # no ray tracer on this platform: use thin prisms everywhere
         return np.full(len(probes), 2.0 * _THINNEST)
     if len(rays):
         distance[rays] = np.einsum("ij,ij->i", points - origins[rays], inward[rays]) + skin
@@ -195,7 +195,7 @@ _SAMPLES: Final = 80_000
 
 
 def mesh_volume(vertices: Floats, faces: Ints) -> float:
-    """Volume of a closed mesh [m³]; 0 for an open one."""
+    """Return the volume of a closed mesh [m³]; 0 for an open one."""
     corners = faces.astype(np.int64)
     edges = np.sort(corners[:, (0, 1, 1, 2, 2, 0)].reshape(-1, 2), axis=1)
     counts = np.unique(edges[:, 0] * len(vertices) + edges[:, 1], return_counts=True)[1]
@@ -207,14 +207,15 @@ def mesh_volume(vertices: Floats, faces: Ints) -> float:
 
 
 def filled_ratio(vertices: Floats, faces: Ints, sets: list[Floats]) -> float:
-    """How many times as large hulls are as what a mesh encloses that need not be closed: an estimate, at least 1.
+    """Return the estimated ratio of the hulls' volume to the volume that a mesh encloses, at least 1.
 
-    A point is enclosed where triangles lie on both of its sides along each axis. Hulls are measured in the same way, so
-    that the coarseness of the cells does not count.
+    The mesh may be open. A point is enclosed if triangles lie on both of its sides along each axis. Hulls are measured
+    in the same way, so that the coarseness of the cells does not count.
 
     Args:
-        vertices, faces: the mesh.
-        sets: corners of the hulls that stand for it, shape (n, 3) each.
+        vertices: vertices of the mesh [m], shape (n, 3).
+        faces: vertex indices, shape (m, 3).
+        sets: corners of each hull, shape (n, 3).
     """
     from scipy.spatial import ConvexHull, QhullError
 
@@ -231,7 +232,7 @@ def filled_ratio(vertices: Floats, faces: Ints, sets: list[Floats]) -> float:
 
 
 def _enclosed_cells(corners: Floats, low: Floats, size: Floats) -> npt.NDArray[np.bool_]:
-    """The cells that triangles enclose, shape (cells, cells, cells)."""
+    """Return a mask of the cells that triangles enclose, shape (cells, cells, cells)."""
     cells = np.clip(((_sample_points(corners) - low) / size).astype(int), 0, _CELLS - 1)
     inside = np.ones((_CELLS,) * 3, bool)
     along = np.arange(_CELLS)
@@ -246,7 +247,7 @@ def _enclosed_cells(corners: Floats, low: Floats, size: Floats) -> npt.NDArray[n
 
 
 def _sample_points(corners: Floats) -> Floats:
-    """Points spread evenly over triangles, always the same ones, and their corners."""
+    """Return evenly distributed, reproducible points on triangles, and the corners of the triangles."""
     areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
     random = np.random.default_rng(0)
     chosen = np.searchsorted(np.cumsum(areas), random.random(_SAMPLES) * areas.sum())

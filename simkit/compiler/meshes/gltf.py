@@ -1,7 +1,7 @@
-"""glTF 2.0 (`.gltf`, `.glb`), as Gazebo reads it: node transforms count, and the file's own axes stay as they are.
+"""Reader for glTF 2.0 (`.gltf`, `.glb`) with Gazebo's rules: node transforms count, the file's axes stay.
 
-Gazebo hands the file to assimp, which does not turn glTF's y axis up to z, and keeps the root node's transform.
-So a model made for it says `<pose>0 0 0 1.5708 0 0</pose>`, and turning here as well would lay it down again.
+Gazebo passes the file to assimp, which does not rotate glTF's y axis to z, and keeps the root node's transform. A model
+made for Gazebo therefore has `<pose>0 0 0 1.5708 0 0</pose>`. An additional rotation here would be wrong.
 """
 
 from __future__ import annotations
@@ -33,7 +33,11 @@ _CANNOT: Final = ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_
 
 
 def read_gltf(content: bytes, companions: Companions) -> list[MeshPart]:
-    """The parts of the file's scene, one for each node and material. Raises MeshFileError."""
+    """Return the parts of the file's scene, one for each node and material.
+
+    Raises:
+        MeshFileError: the file cannot be used.
+    """
     document, binary = _chunks(content) if content[:4] == b"glTF" else (content, None)
     try:
         tree = json.loads(document.decode("utf-8-sig"))
@@ -43,18 +47,18 @@ def read_gltf(content: bytes, companions: Companions) -> list[MeshPart]:
         raise MeshFileError("is not a glTF document")
     version = str((tree.get("asset") or {}).get("version", "2.0")) if isinstance(tree.get("asset"), dict) else "2.0"
     if not version.startswith("2"):
-        raise MeshFileError(f"is glTF {version[:20]}, 2.0 is read")
+        raise MeshFileError(f"is glTF {version[:20]}; only glTF 2.0 is supported")
     required = [e for e in tree.get("extensionsRequired") or [] if e in _CANNOT[:2]]
     if required:
-        raise MeshFileError(f"needs {', '.join(required)}, which is not read; save it without compression")
+        raise MeshFileError(f"needs {', '.join(required)}, which is not supported; save it without compression")
     try:
         return _Gltf(tree, binary, companions).parts()
     except (KeyError, IndexError, TypeError, ValueError, AttributeError, OverflowError) as problem:
-        raise MeshFileError(f"is not a sound glTF document ({type(problem).__name__}: {problem})") from None
+        raise MeshFileError(f"is not a valid glTF document ({type(problem).__name__}: {problem})") from None
 
 
 def _chunks(content: bytes) -> tuple[bytes, bytes | None]:
-    """The JSON and the binary chunk of a `.glb` container."""
+    """Return the JSON and the binary chunk of a `.glb` container."""
     at, document, binary = 12, b"", None
     while at + 8 <= len(content):
         length = int.from_bytes(content[at : at + 4], "little")
@@ -74,7 +78,7 @@ JsonObject = dict[str, Any]
 
 
 class _Gltf:
-    """One document with its buffers."""
+    """glTF document with its buffers."""
 
     def __init__(self, tree: JsonObject, binary: bytes | None, companions: Companions) -> None:
         self.tree, self.binary, self.companions = tree, binary, companions
@@ -142,7 +146,7 @@ class _Gltf:
         if mode not in (4, 5, 6) or "POSITION" not in attributes:
             return None
         if "KHR_draco_mesh_compression" in (primitive.get("extensions") or {}):
-            raise MeshFileError("is compressed with Draco, which is not read; save it without compression")
+            raise MeshFileError("is compressed with Draco, which is not supported; save it without compression")
         points = self._accessor(attributes["POSITION"]).astype(float)
         if points.shape[1] != 3:
             raise MeshFileError("has positions that are not three numbers each")
@@ -273,7 +277,7 @@ class _Gltf:
         return self.companions.picture(uri)
 
     def _turned_uv(self, uv: Floats | None, material: object) -> Floats | None:
-        """With v upwards (glTF counts it from the top), and KHR_texture_transform's offset, turn and scale applied."""
+        """Return coordinates with v upwards (in glTF v points down), with KHR_texture_transform applied."""
         if uv is None:
             return None
         change = (self._base_texture(material).get("extensions") or {}).get("KHR_texture_transform")

@@ -1,8 +1,8 @@
-"""Converted meshes on disk, keyed by content. Optional: any failure to read or write only costs time.
+"""Disk cache of converted meshes, keyed by content. A failure to read or write only costs time.
 
-A file is written under a name of its own and renamed into place, so that two processes never see half of one; what
-is broken or from another version is made again. A conversion that read further files (materials, textures) lists
-them with size and time, and is made again when one of them has changed.
+A file is written under a temporary name and then renamed, so that no process reads half a file. A broken file or one of
+another version is converted again. A conversion that read companion files (materials, textures) lists them with size
+and time. It is repeated when one of them has changed.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ import numpy as np
 from simkit.compiler.meshes.mesh_part import MeshPart
 
 FORMAT: Final = "simkit mesh 4"
-"""The version of the conversions: change it whenever a reader gives other numbers than before."""
+"""Version of the conversions: change it whenever a reader gives other numbers than before."""
 
 _SELF_CONTAINED: Final = {".stl", ".glb", ".ply"}
 _MAGIC: Final = b"simkit\x004"
@@ -35,11 +35,11 @@ _LARGEST_HEADER: Final = 1 << 22
 
 @dataclass(frozen=True)
 class ConvertedMesh:
-    """What became of one mesh file.
+    """Conversion of one mesh file.
 
     Attributes:
-        notes: one sentence for each thing that was left out.
-        companions: path -> (size, modification time) of each further file that was asked for; None where absent.
+        notes: one sentence for each omitted element.
+        companions: (size, modification time) of each requested companion file by path; None for a missing one.
     """
 
     parts: tuple[MeshPart, ...]
@@ -48,14 +48,14 @@ class ConvertedMesh:
 
 
 def cache_directory() -> Path:
-    """`SIMKIT_CACHE_DIR`, else the platform's own place for caches."""
+    """Return `SIMKIT_CACHE_DIR`, else the platform's cache folder."""
     return _directory(*map(os.environ.get, ("SIMKIT_CACHE_DIR", "XDG_CACHE_HOME", "LOCALAPPDATA", "HOME")))
 
 
 @lru_cache(maxsize=8)
-def _directory(given: str | None, caches: str | None, windows: str | None, _home: str | None) -> Path:
-    if given:
-        return Path(given)
+def _directory(chosen: str | None, caches: str | None, windows: str | None, _home: str | None) -> Path:
+    if chosen:
+        return Path(chosen)
     if sys.platform == "win32":
         return Path(windows or Path.home()) / "simkit"
     if sys.platform == "darwin":
@@ -64,16 +64,16 @@ def _directory(given: str | None, caches: str | None, windows: str | None, _home
 
 
 def mesh_key(file: Path, content: bytes) -> str:
-    """A name for the conversion of this content; for formats that name further files the folder counts as well."""
+    """Return the cache key of this content; for formats with companion files, the folder is part of the key."""
     suffix = file.suffix.lower()
-    place = "" if suffix in _SELF_CONTAINED else str(file.parent)
-    digest = hashlib.sha256(f"{FORMAT}\n{suffix}\n{place}\n".encode("utf-8", "surrogateescape"))
+    folder = "" if suffix in _SELF_CONTAINED else str(file.parent)
+    digest = hashlib.sha256(f"{FORMAT}\n{suffix}\n{folder}\n".encode("utf-8", "surrogateescape"))
     digest.update(content)
     return digest.hexdigest()[:40]
 
 
 def load_converted(key: str) -> ConvertedMesh | None:
-    """The conversion stored under `key`, or None where there is no whole and current one."""
+    """Return the conversion stored under `key`; None without a complete and current one."""
     stored = load_arrays("meshes", key)
     if stored is None:
         return None
@@ -84,11 +84,12 @@ def load_converted(key: str) -> ConvertedMesh | None:
             return None
         parts = tuple(_part_from(arrays, i, entry) for i, entry in enumerate(header["parts"]))
         return ConvertedMesh(parts, tuple(str(n) for n in header["notes"]), companions)
-    except Exception:  # noqa: BLE001 -- whatever a broken or foreign file does, the mesh is simply converted again
+    except Exception:  # noqa: BLE001 -- after any error with a broken or foreign file, the mesh is converted again
         return None
 
 
 def store_converted(key: str, converted: ConvertedMesh) -> None:
+    """Store a conversion under `key`."""
     arrays: dict[str, Any] = {}
     for i, part in enumerate(converted.parts):
         arrays[f"v{i}"], arrays[f"f{i}"] = part.vertices, part.faces
@@ -106,7 +107,7 @@ def store_converted(key: str, converted: ConvertedMesh) -> None:
 
 
 def load_arrays(kind: str, key: str) -> tuple[dict[str, Any], dict[str, Any]] | None:
-    """A header and arrays stored under `key`, checked by their digest; None where they are not whole."""
+    """Return the header and arrays stored under `key`, verified by a checksum; None if they are incomplete."""
     try:
         content = _file_of(kind, key).read_bytes()
         length = int.from_bytes(content[8:16], "little")
@@ -129,7 +130,7 @@ def load_arrays(kind: str, key: str) -> tuple[dict[str, Any], dict[str, Any]] | 
 
 
 def store_arrays(kind: str, key: str, header: Mapping[str, Any], arrays: Mapping[str, Any]) -> None:
-    """Writes a file of its own and renames it into place."""
+    """Write a file under a temporary name and rename it."""
     body, listed, offset = io.BytesIO(), [], 0
     for name, array in arrays.items():
         flat = np.ascontiguousarray(array)

@@ -1,4 +1,4 @@
-"""Triangles of one material, the bounds on mesh files, and the numbers in their text."""
+"""Triangles of one material, limits of mesh files, and parsing of numbers."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _areas: WeakKeyDictionary[MeshPart, dict[float, bool]] = WeakKeyDictionary()
 
 
 class MeshFileError(Exception):
-    """A mesh file that cannot be used; the text says why."""
+    """Unusable mesh file; the text has the reason."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,14 +29,15 @@ class MeshPart:
     """Triangles of one material.
 
     Attributes:
-        name: of the sub-mesh in the file.
-        vertices: shape (n, 3) [m].
-        faces: shape (m, 3), counter-clockwise seen from outside.
-        uv: shape (n, 2), v upwards, or None.
-        colour: RGBA from 0 to 1, or None where the file gives none.
+        name: name of the sub-mesh in the file.
+        vertices: vertices [m], shape (n, 3).
+        faces: vertex indices, shape (m, 3), counter-clockwise seen from outside.
+        uv: texture coordinates, shape (n, 2), v upwards, or None.
+        colour: RGBA from 0 to 1, or None if the file has none.
         texture: image rows from the top, shape (h, w, 3), uint8, or None.
-        specular, emission: how strongly it mirrors and glows, from 0 to 1.
-        aliases: further names that the sub-mesh goes by in its file.
+        specular: strength of reflection, from 0 to 1.
+        emission: strength of emission, from 0 to 1.
+        aliases: further names of the sub-mesh in its file.
     """
 
     name: str
@@ -50,20 +51,21 @@ class MeshPart:
     aliases: tuple[str, ...] = ()
 
     def scaled(self, scale: tuple[float, float, float]) -> MeshPart:
-        """Stretched along the axes; a mirroring scale turns the faces over again."""
+        """Return the part scaled along the axes; a mirroring scale reverses the faces."""
         mirrored = scale[0] * scale[1] * scale[2] < 0.0
         faces = np.ascontiguousarray(self.faces[:, ::-1]) if mirrored else self.faces
         return replace(self, vertices=self.vertices * np.asarray(scale, float), faces=faces)
 
     def moved(self, offset: Floats) -> MeshPart:
+        """Return the part moved by an offset [m]."""
         return replace(self, vertices=self.vertices + offset)
 
 
 def join_parts(parts: list[MeshPart]) -> tuple[Floats, Ints]:
-    """Vertices and faces of all parts as one mesh; equal vertices are one, faces without area are left out."""
+    """Return vertices and faces of all parts as one mesh; equal vertices are merged, faces without area are dropped."""
     if len(parts) != 1:
         return _compute_joined(parts)
-    if parts[0] not in _joined_parts:  # a part of the cache comes again with every load
+    if parts[0] not in _joined_parts:  # every load returns the same parts of the cache
         _joined_parts[parts[0]] = _compute_joined(parts)
         for values in _joined_parts[parts[0]]:
             values.flags.writeable = False
@@ -86,9 +88,9 @@ def _compute_joined(parts: list[MeshPart]) -> tuple[Floats, Ints]:
 
 
 def _unique_rows(rows: Indices) -> tuple[Indices, Indices]:
-    """Where each different row stands first, in the order of the rows, and for every row which one it is.
+    """Return the index of the first occurrence of each different row, sorted by row, and the number of every row.
 
-    What `np.unique(axis=0)` gives, in a third of its time.
+    The result is that of `np.unique(axis=0)`, in a third of its time.
     """
     order = np.lexsort(rows.T[::-1])
     in_order = rows[order]
@@ -103,7 +105,7 @@ _FIRST_FACES = 64
 
 
 def has_area(part: MeshPart, least: float) -> bool:
-    """Whether the triangles have more than `least` [m²] in all; the first few nearly always do."""
+    """Check whether the triangles have more than `least` [m²] in total; the first few nearly always suffice."""
     known = _areas.setdefault(part, {})
     if least not in known:
         known[least] = _has_area(part, least)
@@ -121,18 +123,26 @@ def _has_area(part: MeshPart, least: float) -> bool:
 
 LARGEST_FILE: Final = 512 << 20
 LARGEST_FACES: Final = 4_000_000
-FARTHEST_VERTEX: Final = 1e9  # [m]; volumes of farther ones leave the single precision that the engine keeps them in
+FARTHEST_VERTEX: Final = 1e9  # [m]; volumes of larger meshes exceed the engine's single precision
 DEEPEST_NODE: Final = 64
 MOST_NODES: Final = 20_000
 
 
 def numbers_of(text: bytes | str, what: str) -> Floats:
-    """Numbers separated by white space. Raises MeshFileError where something else is among them."""
+    """Return the numbers in a text, separated by white space.
+
+    Raises:
+        MeshFileError: the text contains something else.
+    """
     return np.asarray(_parse_numbers(text, float, what), float)
 
 
 def integers_of(text: bytes | str, what: str) -> Indices:
-    """Whole numbers separated by white space, int64. Raises MeshFileError."""
+    """Return the whole numbers in a text, separated by white space, int64.
+
+    Raises:
+        MeshFileError: the text contains something else.
+    """
     numbers: Indices = _parse_numbers(text, np.int64, what)
     return numbers
 
@@ -149,17 +159,17 @@ def _parse_numbers(text: bytes | str, kind: Any, what: str) -> Any:
     try:
         return np.array(text.split(), dtype=kind)
     except (ValueError, OverflowError):
-        raise MeshFileError(f"has something in its {what} that is not a number") from None
+        raise MeshFileError(f"has a text in its {what} that is not a number") from None
 
 
 def fan_triangles(counts: npt.ArrayLike) -> Indices:
-    """Triangles of polygons that lie one behind the other: rows of positions, polygon by polygon.
+    """Return the triangles of consecutive polygons, polygon by polygon.
 
     Args:
-        counts: corners of each polygon, shape (p,).
+        counts: number of corners of each polygon, shape (p,).
 
     Returns:
-        Shape (t, 3): positions in the list of all corners; each polygon is a fan around its first corner.
+        Positions in the list of all corners, shape (t, 3); each polygon is a fan around its first corner.
     """
     counts = np.asarray(counts, np.int64)
     start = np.concatenate([[0], np.cumsum(counts)[:-1]]) if len(counts) else counts
@@ -170,7 +180,7 @@ def fan_triangles(counts: npt.ArrayLike) -> Indices:
 
 
 def unique_rows(rows: Indices) -> tuple[Indices, Ints]:
-    """The different rows of an integer array, in order of appearance, and for each row which one it is."""
+    """Return the different rows of an integer array in order of appearance, and the number of every row."""
     _, first, inverse = np.unique(rows, axis=0, return_index=True, return_inverse=True)
     order = np.argsort(first, kind="stable")
     rank = np.empty_like(order)

@@ -1,7 +1,7 @@
-"""Mesh files as triangles in metres, as Gazebo reads them.
+"""Reader for mesh files as triangles in metres, with Gazebo's rules.
 
 COLLADA: the file's unit counts, its up axis does not (Gazebo ignores it, and models are made for that). glTF: the
-file's axes stay as they are (y up), as in Gazebo. All other formats are in metres and without axes of their own.
+file's axes stay (y up), as in Gazebo. All other formats are in metres and have no axes of their own.
 """
 
 from __future__ import annotations
@@ -38,9 +38,9 @@ SUFFIXES: Final = (".dae", ".stl", ".obj", ".gltf", ".glb", ".ply", ".off")
 
 
 def load_mesh(mesh: Mesh, diagnostics: Diagnostics, where: Where) -> list[MeshPart]:
-    """The mesh of a geometry, scaled; empty (and an error recorded) when the file cannot be used.
+    """Return the scaled mesh of a geometry; empty, with an error recorded, if the file cannot be used.
 
-    What is wrong with a file is said once, however often it is used.
+    A problem of a file is reported once, however often the file is used.
     """
     try:
         if mesh.bone:
@@ -70,19 +70,27 @@ def load_mesh(mesh: Mesh, diagnostics: Diagnostics, where: Where) -> list[MeshPa
 
 
 def report_once(diagnostics: Diagnostics, severity: Any, code: str, message: str, where: Where, hint: str = "") -> None:
-    """Records a finding about a file where it is met first; further uses of the file say nothing new."""
+    """Record a finding about a file at its first use; further uses of the file are not reported."""
     if not any(d.code == code and d.message == message for d in diagnostics):
         diagnostics.add(severity, code, message, where, hint)
 
 
 def load_file(file: Path, submesh: str = "") -> list[MeshPart]:
-    """All triangles of a file by material, in metres. Raises MeshFileError."""
+    """Return all triangles of a file by material, in metres.
+
+    Raises:
+        MeshFileError: the file cannot be used.
+    """
     parts = list(convert_file(file).parts)
     return _submesh(parts, submesh) if submesh else parts
 
 
 def convert_file(file: Path) -> ConvertedMesh:
-    """The content of a mesh file, from the cache where it was converted before. Raises MeshFileError."""
+    """Return the content of a mesh file, from the cache if possible.
+
+    Raises:
+        MeshFileError: the file cannot be used.
+    """
     try:
         stat = file.stat()
     except (OSError, ValueError) as problem:
@@ -115,13 +123,13 @@ def _convert(file: Path, content: bytes) -> ConvertedMesh:
     except MeshFileError:
         raise
     except MemoryError:
-        raise MeshFileError("needs more memory than there is") from None
-    except Exception as problem:  # noqa: BLE001 -- a reader of a broken file raises whatever its format's library does
+        raise MeshFileError("needs more memory than is available") from None
+    except Exception as problem:  # noqa: BLE001 -- the library of a format may raise anything for a broken file
         text = " ".join(str(problem).split())[:200]
         raise MeshFileError(f"is not a readable {file.suffix[1:] or 'mesh'} file: {text}") from None
     parts = [_check_bounds(part) for part in parts if len(part.faces)]
     if not parts:
-        raise MeshFileError("holds no triangles")
+        raise MeshFileError("has no triangles")
     return ConvertedMesh(tuple(parts), tuple(companions.notes), companions.read)
 
 
@@ -132,16 +140,16 @@ def _read(suffix: str, content: bytes, companions: Companions) -> list[MeshPart]
         return _with_trimesh(suffix, content)
     near = closest(suffix, SUFFIXES)
     hint = f"; did you mean {near}?" if near else ""
-    raise MeshFileError(f"is a {suffix or 'nameless'} file; read are {', '.join(SUFFIXES)}{hint}")
+    raise MeshFileError(f"is a {suffix or 'nameless'} file; supported are {', '.join(SUFFIXES)}{hint}")
 
 
 def _with_trimesh(suffix: str, content: bytes) -> list[MeshPart]:
     import trimesh
 
     header = content[:65536].split(b"end_header")[0] if suffix == ".ply" else content[:200]
-    promised = sum(int(n) for line in header.splitlines() for n in line.split()[-1:] if n.isdigit() and len(n) < 20)
-    if promised > 4 * LARGEST_FACES or promised > 4 * len(content):
-        raise MeshFileError("promises more than it holds")
+    declared = sum(int(n) for line in header.splitlines() for n in line.split()[-1:] if n.isdigit() and len(n) < 20)
+    if declared > 4 * LARGEST_FACES or declared > 4 * len(content):
+        raise MeshFileError("declares more elements than it has")
     mesh: Any = trimesh.load_mesh(io.BytesIO(content), file_type=suffix[1:], process=False)
     visual = mesh.visual
     colour = None
@@ -154,9 +162,9 @@ def _with_trimesh(suffix: str, content: bytes) -> list[MeshPart]:
 def _check_bounds(part: MeshPart) -> MeshPart:
     used = part.vertices[part.faces.reshape(-1)] if len(part.vertices) > 3 * len(part.faces) else part.vertices
     if part.faces.min() < 0 or part.faces.max() >= len(part.vertices):
-        raise MeshFileError("has a face with a vertex that is not there")
+        raise MeshFileError("has a face with a missing vertex")
     if not np.isfinite(used).all():
-        raise MeshFileError("has coordinates that are not finite")
+        raise MeshFileError("has NaN or infinite coordinates")
     if np.abs(used).max() > FARTHEST_VERTEX:
         raise MeshFileError(f"has coordinates beyond {FARTHEST_VERTEX:g} m")
     if part.uv is not None and not (np.abs(part.uv) < 1e6).all():
@@ -165,7 +173,7 @@ def _check_bounds(part: MeshPart) -> MeshPart:
 
 
 def _submesh(parts: list[MeshPart], name: str) -> list[MeshPart]:
-    """The parts of one sub-mesh: by the name of its node or group, else by another name of it."""
+    """Return the parts of one sub-mesh: by the name of its node or group, else by an alias."""
     chosen = [p for p in parts if p.name == name] or [p for p in parts if name in p.aliases]
     if not chosen:
         known = list(dict.fromkeys(n for p in parts for n in (p.name, *p.aliases) if n))
@@ -181,26 +189,29 @@ _VERTEX: Final = re.compile(rb"vertex[ \t]+([^\r\n]*)", re.IGNORECASE)
 
 
 def read_stl(content: bytes, companions: Companions) -> list[MeshPart]:
-    """The triangles of a binary or ASCII STL file, which has no names, units or colours. Raises MeshFileError.
+    """Read the triangles of a binary or ASCII STL file, which has no names, units or colours.
 
-    A binary file is known by its length: exporters write `solid` at the beginning of binary files as well.
-    trimesh's reader does not hold the bounds on hostile files, so ours stays: a file that is cut short becomes an empty
-    scene without a word, and its errors name arrays instead of what is wrong with the file.
+    A binary file is recognised by its length, because exporters write `solid` at the beginning of binary files as well.
+    trimesh's reader does not limit hostile files. It reads a truncated file as an empty scene without an error, and its
+    errors name arrays instead of the problem.
+
+    Raises:
+        MeshFileError: the file cannot be used.
     """
-    promised = int.from_bytes(content[80:_HEADER], "little") if len(content) >= _HEADER else -1
-    held = (len(content) - _HEADER) // _RECORD.itemsize
+    declared = int.from_bytes(content[80:_HEADER], "little") if len(content) >= _HEADER else -1
+    present = (len(content) - _HEADER) // _RECORD.itemsize
     is_text = content[:512].lstrip()[:5].lower() == b"solid"
-    if promised >= 0 and len(content) == _HEADER + promised * _RECORD.itemsize:
-        corners = _binary(content, promised)
+    if declared >= 0 and len(content) == _HEADER + declared * _RECORD.itemsize:
+        corners = _binary(content, declared)
     elif is_text and (b"facet" in content[:4096].lower() or b"endsolid" in content[-512:].lower()):
         corners = _ascii(content)
-    elif 0 < promised <= held:
-        companions.note(f"has {len(content) - _HEADER - promised * _RECORD.itemsize} bytes behind its last triangle")
-        corners = _binary(content, promised)
-    elif promised > 0:
-        raise MeshFileError(f"is cut short: its header promises {promised} triangles, there are {max(0, held)}")
+    elif 0 < declared <= present:
+        companions.note(f"has {len(content) - _HEADER - declared * _RECORD.itemsize} bytes behind its last triangle")
+        corners = _binary(content, declared)
+    elif declared > 0:
+        raise MeshFileError(f"is truncated: its header declares {declared} triangles, it has {max(0, present)}")
     else:
-        raise MeshFileError("holds no triangles")
+        raise MeshFileError("has no triangles")
     return [MeshPart("", *merge_corners(corners))]
 
 
@@ -216,12 +227,12 @@ def _ascii(content: bytes) -> Floats:
         raise MeshFileError(f"has more than {LARGEST_FACES} faces")
     numbers = numbers_of(b" ".join(_VERTEX.findall(content)), "vertex")
     if not len(numbers) or len(numbers) % 9:
-        raise MeshFileError(f"has {len(numbers) / 3:g} corners, which is no number of triangles")
+        raise MeshFileError(f"has {len(numbers) / 3:g} corners, which is not a whole number of triangles")
     return numbers.reshape(-1, 3)
 
 
 def merge_corners(corners: Floats) -> tuple[Floats, Ints]:
-    """Vertices and faces of loose triangles, shape (3·m, 3); equal corners are one."""
+    """Return vertices and faces of separate triangles, shape (3·m, 3); equal corners are merged."""
     packed = np.ascontiguousarray(corners + 0.0).view(np.dtype((np.void, 24))).reshape(-1)
     _, first, inverse = np.unique(packed, return_index=True, return_inverse=True)
     order = np.argsort(first, kind="stable")

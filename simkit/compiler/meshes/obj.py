@@ -1,7 +1,7 @@
-"""Wavefront OBJ with its MTL materials: one part for each group (`o`, `g`) and material.
+"""Reader for Wavefront OBJ with MTL materials: one part for each group (`o`, `g`) and material.
 
-trimesh's reader does not hold the bounds on hostile files, so ours stays: it takes vertices of two numbers, raises
-IndexError where a face names a vertex that is not there, and limits neither the faces nor the files that are named.
+trimesh's reader does not limit hostile files: it accepts vertices of two numbers, raises IndexError for a missing
+vertex, and limits neither the faces nor the named files.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from simkit.compiler.meshes.mesh_part import (
 
 @dataclass
 class _MtlMaterial:
-    """A material; each channel None where the file says nothing."""
+    """MTL material; `given` is True if the file specifies the colour."""
 
     diffuse: tuple[float, float, float] = (1.0, 1.0, 1.0)
     given: bool = False
@@ -40,7 +40,7 @@ class _MtlMaterial:
 
 @dataclass
 class _FaceGroup:
-    """Faces of one group and material: texts of corners, and how many corners each face has."""
+    """Faces of one group and material: texts of corners, and the number of corners of each face."""
 
     group: str
     material: str
@@ -50,7 +50,11 @@ class _FaceGroup:
 
 
 def read_obj(content: bytes, companions: Companions) -> list[MeshPart]:
-    """The parts of a file. Raises MeshFileError."""
+    """Return the parts of a file.
+
+    Raises:
+        MeshFileError: the file cannot be used.
+    """
     content = content.replace(b"\\\r\n", b" ").replace(b"\\\n", b" ")
     positions: list[bytes] = []
     texcoords: list[bytes] = []
@@ -59,7 +63,7 @@ def read_obj(content: bytes, companions: Companions) -> list[MeshPart]:
     group, material, faces = "", "", 0
     block: _FaceGroup | None = None
     for line in content.splitlines():
-        if line.startswith(b"v "):  # most lines, and as most of them are written
+        if line.startswith(b"v "):  # fast path: the most frequent line
             positions.append(line[2:])
             continue
         word, _, rest = line.strip().partition(b" ")
@@ -88,12 +92,12 @@ def read_obj(content: bytes, companions: Companions) -> list[MeshPart]:
     looks = _read_materials(libraries, companions) if any(m for _, m in blocks) else {}
     points = _rows(positions, 3, "vertices")
     uvs = _rows(texcoords, 2, "texture coordinates")
-    found = (_part(one, points, uvs, looks, companions) for one in blocks.values())
+    found = (_part(faces_of_material, points, uvs, looks, companions) for faces_of_material in blocks.values())
     return [part for part in found if part is not None]
 
 
 def _rows(lines: list[bytes], width: int, what: str) -> Floats:
-    """The first `width` numbers of each line (colours or a weight may follow)."""
+    """Return the first `width` numbers of each line; colours or a weight may follow."""
     if not lines:
         return np.zeros((0, width))
     joined = b" ".join(lines)
@@ -154,7 +158,7 @@ def _part(
 
 
 def _indices(block: _FaceGroup, counts: npt.NDArray[np.int64]) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
-    """Zero-based vertex and texture indices of each corner; the latter empty unless each corner has one."""
+    """Return zero-based vertex and texture indices of each corner; the latter are empty unless each corner has one."""
     plain = b" ".join(block.corners)
     slashes = block.corners[0].count(b"/") if block.corners else 0
     if not slashes and b"/" not in plain:
@@ -169,7 +173,7 @@ def _indices(block: _FaceGroup, counts: npt.NDArray[np.int64]) -> tuple[npt.NDAr
     if not len(at):
         return at, at_uv
     bases = np.repeat(np.array(block.bases, np.int64).reshape(-1, 2), counts, axis=0)
-    # counted from the end where negative; 0 names nothing
+    # negative indices count from the end; 0 is invalid
     at = np.where(at > 0, at - 1, np.where(at < 0, bases[:, 0] + at, -1))
     if len(at_uv):
         at_uv = np.where(at_uv > 0, at_uv - 1, np.where(at_uv < 0, bases[:, 1] + at_uv, -1))
@@ -179,7 +183,7 @@ def _indices(block: _FaceGroup, counts: npt.NDArray[np.int64]) -> tuple[npt.NDAr
 def _read_materials(libraries: list[str], companions: Companions) -> dict[str, _MtlMaterial]:
     looks: dict[str, _MtlMaterial] = {}
     for line in dict.fromkeys(libraries):
-        # several libraries may stand in a line, and one name may have spaces in it
+        # a line may have several libraries, and a name may contain spaces
         for name in [line] if line.lower().count(".mtl") <= 1 else line.split():
             content = companions.content(name)
             if content is not None:
@@ -208,14 +212,14 @@ def _read_mtl(content: bytes, looks: dict[str, _MtlMaterial], companions: Compan
             value = _numbers(rest.removeprefix("-halo"), 1)
             if value is not None:
                 look.opacity = value[0] if word == "d" else 1.0 - value[0]
-                # Exporters that write opacity the other way round would make the whole part invisible.
+                # some exporters write inverse opacity, which would make the whole part invisible
                 look.opacity = look.opacity if look.opacity > 0.01 else 1.0
         elif word == "map_kd":
             look.texture = _file_behind_options(rest)
 
 
 def _numbers(text: str, count: int) -> Any:
-    """The first numbers of a text, each clamped to 0..1; None where they are not numbers."""
+    """Return the first numbers of a text, each clamped to 0..1; None for anything else."""
     try:
         numbers = [float(v) for v in text.split()[:count]]
     except ValueError:
@@ -227,7 +231,7 @@ def _numbers(text: str, count: int) -> Any:
 
 
 def _file_behind_options(text: str) -> str:
-    """The file name of a `map_` line: options such as `-s 1 1 1` come before it."""
+    """Return the file name of a `map_` line, which follows options such as `-s 1 1 1`."""
     words = text.split()
     while words and words[0].startswith("-") and len(words) > 1:
         words.pop(0)

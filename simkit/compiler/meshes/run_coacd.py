@@ -1,7 +1,7 @@
-"""Runs CoACD in a process of its own: `python run_coacd.py IN.npz OUT.npz`.
+"""Script that runs CoACD in a process of its own: `python run_coacd.py IN.npz OUT.npz`.
 
-CoACD's threads make its result depend on the machine's load, and a bad mesh can bring its process down; so it gets one
-with a single thread. Nothing of simkit is imported here.
+CoACD's threads make its result depend on the machine's load, and a bad mesh can crash its process. Therefore CoACD gets
+its own process with a single thread. Nothing of simkit is imported here.
 """
 
 from __future__ import annotations
@@ -12,13 +12,14 @@ import numpy as np
 
 
 def main(source: str, target: str) -> None:
+    """Decompose the mesh in `source` and write the pieces to `target`."""
     import coacd
 
     coacd.set_log_level("error")
-    with np.load(source, allow_pickle=False) as given:
-        mesh = coacd.Mesh(given["vertices"], given["faces"])
+    with np.load(source, allow_pickle=False) as task:
+        mesh = coacd.Mesh(task["vertices"], task["faces"])
         parts = coacd.run_coacd(
-            mesh, threshold=float(given["threshold"]), max_convex_hull=int(given["most"]), seed=int(given["seed"])
+            mesh, threshold=float(task["threshold"]), max_convex_hull=int(task["most"]), seed=int(task["seed"])
         )
     arrays = {f"p{i}": np.asarray(vertices, np.float64) for i, (vertices, _) in enumerate(parts)}
     with open(target, "wb") as stream:

@@ -75,7 +75,7 @@ def test_of_a_mesh_that_is_not_closed_the_user_hears_how_much_the_hull_fills(mak
     (found,) = [d for d in c.builder.diagnostics if "MESH" in d.code]
     assert (found.severity, found.code) == ("warning", "SK-MESH-004")
     # 1.1 m³ beside 0.2 m³ for the floor and 0.18 m³ for each wall
-    assert "about 1.9 times what the mesh encloses" in found.message or "about 2.0 times" in found.message
+    assert "about 1.9 times the volume that the mesh encloses" in found.message or "about 2.0 times" in found.message
 
 
 def test_the_estimate_for_an_open_mesh_is_near_the_true_share():

@@ -80,13 +80,13 @@ def test_stl_is_known_by_its_content_and_its_corners_are_joined(tmp_path, conten
 @pytest.mark.parametrize(
     ("content", "says"),
     [
-        (binary_stl(TRIANGLES, promised=10**9), "promises 1000000000 triangles, there are 4"),
-        (binary_stl(TRIANGLES)[:-30], "promises 4 triangles, there are 3"),
-        (binary_stl(TRIANGLES)[:60], "holds no triangles"),
-        (b"", "holds no triangles"),
+        (binary_stl(TRIANGLES, promised=10**9), "declares 1000000000 triangles, it has 4"),
+        (binary_stl(TRIANGLES)[:-30], "declares 4 triangles, it has 3"),
+        (binary_stl(TRIANGLES)[:60], "has no triangles"),
+        (b"", "has no triangles"),
         (b"solid x\nfacet\nvertex 0 0 0\nvertex 1 0 0\nendsolid", "2 corners"),
         (b"solid x\nfacet\nvertex a b c\nendsolid", "not a number"),
-        (binary_stl([[(0, 0, 0), (1, 0, math.nan), (0, 1, 0)]]), "not finite"),
+        (binary_stl([[(0, 0, 0), (1, 0, math.nan), (0, 1, 0)]]), "NaN or infinite"),
         (binary_stl([[(0, 0, 0), (1, 0, 1e38), (0, 1, 0)]]), "beyond"),
     ],
 )
@@ -257,14 +257,14 @@ def test_collada_opacity_is_read_and_what_would_vanish_is_drawn(tmp_path, transp
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        ("<COLLADA", "holds no triangles|not readable XML"),
+        ("<COLLADA", "has no triangles|not readable XML"),
         ("", "not readable XML"),
         ("<sdf/>", "begins with <sdf>"),
         (collada("<node><translate>1 2</translate></node>"), "<translate> with 2 numbers"),
         (collada(f"<node>{PLACED}</node>").replace("<p>0 2 1", "<p>0 2 77"), "vertex 77; there are 4"),
         (collada(f"<node>{PLACED}</node>").replace('stride="3"', 'stride="0"'), "stride"),
         (collada(f"<node>{PLACED}</node>").replace("0 0 0 1", "0 zero 0 1"), "not a number"),
-        (collada(""), "holds no triangles"),
+        (collada(""), "has no triangles"),
     ],
 )
 def test_a_broken_collada_file_says_what_is_wrong_with_it(tmp_path, text, says):
@@ -316,7 +316,7 @@ def test_gltf_strips_fans_and_files_beside_it(tmp_path):
         ({"accessors": [{"bufferView": 0, "componentType": 5126, "count": 10**12, "type": "VEC3"}] * 3}, "accessor of"),
         ({"nodes": [{"children": [0]}]}, "nested deeper"),
         ({"nodes": [{"mesh": 7}]}, "entry 7"),
-        ({"nodes": [{"mesh": 0, "scale": ["x", 1, 1]}]}, "sound glTF"),
+        ({"nodes": [{"mesh": 0, "scale": ["x", 1, 1]}]}, "valid glTF"),
         ({"asset": {"version": "1.0"}}, "glTF 1.0"),
         ({"extensionsRequired": ["KHR_draco_mesh_compression"]}, "without compression"),
         ({"meshes": []}, "entry 0"),
@@ -336,7 +336,7 @@ def test_ply_and_off_are_read_and_others_are_named(tmp_path):
     for suffix in ("ply", "off"):
         made.export(tmp_path / f"t.{suffix}")
         assert volume(load_file(tmp_path / f"t.{suffix}")) == pytest.approx(1.0)
-    with pytest.raises(MeshFileError, match=r"read are \.dae, \.stl"):
+    with pytest.raises(MeshFileError, match=r"supported are \.dae, \.stl"):
         load_file(written(tmp_path, "t.fbx", b"x"))
 
 
