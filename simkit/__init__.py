@@ -1,4 +1,4 @@
-"""simkit: opens the Gazebo worlds and robots people have, steps them with MuJoCo, answers with ROS 2 messages.
+"""simkit: load Gazebo worlds and robots, step them with MuJoCo, and exchange ROS 2 messages.
 
 import simkit
 
@@ -51,8 +51,8 @@ __all__ = [
     "load",
 ]
 
-# loaded when first asked for: the engine alone takes most of what an import may cost, and NumPy most of the rest,
-# which a run of tests that needs no world does not pay either (`simkit.pytest_plugin`)
+# Lazy imports: MuJoCo takes most of the import time and NumPy most of the rest. Test runs that open no world do not pay
+# for either (`simkit.pytest_plugin`).
 _MODULES = {
     "simkit.build": ("load", "describe", "check"),
     "simkit.runtime": ("Simulation",),

@@ -1,4 +1,4 @@
-"""From a file to a running simulation: load, check, compile, bind. The only module that knows all rooms."""
+"""Load a file and build a running simulation from it. Only this module imports every package."""
 
 from __future__ import annotations
 
@@ -43,9 +43,10 @@ Source = str | os.PathLike[str]
 
 @contextmanager
 def _no_collection() -> Iterator[None]:
-    """Leaves the garbage collector off: a load makes hundreds of thousands of objects, and nearly all of them stay.
+    """Disable the garbage collector during a load.
 
-    Looking through them again and again took a seventh of the load of 3000 models.
+    A load creates hundreds of thousands of objects and keeps nearly all of them. Scanning them repeatedly took one
+    seventh of the load time of 3000 models.
     """
     was_on = gc.isenabled()
     gc.disable()
@@ -76,39 +77,41 @@ def load(
     params_files: ParameterFileArgument | Sequence[ParameterFileArgument] = (),
     change_world: Callable[[SceneWorld], SceneWorld] | None = None,
 ) -> Simulation:
-    """Opens a world or a bare model and makes it ready to step.
+    """Load a world or a single model and return a simulation that is ready to step.
 
     Args:
-        source: a path, the bare name of a world or model that simkit brings, or XML text.
-        seed: of every random stream.
-        resource_paths: extra folders for `model://`, `package://` and relative URIs.
+        source: path, bare name of a world or model that is shipped with simkit, or XML text.
+        seed: seed of every random stream.
+        resource_paths: additional folders for `model://`, `package://` and relative URIs.
         plugin_paths: folders whose Python plugins a file may name.
-        plugins: plugins made in Python, `MyPlugin(gain=2)`: instances, or pairs of what one is to hang on and it,
-            `("robot::arm", MyPlugin())`. One that is not told hangs on the world, or on the only model (sensor,
-            visual) there is. A class or module with gz's hooks (`pre_update`, …) is one too.
-        base: for bare models: "fixed", "floating", or "auto" (floating unless joined to the world).
+        plugins: plugins made in Python. Each item is an instance, `MyPlugin(gain=2)`, or a pair of the scoped name of
+            its parent and the instance, `("robot::arm", MyPlugin())`. Without a parent, a plugin is attached to the
+            world, or to the only model, sensor or visual. A class or module with Gazebo's hooks (`pre_update`, …) is
+            also accepted.
+        base: base of a single model: "fixed", "floating", or "auto" (floating unless a joint connects it to the world).
         xacro_args: arguments for xacro files.
-        strict: warnings are errors.
+        strict: treat warnings as errors.
         overrides: `PATH=VALUE` texts as for `--set`.
-        sleep: whether what rests is left out of the physics until something reaches it; see `docs/sleeping.md`.
+        sleep: leave bodies at rest out of the physics until something reaches them; see `docs/sleeping.md`.
         package_paths: folders of ROS packages by name, for `package://` and `$(find ...)`.
-        render_thread: whether pictures are drawn on a second thread beside the physics, which gives the same bits;
-            by default where the process may use two processor cores or more.
-        on_error: what becomes of a plugin that raises: "stop" ends the run with a PluginError, "disable" goes on
-            without it. Goes over what the file (`<simkit:on_error>`) and the plugin's class say; None leaves it to
-            them, and they to "stop".
-        spawn: models that come into the world as it is loaded: `"MODEL:x,y,yaw[:name]"`, or `SpawnedModel` objects.
-            MODEL is a file or a bare name; unlike what `Simulation.spawn` adds later, they are there after a reset.
-        params_files: parameter files for the control plugins of all models, in the layout of ROS 1 or ROS 2, or
-            `"MODEL=FILE"` for those of one; models that are spawned later read them too. What they say goes over the
-            files that the plugins name themselves.
-        change_world: is given what the file means, once all of the above is in it, and gives what is built instead.
+        render_thread: draw camera images on a second thread beside the physics. The result has the same bits. The
+            default is True where the process may use two processor cores or more.
+        on_error: policy for a plugin that raises: "stop" ends the run with a PluginError, "disable" continues without
+            the plugin. The argument has priority over the file (`<simkit:on_error>`) and the plugin's class. With None,
+            these decide; their default is "stop".
+        spawn: models to add while the world is loaded: `"MODEL:x,y,yaw[:name]"` texts or `SpawnedModel` objects. MODEL
+            is a file or a bare name. Unlike models of `Simulation.spawn`, these models are still present after a reset.
+        params_files: parameter files for the control plugins of all models, in the layout of ROS 1 or ROS 2.
+            `"MODEL=FILE"` limits a file to one model. Models that are spawned later read the files too. Their values
+            have priority over the files that the plugins name.
+        change_world: function that receives the resolved world, with all options above applied, and returns the world
+            to build.
 
     Returns:
-        The simulation at t = 0.
+        Simulation at t = 0.
 
     Raises:
-        LoadError: with every problem of the input.
+        LoadError: the input has errors; the exception lists all of them.
         PluginError: a plugin raised while it was loaded.
     """
     if on_error not in (None, "stop", "disable"):
@@ -129,20 +132,20 @@ def load(
     if change_world is not None and not diagnostics.has_errors:
         world = change_world(world)
     allowed = [Path(p) for p in plugin_paths]
-    given = _read_parameter_files(params_files, resolver, diagnostics)
+    parameter_files = _read_parameter_files(params_files, resolver, diagnostics)
     if diagnostics.has_errors:
         find_more_problems(world, diagnostics, allowed, find_file)
     diagnostics.raise_if_errors()
     builder = SpecBuilder(world, diagnostics)
     builder.find_file = find_file
-    builder.parameter_files = given
-    builder.files_read += [one.file.path for one in given]
+    builder.parameter_files = parameter_files
+    builder.files_read += [item.file.path for item in parameter_files]
     parts = make_all_parts(world, builder, diagnostics, allowed, plugins)
-    if given and not diagnostics.has_errors:  # a plugin whose parameters are at fault is not among the parts
+    if parameter_files and not diagnostics.has_errors:  # `parts` lacks the plugins whose parameters have errors
         from simkit.plugins.run_parameter_files import report_unused_parameter_files
 
         report_unused_parameter_files(
-            given, [plugin for one in parts.values() for plugin, _ in one.plugins], world, diagnostics
+            parameter_files, [plugin for part in parts.values() for plugin, _ in part.plugins], world, diagnostics
         )
     diagnostics.raise_if_errors(strict)
     compiled = builder.compile()
@@ -158,14 +161,14 @@ def load(
     simulation = Simulation(world, structure, diagnostics, seed, load_model, make_parts, on_error)
     simulation.control.write_sdf = _sdf_of
     simulation.engine.render_thread = usable_cores() > 1 if render_thread is None else render_thread
-    given_options: LoadOptions = {
+    options: LoadOptions = {
         "resource_paths": tuple(resource_paths), "plugin_paths": tuple(plugin_paths), "base": base,
         "xacro_args": dict(xacro_args or {}), "package_paths": dict(package_paths or {}), "params_files": params_files,
         "strict": strict, "sleep": sleep, "render_thread": render_thread, "on_error": on_error,
     }  # fmt: skip
     simulation.run_spec = RunSpec(
         os.fspath(source), seed=seed, overrides=tuple(overrides), spawn=tuple(spawn), plugins=tuple(plugins),
-        options=given_options, folder=Path.cwd(), change_world=change_world,
+        options=options, folder=Path.cwd(), change_world=change_world,
     )  # fmt: skip
     try:
         report_unread(parts.values())
@@ -177,14 +180,14 @@ def load(
 
 
 def _read_parameter_files(
-    named: ParameterFileArgument | Sequence[ParameterFileArgument], resolver: Resolver, diagnostics: Diagnostics
+    arguments: ParameterFileArgument | Sequence[ParameterFileArgument], resolver: Resolver, diagnostics: Diagnostics
 ) -> tuple[RunParameterFile, ...]:
-    """The parameter files that a run is given."""
-    if not named:
+    """Read the parameter files of the argument `params_files`."""
+    if not arguments:
         return ()
     from simkit.plugins.run_parameter_files import read_run_parameter_files
 
-    return read_run_parameter_files(named, lambda uri: resolver.search(uri, None)[0], diagnostics)
+    return read_run_parameter_files(arguments, lambda uri: resolver.search(uri, None)[0], diagnostics)
 
 
 def describe(
@@ -195,7 +198,7 @@ def describe(
     package_paths: Mapping[str, Source] | None = None,
     base: str = "auto",
 ) -> dict[str, Any]:
-    """What a file means once resolved: the object that `simkit inspect --json` prints.
+    """Return the resolved content of a file as plain data, as `simkit inspect --json` prints it.
 
     Raises:
         LoadError: the file has errors.
@@ -207,9 +210,12 @@ def describe(
     return describe_scene(scene, diagnostics, describe_sensor)
 
 
-def describe_sensor(named: SceneSensor, diagnostics: Diagnostics) -> tuple[SceneSensor, dict[str, Any] | None]:
-    """A sensor with the defaults of its preset, and its options as plain data; None where its kind is not simulated."""
-    sensor = add_preset_defaults(named, diagnostics)
+def describe_sensor(scene_sensor: SceneSensor, diagnostics: Diagnostics) -> tuple[SceneSensor, dict[str, Any] | None]:
+    """Return a sensor with the defaults of its preset, and its options as plain data.
+
+    The options are None where the kind of the sensor is not simulated.
+    """
+    sensor = add_preset_defaults(scene_sensor, diagnostics)
     kind = sensor_kinds().get(sensor.kind)
     return sensor, None if kind is None else kind(sensor, diagnostics).describe()
 
@@ -223,7 +229,10 @@ def check(
     package_paths: Mapping[str, Source] | None = None,
     base: str = "auto",
 ) -> Diagnostics:
-    """Every problem of a file, also of compiling it and of loading its plugins; never raises for one."""
+    """Return every problem of a file, including those of compiling it and of loading its plugins.
+
+    A problem of the file never raises an exception.
+    """
     from simkit.compiler.lint import lint_world
 
     diagnostics = Diagnostics()
@@ -246,7 +255,10 @@ def check(
 
 
 def render_view(simulation: Simulation, width: int, height: int, **view: Any) -> Any:
-    """A picture of a simulation from anywhere; see `simkit.sensors.cameras.rendering.overview_image.render_view`."""
+    """Draw an image of a simulation from any viewpoint.
+
+    See `simkit.sensors.cameras.rendering.overview_image.render_view`.
+    """
     from simkit.sensors.cameras.rendering import overview_image
 
     return overview_image.render_view(simulation, width, height, **view)
@@ -280,11 +292,11 @@ def _scene(
 
 
 def _spawned_reader(resolver: Resolver) -> Any:
-    """Reads a model that comes into a world as it is loaded; None where it cannot be read, which is recorded."""
+    """Return a function that reads a model for `spawn`. It returns None for a model with errors, which it records."""
 
-    def read(source: Source, found: Diagnostics, **given: Any) -> SceneModel | None:
+    def read(source: Source, diagnostics: Diagnostics, **options: Any) -> SceneModel | None:
         try:
-            return _model_to_spawn(source, found, resolver=resolver, **given)
+            return _model_to_spawn(source, diagnostics, resolver=resolver, **options)
         except LoadError:
             return None
 
@@ -292,14 +304,14 @@ def _spawned_reader(resolver: Resolver) -> Any:
 
 
 def _read_mesh(mesh: Mesh, diagnostics: Diagnostics, where: Where) -> Sequence[Any]:
-    """The triangles of a mesh, for the loaders' automatic inertia."""
+    """Read the triangles of a mesh for the loaders' automatic inertia."""
     from simkit.compiler.meshes.mesh_reader import load_mesh
 
     return load_mesh(mesh, diagnostics, where)
 
 
 def _mjcf_parser() -> MjcfParser:
-    """MuJoCo's own parser, for the loader of MJCF."""
+    """Return MuJoCo's own parser for the MJCF loader."""
     import_mujoco()
     from simkit.compiler.mjcf_parser import MjcfParser
 
@@ -315,7 +327,7 @@ def read_scene(
     base: str = "auto",
     missing_meshes: bool = False,
 ) -> tuple[Scene, Diagnostics]:
-    """What a file means once resolved, before anything is built from it, and what reading it found.
+    """Return the resolved scene of a file, before anything is built from it, and the diagnostics of reading it.
 
     Raises:
         LoadError: the file has errors.
@@ -329,7 +341,7 @@ def read_scene(
 
 
 def _sdf_of(world: SceneWorld) -> str:
-    """A world as SDF text, every file named as it was."""
+    """Return a world as SDF text with the original names of all files."""
     from simkit.writers.sdf_world import sdf_text
 
     return sdf_text(Scene(worlds=(world,)), Diagnostics())
@@ -359,9 +371,9 @@ def _model_to_spawn(
     diagnostics.raise_if_errors()
     models = [scene.model] if scene.model else list(scene.world.models)
     if len(models) != 1 or models[0] is None:
-        diagnostics.error("SK-LOAD-010", f"spawn takes one model, the source has {len(models)}")
+        diagnostics.error("SK-LOAD-010", f"spawn needs one model, but the source has {len(models)}")
     elif models[0].name in taken:
-        diagnostics.error("SK-LOAD-011", f"there is a model {models[0].name!r} already", hint="give another name=")
+        diagnostics.error("SK-LOAD-011", f"a model {models[0].name!r} exists already", hint="pass another name=")
     diagnostics.raise_if_errors()
     model = models[0]
     assert model is not None

@@ -1,4 +1,4 @@
-"""A program of ours in a process apart: what it says is kept short, it has a limit, and it ends when this one does."""
+"""Child processes of simkit with a time limit; each one keeps the end of its output and stops with its parent."""
 
 from __future__ import annotations
 
@@ -13,33 +13,33 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Final
 
-_KEPT_BYTES: Final = 1 << 16  # bytes of its last words
+_KEPT_BYTES: Final = 1 << 16  # bytes of output that are kept
 _CHUNK: Final = 1 << 16
-_MAX_LINE_LENGTH: Final = 500  # letters of a line that are kept
-_OUTPUT_WAIT: Final = 2.0  # [s] that are waited for what it said, where a process that it began holds the pipe
+_MAX_LINE_LENGTH: Final = 500  # characters of a line that are kept
+_OUTPUT_WAIT: Final = 2.0  # [s] longest wait for output; a grandchild process may still hold the pipe
 
 
 @dataclass(frozen=True)
 class ProcessResult:
-    """How a process ended.
+    """Result of a child process.
 
     Attributes:
-        code: its exit code, negative for a signal.
-        said: the end of what it wrote to standard output and standard error.
-        is_late: whether it was ended because its limit had passed.
+        code: exit code, negative for a signal.
+        output: end of the text on standard output and standard error.
+        is_late: True if the process was killed because its time limit had passed.
     """
 
     code: int
-    said: str
+    output: str
     is_late: bool = False
 
     def last_lines(self, most: int) -> list[str]:
-        """The last lines that it wrote, none of them very long."""
-        return [line[:_MAX_LINE_LENGTH] for line in self.said.splitlines()[-most:]]
+        """Return the last lines of the output, each cut to 500 characters."""
+        return [line[:_MAX_LINE_LENGTH] for line in self.output.splitlines()[-most:]]
 
 
 class ChildProcesses:
-    """Runs modules of ours in processes of their own; several threads may do so at a time."""
+    """Runner of simkit's modules in child processes. Several threads may use one runner at a time."""
 
     def __init__(self) -> None:
         self._alive: set[subprocess.Popen[bytes]] = set()
@@ -55,23 +55,29 @@ class ChildProcesses:
         folder: Path | None = None,
         limit: float | None = None,
     ) -> ProcessResult:
-        """Runs `python -m module arguments` to its end, or until its limit.
+        """Run `python -m module arguments` until it ends or its time limit passes.
 
-        The module calls `exit_with_parent` first.
+        The module must call `exit_with_parent` first.
 
         Args:
-            module: full name.
-            arguments: of its command line.
-            environment: all its variables; ours where not given.
-            folder: it stands in; ours where not given.
-            limit: wall time [s]; none where not given.
+            module: full name of the module.
+            arguments: command-line arguments of the module.
+            environment: all environment variables of the child; None for those of this process.
+            folder: working directory of the child; None for that of this process.
+            limit: wall-time limit [s]; None for no limit.
         """
         with self._lock:
             if self._is_over:
                 return ProcessResult(-signal.SIGTERM, "")
             process = subprocess.Popen(
-                [sys.executable, "-P", "-m", module, *arguments],  # -P: no file beside us stands for a module of ours
-                stdin=subprocess.PIPE,  # nothing is ever written: its end tells that we are gone
+                [
+                    sys.executable,
+                    "-P",
+                    "-m",
+                    module,
+                    *arguments,
+                ],  # -P: no file of the working directory shadows a module
+                stdin=subprocess.PIPE,  # never written to: the child sees its end when this process ends
                 stdout=subprocess.PIPE,
                 stderr=subprocess.STDOUT,
                 env=environment,
@@ -90,7 +96,7 @@ class ChildProcesses:
         return ProcessResult(process.wait(), tail.text(), is_late)
 
     def end(self) -> None:
-        """Ends whatever runs, and begins nothing more."""
+        """Kill all running child processes and start no more."""
         with self._lock:
             self._is_over = True
             alive = tuple(self._alive)
@@ -107,7 +113,7 @@ class ChildProcesses:
 
 
 class _OutputTail:
-    """Reads all that a process says, so that it never waits for us, and keeps the end of it."""
+    """Reader thread that keeps the end of a process's output. It reads everything, so that the process never blocks."""
 
     def __init__(self, pipe: IO[bytes] | None) -> None:
         self._pipe, self._kept = pipe, bytearray()
@@ -128,10 +134,10 @@ class _OutputTail:
 
 
 def _kill(process: subprocess.Popen[bytes]) -> None:
-    """Ends a process, and what it has begun, which may be there still where it has ended itself."""
+    """Kill a process and its own child processes, which may outlive it."""
     if hasattr(os, "killpg"):
         try:
-            os.killpg(process.pid, signal.SIGKILL)  # a session of its own: its number is the group's
+            os.killpg(process.pid, signal.SIGKILL)  # it leads its own session, so its pid is the id of its group
             return
         except (ProcessLookupError, PermissionError):
             pass
@@ -140,12 +146,12 @@ def _kill(process: subprocess.Popen[bytes]) -> None:
 
 
 def exit_with_parent() -> None:
-    """In the process apart: ends it, and what it has begun, once whoever began it is gone, however that went."""
+    """Exit this child process, with its own child processes, as soon as its parent has ended for any reason."""
     try:
         pipe = os.dup(0)
-        nothing = os.open(os.devnull, os.O_RDONLY)
-        os.dup2(nothing, 0)
-        os.close(nothing)
+        null_device = os.open(os.devnull, os.O_RDONLY)
+        os.dup2(null_device, 0)
+        os.close(null_device)
     except OSError:
         return
 
@@ -159,9 +165,9 @@ def exit_with_parent() -> None:
 
 
 def exit_immediately(code: int) -> None:
-    """In the process apart: ends what it has begun, and itself, whatever threads there are."""
+    """Exit this child process at once, with its own child processes, whatever threads are running."""
     if hasattr(os, "killpg") and os.getpgrp() == os.getpid():
-        with suppress(OSError, ValueError):  # only the main thread may say what a signal does: then it takes us along
+        with suppress(OSError, ValueError):  # fails outside the main thread: SIGTERM then ends this process
             signal.signal(signal.SIGTERM, signal.SIG_IGN)
         with suppress(OSError):
             os.killpg(0, signal.SIGTERM)

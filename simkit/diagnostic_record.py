@@ -1,4 +1,4 @@
-"""One problem of an input: its code, severity, message and place."""
+"""Record of one problem of an input: its code, severity, message, file and line."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ Severity = Literal["error", "warning", "note"]
 
 @dataclass(frozen=True, slots=True)
 class Where:
-    """A place in an input file; `file` is None for XML given as text.
+    """Position in an input file; `file` is None for XML that was passed as text.
 
     Attributes:
-        serial: which element of the file it is, counted from the top: of two on one line the first is still the first.
+        serial: number of the element in the file, counted from the top. It orders two elements on one line.
     """
 
     file: str | None = None
@@ -33,9 +33,9 @@ class Diagnostic:
 
     Attributes:
         code: `SK-AREA-NNN`; never renumbered.
-        severity: "error" stops the load, "warning" may change the meaning, "note" is a standing conversion.
-        message: what was found and what is allowed.
-        hint: what helps; may be empty.
+        severity: "error" stops the load, "warning" may change the meaning, "note" is a known conversion.
+        message: the problem and the allowed values.
+        hint: remedy; may be empty.
     """
 
     code: str
@@ -50,5 +50,5 @@ class Diagnostic:
         return f"{text}\n    help: {self.hint}" if self.hint else text
 
     def as_dict(self) -> dict[str, Any]:
-        """The record as plain data, as `inspect --json` prints it."""
+        """Return the record as plain data, as `inspect --json` prints it."""
         return asdict(self)

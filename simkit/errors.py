@@ -1,17 +1,17 @@
-"""Everything simkit raises on purpose.
+"""Exceptions that simkit raises on purpose.
 
 SimkitError                 exit 1
-├── InputError              exit 2   the user's input cannot be used
-│   ├── LoadError                    a file has errors; `.diagnostics` has all of them
+├── InputError              exit 2   invalid input of the user
+│   ├── LoadError                    a file has errors; `.diagnostics` lists all of them
 │   ├── MessageError                 a message does not fit its topic
-│   ├── ServiceError                 no such service, or it cannot be offered
-│   ├── ActionError                  no such action, or it cannot be offered
-│   └── ParameterError               no such parameter, or a value it does not take
-├── SimulationDiverged      exit 3   the physics left the numbers
+│   ├── ServiceError                 a service is unknown, or its name is already used
+│   ├── ActionError                  an action is unknown, or its name is already used
+│   └── ParameterError               a parameter is unknown, or its value is not allowed
+├── SimulationDiverged      exit 3   the physics diverged
 ├── PluginError             exit 4   a plugin raised
 ├── SubscriberError         exit 4   a subscriber of a topic raised
 ├── RegressionError         exit 5   a regression check failed
-└── RenderError             exit 1   no renderer, or it failed
+└── RenderError             exit 1   there is no renderer, or it failed
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class SimkitError(Exception):
     code: str = "SK-CORE-001"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Goes from one process to another whole, whatever its constructor takes."""
+        """Pickle the exception with all its attributes, independently of the arguments of its constructor."""
         return _restore_error, (type(self), self.args, vars(self))
 
 
@@ -40,7 +40,7 @@ def _restore_error(kind: type[SimkitError], args: tuple[Any, ...], state: dict[s
 
 
 class InputError(SimkitError):
-    """What the user gave cannot be used.
+    """Invalid input of the user.
 
     Attributes:
         code: stable code `SK-AREA-NNN`.
@@ -56,10 +56,10 @@ class InputError(SimkitError):
 
 
 class LoadError(InputError):
-    """A file could not be loaded.
+    """Errors in a file that is to be loaded.
 
     Attributes:
-        diagnostics: every problem found in one pass, errors and others.
+        diagnostics: every problem found in one pass, including warnings and notes.
     """
 
     def __init__(self, diagnostics: Sequence[Diagnostic]) -> None:
@@ -69,36 +69,36 @@ class LoadError(InputError):
 
 
 class MessageError(InputError):
-    """A message does not fit the topic it is sent to."""
+    """Message that does not fit the topic it is sent to."""
 
     code = "SK-MSG-001"
 
 
 class ServiceError(InputError):
-    """A service is not there, or is there already."""
+    """Service that does not exist, or whose name is already used."""
 
     code = "SK-SERVICE-001"
 
 
 class ActionError(InputError):
-    """An action is not there, is there already, or a goal cannot go where it is told to."""
+    """Action that does not exist or whose name is already used, or a goal that its controller cannot reach."""
 
     code = "SK-ACTION-001"
 
 
 class ParameterError(InputError):
-    """A live parameter is not there, or does not take a value."""
+    """Live parameter that does not exist, or a value that it does not accept."""
 
     code = "SK-PARAMETER-001"
 
 
 class SimulationDiverged(SimkitError):
-    """The physics left the range of numbers and the run was stopped.
+    """Stop of a run whose physics diverged to NaN, infinite or unusable values.
 
     Attributes:
-        joint: scoped name of the first joint (or free model) with a bad value.
-        time: simulated time of the first bad step [s].
-        hint: what most often causes this.
+        joint: scoped name of the first joint (or free model) with an invalid value.
+        time: simulated time of the first invalid step [s].
+        hint: most frequent cause.
     """
 
     exit_code: ClassVar[int] = 3
@@ -111,10 +111,10 @@ class SimulationDiverged(SimkitError):
 
 
 class PluginError(SimkitError):
-    """A plugin raised; the original exception is `__cause__`.
+    """Exception in a plugin; the original exception is `__cause__`.
 
     Attributes:
-        plugin: the plugin's name.
+        plugin: name of the plugin.
         time: simulated time [s].
     """
 
@@ -127,11 +127,11 @@ class PluginError(SimkitError):
 
 
 class SubscriberError(SimkitError):
-    """A subscriber's callback raised; the original exception is `__cause__`.
+    """Exception in a subscriber's callback; the original exception is `__cause__`.
 
     Attributes:
-        topic: that it subscribes to.
-        callback: its name, and where it stands.
+        topic: name of the topic.
+        callback: name of the callback, with its file and line.
         time: simulated time [s].
     """
 
@@ -144,14 +144,14 @@ class SubscriberError(SimkitError):
 
 
 class RegressionError(SimkitError):
-    """Recorded outputs differ from the golden ones."""
+    """Difference between recorded outputs and the golden ones."""
 
     exit_code: ClassVar[int] = 5
     code = "SK-GOLDEN-001"
 
 
 class RenderError(SimkitError):
-    """No usable renderer, or it failed."""
+    """Missing or failed renderer."""
 
     def __init__(self, message: str, code: str = "SK-RENDER-001") -> None:
         super().__init__(f"{code} {message}")

@@ -1,4 +1,4 @@
-"""A running simulation and those who talk to it from other processes of the same user.
+"""Access to a running simulation from other processes of the same user.
 
 from simkit.live import connect
 with connect() as client:
@@ -33,7 +33,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    if name == "Server":  # a client needs nothing of what a simulation is made of
+    if name == "Server":  # imported lazily: a client does not need the modules of a simulation
         from simkit.bridges.live.server import Server
 
         return Server

@@ -1,4 +1,4 @@
-"""The first import of the engine, which must not depend on a renderer."""
+"""First import of MuJoCo, which must not depend on a renderer."""
 
 from __future__ import annotations
 
@@ -10,37 +10,36 @@ if TYPE_CHECKING:
 
 
 def import_mujoco() -> None:
-    """Imports MuJoCo; where that fails for what `MUJOCO_GL` says, once more without a renderer.
+    """Import MuJoCo; retry without a renderer if the import fails because of `MUJOCO_GL`.
 
-    MuJoCo opens the renderer's library when it is imported: a value that it does not know, or a library that is not
-    there, would end a run that draws nothing. Whoever does draw gets the reason from
-    `simkit.sensors.cameras.rendering.gl_context`.
+    MuJoCo opens the library of the renderer when it is imported. An unknown value or a missing library would end a run
+    that draws nothing. A run that draws gets the reason from `simkit.sensors.cameras.rendering.gl_context`.
 
-    Its warnings then go neither to the terminal nor to a log file in the working folder, unless somebody else hears
-    them already: those of a simulation are among its diagnostics.
+    The engine's warnings are then written neither to the terminal nor to a log file in the working directory, unless
+    another warning callback is already installed. The warnings of a simulation are among its diagnostics.
     """
     try:
         import mujoco
     except Exception:
-        # drivers fail in their own ways: RuntimeError, ImportError, AttributeError
-        wanted = os.environ.get("MUJOCO_GL")
-        if not wanted:
+        # the exception depends on the driver: RuntimeError, ImportError, AttributeError
+        renderer = os.environ.get("MUJOCO_GL")
+        if not renderer:
             raise
         os.environ["MUJOCO_GL"] = "disable"
         try:
             import mujoco
         finally:
-            os.environ["MUJOCO_GL"] = wanted
+            os.environ["MUJOCO_GL"] = renderer
     if mujoco.get_mju_user_warning() is None:
         mujoco.set_mju_user_warning(ignore_warning)
 
 
 def ignore_warning(_text: str) -> None:
-    """Drops it."""
+    """Ignore a warning of the engine."""
 
 
 def __getattr__(name: str) -> Any:
-    """Gives `mujoco` to whoever imports it from here, so that its first import is the one above."""
+    """Return `mujoco`, so that `from simkit.mujoco_import import mujoco` uses the import above."""
     if name != "mujoco":
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     import_mujoco()

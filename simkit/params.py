@@ -1,7 +1,8 @@
-"""Typed reading of a block of parameters that came from a file.
+"""Typed reader for a block of parameters from a file.
 
-A `Params` is a tree of elements without any XML library behind it. It remembers what was read, so that whatever
-nobody read can be reported, and it records a bad value as a diagnostic instead of raising: all problems in one pass.
+A `Params` is a tree of elements that is independent of any XML library. It records which elements were read, so that
+unread elements can be reported. It records an invalid value as a diagnostic instead of raising, so that one pass finds
+all problems.
 """
 
 from __future__ import annotations
@@ -15,22 +16,22 @@ from simkit.pose import IDENTITY, Pose
 
 T = TypeVar("T")
 LARGEST = 1e100
-"""Of a vector's components, deviations and the like: the square of a larger number is none."""
-_FARTHEST = 1e15  # metres; beyond it sums of poses would leave the numbers
+"""Largest magnitude of a vector's component, a standard deviation and the like; a square of more may overflow."""
+_FARTHEST = 1e15  # [m] largest coordinate of a pose; sums of larger poses would lose their precision
 _TRUE, _FALSE = {"true", "1"}, {"false", "0"}
-_NOT, _READ, _WHOLLY = range(3)  # whether an element was asked for, and with all that is in it
+_NOT, _READ, _WHOLLY = range(3)  # element unread; read; read with all its children
 
 
 class Params:
-    """One element: its name, text, attributes and children, each with its place in the file.
+    """One XML element: its name, text, attributes and children, each with its position in the file.
 
     Args:
         name: element name, without a namespace prefix's URI (`gz:type` stays `gz:type`).
         text: the element's own text, stripped.
-        attributes: attribute name -> text.
+        attributes: attribute texts by name.
         children: child elements in document order.
         where: file and line.
-        diagnostics: where problems go; children share it.
+        diagnostics: collection that receives the problems; the children share it.
     """
 
     __slots__ = (
@@ -58,28 +59,28 @@ class Params:
         self.attributes = dict(attributes or {})
         self.children = list(children)
         self.diagnostics = diagnostics if diagnostics is not None else Diagnostics()
-        # a file has many more elements than anybody asks for something in
+        # allocated on first use: most elements of a file have no children or attributes that are read
         self._asked: set[str] | None = None
         self._attributes_asked: set[str] | None = None
         self._read = _NOT
 
     @classmethod
     def from_dict(cls, values: dict[str, Any], name: str = "plugin", diagnostics: Diagnostics | None = None) -> Params:
-        """A block made in Python: nested dicts are elements, lists are repeated elements."""
+        """Create a block from Python values: nested dicts become elements, lists become repeated elements."""
         root = cls(name, diagnostics=diagnostics)
 
         def fill(node: Params, items: dict[str, Any]) -> None:
             for key, value in items.items():
-                for one in value if isinstance(value, list) else [value]:
+                for item in value if isinstance(value, list) else [value]:
                     child = cls(key, diagnostics=root.diagnostics)
-                    if isinstance(one, dict):
-                        fill(child, one)
-                    elif isinstance(one, bool):
-                        child.value = str(one).lower()
-                    elif isinstance(one, (tuple, list)) or hasattr(one, "__array__"):
-                        child.value = " ".join(str(v) for v in one)
+                    if isinstance(item, dict):
+                        fill(child, item)
+                    elif isinstance(item, bool):
+                        child.value = str(item).lower()
+                    elif isinstance(item, (tuple, list)) or hasattr(item, "__array__"):
+                        child.value = " ".join(str(v) for v in item)
                     else:
-                        child.value = str(one)
+                        child.value = str(item)
                     node.children.append(child)
 
         fill(root, values)
@@ -97,7 +98,7 @@ class Params:
             self._asked.add(name)
 
     def child(self, name: str) -> Params | None:
-        """The first child of that name, marked as read; None when absent."""
+        """Return the first child of that name and mark it as read; None when absent."""
         self._ask_for(name)
         for c in self.children:
             if c.name == name:
@@ -110,11 +111,11 @@ class Params:
         return self.child(name) or self
 
     def block(self, name: str) -> Params:
-        """The first child of that name, or an empty block, so that its defaults can be read."""
+        """Return the first child of that name, or an empty block whose reads return their defaults."""
         return self.child(name) or Params(name, where=self.where, diagnostics=self.diagnostics)
 
     def all(self, name: str) -> list[Params]:
-        """All children of that name in document order, marked as read."""
+        """Return all children of that name in document order and mark them as read."""
         self._ask_for(name)
         found = [c for c in self.children if c.name == name]
         for c in found:
@@ -122,37 +123,40 @@ class Params:
         return found
 
     def each(self, name: str) -> list[Params]:
-        """A block for each child of that name, with that child alone: `[b.number("gain") for b in p.each("gain")]`."""
+        """Return a block for each child of that name, with only that child.
+
+        Example: `[b.number("gain") for b in p.each("gain")]`.
+        """
         alone = ((c,) for c in self.all(name))
         return [Params(self.name, children=c, where=c[0].where, diagnostics=self.diagnostics) for c in alone]
 
     def has(self, name: str) -> bool:
-        """Whether a child of that name is there (does not count as reading it)."""
+        """Check whether a child of that name exists, without marking it as read."""
         self._ask_for(name)
         return any(c.name == name for c in self.children)
 
     @property
     def was_read(self) -> bool:
-        """Whether its parent's reader asked for it."""
+        """True if the reader of the parent element has read this element."""
         return self._read != _NOT
 
     @property
     def asked(self) -> set[str]:
-        """Names of children that a reader has asked for, present or not."""
+        """Names of children that a reader has requested, present or not."""
         return set(self._asked or ())
 
     @property
     def attributes_asked(self) -> set[str]:
-        """Names of attributes that a reader has asked for, present or not."""
+        """Names of attributes that a reader has requested, present or not."""
         return set(self._attributes_asked or ())
 
     def copied(self) -> Params:
-        """The same tree, unread, that can be changed without changing this one."""
+        """Return an unread copy of the tree that can be changed independently."""
         same = [c.copied() for c in self.children]
         return Params(self.name, self.value, self.attributes, same, self.where, self.diagnostics)
 
     def mark_all_read(self) -> None:
-        """Says that this whole block is understood elsewhere."""
+        """Mark this whole block as read, because another reader handles it."""
         self._read = _WHOLLY
         for c in self.children:
             c.mark_all_read()
@@ -160,7 +164,7 @@ class Params:
     # ------------------------------------------------------------------ values of children
 
     def text(self, name: str, default: str | None = None, required: bool = False) -> str:
-        """Text of a child, stripped."""
+        """Return the stripped text of a child."""
         return self._value(name, default, "", required, lambda p: p.value, "a text")
 
     def number(
@@ -172,11 +176,15 @@ class Params:
         maximum: float | None = None,
         finite: bool = True,
     ) -> float:
-        """A number; out of `minimum`..`maximum`, NaN, or infinite where `finite`, is an error."""
+        """Return the number in a child.
+
+        A number outside `minimum`..`maximum`, NaN, or an infinite number where `finite` is set, is recorded as an
+        error.
+        """
         found = self.child(name)
         if found is None and not required:
             return 0.0 if default is None else default
-        try:  # most of what files hold, so nothing is made that only a fault needs
+        try:  # fast path: most values are valid numbers, so the text for an error is not made yet
             if found is not None:
                 return _number(found.value, minimum, maximum, finite)
         except ValueError:
@@ -194,7 +202,10 @@ class Params:
         minimum: int | None = None,
         maximum: int | None = None,
     ) -> int:
-        """A whole number; `360.0` is taken too, and of 666.5 the whole part with a warning, as Gazebo takes it."""
+        """Return the whole number in a child.
+
+        `360.0` is accepted. 666.5 gives its whole part and a warning, as in Gazebo.
+        """
 
         def parse(p: Params) -> int:
             number = _number(p.value, minimum, maximum, True)
@@ -206,13 +217,13 @@ class Params:
         return self._value(name, default, 0, required, parse, "a whole number" + _range_text(minimum, maximum))
 
     def boolean(self, name: str, default: bool | None = None, required: bool = False) -> bool:
-        """true, false, 1 or 0."""
+        """Return the truth value in a child: true, false, 1 or 0."""
         return self._value(name, default, False, required, lambda p: _boolean(p.value), "true, false, 1 or 0")
 
     def vector(
         self, name: str, size: int, default: Sequence[float] | None = None, required: bool = False
     ) -> tuple[float, ...]:
-        """`size` finite numbers separated by white space, none so large that its square is not a number."""
+        """Return `size` finite numbers that white space separates, each at most `LARGEST` in magnitude."""
 
         def parse(p: Params) -> tuple[float, ...]:
             parts = p.first_of(size)
@@ -230,11 +241,11 @@ class Params:
         return (x, y, z)
 
     def pose(self, name: str, default: Pose = IDENTITY) -> Pose:
-        """`x y z roll pitch yaw` [m, rad]; `degrees="true"` and `rotation_format` are honoured."""
+        """Return the pose `x y z roll pitch yaw` [m, rad]; `degrees="true"` and `rotation_format` are supported."""
         return self._value(name, default, IDENTITY, False, lambda p: p.as_pose(), "x y z roll pitch yaw")
 
     def choice(self, name: str, allowed: Sequence[str], default: str | None = None, required: bool = False) -> str:
-        """One of a few words."""
+        """Return the text of a child, which must be one of the allowed words."""
 
         def parse(p: Params) -> str:
             if p.value not in allowed:
@@ -255,7 +266,7 @@ class Params:
     # ------------------------------------------------------------------ this element's own text
 
     def first_of(self, count: int) -> list[str]:
-        """The first words of this element's text; numbers that are too many are passed over, as Gazebo does."""
+        """Return the first words of this element's text. Surplus numbers are ignored with a warning, as in Gazebo."""
         parts = self.value.split()
         if len(parts) > count and all(map(_is_number, parts)):
             shown = self.value if len(self.value) <= 60 else self.value[:57] + "..."
@@ -266,7 +277,11 @@ class Params:
         return parts
 
     def as_pose(self) -> Pose:
-        """This element's text as a pose; raises ValueError."""
+        """Return this element's text as a pose.
+
+        Raises:
+            ValueError: the text is not a pose.
+        """
         numbers = [_number(v, -_FARTHEST, _FARTHEST, True) for v in self.value.split()]
         if not numbers:
             return IDENTITY
@@ -287,7 +302,7 @@ class Params:
     # ------------------------------------------------------------------ reports
 
     def error(self, code: str, message: str, hint: str = "") -> None:
-        """Records an error at this element's line."""
+        """Record an error at this element's line."""
         self.diagnostics.error(code, message, self.where, hint)
 
     def warning(self, code: str, message: str, hint: str = "") -> None:
@@ -299,7 +314,7 @@ class Params:
         self.diagnostics.note(code, message, self.where, hint)
 
     def unread(self) -> Iterator[tuple[Params, str]]:
-        """Each element nobody read, with the closest name that its reader asked for, or that it comes twice."""
+        """Yield each unread element with the closest requested name, or with the remark that it is a duplicate."""
         for c in self.children:
             if ":" in c.name:
                 continue
@@ -310,7 +325,7 @@ class Params:
                 yield from c.unread()
 
     def unread_attributes(self) -> Iterator[tuple[Params, str]]:
-        """Each attribute that nobody asked for, of the elements below that were read."""
+        """Yield each attribute that no reader requested, for the elements below that were read."""
         for c in self.children:
             if ":" in c.name or c._read in (_NOT, _WHOLLY):
                 continue
@@ -319,7 +334,7 @@ class Params:
             yield from c.unread_attributes()
 
     def report_unread(self, code: str, owner: str) -> None:
-        """Warns about each element that nobody read."""
+        """Record a warning for each unread element."""
         for element, suggestion in self.unread():
             self.diagnostics.warning(code, f"{owner}: <{element.name}> is not used", element.where, suggestion)
 
@@ -339,11 +354,13 @@ class Params:
             return fallback if default is None else default
 
     def _as_written(self, name: str, value: str) -> str:
-        """How the file has it, for messages."""
+        """Return an element as it is written in the file, for messages."""
         return f"<{name}>{value}</{name}>"
 
     def _near(self, name: str) -> str:
-        return did_you_mean(name, [c.name for c in self.children if not c.was_read])  # what was read is meant as it is
+        return did_you_mean(
+            name, [c.name for c in self.children if not c.was_read]
+        )  # a child that was read is not misspelled
 
     def _bad(self, found: str, allowed: str, where: Where) -> None:
         shown = found if len(found) <= 200 else found[:200] + "..."

@@ -15,12 +15,12 @@ _set = object.__setattr__
 
 
 def _floats(values: VectorLike) -> list[float]:
-    # arithmetic on Python's floats is several times faster than on NumPy's scalars, with the same bits
+    # arithmetic on Python floats is several times faster than on NumPy scalars, with the same bits
     return values.tolist() if isinstance(values, np.ndarray) else [float(v) for v in values]
 
 
 def quat_multiply(a: VectorLike, b: VectorLike) -> Vector:
-    """Hamilton product of two (w, x, y, z) quaternions."""
+    """Return the Hamilton product of two (w, x, y, z) quaternions."""
     aw, ax, ay, az = _floats(a)
     bw, bx, by, bz = _floats(b)
     return np.array(
@@ -34,12 +34,13 @@ def quat_multiply(a: VectorLike, b: VectorLike) -> Vector:
 
 
 def quat_conjugate(q: VectorLike) -> Vector:
+    """Return the conjugate of a (w, x, y, z) quaternion."""
     w, x, y, z = _floats(q)
     return np.array((w, -x, -y, -z))
 
 
 def quat_rotate(q: VectorLike, v: VectorLike) -> Vector:
-    """The vector `v` turned by the unit quaternion `q`."""
+    """Rotate the vector `v` by the unit quaternion `q`."""
     w, x, y, z = _floats(q)
     vx, vy, vz = _floats(v)
     tx, ty, tz = 2 * (y * vz - z * vy), 2 * (z * vx - x * vz), 2 * (x * vy - y * vx)
@@ -47,7 +48,7 @@ def quat_rotate(q: VectorLike, v: VectorLike) -> Vector:
 
 
 def quat_from_rpy(roll: float, pitch: float, yaw: float) -> Vector:
-    """Rz(yaw)·Ry(pitch)·Rx(roll): the order of SDF, URDF and ROS."""
+    """Return the quaternion of Rz(yaw)·Ry(pitch)·Rx(roll) [rad], the order of SDF, URDF and ROS."""
     cr, sr = math.cos(roll / 2), math.sin(roll / 2)
     cp, sp = math.cos(pitch / 2), math.sin(pitch / 2)
     cy, sy = math.cos(yaw / 2), math.sin(yaw / 2)
@@ -62,7 +63,7 @@ def quat_from_rpy(roll: float, pitch: float, yaw: float) -> Vector:
 
 
 def rpy_from_quat(q: VectorLike) -> Vector:
-    """Roll, pitch, yaw [rad] of a unit quaternion."""
+    """Return roll, pitch and yaw [rad] of a unit quaternion."""
     w, x, y, z = _floats(q)
     sin_pitch = max(-1.0, min(1.0, 2 * (w * y - z * x)))
     return np.array(
@@ -75,7 +76,7 @@ def rpy_from_quat(q: VectorLike) -> Vector:
 
 
 def quat_to_matrix(q: VectorLike) -> Vector:
-    """The 3×3 rotation matrix of a unit quaternion."""
+    """Return the 3×3 rotation matrix of a unit quaternion."""
     w, x, y, z = _floats(q)
     return np.array(
         (
@@ -87,11 +88,11 @@ def quat_to_matrix(q: VectorLike) -> Vector:
 
 
 class Pose:
-    """An immutable rigid pose: `a @ b` is b expressed through a (a's parent ← b's frame).
+    """Immutable rigid pose. `a @ b` expresses the pose b, given in the frame of a, in the parent frame of a.
 
     Attributes:
-        position: shape (3,) [m].
-        quaternion: shape (4,), unit, (w, x, y, z).
+        position: translation [m], shape (3,).
+        quaternion: unit quaternion (w, x, y, z), shape (4,).
     """
 
     __slots__ = ("position", "quaternion")
@@ -119,7 +120,7 @@ class Pose:
 
     @classmethod
     def from_rpy(cls, x: float, y: float, z: float, roll: float, pitch: float, yaw: float) -> Pose:
-        """Position [m] and fixed-axis roll, pitch, yaw [rad]."""
+        """Create a pose from a position [m] and fixed-axis roll, pitch and yaw [rad]."""
         return cls((x, y, z), quat_from_rpy(roll, pitch, yaw))
 
     @property
@@ -137,7 +138,7 @@ class Pose:
             return self
         if self is IDENTITY:
             return other
-        # the sum of `position` and `quat_rotate`, and `quat_multiply`, without arrays in between: thousands in a load
+        # `transform` and `quat_multiply` without intermediate arrays: a load multiplies thousands of poses
         aw, ax, ay, az = self.quaternion.tolist()
         bw, bx, by, bz = other.quaternion.tolist()
         px, py, pz = self.position.tolist()
@@ -171,15 +172,15 @@ class Pose:
         )
 
     def rotate(self, vector: VectorLike) -> Vector:
-        """A free vector of this frame, in the parent's axes."""
+        """Rotate a free vector from this frame to the parent's axes."""
         return quat_rotate(self.quaternion, vector)
 
     def transform(self, point: VectorLike) -> Vector:
-        """A point of this frame, in the parent's frame."""
+        """Transform a point [m] from this frame to the parent's frame."""
         return self.position + quat_rotate(self.quaternion, point)
 
     def as_list(self) -> list[float]:
-        """[x, y, z, qw, qx, qy, qz]."""
+        """Return the pose as [x, y, z, qw, qx, qy, qz]."""
         return [float(v) for v in (*self.position, *self.quaternion)]
 
     def __eq__(self, other: object) -> bool:
@@ -201,18 +202,18 @@ class Pose:
 
 
 def _make_pose(position: tuple[float, float, float], quaternion: tuple[float, float, float, float]) -> Pose:
-    """The same as `Pose(position, quaternion)`."""
+    """Create `Pose(position, quaternion)` faster, with the same bits."""
     p, q = np.array(position), np.array(quaternion)
     norm = math.sqrt(q.dot(q))
     if not (1e-12 < norm < math.inf and all(map(math.isfinite, position))):
-        return Pose(position, quaternion)  # which says what is wrong
+        return Pose(position, quaternion)  # raises with the reason
     if abs(norm - 1.0) > 1e-15:
         q = q / norm
     p.flags.writeable = q.flags.writeable = False
-    made = Pose.__new__(Pose)
-    _set(made, "position", p)
-    _set(made, "quaternion", q)
-    return made
+    pose = Pose.__new__(Pose)
+    _set(pose, "position", p)
+    _set(pose, "quaternion", q)
+    return pose
 
 
 IDENTITY = Pose()

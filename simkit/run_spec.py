@@ -1,8 +1,7 @@
-"""The description of a run: world, seed, overrides, resources, commands, limits, topics and recording.
+"""Run specification: world, seed, overrides, resources, commands, limits, topics and recording.
 
-One typed, frozen and picklable `RunSpec` is made from the command line, from Python, from a scenario file and from a
-bundle; run, golden, certify, bundle, grade, plot and `Simulation.run_spec` understand it. This module imports nothing
-of simkit.
+The command line, Python, a scenario file and a bundle each make one typed, frozen and picklable `RunSpec`. The commands
+run, golden, certify, bundle, grade and plot, and `Simulation.run_spec` use it. This module imports nothing of simkit.
 """
 
 from __future__ import annotations
@@ -18,38 +17,42 @@ from typing import Any, Final, Literal, Protocol, TypedDict, cast
 FilePath = str | os.PathLike[str]
 JsonObject = dict[str, Any]
 JsonMapping = Mapping[str, Any]
-"""What JSON and YAML give: texts, numbers, truth values, lists and further objects by name."""
+"""Content of JSON and YAML: texts, numbers, truth values, lists and further objects by name."""
 PluginErrorPolicy = Literal["stop", "disable"]
-"""What becomes of a plugin that raises: the run ends, or it goes on without the plugin."""
+"""Policy for a plugin that raises: end the run, or continue without the plugin."""
 
 NO_FILE_POSITION: Final = ""
-"""Of what was not written in a file."""
+"""Position of an item that no file contains."""
 
 _MODEL_FILE_SUFFIXES: Final = frozenset((".config", ".sdf", ".urdf", ".xacro", ".xml"))
-"""Suffixes of what a folder holds that is a model's."""
+"""Suffixes of the files that make a folder a model."""
 
 CheckKind = Literal["goal", "always", "final", "apart", "rate"]
-"""What a check asks: that an expression holds once, at all times, or at the end; that models never touch; that a topic
-ticks."""
+"""Kind of a check.
+
+- "goal", "always", "final": an expression holds once, at all times, or at the end.
+- "apart": models never touch.
+- "rate": a topic keeps its rate.
+"""
 
 
 @dataclass(frozen=True)
 class Check:
-    """One thing that must hold.
+    """One condition that a run must meet.
 
     Attributes:
-        kind: what is asked; `expression` belongs to goal, always and final, `models` to apart, `topic` and the rest to
-            rate.
-        name: what a report calls it.
-        expression: in the language of `docs/conditions.md`.
-        by: a goal must be reached by then [s]; None by the end.
-        after: "always" and "apart" count from then on [s].
-        models: scoped names of models or links: one that nothing but the ground may touch, or two that must not touch
-            each other.
-        rate: wanted [Hz] of simulated time; None for the rate that the sensor or plugin is set to.
-        tolerance: part of the rate by which it may be off.
-        points: what it is worth in an exercise.
-        hint: what a report says where it does not hold.
+        kind: kind of the condition. `expression` belongs to goal, always and final, `models` to apart, `topic` and the
+            other fields to rate.
+        name: name in a report.
+        expression: expression in the language of `docs/conditions.md`.
+        by: simulated time by which a goal must be reached [s]; None for the end of the run.
+        after: simulated time from which "always" and "apart" are checked [s].
+        models: scoped names of models or links: one that may touch only the ground, or two that must not touch each
+            other.
+        rate: required rate [Hz] of simulated time; None for the rate that is set for the sensor or plugin.
+        tolerance: allowed relative deviation of the rate.
+        points: points for meeting the condition in an exercise.
+        hint: text of a report if the condition does not hold.
         where: `file:line`, or NOWHERE.
     """
 
@@ -68,7 +71,7 @@ class Check:
 
     @property
     def title(self) -> str:
-        """Its name, or what it says."""
+        """Name of the check, or a text of its condition."""
         if self.name:
             return self.name
         if self.kind == "apart":
@@ -80,20 +83,20 @@ class Check:
 
 @dataclass(frozen=True)
 class Tolerance:
-    """How far readings may be from the golden ones where they cannot be expected to be equal bit by bit.
+    """Allowed difference between readings and golden readings, for runs that need not be equal bit by bit.
 
-    What is None is left to the defaults of the message's type.
+    Fields that are None use the default of the message type.
 
     Attributes:
-        pattern: a topic, a field (`/imu.linear_acceleration`), or a shell pattern of either.
-        absolute: in the field's unit.
-        relative: part of the golden value.
-        share: part of the values of one message (rays, points, pixels) that may be further off.
-        image: mean difference of a picture's values, 0 to 255.
-        ssim: least structural similarity of pictures, up to 1.
-        statistics: whether mean, deviation and distribution of the noise are compared instead of samples.
-        ignore: whether it is not looked at.
-        exact: whether bits must be equal, whatever the machine.
+        pattern: topic, field (`/imu.linear_acceleration`), or shell pattern of either.
+        absolute: absolute tolerance in the field's unit.
+        relative: tolerance as a fraction of the golden value.
+        share: fraction of the values of one message (rays, points, pixels) that may exceed the tolerance.
+        image: mean difference of an image's values, 0 to 255.
+        ssim: least structural similarity of images, at most 1.
+        statistics: compare mean, deviation and distribution of the noise instead of samples.
+        ignore: skip the comparison.
+        exact: require equal bits on every machine.
         where: `file:line`, or NOWHERE.
     """
 
@@ -110,12 +113,12 @@ class Tolerance:
 
 
 class SpawnRequest(Protocol):
-    """A model that comes into the world as it is loaded; `simkit.loaders.spawned_models.SpawnedModel` is one.
+    """Model to add while the world is loaded; `simkit.loaders.spawned_models.SpawnedModel` implements it.
 
     Attributes:
-        source: a file or a bare name.
-        place: x, y, yaw and what else is given of its pose; None for the file's own.
-        name: that it gets; None for its own.
+        source: file or bare name.
+        place: x, y [m], yaw [rad] and the further pose values that were given; None for the pose of the file.
+        name: name of the model in the world; None for the name in the file.
     """
 
     @property
@@ -127,7 +130,7 @@ class SpawnRequest(Protocol):
 
 
 class SourceOptions(TypedDict, total=False):
-    """How a file is read: arguments that `simkit.load`, `check` and `describe` share."""
+    """Options for reading a file, shared by `simkit.load`, `check` and `describe`."""
 
     resource_paths: Sequence[FilePath]
     package_paths: Mapping[str, FilePath]
@@ -136,7 +139,7 @@ class SourceOptions(TypedDict, total=False):
 
 
 class LoadOptions(SourceOptions, total=False):
-    """Arguments of `simkit.load` that `RunSpec` has no field of its own for; only those that are given are in it."""
+    """Passed arguments of `simkit.load` that have no `RunSpec` field of their own."""
 
     plugin_paths: Sequence[FilePath]
     params_files: FilePath | Sequence[FilePath | tuple[str, FilePath]]
@@ -158,11 +161,11 @@ class LoadArguments(LoadOptions, total=False):
 
 @dataclass(frozen=True)
 class Recording:
-    """The bag that a run is recorded to.
+    """Bag that a run is recorded to.
 
     Attributes:
         path: `x.mcap` for one file, else a rosbag2 folder.
-        overwrite: whether a bag that exists is replaced.
+        overwrite: replace an existing bag.
     """
 
     path: Path
@@ -171,41 +174,43 @@ class Recording:
 
 @dataclass(frozen=True)
 class RunSpec:
-    """A run: a world, what is done in it, what is recorded and what must hold.
+    """Specification of a run: its world, commands, recording and conditions.
 
     Attributes:
-        world: a file (relative to `folder`), a bare name, or XML text.
-        duration: longest simulated time [s]; infinite for a run that somebody stops.
-        seed: of all noise.
-        name: what reports call it; else the world's.
-        overrides: `PATH=VALUE` as of `--set`.
-        spawn: models put into the world, as of `--spawn`.
-        commands: what is sent while it runs: mappings as in a `--script`, each with its place under "where".
-        plugins: plugins made in Python, as of `simkit.load`; from Python only.
-        topics: shell patterns of the topics that are recorded or compared; empty for all but clocks.
-        skip: shell patterns of topics that are left out.
-        tolerances: the first whose pattern fits counts, a field's before its topic's.
-        state: whether the physics state itself is compared too.
-        model: whether a world that means something else is a difference even where no output shows it.
-        picture: longest side of a kept picture [px].
-        until: an expression that ends the run; reaching it is a check of its own.
+        world: file (relative to `folder`), bare name, or XML text.
+        duration: longest simulated time [s]; infinite for a run without an end.
+        seed: seed of all noise.
+        name: name in reports; empty for the world's name.
+        overrides: `PATH=VALUE` texts as for `--set`.
+        spawn: models to add to the world, as for `--spawn`.
+        commands: commands to send during the run: mappings as in a `--script`, each with its file position under
+            "where".
+        plugins: plugins made in Python, as for `simkit.load`; from Python only.
+        topics: shell patterns of the topics to record or compare; empty for all but clocks.
+        skip: shell patterns of topics to leave out.
+        tolerances: the first matching pattern counts, patterns of fields before patterns of topics.
+        state: compare the physics state too.
+        model: count a changed meaning of the world as a difference even if no output shows it.
+        picture: longest side of a stored image [px].
+        until: expression that ends the run; reaching it is a check of its own.
         timeout: simulated time [s] by which `until` must hold; None for the duration.
-        wall_timeout: wall time [s] after which the run is given up.
-        checks: what must hold.
-        options: how the world is loaded: resources and further arguments of `simkit.load`.
-        folder: what relative paths are relative to.
-        file: where it was read from; None where it was made in Python.
-        test: of what only a test can do again (it made plugins, or stepped by itself): `FILE.py::NAME`.
-        bits: whether bits must be equal on the same machine; else tolerances count there too. From Python only.
-        play: a bag whose commands are sent again at their ticks (relative to `folder`); empty for none.
-        play_topics: `TOPIC` or `OLD:=NEW`, as of `--play-topic`; empty for all that the world takes.
-        velocity: `V,W` [m/s, rad/s] that is sent once, as of `--cmd-vel`; None for none.
-        script: a file of further commands, as of `--script`.
-        recording: the bag that topics are recorded to; None for none.
-        pace: highest real-time factor; None for as fast as it goes.
-        paused: whether it begins paused.
-        steps: steps after which it is paused; None for not at all.
-        change_world: is given the resolved world and returns what is built instead. From Python only.
+        wall_timeout: wall time [s] after which the run is aborted.
+        checks: conditions that must hold.
+        options: load options: resources and further arguments of `simkit.load`.
+        folder: folder that relative paths start from.
+        file: file of the specification; None if it was made in Python.
+        test: `FILE.py::NAME` of the test that can repeat the run, because it makes plugins or steps the simulation
+            itself.
+        bits: require equal bits on the same machine; otherwise tolerances apply there too. From Python only.
+        play: bag whose commands are sent again at their ticks (relative to `folder`); empty for none.
+        play_topics: `TOPIC` or `OLD:=NEW`, as for `--play-topic`; empty for all topics that the world subscribes to.
+        velocity: `V,W` [m/s, rad/s] to send once, as for `--cmd-vel`; None for none.
+        script: file of further commands, as for `--script`.
+        recording: bag for the recorded topics; None for none.
+        pace: highest real-time factor; None for full speed.
+        paused: start the run paused.
+        steps: number of steps before a pause; None for no pause.
+        change_world: function that receives the resolved world and returns the world to build. From Python only.
     """
 
     world: str
@@ -253,52 +258,51 @@ class RunSpec:
         return cast(LoadArguments, {**arguments, **self.options})
 
     def source_options(self) -> SourceOptions:
-        """Return the options that say how the world's file is read, those that are given."""
+        """Return the options for reading the world's file that were passed."""
         names = SourceOptions.__optional_keys__
         return cast(SourceOptions, {name: value for name, value in self.options.items() if name in names})
 
     @property
     def longest(self) -> float:
-        """Simulated time after which the run ends at the latest [s]: its timeout, else its duration."""
+        """Simulated time at which the run ends at the latest [s]: the timeout, else the duration."""
         return self.duration if self.timeout is None else self.timeout
 
     @property
     def is_endless(self) -> bool:
-        """Whether the run has no duration of its own."""
+        """True for a run without a duration."""
         return math.isinf(self.duration)
 
     @property
     def played_bag(self) -> Path | None:
-        """The bag whose commands are played; None for none."""
+        """Path of the bag whose commands are played; None for none."""
         return self.folder / self.play if self.play else None
 
     @property
     def title(self) -> str:
-        """Its name, or that of the world's file."""
+        """Name of the run, or of the world's file."""
         if self.name:
             return self.name
         return "world" if "<" in self.world else Path(self.world).stem
 
     @property
     def source(self) -> str:
-        """What `simkit.load` is given: the world beside the scenario's file, where there is one."""
+        """World argument of `simkit.load`: the path of the world's file beside the scenario, else `world`."""
         if "<" in self.world:
             return self.world
         return self.world if self.beside is None else str(self.beside)
 
     @property
     def beside(self) -> Path | None:
-        """The world's file, or its folder, beside the scenario's; None where it is a bare name, or text."""
+        """File or folder of the world beside the scenario; None for a bare name or XML text."""
         if "<" in self.world:
             return None
-        place = self.folder / self.world
-        if place.is_dir():  # a golden run may have the name of its world
-            return place if any(one.suffix in _MODEL_FILE_SUFFIXES for one in place.iterdir()) else None
-        return place if place.is_file() else None
+        path = self.folder / self.world
+        if path.is_dir():  # the folder of a golden run may have the name of its world
+            return path if any(entry.suffix in _MODEL_FILE_SUFFIXES for entry in path.iterdir()) else None
+        return path if path.is_file() else None
 
     def tolerance(self, topic: str, field_: str = "") -> Sequence[Tolerance]:
-        """Those that speak of a field of a topic, the most particular first."""
-
+        """Return the tolerances that match a field of a topic, the most specific first."""
         name = f"{topic}.{field_}" if field_ else topic
         of_field = [
             t

@@ -1,4 +1,4 @@
-"""Read YAML that a user wrote: return plain values, or say why the text is not valid."""
+"""Reader for YAML of users: returns plain values, or raises with the reason why the text is invalid."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from typing import Any, Final
 from simkit.errors import SimkitError
 
 _DEEPEST: Final = 100
-_MOST: Final = 1_000_000  # values; aliases that are used again and again make much out of little
+_MOST: Final = 1_000_000  # values; repeated aliases expand a short text to very many values
 _EXPONENT: Final = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)[eE][-+]?[0-9]+$")
 _SEXAGESIMAL: Final = re.compile(r"[-+]?[0-9][0-9_]*(?::[0-5]?[0-9])+(?:\.[0-9_]*)?$")
 
 
 class NotYaml(SimkitError):
-    """A text is no YAML; the message says why.
+    """Invalid YAML; the message has the reason.
 
     Attributes:
-        line: of the text, counted from 1; None where that is not known.
+        line: line of the text, counted from 1; None where unknown.
     """
 
     def __init__(self, why: str, line: int | None = None) -> None:
@@ -27,22 +27,22 @@ class NotYaml(SimkitError):
 
 
 def read_yaml(text: str) -> Any:
-    """The values that a text stands for.
+    """Return the values of a YAML text.
 
-    Numbers are those of YAML 1.2 and of ROS too, where YAML 1.1 has a text: `1e-3`. `12:30` is a text, not 750.
+    Numbers follow YAML 1.2 and ROS: `1e-3` is a number, although YAML 1.1 reads a text. `12:30` is a text, not 750.
 
     Raises:
-        NotYaml: it is none, or has a value that does not fit its tag, or holds itself.
+        NotYaml: the text is not YAML, a value does not fit its tag, or a value contains itself.
     """
     root = compose_nodes(text)
     return None if root is None else node_value(root)
 
 
 def compose_nodes(text: str) -> Any:
-    """The root of the nodes of a text, which know their lines; None of an empty one.
+    """Return the root node of a text; nodes know their lines. An empty text gives None.
 
     Raises:
-        NotYaml: it is no YAML.
+        NotYaml: the text is not YAML.
     """
     import yaml
 
@@ -51,14 +51,14 @@ def compose_nodes(text: str) -> Any:
     except yaml.YAMLError as error:
         raise _yaml_error(error) from None
     except RecursionError:
-        raise NotYaml("it is nested too deep") from None
+        raise NotYaml("the text is nested too deeply") from None
 
 
 def node_value(node: Any) -> Any:
     """Return the value of a node.
 
     Raises:
-        NotYaml: a value does not fit its tag, holds itself, or much is made out of little.
+        NotYaml: a value does not fit its tag, a value contains itself, or aliases expand to too many values.
     """
     import yaml
 
@@ -68,15 +68,15 @@ def node_value(node: Any) -> Any:
     except yaml.YAMLError as error:
         raise _yaml_error(error) from None
     except RecursionError:
-        raise NotYaml("it is nested too deep") from None
-    except (ValueError, KeyError, TypeError, AttributeError, OverflowError) as error:  # a tag's, of its value
-        said = error.args[0] if error.args else ""
-        raise NotYaml(f"a value is not what it looks like: {str(said).partition(';')[0]:.200}") from None
+        raise NotYaml("the text is nested too deeply") from None
+    except (ValueError, KeyError, TypeError, AttributeError, OverflowError) as error:  # the value does not fit its tag
+        reason = error.args[0] if error.args else ""
+        raise NotYaml(f"a value does not fit its type: {str(reason).partition(';')[0]:.200}") from None
     return found
 
 
 def finite_number(value: Any) -> float | None:
-    """A value as a number; None where it is no number that is finite."""
+    """Return a value as a float; None unless the value is a finite number."""
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         return None
     try:
@@ -86,11 +86,11 @@ def finite_number(value: Any) -> float | None:
 
 
 def yaml_loader() -> Any:
-    """PyYAML's safe loader with those numbers, and an end to what merges (`<<`) make out of little."""
+    """Return PyYAML's safe loader with the number rules of `read_yaml` and a size limit for merges (`<<`)."""
     import yaml
 
     class Reader(yaml.SafeLoader):
-        """Loader of its own, so that its rules for numbers stay here."""
+        """Subclass of the loader, so that its number rules do not change PyYAML's own loader."""
 
         _merged = 0
 
@@ -98,7 +98,7 @@ def yaml_loader() -> Any:
             super().flatten_mapping(node)
             self._merged += len(node.value)
             if self._merged > _MOST:
-                message = f"it stands for more than {_MOST} values"
+                message = f"the text expands to more than {_MOST} values"
                 raise yaml.constructor.ConstructorError(None, None, message, node.start_mark)
 
     Reader.add_implicit_resolver("tag:yaml.org,2002:float", _EXPONENT, list("-+.0123456789"))
@@ -115,7 +115,7 @@ def _yaml_error(error: Any) -> NotYaml:
 
 
 def _check_size(root: Any) -> None:
-    """Raises where a tree is too deep, which one that holds itself is as well, or too large."""
+    """Raise if a tree is too deep, which includes a value that contains itself, or too large."""
     count, left = 0, [(root, 0)]
     while left:
         value, depth = left.pop()
@@ -124,5 +124,5 @@ def _check_size(root: Any) -> None:
         if depth > _DEEPEST:
             raise RecursionError
         if count > _MOST:
-            raise NotYaml(f"it stands for more than {_MOST} values")
-        left.extend((one, depth + 1) for one in below)
+            raise NotYaml(f"the text expands to more than {_MOST} values")
+        left.extend((item, depth + 1) for item in below)

@@ -42,7 +42,7 @@ def is_gone(pid: int) -> bool:
 
 def test_of_megabytes_the_last_lines_are_kept_and_nobody_waits(tmp_path: Path) -> None:
     found = ended(tmp_path, "print('x' * 5_000_000)\nprint('last', sys.stdin.read())\nsys.exit(3)")
-    assert found.code == 3 and found.last_lines(1) == ["last "] and len(found.said) <= 1 << 16
+    assert found.code == 3 and found.last_lines(1) == ["last "] and len(found.output) <= 1 << 16
 
 
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="processes are looked at in /proc")
@@ -50,7 +50,7 @@ def test_of_megabytes_the_last_lines_are_kept_and_nobody_waits(tmp_path: Path) -
 def test_what_it_began_ends_with_it(body: str, tmp_path: Path) -> None:
     found = ended(tmp_path, SLEEPER + body, limit=1.0)
     assert found.is_late == ("60" in body)
-    assert is_gone(int(found.said.split()[0]))
+    assert is_gone(int(found.output.split()[0]))
 
 
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="processes are looked at in /proc")

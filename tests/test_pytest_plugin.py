@@ -131,7 +131,7 @@ def test_worlds_are_closed_when_their_test_ends_also_where_it_fails(report: str)
 def test_the_report_of_a_failure_says_what_loading_found_and_where_the_run_stood(report: str) -> None:
     text = about(report, "test_that_fails")
     assert re.search(r"^-+ simkit slide\.sdf -+$", text, re.MULTILINE)
-    assert "stood at 0.25 s, after 250 steps of 0.001 s" in text
+    assert "stopped at 0.25 s, after 250 steps of 0.001 s" in text
     assert "slide.sdf:5: warning SK-PLUGIN-001: unknown plugin 'libnobody_has_this.so'" in text
 
 

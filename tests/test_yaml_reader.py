@@ -23,8 +23,8 @@ def test_what_is_no_number_stays_a_text(text: str) -> None:
     ("text", "why"),
     [
         ("{x: 2024-13-45}", "month must be in 1..12"),
-        ("!!timestamp foo", "a value is not what it looks like"),
-        ("!!bool foo", "a value is not what it looks like"),
+        ("!!timestamp foo", "a value does not fit its type"),
+        ("!!bool foo", "a value does not fit its type"),
         ("!!int foo", "invalid literal"),
         ("!!float foo", "could not convert"),
         ("9" * 5000, "4300 digits"),
@@ -44,13 +44,13 @@ def test_what_cannot_be_read_is_told_and_no_more(text: str, why: str) -> None:
 
 def test_much_out_of_little_is_refused() -> None:
     text = "a0: &a0 [1, 1]\n" + "".join(f"a{i}: &a{i} [*a{i - 1}, *a{i - 1}]\n" for i in range(1, 40))
-    with pytest.raises(NotYaml, match="stands for more than"):
+    with pytest.raises(NotYaml, match="expands to more than"):
         read_yaml(text)
 
 
 def test_much_out_of_little_by_merging_is_refused_too() -> None:
     text = "a0: &a0 {x: 1}\n" + "".join(f"a{i}: &a{i} {{<<: [{f'*a{i - 1}, ' * 9}]}}\n" for i in range(1, 20))
-    with pytest.raises(NotYaml, match="stands for more than") as caught:
+    with pytest.raises(NotYaml, match="expands to more than") as caught:
         read_yaml(text)
     assert caught.value.line is not None
 
