@@ -1,6 +1,6 @@
-"""play_motion: motions that a robot knows by name, planned, checked for collisions and played.
+"""play_motion: named motions of a robot that are planned, checked for collisions and played.
 
-What enters: files of motions in the layout of play_motion2 or ROS 1's play_motion, and goals of their actions. What
-leaves: goals for the robot's trajectory controllers, results and feedback, and answers of services. It never moves a
-joint by itself: whoever moves one is a controller of `ros2_control`.
+The package reads motion files in the layout of play_motion2 or ROS 1's play_motion, and accepts goals of their actions.
+It sends goals to the robot's trajectory controllers, publishes results and feedback, and answers services. It never
+moves a joint itself: the controllers of `ros2_control` do.
 """

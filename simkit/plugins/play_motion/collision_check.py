@@ -1,10 +1,13 @@
-"""Check whether a robot collides with itself or its surroundings at other positions of its joints.
+"""Check whether a robot would collide with itself or its surroundings at other joint positions.
 
-It is asked of a copy of the state, so that nothing moves. Within the robot every two links count that a joint of the
-motion moves against each other, also where the model is not to collide with itself, but for neighbours and for links
-whose shapes are in each other nearly wherever the two joints between them are. With the surroundings what counts is
-what the engine would let collide. What touches already may go on touching as deep as it does: a wheel its floor, a
-gripper what it holds. What is held moves along with the links that hold it.
+The check uses a copy of the state, so nothing moves. The rules are:
+
+- Inside the robot, every pair of links counts that a joint of the motion moves relative to each other, even if the
+  model disables self-collision. Neighbours do not count, nor do links whose shapes overlap at nearly all positions of
+  the two joints between them.
+- With the surroundings, the pairs count that the engine would let collide.
+- Existing contacts are allowed up to their present depth, such as a wheel on the floor or a held object in a gripper.
+- A held object moves with the links that hold it.
 """
 
 from __future__ import annotations
@@ -23,22 +26,20 @@ from simkit.runtime.contact.collision_contacts import collision_table
 if TYPE_CHECKING:
     from simkit.runtime import Joint, Model, Simulation
 
-TOLERANCE: Final = 1e-3  # [m] that the surroundings may come into a link: rounding, and what the engine lets them
-SELF_TOLERANCE: Final = (
-    5e-3  # [m] that links may come into each other: their shapes are simple ones around the real parts
-)
-_SAMPLED_POSITIONS: Final = 3  # of a joint, from one limit to the other
+TOLERANCE: Final = 1e-3  # [m], allowed overlap with the surroundings: rounding and the engine's soft contacts
+SELF_TOLERANCE: Final = 5e-3  # [m], allowed overlap of links, whose collision shapes are larger than the real parts
+_SAMPLED_POSITIONS: Final = 3  # sampled positions of a joint, from one limit to the other
 _ONE_AXIS: Final = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))
 
 
 @dataclass(frozen=True, slots=True)
 class LinkCollision:
-    """Two links that come into each other.
+    """Collision of two links.
 
     Attributes:
-        first: a link of the robot, or what it holds.
-        second: a link of the robot, or `model::link` of the surroundings.
-        depth: how far they come into each other [m].
+        first: Name of a link of the robot or of a held object.
+        second: Name of a link of the robot, or `model::link` of the surroundings.
+        depth: Penetration depth [m].
     """
 
     first: str
@@ -46,12 +47,12 @@ class LinkCollision:
     depth: float
 
     def __str__(self) -> str:
-        return f"{self.first} and {self.second} come {self.depth * 1000:.3g} mm into each other"
+        return f"{self.first} and {self.second} overlap by {self.depth * 1000:.3g} mm"
 
 
 @dataclass(frozen=True, slots=True)
 class _HeldObject:
-    """A free body that two or more moving links touch: it stays where it is in the body that carries them all."""
+    """Free body in contact with two or more moving links; it keeps its pose in the body that carries all of them."""
 
     qpos: int
     carrier: int
@@ -59,16 +60,16 @@ class _HeldObject:
 
 
 class CollisionCheck:
-    """Asks about one robot, for a set of joints."""
+    """Collision check of one robot for a set of joints."""
 
     def __init__(self, sim: Simulation, robot: Model, joints: Sequence[Joint], free_joints: Collection[str]) -> None:
-        """Takes up the present state.
+        """Copy the present state and find the pairs of geoms to check.
 
         Args:
-            sim: the simulation.
-            robot: whose joints they are.
-            joints: those that are to move, each of one degree of freedom.
-            free_joints: plain names of joints whose links may touch each other and whatever lies loose.
+            sim: Simulation of the robot.
+            robot: Robot that owns the joints.
+            joints: Joints that move, each with one degree of freedom.
+            free_joints: Plain names of joints whose links may touch each other and loose objects, such as grippers.
         """
         self._sim, self._robot, self._joints = sim, robot, list(joints)
         self._model, self._data = sim.mj_model, mujoco.MjData(sim.mj_model)
@@ -79,24 +80,24 @@ class CollisionCheck:
         self._find_parts(free_joints)
         self._held = self._find_held(now)
         self._find_loose()
-        self._place(np.array([float(joint.position) for joint in self._joints]))
+        self._set_positions(np.array([float(joint.position) for joint in self._joints]))
         self._find_pairs()
-        self._standing = dict(self._contacts())
+        self._initial_contacts = dict(self._contacts())
 
-    # ------------------------------------------------------------------ what is asked
+    # ------------------------------------------------------------------ queries
 
-    def meeting(self, positions: Vector) -> LinkCollision | None:
-        """The two links that come deepest into each other with the joints there; None where none do.
+    def deepest_collision(self, positions: Vector) -> LinkCollision | None:
+        """Return the collision with the largest depth at these joint positions, or None.
 
         Args:
-            positions: of the joints, in their order [rad or m].
+            positions: Positions in the order of the joints [rad or m].
         """
-        self._place(positions)
-        found = [*self._within(), *self._outside()]
-        return max(found, key=lambda meeting: meeting.depth, default=None)
+        self._set_positions(positions)
+        found = [*self._self_collisions(), *self._outside_collisions()]
+        return max(found, key=lambda collision: collision.depth, default=None)
 
-    def _within(self) -> list[LinkCollision]:
-        """Links of the robot that meet each other."""
+    def _self_collisions(self) -> list[LinkCollision]:
+        """Return the collisions between links of the robot."""
         model, data = self._model, self._data
         places = data.geom_xpos
         apart = places[self._first] - places[self._second]
@@ -109,17 +110,17 @@ class CollisionCheck:
                 found.append(LinkCollision(self._name(first), self._name(second), -dist))
         return found
 
-    def _outside(self) -> list[LinkCollision]:
-        """Links of the robot, or what it holds, that meet something else."""
+    def _outside_collisions(self) -> list[LinkCollision]:
+        """Return the collisions of the robot, or of its held objects, with the surroundings."""
         found = []
         for (mine, other), dist in self._contacts():
-            if dist < min(self._standing.get((mine, other), 0.0), 0.0) - TOLERANCE:
+            if dist < min(self._initial_contacts.get((mine, other), 0.0), 0.0) - TOLERANCE:
                 found.append(LinkCollision(self._name(mine), self._name(other), -dist))
         return found
 
     # ------------------------------------------------------------------ the copy of the state
 
-    def _place(self, positions: Vector) -> None:
+    def _set_positions(self, positions: Vector) -> None:
         data = self._data
         for binding, value in zip(self._bindings, positions, strict=True):
             data.qpos[binding.qpos[0]] = value
@@ -127,10 +128,10 @@ class CollisionCheck:
                 data.qpos[f.qpos] = self._model.qpos0[f.qpos] + f.offset + f.ratio * value
         mujoco.mj_kinematics(self._model, data)
         if self._held:
-            for one in self._held:
-                carrier = Pose(data.xpos[one.carrier], data.xquat[one.carrier])
-                pose = carrier @ one.pose
-                data.qpos[one.qpos : one.qpos + 3], data.qpos[one.qpos + 3 : one.qpos + 7] = (
+            for held in self._held:
+                carrier = Pose(data.xpos[held.carrier], data.xquat[held.carrier])
+                pose = carrier @ held.pose
+                data.qpos[held.qpos : held.qpos + 3], data.qpos[held.qpos + 3 : held.qpos + 7] = (
                     pose.position,
                     pose.quaternion,
                 )
@@ -139,7 +140,7 @@ class CollisionCheck:
         mujoco.mj_collision(self._model, data)
 
     def _contacts(self) -> list[tuple[tuple[int, int], float]]:
-        """Contacts of what moves with what is not the robot: (geom that moves, other geom), distance [m]."""
+        """Return the contacts between moving geoms and the surroundings: (moving geom, other geom), distance [m]."""
         data = self._data
         if not data.ncon:
             return []
@@ -155,10 +156,10 @@ class CollisionCheck:
             found[a, b] = min(d, found.get((a, b), d))
         return list(found.items())
 
-    # ------------------------------------------------------------------ what there is
+    # ------------------------------------------------------------------ preparation
 
     def _find_parts(self, free_joints: Collection[str]) -> None:
-        """Find the robot's geoms, those of them that move, and those of joints that may touch things."""
+        """Find the robot's geoms, its moving geoms, and the geoms of the free joints."""
         model, sim = self._model, self._sim
         moved = {int(model.jnt_bodyid[j]) for b in self._bindings for j in b.joint_ids}
         moved |= {int(model.dof_bodyid[f.dof]) for b in self._bindings for f in b.followers}
@@ -178,13 +179,13 @@ class CollisionCheck:
         prefix = f"{self._robot.scoped}::"
         mine = np.array([name.startswith(prefix) for name in found.names] + [False])
         bodies = model.geom_bodyid
-        # the last one stands for what is no geom
+        # the last entry serves index -1, which means "no geom"
         self._is_robot = mine[found.of_geom]
         self._moves = np.append(self._is_robot[:-1] & (self._mover[bodies] > 0), False)
         self._is_free = np.append(is_free[bodies], False)
 
     def _find_loose(self) -> None:
-        """Find the geoms of free bodies, the robot apart."""
+        """Find the geoms of free bodies outside the robot."""
         model = self._model
         roots = model.body_rootid[model.geom_bodyid]
         starts = np.where(model.body_jntnum > 0, model.body_jntadr, 0)
@@ -195,7 +196,7 @@ class CollisionCheck:
         self._is_loose = np.append(floats[roots] & ~self._is_robot[:-1], False)
 
     def _find_held(self, now: mujoco.MjData) -> list[_HeldObject]:
-        """Find the objects that the moving links hold: free bodies that touch two or more of them."""
+        """Find the held objects: free bodies in contact with two or more moving links."""
         model = self._model
         touched: dict[int, set[int]] = {}
         for a, b in np.array(now.contact.geom).tolist() if now.ncon else ():
@@ -218,7 +219,7 @@ class CollisionCheck:
         return held
 
     def _common(self, bodies: Collection[int]) -> int:
-        """The body that carries all of these."""
+        """Return the nearest body that carries all of these."""
         chains = []
         for body in bodies:
             chain = [body]
@@ -228,7 +229,7 @@ class CollisionCheck:
         return next(body for body in chains[0] if all(body in chain for chain in chains))
 
     def _find_pairs(self) -> None:
-        """Pairs of the robot's geoms that move against each other, and how deep they are in each other now."""
+        """Find the pairs of the robot's geoms that move relative to each other, and their present depths."""
         model, data = self._model, self._data
         movers = self._mover[model.geom_bodyid]
         collides = (model.geom_contype | model.geom_conaffinity) != 0
@@ -247,7 +248,10 @@ class CollisionCheck:
         self._allowed = np.minimum(np.array(now, dtype=float), 0.0) - SELF_TOLERANCE
 
     def _belong(self, first: int, second: int) -> bool:
-        """Check whether two geoms touch by design: their links share a joint, or two joints and nearly always touch."""
+        """Check whether two geoms touch by design.
+
+        That is so if their links share a joint, or if two joints connect them and they overlap at most joint positions.
+        """
         model = self._model
         a, b = (int(model.body_weldid[model.geom_bodyid[g]]) for g in (first, second))
         up_a, up_b = self._above(a), self._above(b)
@@ -260,7 +264,7 @@ class CollisionCheck:
         return up_a == up_b and self._mostly_meet(first, second, (a, b))
 
     def _mostly_meet(self, first: int, second: int, bodies: tuple[int, int]) -> bool:
-        """Check whether two geoms come into each other at most of the places of the two joints that join them."""
+        """Check whether two geoms overlap at most sampled positions of the two joints between them."""
         model, data = self._model, self._data
         joints = [j for body in bodies for j in self._joints_of(body)]
         if len(joints) != 2 or any(model.jnt_type[j] not in _ONE_AXIS for j in joints):

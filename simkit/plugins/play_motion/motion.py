@@ -1,4 +1,4 @@
-"""A motion: joints, the positions they go through and the times, and the check against the joints' limits."""
+"""Motion of a robot: joints, positions and times, with the check against the joint limits."""
 
 from __future__ import annotations
 
@@ -21,15 +21,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Motion(SharedByCopies):
-    """A motion that a robot knows by name.
+    """Named motion of a robot.
 
     Attributes:
-        key: what it is called by (`unfold_arm`).
-        joints: plain names.
-        times: when each point is reached, from the start of the motion [s], rising; shape (points,).
-        positions: of each point, in the order of the joints [rad or m], shape (points, joints).
-        velocities: of each point [rad/s or m/s], shape (points, joints); empty where the file says nothing.
-        name, usage, description: for people.
+        key: Key of the motion in goals and services (`unfold_arm`).
+        joints: Plain joint names.
+        times: Time of each point from the start of the motion [s], increasing; shape (points,).
+        positions: Position of each joint at each point [rad or m], shape (points, joints).
+        velocities: Velocity of each joint at each point [rad/s or m/s], shape (points, joints); empty if not given.
+        name, usage, description: Texts for people.
+        where: Place of the motion in its file.
     """
 
     key: str
@@ -44,11 +45,11 @@ class Motion(SharedByCopies):
 
     @property
     def duration(self) -> float:
-        """Time of its last point as the file has it, without the approach [s]."""
+        """Time of the last point in the file, without the approach [s]."""
         return self.times[-1]
 
     def as_message(self) -> dict[str, object]:
-        """The fields of a `play_motion2_msgs/msg/Motion`."""
+        """Return the fields of a `play_motion2_msgs/msg/Motion`."""
         return {
             "key": self.key,
             "name": self.name,
@@ -60,16 +61,16 @@ class Motion(SharedByCopies):
         }
 
     def as_info(self) -> dict[str, object]:
-        """The fields of a `play_motion_msgs/msg/MotionInfo`."""
+        """Return the fields of a `play_motion_msgs/msg/MotionInfo`."""
         duration = msgs.duration(round(self.duration * 1e9))
         return {"name": self.key, "joints": list(self.joints), "duration": duration}
 
 
 def motion_of_message(message: MotionMessage) -> Motion:
-    """The motion that a `play_motion2_msgs/msg/Motion` holds.
+    """Convert a `play_motion2_msgs/msg/Motion` to a motion.
 
     Raises:
-        ValueError: it is none; says why.
+        ValueError: The message is not a valid motion; the text states the reason.
     """
     joints, flat, times = list(message.joints), [float(v) for v in message.positions], list(message.times_from_start)
     fault = motion_fault(joints, flat, [float(t) for t in times])
@@ -87,32 +88,42 @@ def motion_of_message(message: MotionMessage) -> Motion:
 
 
 def point_rows(flat: Sequence[float], width: int) -> tuple[tuple[float, ...], ...]:
-    """Positions of all points one after another, as a row for each point."""
+    """Split the concatenated positions of all points into one row per point."""
     return tuple(tuple(flat[k : k + width]) for k in range(0, len(flat), width))
 
 
 def motion_fault(
     joints: Sequence[str], flat: Sequence[float], times: Sequence[float], velocities: Sequence[float] = ()
 ) -> str:
-    """Describe why these are no motion; empty where they are one."""
+    """Check the numbers of a motion.
+
+    Args:
+        joints: Joint names.
+        flat: Positions of all points, concatenated.
+        times: Time of each point [s].
+        velocities: Velocities of all points, concatenated.
+
+    Returns:
+        A description of the first fault, or an empty text.
+    """
     if not joints:
-        return "it names no joint"
+        return "it has no joints"
     twice = next((joint for k, joint in enumerate(joints) if joint in joints[:k]), None)
     if twice is not None:
-        return f"it names joint {twice!r} twice"
+        return f"joint {twice!r} is listed twice"
     if not times:
-        return "it has no point"
+        return "it has no points"
     if len(flat) != len(joints) * len(times):
         counts = f"{len(joints)} joints at {len(times)} times"
-        return f"it has {len(flat)} positions, {counts} need {len(joints) * len(times)}"
+        return f"it has {len(flat)} positions, but {counts} need {len(joints) * len(times)}"
     bad = next((v for v in (*flat, *times, *velocities) if not math.isfinite(v)), None)
     if bad is not None:
-        return f"it has a number that is not finite ({bad})"
+        return f"it has a NaN or infinite number ({bad})"
     if times[0] < 0:
         return f"its first time is {times[0]:g} s, before the start"
     back = next((k for k in range(1, len(times)) if times[k] <= times[k - 1]), None)
     if back is not None:
-        return f"its times do not rise: {times[back]:g} s comes after {times[back - 1]:g} s"
+        return f"its times must increase, but {times[back]:g} s comes after {times[back - 1]:g} s"
     return ""
 
 
@@ -120,7 +131,7 @@ _ROUNDING: Final = 1e-6  # [rad or m]
 
 
 def limit_violations(motion: Motion, joints: Mapping[str, Joint]) -> list[str]:
-    """Describe where a motion leaves the limits of its joints; a joint is named once, where it goes furthest."""
+    """Describe the joint limits that a motion exceeds, once per joint, at the point with the largest excess."""
     found = []
     for column, name in enumerate(motion.joints):
         axis = joints[name].scene.axes[0]
@@ -130,10 +141,10 @@ def limit_violations(motion: Motion, joints: Mapping[str, Joint]) -> list[str]:
         if over[k] > _ROUNDING:
             unit = "m" if joints[name].type == "prismatic" else "rad"
             allowed = f"allowed is {axis.lower:g} to {axis.upper:g}"
-            found.append(f"{name} is to be at {values[k]:g} {unit} at {motion.times[k]:g} s, {allowed}")
+            found.append(f"{name} would be at {values[k]:g} {unit} at {motion.times[k]:g} s, {allowed}")
     return found
 
 
 def speed_limits(motion: Motion, joints: Mapping[str, Joint]) -> Vector:
-    """The largest speed of each joint of a motion [rad/s or m/s]; infinite where there is none."""
+    """Return the largest speed of each joint of a motion [rad/s or m/s]; infinite for a joint without a limit."""
     return np.array([joints[name].scene.axes[0].velocity or np.inf for name in motion.joints], dtype=float)

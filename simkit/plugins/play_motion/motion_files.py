@@ -1,8 +1,8 @@
-"""Files of motions: YAML in the layout of play_motion2 (ROS 2) or of play_motion (ROS 1).
+"""Motion files: YAML in the layout of play_motion2 (ROS 2) or of play_motion (ROS 1).
 
-Both have `motions` below the name of a node. In ROS 2's a motion has `joints`, `positions` (all points one after
-another) and `times_from_start`; in ROS 1's `joints` and `points`, each with `positions`, `time_from_start` and perhaps
-`velocities`. A motion is taken for what it has, whatever the file around it is like.
+Both layouts have a block `motions` below the name of a node. In ROS 2, a motion has `joints`, `positions` (of all
+points, concatenated) and `times_from_start`. In ROS 1, a motion has `joints` and `points`, each with `positions`,
+`time_from_start` and optionally `velocities`. The keys of each motion decide its layout, not the file around it.
 """
 
 from __future__ import annotations
@@ -31,13 +31,13 @@ _SETTINGS: Final = (*_SPEEDS, *_SHORTEST, *_EXCLUDED)
 
 @dataclass(slots=True)
 class MotionFile:
-    """Contents of a file of motions.
+    """Contents of a motion file.
 
     Attributes:
-        motions: by key, in the order of the file.
-        approach_velocity: of the fastest joint on its way to the first point [rad/s or m/s]; None: nothing is said.
-        approach_min_duration: [s]; None: nothing is said.
-        excluded_joints: joints that are free to touch what they are to hold; None: nothing is said.
+        motions: Motions by key, in the order of the file.
+        approach_velocity: Speed of the fastest joint on the way to the first point [rad/s or m/s]; None if not given.
+        approach_min_duration: Shortest duration of that way [s]; None if not given.
+        excluded_joints: Joints that may touch objects, such as gripper joints; None if not given.
     """
 
     motions: dict[str, Motion] = field(default_factory=dict)
@@ -46,7 +46,7 @@ class MotionFile:
     excluded_joints: tuple[str, ...] | None = None
 
     def update(self, other: MotionFile) -> None:
-        """Takes what a later file says over what is there."""
+        """Add the contents of a later file, which replaces equal keys and settings."""
         self.motions.update(other.motions)
         for name in ("approach_velocity", "approach_min_duration", "excluded_joints"):
             if getattr(other, name) is not None:
@@ -54,43 +54,48 @@ class MotionFile:
 
 
 def read_motions(path: Path, diagnostics: Diagnostics) -> MotionFile:
-    """Reads a file of motions; a motion that is none is left out with a warning, the others stay."""
+    """Read a motion file; an invalid motion is left out with a warning.
+
+    Args:
+        path: File to read.
+        diagnostics: Receives the warnings and errors.
+    """
     stamp: tuple[int, ...] = ()
-    with suppress(OSError):  # told by whoever reads it
+    with suppress(OSError):  # reported when the file is read
         stat = path.stat()
         stamp = (stat.st_dev, stat.st_ino, stat.st_mtime_ns, stat.st_size)
-    file, said = _read_cached(path, stamp)
-    diagnostics.extend(said)
+    file, reports = _read_cached(path, stamp)
+    diagnostics.extend(reports)
     return replace(file, motions=dict(file.motions))
 
 
 @lru_cache(maxsize=32)  # worlds are loaded again and again, and reading takes 10 ms
 def _read_cached(path: Path, _stamp: tuple[int, ...]) -> tuple[MotionFile, tuple[Diagnostic, ...]]:
-    """A file as it was when it was last changed, and what is wrong with it."""
-    found, said = MotionFile(), Diagnostics()
-    file = read_parameter_file(path, said)
+    """Return the contents and reports of a file; `_stamp` changes with the file and so renews the cache entry."""
+    found, reports = MotionFile(), Diagnostics()
+    file = read_parameter_file(path, reports)
     if file is None:
-        return found, tuple(said)
-    # what is said of a file without parameters is about controllers
-    said.drop([d for d in said if d.code == "SK-CONTROL-003"])
+        return found, tuple(reports)
+    # this warning about a file without parameters refers to controllers
+    reports.drop([d for d in reports if d.code == "SK-CONTROL-003"])
     for block in _motion_blocks(file):
         for name, entry in (block.below or {}).items():
             if name == "motions":
-                _read_motions(entry, found, said)
+                _read_motions(entry, found, reports)
             elif name in _PLANNERS:
-                _read_planner(entry, found, said)
+                _read_planner(entry, found, reports)
             elif name in _SETTINGS:
-                _read_planner(Entry(block.where, below={name: entry}), found, said)
+                _read_planner(Entry(block.where, below={name: entry}), found, reports)
             elif near := did_you_mean(name, ("motions", *_PLANNERS, *_SETTINGS)):
-                said.warning("SK-MOTION-006", f"{name!r} is not used", entry.where, near)
-    if not found.motions and not said.has_errors:
-        hint = "motions stand in a block `motions` below the name of a node"
-        said.warning("SK-MOTION-003", f"{path.name} has no motion that can be played", Where(str(path)), hint)
-    return found, tuple(said)
+                reports.warning("SK-MOTION-006", f"{name!r} is not used", entry.where, near)
+    if not found.motions and not reports.has_errors:
+        hint = "add a block `motions` below the name of a node"
+        reports.warning("SK-MOTION-003", f"{path.name} has no valid motion", Where(str(path)), hint)
+    return found, tuple(reports)
 
 
 def _motion_blocks(file: ParameterFile) -> Iterator[Entry]:
-    """Every block that may hold motions: the nodes of ROS 2, or whatever holds `motions` in a file of ROS 1."""
+    """Yield every block that may contain motions: all nodes (ROS 2), and all blocks with a key `motions` (ROS 1)."""
     for _, entry in file.nodes:
         yield entry
     if file.root is not None:
@@ -115,21 +120,25 @@ def _read_motions(entry: Entry, found: MotionFile, diagnostics: Diagnostics) -> 
 
 
 def _motion(key: str, entry: Entry, diagnostics: Diagnostics) -> Motion:
-    """One motion; raises ValueError where it is none."""
+    """Read one motion.
+
+    Raises:
+        ValueError: The entry is not a valid motion.
+    """
     below = entry.below
     if below is None:
         raise ValueError(f"found {entry.text!r}, allowed is a block with {', '.join(_KEYS[:3])}")
     if not key.strip() or not key.isprintable():
-        raise ValueError("it has no name that can be called")
+        raise ValueError("its key is empty or not printable")
     _report_unknown(f"motion {key!r}", below, _KEYS, diagnostics)
-    joints = [one.text for one in _list_items(below, "joints")]
+    joints = [item.text for item in _list_items(below, "joints")]
     if any(not joint for joint in joints):
-        raise ValueError("a name in 'joints' is no text")
+        raise ValueError("an item of 'joints' is not a joint name")
     if "points" in below:
         times, flat, velocities = _points(key, below["points"], len(joints), diagnostics)
         for name in ("positions", "times_from_start"):
             if name in below:
-                message = f"motion {key!r}: {name!r} is not used beside 'points'"
+                message = f"motion {key!r}: {name!r} is not used together with 'points'"
                 diagnostics.warning("SK-MOTION-006", message, below[name].where)
     else:
         flat, times, velocities = _numbers(below, "positions"), _numbers(below, "times_from_start"), ()
@@ -145,7 +154,7 @@ def _motion(key: str, entry: Entry, diagnostics: Diagnostics) -> Motion:
 
 
 def _meta(key: str, below: dict[str, Entry], diagnostics: Diagnostics) -> dict[str, Entry]:
-    """Read the description of a motion."""
+    """Return the entries of a motion's `meta` block."""
     entry = below.get("meta")
     if entry is None:
         return {}
@@ -158,7 +167,7 @@ def _meta(key: str, below: dict[str, Entry], diagnostics: Diagnostics) -> dict[s
 def _points(
     key: str, entry: Entry, width: int, diagnostics: Diagnostics
 ) -> tuple[list[float], list[float], tuple[tuple[float, ...], ...]]:
-    """Times, positions one after another, and velocities of the points of a motion in ROS 1's layout."""
+    """Return times, concatenated positions, and velocities of the points of a motion in ROS 1's layout."""
     times: list[float] = []
     flat: list[float] = []
     velocities: list[tuple[float, ...]] = []
@@ -185,7 +194,7 @@ def _points(
 
 
 def _read_planner(entry: Entry, found: MotionFile, diagnostics: Diagnostics) -> None:
-    """The settings of the way to the first point; what a planner has beside is not needed here."""
+    """Read the settings of the approach to the first point; other keys of a planner's block are ignored on purpose."""
     for name, inner in (entry.below or {}).items():
         try:
             if name in _SPEEDS:
@@ -208,7 +217,7 @@ def _bounded_number(entry: Entry, name: str, least: float, *, strictly: bool) ->
 def _names(entry: Entry) -> tuple[str, ...]:
     if entry.below is not None or (entry.items is None and entry.text):
         raise ValueError(f"found {entry.text or 'a block'!r}, allowed is a list of joints")
-    return tuple(one.text for one in entry.items or ())
+    return tuple(item.text for item in entry.items or ())
 
 
 def _list_items(below: dict[str, Entry], name: str) -> list[Entry]:
@@ -217,13 +226,13 @@ def _list_items(below: dict[str, Entry], name: str) -> list[Entry]:
         near = did_you_mean(name, below)
         raise ValueError(f"it needs {name!r}" + (f"; {near}" if near else ""))
     if entry.items is None:
-        raise ValueError(f"{name!r} is no list")
+        raise ValueError(f"{name!r} is not a list")
     return entry.items
 
 
 def _numbers(below: dict[str, Entry], name: str, owner: str = "") -> list[float]:
     try:
-        return [_number(one, name) for one in _list_items(below, name)]
+        return [_number(item, name) for item in _list_items(below, name)]
     except ValueError as error:
         raise ValueError(f"{owner}: {error}" if owner else str(error)) from None
 

@@ -1,4 +1,4 @@
-"""Planning of a motion: the approach to its first point, its timing, its limits and the collisions on its way."""
+"""Planning of a motion: the approach to its first point, its timing, its limits and its collisions."""
 
 from __future__ import annotations
 
@@ -25,19 +25,19 @@ MISSING_CONTROLLER: Final = -4
 NO_PLAN_FOUND: Final = -8
 OTHER_ERROR: Final = -42
 APPROACH_SPEED: Final = 0.5
-"""[rad/s or m/s], where nobody says anything."""
+"""Default speed of the approach [rad/s or m/s]."""
 _STEPS: Final = {"prismatic": 0.005}  # [m] between two positions that are checked for collisions
 _STEP: Final = 0.03  # [rad]
-_REACHED_DISTANCE: Final = 1e-3  # [rad or m] from the first point, where no way to it is needed
-_MIMIC_TOLERANCE: Final = 1e-3  # [rad or m] between a joint's position and the one that its leader gives it
-_LONGEST_DURATION: Final = 2.0**31 - 1.0  # [s] that the time of a trajectory's point can tell
+_REACHED_DISTANCE: Final = 1e-3  # [rad or m], distance to the first point below which no approach is needed
+_MIMIC_TOLERANCE: Final = 1e-3  # [rad or m], allowed error between a mimic joint and its leader's rule
+_LONGEST_DURATION: Final = 2.0**31 - 1.0  # [s], largest time_from_start that a trajectory message can hold
 
 
 class MotionRefused(Exception):
-    """A motion is refused.
+    """Refusal of a motion.
 
     Attributes:
-        code: why, as `play_motion_msgs/action/PlayMotion` numbers it.
+        code: Error code of `play_motion_msgs/action/PlayMotion`.
     """
 
     def __init__(self, code: int, text: str) -> None:
@@ -47,12 +47,12 @@ class MotionRefused(Exception):
 
 @dataclass(frozen=True, slots=True)
 class TrajectoryController:
-    """An active controller that follows trajectories.
+    """Active controller that follows trajectories.
 
     Attributes:
-        name: the controller's.
-        action: name of its action.
-        joints: all that it moves, in its order.
+        name: Name of the controller.
+        action: Name of its action.
+        joints: All joints that it moves, in its order.
     """
 
     name: str
@@ -72,27 +72,28 @@ def active_controllers(sim: Simulation, robot: Model) -> list[TrajectoryControll
             controller = loaded.controller
             if loaded.state != "active" or not isinstance(controller, JointTrajectoryController):
                 continue
-            joints = dict.fromkeys(one.rpartition("/")[0] for one in controller.command_interfaces() if "/" in one)
+            interfaces = controller.command_interfaces()
+            joints = dict.fromkeys(name.rpartition("/")[0] for name in interfaces if "/" in name)
             action = plugin.ros.topic(controller.topic("~/follow_joint_trajectory"))
             found.append(TrajectoryController(name, action, tuple(joints)))
     return found
 
 
 def unclaimed_joints(robot: Model, joints: Sequence[str], controllers: Sequence[TrajectoryController]) -> list[str]:
-    """List the joints that no active controller moves, neither itself nor by a joint that they mimic."""
+    """List the joints that no active controller moves, either directly or through the joint that they mimic."""
     moved = {joint for controller in controllers for joint in controller.joints}
     laws = {joint: mimic_of(robot, joint) for joint in joints if joint not in moved}
     return [joint for joint, law in laws.items() if law is None or leader_name(law) not in moved]
 
 
 def mimic_of(robot: Model, joint: str) -> Mimic | None:
-    """Return how a joint mimics another one; None where it mimics none."""
+    """Return the mimic rule of a joint, or None."""
     axes = robot.joints[joint].scene.axes if joint in robot.joints else ()
     return axes[0].mimic if axes else None
 
 
 def leader_name(law: Mimic) -> str:
-    """Return the plain name of the joint that is mimicked."""
+    """Return the plain name of the mimicked joint."""
     return law.joint.rpartition("::")[2]
 
 
@@ -101,9 +102,9 @@ class Approach:
     """Approach to the first point of a motion.
 
     Attributes:
-        speed: at most, on average of the joint that has the longest way [rad/s or m/s].
-        shortest: it takes at least that long [s].
-        free_joints: plain names of joints whose links may touch each other and whatever lies loose, as grippers do.
+        speed: Largest average speed of the joint with the longest way [rad/s or m/s].
+        shortest: Shortest duration [s].
+        free_joints: Plain names of joints whose links may touch each other and loose objects, such as grippers.
     """
 
     speed: float = APPROACH_SPEED
@@ -120,36 +121,40 @@ def plan_motion(
     *,
     looks_around: bool = True,
 ) -> Course:
-    """The course of a motion's joints from where they are now.
+    """Plan the course of a motion's joints from their present positions.
 
     Args:
-        sim: the simulation.
-        robot: whose joints they are.
-        motion: what is to be done.
-        controllers: controllers that can do it.
-        approach: how to get to its first point.
-        looks_around: whether it is to touch nothing.
+        sim: Simulation of the robot.
+        robot: Robot that plays the motion.
+        motion: Motion to plan.
+        controllers: Controllers that may be used.
+        approach: Approach to the first point.
+        looks_around: True to check for collisions.
 
     Raises:
-        MotionRefused: it cannot be done, or leaves the limits, or something is in the way.
+        MotionRefused: A joint has no controller, a limit is exceeded, or links would collide.
     """
     joints = find_joints(robot, motion.joints, controllers)
     beyond = limit_violations(motion, joints)
     if beyond:
-        raise MotionRefused(OTHER_ERROR, f"motion {motion.key!r} leaves the limits: {'; '.join(beyond)}")
+        raise MotionRefused(OTHER_ERROR, f"motion {motion.key!r} exceeds the joint limits: {'; '.join(beyond)}")
     check_mimic_joints(robot, motion)
     start = np.array([float(joint.position) for joint in joints.values()])
     found = course_from(start, motion, speed_limits(motion, joints), approach)
     if not found.duration <= _LONGEST_DURATION:
-        said = f"motion {motion.key!r} would take {found.duration:g} s, allowed is up to {_LONGEST_DURATION:.0f} s"
-        raise MotionRefused(OTHER_ERROR, said)
+        text = f"motion {motion.key!r} would take {found.duration:g} s, allowed is up to {_LONGEST_DURATION:.0f} s"
+        raise MotionRefused(OTHER_ERROR, text)
     if looks_around and not approach.free_joints.issuperset(motion.joints):
         check_collisions(sim, robot, motion, found, joints, approach.free_joints)
     return found
 
 
 def find_joints(robot: Model, names: Sequence[str], controllers: Sequence[TrajectoryController]) -> dict[str, Joint]:
-    """The joints of a motion by name, each of which a controller moves. Raises MotionRefused."""
+    """Return the joints of a motion by name.
+
+    Raises:
+        MotionRefused: A joint does not exist, or no controller moves it.
+    """
     missing = [name for name in names if name not in robot.joints]
     if missing:
         near = did_you_mean(missing[0], robot.joints)
@@ -166,7 +171,10 @@ def find_joints(robot: Model, names: Sequence[str], controllers: Sequence[Trajec
 
 
 def add_leader_joints(robot: Model, motion: Motion) -> Motion:
-    """A motion with the joints that lead those which it names: a joint that follows another one moves by that one."""
+    """Add to a motion the joints that its mimic joints follow.
+
+    A mimic joint has no controller of its own: it moves with its leader.
+    """
     for name in motion.joints:
         law = mimic_of(robot, name)
         if law is None or not law.multiplier:
@@ -182,7 +190,11 @@ def add_leader_joints(robot: Model, motion: Motion) -> Motion:
 
 
 def check_mimic_joints(robot: Model, motion: Motion) -> None:
-    """Raises MotionRefused where a joint that follows another one is to be elsewhere than that one takes it."""
+    """Check that mimic joints and their leaders have matching positions in the motion.
+
+    Raises:
+        MotionRefused: A position of a mimic joint differs from its leader's rule.
+    """
     for column, name in enumerate(motion.joints):
         law = mimic_of(robot, name)
         if law is None or leader_name(law) not in motion.joints:
@@ -191,15 +203,21 @@ def check_mimic_joints(robot: Model, motion: Motion) -> None:
         for time, row in zip(motion.times, motion.positions, strict=True):
             there = law.multiplier * (row[lead] - law.reference) + law.offset
             if abs(row[column] - there) > _MIMIC_TOLERANCE:
-                wanted = f"{name} is to be at {row[column]:g} at {time:g} s, but it follows {leader_name(law)}"
-                raise MotionRefused(OTHER_ERROR, f"motion {motion.key!r}: {wanted}, which takes it to {there:g}")
+                fault = f"{name} would be at {row[column]:g} at {time:g} s, but it mimics {leader_name(law)}"
+                raise MotionRefused(OTHER_ERROR, f"motion {motion.key!r}: {fault}, which moves it to {there:g}")
 
 
 def course_from(start: Vector, motion: Motion, limits: Vector, approach: Approach) -> Course:
-    """The course from where the joints are through the points of a motion.
+    """Return the course from the present positions through the points of a motion.
 
-    The way to the first point takes the time that the motion gives it, or longer where a joint would be too fast; what
-    follows keeps its distance in time.
+    The way to the first point takes the time that the motion allows, or longer if a joint would be too fast. The times
+    between the following points stay the same.
+
+    Args:
+        start: Present positions of the joints [rad or m].
+        motion: Motion to play.
+        limits: Largest speed of each joint [rad/s or m/s].
+        approach: Speed and shortest duration of the way to the first point.
     """
     points = np.vstack([start, np.array(motion.positions)])
     times = np.array(motion.times)
@@ -218,20 +236,24 @@ def check_collisions(
     joints: Mapping[str, Joint],
     free_joints: Collection[str],
 ) -> None:
-    """Goes along a course in a copy of the state. Raises MotionRefused where two links come into each other."""
-    clearance = CollisionCheck(sim, robot, list(joints.values()), free_joints)
+    """Check positions along a course in a copy of the state.
+
+    Raises:
+        MotionRefused: Two links would collide.
+    """
+    checker = CollisionCheck(sim, robot, list(joints.values()), free_joints)
     steps = np.array([_STEPS.get(joint.type, _STEP) for joint in joints.values()])
     reached = found.times[1]
     for time, positions in found.samples(steps):
-        meeting = clearance.meeting(positions)
-        if meeting is not None:
+        collision = checker.deepest_collision(positions)
+        if collision is not None:
             at = time - reached + motion.times[0]
             where = "on the way to its first point" if time < reached else f"at {at:.2f} s"
-            raise MotionRefused(NO_PLAN_FOUND, f"motion {motion.key!r} collides {where}: {meeting}")
+            raise MotionRefused(NO_PLAN_FOUND, f"motion {motion.key!r} collides {where}: {collision}")
 
 
 def trajectory_goal(found: Course, motion: Motion, controller: TrajectoryController, robot: Model) -> dict[str, object]:
-    """The goal of one controller: its joints of a course; those that the motion leaves out stay where they are."""
+    """Return the goal of one controller; its joints that are not in the motion keep their present positions."""
     columns = [motion.joints.index(joint) if joint in motion.joints else None for joint in controller.joints]
     here = [float(robot.joints[joint].position) if joint in robot.joints else 0.0 for joint in controller.joints]
 

@@ -1,9 +1,9 @@
 """Timing of a motion: a smooth course through its points, within the velocity limits of its joints.
 
 Between two points every joint follows the cubic of their positions and velocities, as joint_trajectory_controller
-interpolates. Where a motion gives no velocities they are those of a monotone cubic (Fritsch and Butland, "A method for
-constructing local monotone piecewise cubic interpolants", SIAM J. Sci. Stat. Comput. 5, 1984): zero at both ends and
-where a joint turns back, so that no joint leaves the range between two points.
+interpolates. A motion without velocities gets those of a monotone cubic (Fritsch and Butland, "A method for
+constructing local monotone piecewise cubic interpolants", SIAM J. Sci. Stat. Comput. 5, 1984). These are zero at both
+ends and at reversals of a joint, so that no joint leaves the range between two points.
 """
 
 from __future__ import annotations
@@ -16,24 +16,23 @@ import numpy as np
 
 from simkit.pose import Vector
 
-SHORTEST_INTERVAL: Final = 1e-3  # [s] between two points
+SHORTEST_INTERVAL: Final = 1e-3  # [s], shortest time between two points
 LARGEST_STRETCH: Final = 3.0
-"""How much faster than on average a joint can be between two points of a smooth course: with the weights of
-`smooth_velocities` the speed at a point is at most that of either side's average times three."""
+"""Largest ratio of peak to average speed between two points of a smooth course. The weights of `smooth_velocities`
+limit the speed at a point to three times the average of either side."""
 _ROUNDS: Final = 100
 _EXACT: Final = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
 class Course:
-    """A course of joints through points, the first of which is where they are.
+    """Course of joints through points, beginning at their present positions.
 
     Attributes:
-        times: [s], rising from 0, shape (points,).
-        positions: [rad or m], shape (points, joints).
-        velocities: [rad/s or m/s], shape (points, joints).
-        stretched: by how much the time of the motion was made longer so that no joint is too fast, the approach
-            apart; 1 where it was not.
+        times: Time of each point [s], increasing from 0, shape (points,).
+        positions: Joint positions [rad or m], shape (points, joints).
+        velocities: Joint velocities [rad/s or m/s], shape (points, joints).
+        stretched: Factor by which the motion without its approach became longer, so that no joint is too fast; else 1.
     """
 
     times: Vector
@@ -43,11 +42,15 @@ class Course:
 
     @property
     def duration(self) -> float:
-        """[s]."""
+        """Time of the last point [s]."""
         return float(self.times[-1])
 
     def samples(self, step: Vector) -> Iterator[tuple[float, Vector]]:
-        """Times and positions along it, so close that no joint goes further than its step between two of them."""
+        """Yield times and positions along the course.
+
+        Args:
+            step: Largest displacement of each joint between two samples [rad or m].
+        """
         yield 0.0, self.positions[0]
         for k in range(len(self.times) - 1):
             h = self.times[k + 1] - self.times[k]
@@ -57,21 +60,21 @@ class Course:
                 yield float(self.times[k] + s * h), self._at(k, float(s), float(h))
 
     def _at(self, k: int, s: float, h: float) -> Vector:
-        """The cubic between points k and k + 1, at the part s of the way."""
+        """Return the cubic between points k and k + 1, at the fraction s of the interval h."""
         p0, p1, v0, v1 = self.positions[k], self.positions[k + 1], self.velocities[k] * h, self.velocities[k + 1] * h
         found: Vector = p0 + s * (v0 + s * ((3 * (p1 - p0) - 2 * v0 - v1) + s * (v0 + v1 - 2 * (p1 - p0))))
         return found
 
 
 def time_course(points: Vector, times: Vector, given: Vector | None, limits: Vector, approach: int = 1) -> Course:
-    """A course through points, its time stretched where a joint would be faster than it may.
+    """Return a course through points, with longer times where a joint would exceed its speed limit.
 
     Args:
-        points: where the joints are, then the points of the motion, shape (points, joints).
-        times: of the points [s], from 0, rising, shape (points,).
-        given: velocities of the points of the motion, without where the joints are; None for a smooth course.
-        limits: largest speed of each joint [rad/s or m/s].
-        approach: index of the first point of the motion itself; what comes before is its approach.
+        points: Present positions, then the points of the motion, shape (points, joints).
+        times: Time of each point [s], increasing from 0, shape (points,).
+        given: Velocities of the points of the motion; None for a smooth course.
+        limits: Largest speed of each joint [rad/s or m/s].
+        approach: Index of the first point of the motion; the points before are the approach.
     """
     gaps = np.maximum(np.diff(times), SHORTEST_INTERVAL)
     if given is not None:
@@ -91,7 +94,7 @@ def time_course(points: Vector, times: Vector, given: Vector | None, limits: Vec
 
 
 def _course_with_velocities(points: Vector, gaps: Vector, given: Vector, limits: Vector, approach: int) -> Course:
-    """The course through points with these velocities: as a whole slower where it is too fast anywhere."""
+    """Return the course through points with these velocities, slowed down as a whole if any joint is too fast."""
     velocities = np.zeros_like(points)
     velocities[approach:] = given
     inside = (
@@ -110,7 +113,7 @@ def _course_with_velocities(points: Vector, gaps: Vector, given: Vector, limits:
 
 
 def smooth_velocities(points: Vector, gaps: Vector) -> Vector:
-    """Velocities at the points for a course that goes beyond none of them, shape (points, joints)."""
+    """Return velocities at the points, shape (points, joints), for a course that overshoots no point."""
     velocities = np.zeros_like(points)
     if len(points) < 3:
         return velocities
@@ -125,7 +128,7 @@ def smooth_velocities(points: Vector, gaps: Vector) -> Vector:
 
 
 def _peak_speeds(points: Vector, velocities: Vector, gaps: Vector) -> Vector:
-    """The largest speed of each joint between each two points [rad/s or m/s], shape (points - 1, joints)."""
+    """Return the largest speed of each joint between successive points [rad/s or m/s], shape (points - 1, joints)."""
     slopes = np.diff(points, axis=0) / gaps[:, None]
     v0, v1 = velocities[:-1], velocities[1:]
     # v(s) = v0 + b s + c s², s from 0 to 1
@@ -138,5 +141,5 @@ def _peak_speeds(points: Vector, velocities: Vector, gaps: Vector) -> Vector:
 
 
 def approach_time(start: Vector, first: Vector, speed: float, shortest: float) -> float:
-    """Return the duration of the approach [s]: its farthest joint moves at that speed on average."""
+    """Return the duration of the approach [s], at this average speed of the joint with the longest way."""
     return max(float(np.max(np.abs(first - start))) / speed, shortest, SHORTEST_INTERVAL)

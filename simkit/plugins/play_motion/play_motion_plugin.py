@@ -1,4 +1,4 @@
-"""play_motion: a robot plays motions that it knows by name."""
+"""play_motion plugin: a robot plays motions by name."""
 
 from __future__ import annotations
 
@@ -50,12 +50,14 @@ _GRIPPER_WORDS: Final = ("gripper", "finger", "hand")
 
 @dataclass(slots=True)
 class _RunningMotion:
-    """A motion that is being played.
+    """Motion that is being played.
 
     Attributes:
-        goal: of whoever asked for it.
-        parts: goals of the controllers that have not got there yet, by controller.
-        until_ns: when it has failed [ns].
+        goal: Goal of the client.
+        key: Key of the motion.
+        controllers: Names of all controllers that take part.
+        until_ns: Time after which the motion has failed [ns].
+        parts: Goals of the controllers that have not finished yet, by controller name.
     """
 
     goal: GoalHandle
@@ -68,13 +70,13 @@ class _RunningMotion:
 class PlayMotion(ModelPlugin):
     """Plays motions through the robot's trajectory controllers, as PAL's play_motion2 (and ROS 1's play_motion) does.
 
-    The way to the first point is no faster than `approach_velocity` and the joints' own limits; the motion follows as
-    its file has it, through all points smoothly. It is refused where it leaves the limits of a joint, and, unless the
-    goal says `skip_planning`, where links would come into each other or into something else.
+    The way to the first point keeps to `approach_velocity` and to the joints' own limits. The motion then follows its
+    file, smoothly through all points. A motion is refused if it exceeds the limits of a joint. Unless the goal sets
+    `skip_planning`, a motion is also refused if links would collide with each other or with the surroundings.
 
     Attributes:
-        robot: whose motions they are.
-        known: the motions that it knows, by key.
+        robot: Robot that plays the motions.
+        known: Motions by key.
     """
 
     endpoints = (
@@ -91,34 +93,37 @@ class PlayMotion(ModelPlugin):
     robot: Model
     known: dict[str, Motion]
 
-    # ------------------------------------------------------------------ what the file says
+    # ------------------------------------------------------------------ parameters and files
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        said = MotionFile()
+        contents = MotionFile()
         for element in params.all("motions"):
             path = self._find(element.value, builder)
             if path is None:
-                message = f"the file of motions {element.value} is not found"
-                hint = "name its package's folder: --package-path NAME=DIR, or put the file beside the robot's"
+                message = f"the motion file {element.value} is not found"
+                hint = "add --package-path NAME=DIR for the package, or put the file next to the robot's file"
                 params.diagnostics.warning("SK-MOTION-001", message, element.where, hint)
                 continue
-            said.update(read_motions(path, params.diagnostics))
-        self.known = dict(said.motions)
-        speed = said.approach_velocity or APPROACH_SPEED
-        shortest = said.approach_min_duration or 0.0
+            contents.update(read_motions(path, params.diagnostics))
+        self.known = dict(contents.motions)
+        speed = contents.approach_velocity or APPROACH_SPEED
+        shortest = contents.approach_min_duration or 0.0
         self._speed = params.number("approach_velocity", speed, minimum=1e-6)
         self._shortest = params.number("approach_min_duration", shortest, minimum=0.0)
-        given = [name for p in params.all("exclude_from_planning_joints") for name in p.value.split()]
-        self._free_joints = tuple(given) if given else said.excluded_joints
+        excluded = [name for p in params.all("exclude_from_planning_joints") for name in p.value.split()]
+        self._free_joints = tuple(excluded) if excluded else contents.excluded_joints
 
     def _find(self, uri: str, builder: SpecBuilder) -> Path | None:
-        """A file by its URI or beside the robot's file, else by its path as it stands (Python's way to name one)."""
+        """Find a motion file by its URI or next to the robot's file.
+
+        The path itself is tried last, because the Python API passes plain paths.
+        """
         found = find_plugin_file(self, uri, builder, ("motions", "config", "../motions"))
-        with suppress(OSError, ValueError):  # a name that no file can have
+        with suppress(OSError, ValueError):  # not a valid file name
             return Path(uri) if found is None and Path(uri).is_file() else found
         return found
 
-    # ------------------------------------------------------------------ at work
+    # ------------------------------------------------------------------ loading
 
     def load(self, parent: Model, params: Params) -> None:
         self.robot = parent
@@ -127,7 +132,7 @@ class PlayMotion(ModelPlugin):
         free = named if self._free_joints is None else self._free_joints
         for name in free:
             if name not in parent.joints:
-                message = f"exclude_from_planning_joints: {name!r} is no joint of {parent.name!r}"
+                message = f"exclude_from_planning_joints: {parent.name!r} has no joint {name!r}"
                 params.diagnostics.warning("SK-MOTION-006", message, self.where, did_you_mean(name, parent.joints))
         self._approach = Approach(self._speed, self._shortest, frozenset(free))
         for motion in self.known.values():
@@ -136,13 +141,14 @@ class PlayMotion(ModelPlugin):
         self._open_interfaces()
 
     def _choose_namespace(self) -> None:
-        """Plays under the robot's own name where another one has the names that it would have."""
+        """Add the robot's name to the namespace if another robot already uses the default names."""
         taken = self.ros.topic("play_motion2")
         if taken not in self.sim.communication.actions.names():
             return
         self.ros = RosNames(self.ros.node, f"{self.ros.namespace}/{self.robot.name}", params=self.params)
-        message = f"robot {self.robot.name!r} plays motions under {self.action_name!r}: {taken!r} is another one's"
-        hint = "a namespace gives it other names: <ros><namespace>...</namespace></ros>"
+        reason = f"another robot uses {taken!r}"
+        message = f"robot {self.robot.name!r} plays motions under {self.action_name!r}, because {reason}"
+        hint = "give each robot a namespace: <ros><namespace>...</namespace></ros>"
         self.params.diagnostics.note("SK-MOTION-007", message, self.where, hint)
 
     def _open_interfaces(self) -> None:
@@ -152,18 +158,18 @@ class PlayMotion(ModelPlugin):
         offer_services(self)
 
     def _check(self, motion: Motion, reports: Diagnostics) -> None:
-        """Says of a motion of a file what will come of it."""
+        """Report why a motion of a file cannot be played, or takes longer than its file states."""
         joints = self.robot.joints
         missing = next((n for n in motion.joints if n not in joints or len(joints[n].scene.axes) != 1), None)
         if missing is not None:
             near = did_you_mean(missing, [n for n, joint in joints.items() if len(joint.scene.axes) == 1])
-            what = "does not move along one axis" if missing in joints else f"is none of {self.robot.name!r}"
-            message = f"motion {motion.key!r} cannot be played: joint {missing!r} {what}"
+            fault = "does not have exactly one axis" if missing in joints else f"does not exist in {self.robot.name!r}"
+            message = f"motion {motion.key!r} cannot be played: joint {missing!r} {fault}"
             reports.warning("SK-MOTION-004", message, motion.where, near)
             return
         beyond = limit_violations(motion, self.robot.joints)
         if beyond:
-            message = f"motion {motion.key!r} will be refused, it leaves the limits: {'; '.join(beyond)}"
+            message = f"motion {motion.key!r} will be refused, because it exceeds the joint limits: {'; '.join(beyond)}"
             reports.warning("SK-MOTION-004", message, motion.where)
         elif len(motion.times) > 1:
             self._check_speed(motion, reports)
@@ -175,12 +181,12 @@ class PlayMotion(ModelPlugin):
             return
         alone = course_from(rows[0], motion, limits, self._approach)
         if alone.stretched > 1.001:
-            took, takes = motion.times[-1] - motion.times[0], alone.times[-1] - alone.times[1]
-            message = f"motion {motion.key!r} takes {takes:.2f} s from its first point instead of {took:g}"
-            reports.note("SK-MOTION-005", f"{message}: a joint would be faster than its limit", motion.where)
+            file_time, real_time = motion.times[-1] - motion.times[0], alone.times[-1] - alone.times[1]
+            message = f"motion {motion.key!r} takes {real_time:.2f} s from its first point instead of {file_time:g} s"
+            reports.note("SK-MOTION-005", f"{message}, because a joint would exceed its speed limit", motion.where)
 
     def read(self, path: Path) -> None:
-        """Knows the motions of one more file from now on; what is wrong with them is among `sim.diagnostics`."""
+        """Add the motions of another file; its warnings are added to `sim.diagnostics`."""
         found = read_motions(path, self.sim.engine.reports)
         self.known.update(found.motions)
         for motion in found.motions.values():
@@ -193,12 +199,12 @@ class PlayMotion(ModelPlugin):
 
     @property
     def motions(self) -> dict[str, Motion]:
-        """The motions it knows, by key."""
+        """Copy of the known motions, by key."""
         return dict(self.known)
 
     @property
     def is_idle(self) -> bool:
-        """Check whether no motion is being played."""
+        """True while no motion is being played."""
         return not self._runs
 
     # ------------------------------------------------------------------ goals
@@ -243,7 +249,13 @@ class PlayMotion(ModelPlugin):
             run.parts[controller.name] = send(controller.action, request, self._on_feedback, self._on_controller_done)
 
     def _check_idle(self, goal: GoalHandle, names: Sequence[str]) -> None:
-        """Raises MotionRefused while another motion is being played; ROS 1 plays several that share no controller."""
+        """Check that no running motion excludes a goal.
+
+        ROS 2 plays one motion at a time. ROS 1 plays several if they share no controller.
+
+        Raises:
+            MotionRefused: Another motion is being played.
+        """
         for run in self._runs:
             common = [name for name in names if name in run.controllers]
             if not _is_ros_1(goal):
@@ -254,7 +266,7 @@ class PlayMotion(ModelPlugin):
                 )
 
     def _refuse(self, goal: GoalHandle, refused: MotionRefused, *, rejects: bool) -> None:
-        """Ends a goal that is not played; in ROS 1 with the number that says why."""
+        """End a goal that is not played; ROS 1 gets an error code, ROS 2 a text."""
         self.log.info("%s", refused)
         if rejects and not _is_ros_1(goal):
             goal.reject(str(refused))
@@ -269,13 +281,13 @@ class PlayMotion(ModelPlugin):
         goal.canceled(_result_fields(goal, OTHER_ERROR, "Motion canceled"), "Motion canceled")
         return True
 
-    # ------------------------------------------------------------------ what the controllers say
+    # ------------------------------------------------------------------ results and feedback of the controllers
 
     def _on_controller_done(self, part: GoalHandle) -> None:
         run = next((run for run in self._runs if part in run.parts.values()), None)
         if run is None:
             return
-        name = next(name for name, one in run.parts.items() if one is part)
+        name = next(name for name, candidate in run.parts.items() if candidate is part)
         if part.status.name == "SUCCEEDED":
             del run.parts[name]
             if not run.parts:
@@ -291,7 +303,7 @@ class PlayMotion(ModelPlugin):
         self._fail(run, _TRAJECTORY_RESULTS.get(code, OTHER_ERROR), text)
 
     def _on_feedback(self, feedback: object) -> None:
-        """A controller says how far it is; the first of those that are still at it is passed on."""
+        """Forward the feedback of the first controller that has not finished, and end motions that take too long."""
         now = self.sim.time_ns
         for run in tuple(self._runs):
             first = next(iter(run.parts.values()), None)
@@ -310,7 +322,7 @@ class PlayMotion(ModelPlugin):
         run.goal.abort(_result_fields(run.goal, code, text), text)
 
     def _cancel_controllers(self, run: _RunningMotion) -> None:
-        """Calls the controllers off; their joints hold where they are."""
+        """Cancel the goals of the controllers; their joints then hold their positions."""
         self._runs.remove(run)
         for part in run.parts.values():
             if not part.is_done:
@@ -322,7 +334,7 @@ def _is_ros_1(goal: GoalHandle) -> bool:
 
 
 def _result_fields(goal: GoalHandle, code: int, text: str) -> dict[str, object]:
-    """The fields of the result message that the goal's action has."""
+    """Return the fields of the result message of the goal's action."""
     if _is_ros_1(goal):
         return {"error_code": code, "error_string": text}
     return {"success": code == SUCCEEDED, "error": text}

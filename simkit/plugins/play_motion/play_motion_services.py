@@ -23,13 +23,13 @@ if TYPE_CHECKING:
 
 
 class MotionPlayer(Protocol):
-    """The plugin whose motions the services are about.
+    """Plugin whose motions the services describe and change.
 
     Attributes:
-        sim: the simulation.
-        robot: the robot that plays the motions.
-        known: motions by key.
-        log: gets the reason why a motion is not added.
+        sim: Simulation of the robot.
+        robot: Robot that plays the motions.
+        known: Motions by key.
+        log: Logger for the reason why a motion is not added.
     """
 
     sim: Simulation
@@ -39,7 +39,7 @@ class MotionPlayer(Protocol):
 
     @property
     def is_idle(self) -> bool:
-        """Check whether no motion is being played."""
+        """True while no motion is being played."""
 
     def offer(self, service: str, type_name: str, handler: Callable[[Message], object]) -> object:
         """Offer a service below the plugin's namespace."""
@@ -60,28 +60,33 @@ def offer_services(player: MotionPlayer) -> None:
 
 
 class _ServiceHandlers:
-    """Answers of the services, from the motions that the robot knows at that moment."""
+    """Handlers of the services; each response uses the motions that are known at the time of the request."""
 
     def __init__(self, player: MotionPlayer) -> None:
         self._player = player
 
     def keys(self, _: object) -> dict[str, object]:
+        """Return the keys of all motions."""
         return {"motion_keys": list(self._player.known)}
 
     def infos(self, _: object) -> dict[str, object]:
+        """Return name, joints and duration of all motions, for ROS 1."""
         return {"motions": [motion.as_info() for motion in self._player.known.values()]}
 
     def motion(self, request: GetMotionInfo_Request) -> dict[str, object]:
+        """Return a motion, or an empty response if it does not exist."""
         motion = self._player.known.get(request.motion_key)
         return {"motion": motion.as_message()} if motion is not None else {}
 
     def is_ready(self, request: IsMotionReady_Request) -> dict[str, object]:
+        """Check whether a motion can be played now."""
         motion = self._player.known.get(request.motion_key)
         if motion is None or not self._are_ready(motion.joints):
             return {"is_ready": False}
         return {"is_ready": not limit_violations(motion, self._player.robot.joints)}
 
     def are_joints_ready(self, request: IsJointListReady_Request) -> dict[str, object]:
+        """Check whether controllers move these joints and no motion is being played."""
         return {"is_ready": self._are_ready(request.joints)}
 
     def _are_ready(self, joints: Sequence[str]) -> bool:
@@ -93,6 +98,7 @@ class _ServiceHandlers:
         return player.is_idle
 
     def add(self, request: AddMotion_Request) -> dict[str, object]:
+        """Add a motion; an existing one is replaced on request only."""
         known = self._player.known
         try:
             motion = motion_of_message(request.motion)
@@ -105,9 +111,11 @@ class _ServiceHandlers:
         return {"success": True}
 
     def remove(self, request: RemoveMotion_Request) -> dict[str, object]:
+        """Remove a motion."""
         return {"success": self._player.known.pop(request.motion_key, None) is not None}
 
     def is_there(self, request: IsAlreadyThere_Request) -> dict[str, object]:
+        """Check whether the joints are within a tolerance of the first point of a motion."""
         motion, joints = self._player.known.get(request.motion_name), self._player.robot.joints
         if motion is None or any(name not in joints for name in motion.joints):
             return {"already_there": False}

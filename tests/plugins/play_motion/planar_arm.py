@@ -122,7 +122,7 @@ def play_motion(element: str = "") -> str:
 def load(
     folder: Path, content: str = "", element: str = "", motions: str = MOTIONS, seed: int = 0
 ) -> simkit.Simulation:
-    """The arm in an empty world, or with what else is there."""
+    """Load the arm in a world with this content."""
     (folder / "controllers.yaml").write_text(CONTROLLERS)
     (folder / "motions.yaml").write_text(motions)
     file = folder / "lab.sdf"
@@ -135,7 +135,7 @@ def player(sim: simkit.Simulation) -> PlayMotion:
 
 
 def play(sim: simkit.Simulation, name: str, action: str = "/play_motion2", **fields: Any) -> Any:
-    """Sends a goal and runs until it has ended."""
+    """Send a goal and run until it has ended."""
     goal = sim.send_goal(action, {"motion_name": name, **fields})
     assert sim.run_until(lambda _: goal.is_done, timeout=20.0)
     return goal

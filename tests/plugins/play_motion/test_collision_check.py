@@ -1,4 +1,4 @@
-"""What the links of a robot meet when its joints are elsewhere."""
+"""Collisions of a robot's links at other joint positions."""
 
 from __future__ import annotations
 
@@ -19,99 +19,99 @@ JOINTS = ("shoulder", "elbow", "wrist")
 FINGERS = ("left_finger", "right_finger")
 
 
-def clearance(sim: simkit.Simulation, *names: str, free: tuple[str, ...] = FINGERS) -> CollisionCheck:
+def collision_check(sim: simkit.Simulation, *names: str, free: tuple[str, ...] = FINGERS) -> CollisionCheck:
     robot = sim.model("arm")
     return CollisionCheck(sim, robot, [robot.joints[name] for name in names or JOINTS], free)
 
 
-def meeting(sim: simkit.Simulation, *positions: float) -> LinkCollision | None:
-    return clearance(sim).meeting(np.array(positions))
+def collision_at(sim: simkit.Simulation, *positions: float) -> LinkCollision | None:
+    return collision_check(sim).deepest_collision(np.array(positions))
 
 
-def test_links_in_the_open_meet_nothing_and_the_state_stays(tmp_path: Path) -> None:
+def test_links_in_free_space_do_not_collide_and_the_state_is_unchanged(tmp_path: Path) -> None:
     with arm.load(tmp_path) as sim:
         before = sim.mj_data.qpos.copy()
-        assert meeting(sim, 0.0, 0.0, 0.0) is None
-        assert meeting(sim, 1.0, -1.0, 0.5) is None
+        assert collision_at(sim, 0.0, 0.0, 0.0) is None
+        assert collision_at(sim, 1.0, -1.0, 0.5) is None
         assert sim.mj_data.qpos == pytest.approx(before, abs=0)
 
 
-def test_a_hand_that_comes_back_to_the_upper_arm_meets_it(tmp_path: Path) -> None:
+def test_a_hand_at_the_upper_arm_collides_with_it(tmp_path: Path) -> None:
     with arm.load(tmp_path) as sim:
-        found = meeting(sim, 0.0, 2.6, 2.4)
+        found = collision_at(sim, 0.0, 2.6, 2.4)
         assert found is not None
         assert {found.first, found.second} == {"upper", "hand"}
-        assert str(found).startswith("upper and hand come ") and str(found).endswith(" mm into each other")
+        assert str(found).startswith("upper and hand overlap by ") and str(found).endswith(" mm")
 
 
-def test_neighbours_may_overlap_in_their_joint(tmp_path: Path) -> None:
-    """At 2.8 rad the lower arm lies upon the upper one, but for the joint between them nothing joins them."""
+def test_neighbours_may_overlap_at_their_joint(tmp_path: Path) -> None:
+    """At 2.8 rad the lower arm overlaps the upper arm, its neighbour."""
     with arm.load(tmp_path) as sim:
-        assert meeting(sim, 0.0, 2.8, 0.0) is None
+        assert collision_at(sim, 0.0, 2.8, 0.0) is None
 
 
-def test_the_surroundings_are_named_with_their_model_and_the_depth_is_theirs(tmp_path: Path) -> None:
-    # the hand's end lies at x = 0.95; its middle line swings through y
+def test_a_collision_with_the_surroundings_has_their_scoped_name_and_the_depth(tmp_path: Path) -> None:
+    # the end of the hand is at x = 0.95 and its centre line swings through y
     wall = arm.box("wall", "0.6 0.3 0.5 0 0 0", "2 0.1 1")
     with arm.load(tmp_path, wall) as sim:
-        found = meeting(sim, np.pi / 2, 0.0, 0.0)
+        found = collision_at(sim, np.pi / 2, 0.0, 0.0)
         assert found is not None and found.second == "wall::body"
-        assert meeting(sim, 0.1, 0.0, 0.0) is None
+        assert collision_at(sim, 0.1, 0.0, 0.0) is None
     with arm.load(tmp_path, arm.box("wall", "0.5 0.5 0.5 0 0 0", "1 0.1 1")) as sim:
         # y of the hand's far corner at a turn a: (0.95) sin a + 0.02 cos a; the wall begins at 0.45
         turn = 0.47
         reach = 0.95 * np.sin(turn) + 0.02 * np.cos(turn)
-        found = clearance(sim, free=()).meeting(np.array([turn, 0.0, 0.0]))
+        found = collision_check(sim, free=()).deepest_collision(np.array([turn, 0.0, 0.0]))
         fingers = 1.03 * np.sin(turn) + 0.01 * np.cos(turn)
         assert found is not None and reach < fingers
         assert found.depth == pytest.approx(fingers - 0.45, abs=2e-3)
 
 
-def test_what_is_switched_off_for_collisions_is_not_met(tmp_path: Path) -> None:
+def test_a_shape_without_a_collide_bitmask_does_not_collide(tmp_path: Path) -> None:
     shape = "<geometry><box><size>2 0.1 1</size></box></geometry>"
     ghost = f"""<model name="ghost"><static>true</static><pose>0.6 0.3 0.5 0 0 0</pose><link name="body">
         <collision name="c">{shape}<surface><contact><collide_bitmask>0</collide_bitmask></contact></surface>
         </collision>
         </link></model>"""
     with arm.load(tmp_path, ghost) as sim:
-        assert meeting(sim, np.pi / 2, 0.0, 0.0) is None
+        assert collision_at(sim, np.pi / 2, 0.0, 0.0) is None
 
 
-def test_links_that_do_not_move_are_not_asked_about(tmp_path: Path) -> None:
-    """The foot stands in a box; the arm can still be moved."""
+def test_links_that_do_not_move_are_not_checked(tmp_path: Path) -> None:
+    """The foot is inside a box; the arm can still move."""
     with arm.load(tmp_path, arm.box("socket", "0 0 0.1 0 0 0", "0.3 0.3 0.2")) as sim:
-        assert meeting(sim, 0.5, 0.0, 0.0) is None
+        assert collision_at(sim, 0.5, 0.0, 0.0) is None
 
 
-def test_what_touches_already_may_go_on_touching_no_deeper(tmp_path: Path) -> None:
-    """A board that the arm lies 2 mm deep in: along it is free, and further into it is not."""
+def test_an_existing_contact_may_stay_but_not_get_deeper(tmp_path: Path) -> None:
+    """The arm is 2 mm deep in a board: motion along the board is allowed, motion into it is not."""
     with arm.load(tmp_path, arm.box("board", "0.5 -0.068 0.5 0 0 0", "2 0.1 1")) as sim:
-        assert clearance(sim, free=()).meeting(np.zeros(3)) is None
-        into = clearance(sim, free=()).meeting(np.array([-0.1, 0.0, 0.0]))
+        assert collision_check(sim, free=()).deepest_collision(np.zeros(3)) is None
+        into = collision_check(sim, free=()).deepest_collision(np.array([-0.1, 0.0, 0.0]))
         assert into is not None and into.second == "board::body"
 
 
-def test_fingers_may_touch_what_lies_loose_and_not_what_stands(tmp_path: Path) -> None:
+def test_fingers_may_touch_loose_objects_but_not_static_ones(tmp_path: Path) -> None:
     for static in (False, True):
         cube = arm.box("cube", "1.0 0 0.5 0 0 0", "0.04 0.03 0.04", static=static)
         with arm.load(tmp_path, cube) as sim:
             robot: Any = sim.model("arm")
             robot.set_joint_positions(dict.fromkeys(FINGERS, 0.04))
             closing = CollisionCheck(sim, robot, [robot.joints[name] for name in FINGERS], FINGERS)
-            found = closing.meeting(np.zeros(2))
+            found = closing.deepest_collision(np.zeros(2))
             assert (found is not None) == static
             assert found is None or found.second == "cube::body"
 
 
-def test_what_is_held_goes_along_and_must_not_hit_anything_either(tmp_path: Path) -> None:
+def test_a_held_object_moves_with_the_hand_and_is_checked_too(tmp_path: Path) -> None:
     cube = arm.box("cube", "1.1 0 0.5 0 0 0", "0.3 0.03 0.04", static=False)
     post = arm.box("post", "1.0 0.65 0.5 0 0 0", "0.06 0.06 1")
     with arm.load(tmp_path, cube + post) as sim:
         # fingers 0.5 mm into the cube on both sides hold it
         sim.model("arm").set_joint_positions(dict.fromkeys(FINGERS, 0.0145))
         # the arm's own tip goes to 1.03 m, the post's nearest corner is 1.15 m away: only the cube reaches it
-        found = clearance(sim).meeting(np.array([np.arctan2(0.65, 1.0), 0.0, 0.0]))
+        found = collision_check(sim).deepest_collision(np.array([np.arctan2(0.65, 1.0), 0.0, 0.0]))
         assert found is not None
         assert (found.first, found.second) == ("cube::body", "post::body")
         sim.model("cube").set_pose(simkit.Pose((3.0, 0.0, 0.5)))
-        assert clearance(sim).meeting(np.array([np.arctan2(0.65, 1.0), 0.0, 0.0])) is None
+        assert collision_check(sim).deepest_collision(np.array([np.arctan2(0.65, 1.0), 0.0, 0.0])) is None

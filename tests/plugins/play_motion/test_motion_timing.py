@@ -1,4 +1,4 @@
-"""The course of a motion: through its points, on time, and no faster than its joints may go."""
+"""Course of a motion: its points, times and speed limits."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def motion(
 
 
 def traced(course: Course) -> tuple[np.ndarray, np.ndarray]:
-    """Many times and positions along a course."""
+    """Return many times and positions along a course."""
     found = list(course.samples(np.full(course.positions.shape[1], 2e-3)))
     return np.array([t for t, _ in found]), np.array([p for _, p in found])
 
@@ -31,40 +31,40 @@ def speeds(course: Course) -> np.ndarray:
     return found
 
 
-def test_the_approach_takes_the_motions_own_time_where_that_is_enough() -> None:
+def test_the_approach_takes_the_time_of_the_motion_if_that_is_enough() -> None:
     course = course_from(np.zeros(2), motion((0.1, 0.0), (0.2, 0.3), times=(1.0, 2.5)), LIMITS, Approach(0.5))
     assert course.times == pytest.approx([0.0, 1.0, 2.5])
     assert course.stretched == 1.0
 
 
-def test_a_far_first_point_is_approached_slowly_and_the_rest_keeps_its_distance_in_time() -> None:
+def test_a_far_first_point_is_approached_slowly_and_later_intervals_stay() -> None:
     course = course_from(np.zeros(2), motion((0.0, 1.5), (0.1, 1.4), times=(0.5, 2.0)), LIMITS, Approach(0.5))
     assert course.times == pytest.approx([0.0, 3.0, 4.5])  # 1.5 rad at 0.5 rad/s
 
 
-def test_a_slow_joint_has_its_own_speed() -> None:
+def test_the_limit_of_a_slow_joint_extends_the_approach() -> None:
     lift = course_from(np.zeros(1), motion((0.35,), times=(0.5,)), np.array([0.07]), Approach(0.5))
     assert lift.duration == pytest.approx(1.5 * 0.35 / 0.07)  # a cubic between two rests is 1.5 times as fast halfway
     assert speeds(lift).max() <= 0.07 * (1 + 1e-6)
 
 
-def test_the_shortest_approach_counts_unless_it_is_there_already() -> None:
+def test_the_shortest_approach_time_counts_unless_the_point_is_reached() -> None:
     there = motion((0.0, 0.0), (0.1, 0.0), times=(0.0, 1.0))
     assert course_from(np.full(2, 0.05), there, LIMITS, Approach(0.5, 2.0)).times[1] == pytest.approx(2.0)
     assert course_from(np.zeros(2), there, LIMITS, Approach(0.5, 2.0)).times[1] == pytest.approx(1e-3)
 
 
-def test_a_motion_that_is_too_fast_is_stretched_to_what_its_joints_can() -> None:
+def test_a_motion_that_is_too_fast_is_stretched_to_the_joint_limits() -> None:
     course = course_from(
         np.zeros(2), motion((0.0, 0.0), (2.0, 0.1), (2.0, 0.2), times=(0.0, 1.0, 2.0)), LIMITS, Approach()
     )
     assert course.times[2] - course.times[1] == pytest.approx(3.0, rel=1e-3)
-    assert course.times[3] - course.times[2] == pytest.approx(1.0)  # only where it is needed
+    assert course.times[3] - course.times[2] == pytest.approx(1.0)  # only the interval that is too fast
     assert course.stretched == pytest.approx(2.0, rel=1e-3)
     assert speeds(course).max(axis=0)[0] <= 1.0 + 1e-3
 
 
-def test_it_goes_through_every_point_and_beyond_none() -> None:
+def test_the_course_passes_every_point_and_overshoots_none() -> None:
     generator = np.random.default_rng(3)
     points = generator.uniform(-1, 1, (7, 3))
     times = tuple(np.cumsum(generator.uniform(0.3, 2.0, 7)))
@@ -80,14 +80,14 @@ def test_it_goes_through_every_point_and_beyond_none() -> None:
     assert speeds(course).max() <= 5.0 * (1 + 1e-3)
 
 
-def test_it_does_not_stop_at_a_point_between() -> None:
+def test_the_course_does_not_stop_at_an_intermediate_point() -> None:
     course = course_from(
         np.zeros(1), motion((0.2,), (0.4,), (0.6,), times=(1.0, 2.0, 3.0)), np.array([9.0]), Approach()
     )
     assert course.velocities[2, 0] == pytest.approx(0.2)  # the same slope on both sides
 
 
-def test_velocities_of_the_file_are_kept_or_slowed_as_a_whole() -> None:
+def test_velocities_of_the_file_are_kept_or_all_reduced() -> None:
     given = motion((0.0,), (0.5,), times=(1.0, 2.0), velocities=((0.0,), (0.5,)))
     assert course_from(np.zeros(1), given, np.array([9.0]), Approach()).velocities[2, 0] == 0.5
     slowed = course_from(np.zeros(1), given, np.array([0.25]), Approach())

@@ -1,4 +1,4 @@
-"""Motions as actions and services: played, refused, cancelled."""
+"""Motions as actions and services: playback, refusal and cancellation."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def sim(tmp_path: Path) -> Any:
 
 
 def watched(sim: simkit.Simulation, goal: Any) -> tuple[list[float], list[list[float]]]:
-    """Times and positions of the arm until a goal has ended."""
+    """Return times and positions of the arm until a goal has ended."""
     times, places = [sim.time], [arm.positions(sim, *JOINTS)]
     while not goal.is_done:
         sim.run(0.01)
@@ -43,7 +43,7 @@ def test_a_motion_is_played_through_its_points_in_its_time(sim: Any) -> None:
     assert places[-1] == pytest.approx([1.0, -0.5, 0.2], abs=2e-3)
 
 
-def test_the_way_to_the_first_point_is_no_faster_than_allowed(tmp_path: Path) -> None:
+def test_the_approach_is_no_faster_than_allowed(tmp_path: Path) -> None:
     with arm.load(tmp_path, element="<approach_velocity>0.25</approach_velocity>") as sim:
         arm.play(sim, "bow")  # ends with the shoulder at 1 rad
         goal = sim.send_goal("/play_motion2", {"motion_name": "rest"})
@@ -60,7 +60,7 @@ def test_no_joint_is_faster_than_its_limit(sim: Any) -> None:
     assert arm.positions(sim, "left_finger", "right_finger") == pytest.approx([0.04, 0.04], abs=1e-3)
 
 
-def test_joints_that_a_motion_leaves_out_stay_where_they_are(sim: Any) -> None:
+def test_joints_without_a_motion_keep_their_positions(sim: Any) -> None:
     arm.play(sim, "bow")
     before = arm.positions(sim, "shoulder", "elbow")
     assert arm.play(sim, "nod").status.name == "SUCCEEDED"
@@ -73,26 +73,26 @@ def test_an_unknown_motion_is_rejected_with_the_closest(sim: Any) -> None:
     assert goal.reason == "Motion 'bowl' is not known; did you mean 'bow'?"
 
 
-def test_a_motion_that_leaves_the_limits_is_told_at_the_load_and_refused(sim: Any) -> None:
+def test_a_motion_beyond_the_limits_is_reported_at_load_and_refused(sim: Any) -> None:
     assert [d.message for d in sim.diagnostics if d.code == "SK-MOTION-004"] == [
-        "motion 'too_far' will be refused, it leaves the limits: "
-        "elbow is to be at 3.5 rad at 2 s, allowed is -2.8 to 2.8"
+        "motion 'too_far' will be refused, because it exceeds the joint limits: "
+        "elbow would be at 3.5 rad at 2 s, allowed is -2.8 to 2.8"
     ]
     goal = arm.play(sim, "too_far")
     assert goal.status.name == "ABORTED" and not goal.result.success
-    assert goal.result.error.startswith("motion 'too_far' leaves the limits: elbow is to be at 3.5 rad")
+    assert goal.result.error.startswith("motion 'too_far' exceeds the joint limits: elbow would be at 3.5 rad")
     assert arm.positions(sim, *JOINTS) == pytest.approx([0.0, 0.0, 0.0], abs=1e-6)
 
 
-def test_a_motion_that_collides_is_refused_and_says_which_pair(sim: Any) -> None:
+def test_a_colliding_motion_is_refused_with_the_names_of_both_links(sim: Any) -> None:
     goal = arm.play(sim, "curl")
     assert goal.status.name == "ABORTED" and not goal.result.success
-    assert "collides on the way to its first point: upper and hand come" in goal.result.error
+    assert "collides on the way to its first point: upper and hand overlap by" in goal.result.error
     sim.run(0.5)
     assert arm.positions(sim, *JOINTS) == pytest.approx([0.0, 0.0, 0.0], abs=1e-4)
 
 
-def test_a_wall_in_the_way_is_named_and_may_be_passed_over(tmp_path: Path) -> None:
+def test_a_wall_in_the_way_is_named_and_skip_planning_ignores_it(tmp_path: Path) -> None:
     with arm.load(tmp_path, arm.box("wall", "0.5 0.6 0.5 0 0 0", "1 0.1 1")) as sim:
         goal = arm.play(sim, "bow")
         assert goal.status.name == "ABORTED" and "wall::body" in goal.result.error
@@ -112,7 +112,7 @@ def test_a_second_motion_is_rejected_while_one_is_played(sim: Any) -> None:
     assert arm.play(sim, "open").status.name == "SUCCEEDED"
 
 
-def test_a_motion_that_is_cancelled_stops_and_the_arm_holds_where_it_is(sim: Any) -> None:
+def test_a_cancelled_motion_stops_and_the_arm_holds_its_position(sim: Any) -> None:
     goal = sim.send_goal("/play_motion2", {"motion_name": "bow"})
     sim.run(2.0)
     goal.cancel()
@@ -126,7 +126,7 @@ def test_a_motion_that_is_cancelled_stops_and_the_arm_holds_where_it_is(sim: Any
     assert arm.play(sim, "rest").status.name == "SUCCEEDED"
 
 
-def test_a_controller_that_is_given_something_else_ends_the_motion(sim: Any) -> None:
+def test_another_goal_for_its_controller_ends_the_motion(sim: Any) -> None:
     goal = sim.send_goal("/play_motion2", {"motion_name": "bow"})
     sim.run(1.0)
     point = {"positions": [0.0, 0.0, 0.0], "time_from_start": {"sec": 2}}
@@ -146,19 +146,19 @@ def test_joints_without_an_active_controller_cannot_be_played(sim: Any) -> None:
     assert sim.call("/play_motion2/is_motion_ready", {"motion_key": "bow"}).is_ready
 
 
-def test_feedback_tells_the_time(sim: Any) -> None:
-    told: list[float] = []
+def test_feedback_contains_the_time(sim: Any) -> None:
+    reports: list[float] = []
     goal = sim.send_goal(
         "/play_motion2",
         {"motion_name": "bow"},
-        lambda f: told.append(f.current_time.sec + f.current_time.nanosec * 1e-9),
+        lambda f: reports.append(f.current_time.sec + f.current_time.nanosec * 1e-9),
     )
     sim.run(4.0)
     assert goal.status.name == "SUCCEEDED"
-    assert 50 < len(told) < 70 and told == sorted(told)  # 20 Hz for 3 s
+    assert 50 < len(reports) < 70 and reports == sorted(reports)  # 20 Hz for 3 s
 
 
-def test_ros_1_gets_its_numbers(sim: Any) -> None:
+def test_ros_1_results_have_error_codes(sim: Any) -> None:
     found = {name: arm.play(sim, name, "/play_motion").result for name in ("bowl", "too_far", "curl", "nod")}
     assert {name: result.error_code for name, result in found.items()} == {
         "bowl": -1,  # MOTION_NOT_FOUND
@@ -169,7 +169,7 @@ def test_ros_1_gets_its_numbers(sim: Any) -> None:
     assert "did you mean 'bow'?" in found["bowl"].error_string
 
 
-def test_in_ros_1_two_motions_of_other_joints_go_together(sim: Any) -> None:
+def test_in_ros_1_two_motions_without_common_joints_run_together(sim: Any) -> None:
     first = sim.send_goal("/play_motion", {"motion_name": "bow"})
     sim.run(0.5)
     second = sim.send_goal("/play_motion", {"motion_name": "open"})
@@ -194,7 +194,7 @@ def test_services_list_and_describe_the_motions(sim: Any) -> None:
     ]
 
 
-def test_readiness_is_told_before_a_goal_is_sent(sim: Any) -> None:
+def test_services_report_readiness_before_a_goal_is_sent(sim: Any) -> None:
     def is_ready(key: str) -> bool:
         return bool(sim.call("/play_motion2/is_motion_ready", {"motion_key": key}).is_ready)
 
@@ -206,7 +206,7 @@ def test_readiness_is_told_before_a_goal_is_sent(sim: Any) -> None:
     assert not is_ready("open")
 
 
-def test_already_there_is_about_the_first_point(sim: Any) -> None:
+def test_already_there_refers_to_the_first_point(sim: Any) -> None:
     def is_there(name: str, tolerance: float = 0.01) -> bool:
         request = {"motion_name": name, "tolerance": tolerance}
         return bool(sim.call("/play_motion/is_already_there", request).already_there)
@@ -214,7 +214,7 @@ def test_already_there_is_about_the_first_point(sim: Any) -> None:
     assert is_there("rest") and not is_there("bow") and is_there("bow", 0.6) and not is_there("none")
 
 
-def test_motions_come_and_go_and_a_reset_brings_back_the_files(sim: Any) -> None:
+def test_motions_can_be_added_and_removed_and_a_reset_restores_those_of_the_files(sim: Any) -> None:
     motion = {"key": "tilt", "joints": ["wrist"], "positions": [0.3], "times_from_start": [1.0]}
     assert sim.call("/play_motion2/add_motion", {"motion": motion}).success
     assert not sim.call("/play_motion2/add_motion", {"motion": motion}).success
@@ -229,7 +229,7 @@ def test_motions_come_and_go_and_a_reset_brings_back_the_files(sim: Any) -> None
     assert "nod" in keys and "tilt" not in keys
 
 
-def test_a_motion_may_come_with_the_goal(sim: Any) -> None:
+def test_a_goal_can_contain_a_motion(sim: Any) -> None:
     motion = {"key": "x", "joints": ["wrist"], "positions": [0.2, 0.3], "times_from_start": [1.0, 2.0]}
     goal = sim.send_goal("/play_motion2/raw", {"motion": motion})
     sim.run(3.0)
@@ -237,10 +237,10 @@ def test_a_motion_may_come_with_the_goal(sim: Any) -> None:
     assert arm.positions(sim, "wrist") == pytest.approx([0.3], abs=2e-3)
     bad = sim.send_goal("/play_motion2/raw", {"motion": {**motion, "times_from_start": [2.0, 1.0]}})
     sim.run(0.1)
-    assert bad.status.name == "REJECTED" and "its times do not rise" in bad.reason
+    assert bad.status.name == "REJECTED" and "its times must increase" in bad.reason
 
 
-def test_the_same_goal_gives_the_same_bits_and_a_restore_goes_on_with_it(sim: Any) -> None:
+def test_equal_goals_give_equal_bits_also_after_a_restore(sim: Any) -> None:
     def end_of(goal: Any) -> tuple[str, bytes]:
         sim.run(3.0)
         return goal.status.name, sim.mj_data.qpos.tobytes()
@@ -258,19 +258,22 @@ def test_the_same_goal_gives_the_same_bits_and_a_restore_goes_on_with_it(sim: An
     assert end_of(again) == first
 
 
-def test_a_file_that_is_not_there_and_joints_that_are_not_there_are_told(tmp_path: Path) -> None:
+def test_missing_files_and_missing_joints_are_reported(tmp_path: Path) -> None:
     with arm.load(tmp_path, element="<motions>others.yaml</motions>") as sim:
         found = [d for d in sim.diagnostics if d.code == "SK-MOTION-001"]
         assert len(found) == 1 and "others.yaml" in found[0].message
         assert "bow" in arm.player(sim).motions
     with arm.load(tmp_path, motions=arm.MOTIONS.replace("joints: [wrist]", "joints: [wirst]")) as sim:
-        told = [(d.message, d.hint) for d in sim.diagnostics if d.code == "SK-MOTION-004"]
-        assert ("motion 'nod' cannot be played: joint 'wirst' is none of 'arm'", "did you mean 'wrist'?") in told
+        reports = [(d.message, d.hint) for d in sim.diagnostics if d.code == "SK-MOTION-004"]
+        assert (
+            "motion 'nod' cannot be played: joint 'wirst' does not exist in 'arm'",
+            "did you mean 'wrist'?",
+        ) in reports
         goal = arm.play(sim, "nod")
         assert goal.status.name == "REJECTED" and "did you mean 'wrist'?" in goal.reason
     with arm.load(tmp_path, motions=arm.MOTIONS.replace("joints: [wrist]", "joints: [standing]")) as sim:
-        told = [(d.message, d.hint) for d in sim.diagnostics if d.code == "SK-MOTION-004"]
-        assert ("motion 'nod' cannot be played: joint 'standing' does not move along one axis", "") in told
+        reports = [(d.message, d.hint) for d in sim.diagnostics if d.code == "SK-MOTION-004"]
+        assert ("motion 'nod' cannot be played: joint 'standing' does not have exactly one axis", "") in reports
         assert arm.play(sim, "nod").status.name == "REJECTED"
 
 
@@ -290,7 +293,7 @@ def test_two_robots_play_under_their_own_namespaces(tmp_path: Path) -> None:
         assert goal.status.name == "SUCCEEDED"
 
 
-def test_a_second_robot_without_a_namespace_plays_under_its_name(tmp_path: Path) -> None:
+def test_a_second_robot_without_a_namespace_uses_its_own_name(tmp_path: Path) -> None:
     arm.load(tmp_path).close()
     second = arm.model("other", arm.play_motion(), "0 3 0 0 0 0").replace("libgazebo_ros2_control.so", "none")
     (tmp_path / "two.sdf").write_text(arm.world(arm.model(extra=arm.play_motion()) + second))
@@ -301,12 +304,12 @@ def test_a_second_robot_without_a_namespace_plays_under_its_name(tmp_path: Path)
         )
         note = next(d for d in sim.diagnostics if d.code == "SK-MOTION-007")
         assert note.message == (
-            "robot 'other' plays motions under '/other/play_motion2': '/play_motion2' is another one's"
+            "robot 'other' plays motions under '/other/play_motion2', because another robot uses '/play_motion2'"
         )
 
 
 @pytest.mark.parametrize("end", [3e9, 1e300])
-def test_a_time_that_no_trajectory_can_tell_is_refused(sim: Any, end: float) -> None:
+def test_a_time_beyond_the_range_of_a_trajectory_is_refused(sim: Any, end: float) -> None:
     motion = {"key": "x", "joints": ["wrist"], "positions": [0.2], "times_from_start": [end]}
     goal = sim.send_goal("/play_motion2/raw", {"motion": motion})
     sim.run(0.1)
@@ -318,7 +321,7 @@ MIMIC = '<mimic joint="right_finger"><multiplier>2</multiplier><offset>0.01</off
 
 @pytest.fixture
 def following(tmp_path: Path) -> Any:
-    """The arm, the left finger of which follows the right one: 2 · right + 0.01."""
+    """Return the arm with a left finger that mimics the right one: 2 · right + 0.01."""
     (tmp_path / "controllers.yaml").write_text(arm.CONTROLLERS.replace("[left_finger, right_finger]", "[right_finger]"))
     (tmp_path / "motions.yaml").write_text(arm.MOTIONS)
     limit = "<lower>0.0</lower><upper>0.04</upper><effort>60</effort>"
@@ -331,7 +334,7 @@ def following(tmp_path: Path) -> Any:
         yield sim
 
 
-def test_a_joint_that_follows_another_is_moved_by_that_one(following: Any) -> None:
+def test_a_mimic_joint_is_moved_by_its_leader(following: Any) -> None:
     motion = {"key": "x", "joints": ["left_finger"], "positions": [0.05], "times_from_start": [1.0]}
     goal = following.send_goal("/play_motion2/raw", {"motion": motion})
     following.run(2.0)
@@ -339,14 +342,14 @@ def test_a_joint_that_follows_another_is_moved_by_that_one(following: Any) -> No
     assert arm.positions(following, "left_finger", "right_finger") == pytest.approx([0.05, 0.02], abs=1e-3)
 
 
-def test_a_joint_cannot_be_elsewhere_than_the_one_it_follows_takes_it(following: Any) -> None:
+def test_a_position_that_contradicts_the_mimic_rule_is_refused(following: Any) -> None:
     goal = arm.play(following, "open")  # both at 0.04
     assert goal.status.name == "ABORTED"
-    assert "left_finger is to be at 0.04 at 0.5 s, but it follows right_finger, which takes it to 0.09" in goal.reason
+    assert "left_finger would be at 0.04 at 0.5 s, but it mimics right_finger, which moves it to 0.09" in goal.reason
 
 
-def test_a_motion_is_not_waited_for_without_end(tmp_path: Path) -> None:
-    """The first controller's part is over, the other's never is: its goal has a tolerance and all the time there is."""
+def test_a_motion_that_does_not_finish_times_out(tmp_path: Path) -> None:
+    """One controller finishes, the other never does: its goal has a tolerance but no time limit."""
     push = "joints: [left_finger, right_finger, shoulder], positions: [0.005, 0.005, 0.4], times_from_start: [1.0]"
     wall = arm.box("wall", "0.5 0.15 0.5 0 0 0", "1 0.05 0.3")
     arm.load(tmp_path, wall, motions=f"{arm.MOTIONS}      push: {{{push}}}\n").close()
@@ -363,8 +366,8 @@ def test_a_motion_is_not_waited_for_without_end(tmp_path: Path) -> None:
         assert goal.status.name == "ABORTED" and "Timeout exceeded" in goal.result.error
 
 
-def test_joints_that_are_to_be_free_but_are_none_are_told(tmp_path: Path) -> None:
+def test_unknown_excluded_joints_are_reported(tmp_path: Path) -> None:
     element = "<exclude_from_planning_joints>left_finger rigth_finger</exclude_from_planning_joints>"
     with arm.load(tmp_path, element=element) as sim:
-        (said,) = [d for d in sim.diagnostics if d.code == "SK-MOTION-006"]
-        assert "'rigth_finger' is no joint of 'arm'" in said.message and "'right_finger'" in said.hint
+        (warning,) = [d for d in sim.diagnostics if d.code == "SK-MOTION-006"]
+        assert "'arm' has no joint 'rigth_finger'" in warning.message and "'right_finger'" in warning.hint
