@@ -68,4 +68,4 @@ class BuoyancyPlugin(BuoyancyBase, ModelPlugin):
         """Return the hulls of the model's links; values in the file override collisions."""
         links = self.sim.engine.names.links
         hulls = self._hulls_in_file
-        return {n: [hulls[n]] if n in hulls else self._yard.hulls(links[n].scene) for n in self._links if n in links}
+        return {n: [hulls[n]] if n in hulls else self._factory.hulls(links[n].scene) for n in self._links if n in links}

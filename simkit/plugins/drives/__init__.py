@@ -1,5 +1,6 @@
-"""What plugins that move robots share: wheels, steering, tracks, odometry, transforms.
+"""Shared code of the plugins that move robots: wheels, steering, tracks, odometry and transforms.
 
-Names of joints and commanded speeds enter; servo targets, odometry and transforms leave. No kind of plugin is chosen
-here, but `WheelSlip` and its twins of Classic, which differ only by an alias and their topics.
+A plugin hands in joint names and commanded speeds; the modules return servo targets, odometry and transforms. The
+package contains no plugin of its own except `WheelSlip` and its two Gazebo Classic variants, which differ only in their
+aliases and topics.
 """

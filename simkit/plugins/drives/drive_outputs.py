@@ -1,4 +1,4 @@
-"""Publish odometry, transforms and joint states of Gazebo Classic's drives, each where the file asks for it."""
+"""Publish the odometry, transforms and joint states of Gazebo Classic's drives, as the plugin's options select."""
 
 from __future__ import annotations
 
@@ -25,13 +25,17 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class DriveOutputOptions:
-    """What goes out.
+    """Selection and names of the outputs of a drive.
 
     Attributes:
-        odometry_topic: name of the odometry's topic.
-        odometry_frame, base_frame: of the odometry and its transform.
-        odometry, odometry_tf, wheel_tf, joint_states: whether they go out.
-        covariance: variances of x, y [m²] and yaw [rad²].
+        odometry_topic: Name of the odometry topic.
+        odometry_frame: Frame of the odometry, parent of its transform.
+        base_frame: Frame of the robot's base, child of that transform.
+        odometry: True to publish odometry.
+        odometry_tf: True to publish the transform of the odometry.
+        wheel_tf: True to publish the transforms of the joints' child links.
+        joint_states: True to publish joint states.
+        covariance: Variances of x, y [m²] and yaw [rad²].
     """
 
     odometry_topic: str
@@ -45,45 +49,50 @@ class DriveOutputOptions:
 
 
 class DriveOutputs:
-    """The publishers of one drive; a handle, without state of its own.
+    """Publishers of one drive. A deep copy returns the same object, because there is no state to copy.
 
     Args:
-        plugin: whose they are; to be made in its `load`.
-        told: what goes out.
-        joints: whose transforms and states are told.
+        plugin: Drive that owns the publishers; create them in its `load`.
+        options: Selected outputs.
+        joints: Joints whose transforms and states are published.
     """
 
-    def __init__(self, plugin: Plugin, told: DriveOutputOptions, joints: Sequence[SceneJoint]) -> None:
-        self._sim, self._told = plugin.sim, told
+    def __init__(self, plugin: Plugin, options: DriveOutputOptions, joints: Sequence[SceneJoint]) -> None:
+        self._sim, self._options = plugin.sim, options
         self._links = [(joint.parent_link, joint.child_link) for joint in joints]
         self._joints = [plugin.sim.joint(joint.scoped) for joint in joints]
-        self._covariance = planar_covariance(*told.covariance)
-        self._odom = plugin.advertise(told.odometry_topic, ODOMETRY) if told.odometry else None
-        self._tf = plugin.advertise("/tf", TRANSFORMS) if told.odometry_tf or told.wheel_tf else None
-        self._states = plugin.advertise("joint_states", JOINT_STATE) if told.joint_states else None
+        self._covariance = planar_covariance(*options.covariance)
+        self._odom = plugin.advertise(options.odometry_topic, ODOMETRY) if options.odometry else None
+        self._tf = plugin.advertise("/tf", TRANSFORMS) if options.odometry_tf or options.wheel_tf else None
+        self._states = plugin.advertise("joint_states", JOINT_STATE) if options.joint_states else None
 
     def __deepcopy__(self, memo: dict[int, object]) -> DriveOutputs:
         return self
 
     @property
     def wants_odometry(self) -> bool:
-        """Whether anybody hears where the base is."""
+        """True while the odometry or transform topic has a subscriber."""
         return any(out is not None and out.wanted for out in (self._odom, self._tf))
 
     def tell(self, pose: Pose, twist: BodyTwist) -> None:
-        """Publishes odometry and transforms."""
-        told, now = self._told, self._sim.time_ns
-        frames = told.odometry_frame, told.base_frame
+        """Publish odometry and transforms.
+
+        Args:
+            pose: Pose of the base in the odometry frame.
+            twist: Twist in the axes of the base.
+        """
+        options, now = self._options, self._sim.time_ns
+        frames = options.odometry_frame, options.base_frame
         if self._odom is not None and self._odom.wanted:
             self._odom.publish_later(partial(odometry_message, now, *frames, pose, twist, self._covariance))
         if self._tf is not None and self._tf.wanted:
-            found = [(*frames, pose)] if told.odometry_tf else []
-            for above, below in self._links if told.wheel_tf else ():
+            found = [(*frames, pose)] if options.odometry_tf else []
+            for above, below in self._links if options.wheel_tf else ():
                 parent, child = self._sim.link(above), self._sim.link(below)
                 found.append((parent.name, child.name, parent.pose.inverse() @ child.pose))
             self._tf.publish_later(partial(transforms, now, *found))
 
     def tell_joints(self) -> None:
-        """Publishes joint states."""
+        """Publish joint states."""
         if self._states is not None and self._states.wanted:
             self._states.publish_later(partial(joint_state_message, self._sim.time_ns, joint_readings(self._joints)))

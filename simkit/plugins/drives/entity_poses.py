@@ -1,5 +1,6 @@
-"""Poses of models, links and visuals, each in its own frame: a tick samples little, and the poses are computed
-later.
+"""Poses of models, links and visuals, each relative to its own frame.
+
+A tick only copies the poses of MuJoCo's bodies; the relative poses are computed when a message is made.
 """
 
 from __future__ import annotations
@@ -21,25 +22,26 @@ if TYPE_CHECKING:
     from simkit.scene import SceneJoint
 
 PoseNumbers = tuple[float, float, float, float, float, float, float]
-"""A pose as plain numbers, x, y, z [m] and a unit quaternion w, x, y, z: sooner multiplied than a `Pose`."""
+"""Pose as plain numbers: x, y, z [m] and a unit quaternion w, x, y, z. Multiplication is faster than with `Pose`."""
 
 FramePose = tuple[str, str, PoseNumbers]
-"""Frame, child frame, and where the child is in the frame."""
+"""Frame, child frame, and pose of the child in the frame."""
 
 _IDENTITY: PoseNumbers = (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
 class PosedEntity:
-    """One entity whose pose is told.
+    """Link, model or visual whose pose is published.
 
     Attributes:
-        frame: scoped name of what it is in; the world's name for a top-level model.
-        child: its own scoped name.
-        place: where it always is in that frame; None where it may move.
-        handle: the link or model that it is, where it may move.
-        within: the model or link that it is in; None in the world.
-        moves: whether gz tells it on the topic of moving things where there is another for those at rest.
+        frame: Scoped name of the parent; the world's name for a top-level model.
+        child: Scoped name of the entity.
+        place: Constant pose in the parent; None if the entity can move.
+        handle: Link or model of the entity, if it can move.
+        within: Model or link that contains the entity; None for the world.
+        moves: True if Gazebo publishes this pose on its topic for moving entities, when a second topic serves the
+            static ones.
     """
 
     frame: str
@@ -54,14 +56,16 @@ class PosedEntity:
 
 
 class _CompiledEntity(NamedTuple):
-    """A part in the compiled model.
+    """Entity with its addresses in the compiled model.
 
     Attributes:
-        frame, child: as the part has them.
-        place: where it is in its frame, where that never changes.
-        row, offset: its body among those taken, and its frame in that body's.
-        base, back: the body of what it is in (-1 for the world), and that body's frame in its own.
-        is_body, is_base: whether its frame, and that of what it is in, are those of their bodies.
+        frame, child: Names from the `PosedEntity`.
+        place: Pose in its frame, if constant.
+        row: Index of its body among the sampled bodies.
+        offset: Pose of the entity in that body's frame.
+        base: Index of the parent's body among the sampled bodies; -1 for the world.
+        back: Pose of that body in the parent's frame.
+        is_body, is_base: True if the entity's (or the parent's) frame equals its body's frame.
     """
 
     frame: str
@@ -76,27 +80,35 @@ class _CompiledEntity(NamedTuple):
 
 
 class EntityPoses:
-    """The poses of some parts, for one compiled model.
+    """Poses of a sequence of entities, prepared for one compiled model.
 
     Args:
-        sim: the simulation.
-        parts: what is told, in this order.
+        sim: Simulation that contains the entities.
+        entities: Entities in the order of the output.
     """
 
-    def __init__(self, sim: Simulation, parts: Sequence[PosedEntity]) -> None:
+    def __init__(self, sim: Simulation, entities: Sequence[PosedEntity]) -> None:
         self._sim = sim
         self._rows: dict[int, int] = {}
-        # as plain tuples, which are soonest gone through
-        self._plan = [self._find(part) for part in parts]
+        # plain tuples: `place` unpacks them once per entity and message
+        self._plan = [self._find(entity) for entity in entities]
         self._bodies = np.array(list(self._rows), dtype=np.intp)
 
     def take(self) -> PoseSample:
-        """What the poses of this tick are made of."""
+        """Copy the body poses of this tick, from which the entity poses are computed later."""
         data = self._sim.engine.physics.fresh()
         return PoseSample(self, data.xpos[self._bodies], data.xquat[self._bodies])
 
     def place(self, positions: Vector, quaternions: Vector) -> list[FramePose]:
-        """The poses when the bodies are here: [m] and (w, x, y, z) in the world, shapes (n, 3) and (n, 4)."""
+        """Compute the poses of all entities from given body poses.
+
+        Args:
+            positions: World positions of the sampled bodies [m], shape (n, 3).
+            quaternions: World orientations of these bodies (w, x, y, z), shape (n, 4).
+
+        Returns:
+            The frame, child and pose of each entity, in the order of the entities.
+        """
         world: list[PoseNumbers] = [
             (x, y, z, w, i, j, k)
             for (x, y, z), (w, i, j, k) in zip(positions.tolist(), quaternions.tolist(), strict=True)
@@ -108,7 +120,7 @@ class EntityPoses:
                 placed.append((frame, child, fixed))
                 continue
             pose = world[row]
-            # times one is the same again, unless it is a zero whose sign may turn
+            # multiplication by the identity changes nothing but the sign of a zero
             if not is_body or 0.0 in pose:
                 pose = _compose_poses(pose, offset)
             if base >= 0:
@@ -127,30 +139,30 @@ class EntityPoses:
 
     # ------------------------------------------------------------------ inside
 
-    def _find(self, part: PosedEntity) -> _CompiledEntity:
-        if part.place is not None:
-            return _CompiledEntity(part.frame, part.child, pose_numbers(part.place))
-        assert part.handle is not None
-        body, offset = self._spot(part.handle)
-        if part.within is None:
+    def _find(self, entity: PosedEntity) -> _CompiledEntity:
+        if entity.place is not None:
+            return _CompiledEntity(entity.frame, entity.child, pose_numbers(entity.place))
+        assert entity.handle is not None
+        body, offset = self._spot(entity.handle)
+        if entity.within is None:
             place = pose_numbers(offset)
             if body == 0:
-                return _CompiledEntity(part.frame, part.child, place)
-            return _CompiledEntity(part.frame, part.child, None, self._row(body), place, is_body=place == _IDENTITY)
-        base, its_offset = self._spot(part.within)
+                return _CompiledEntity(entity.frame, entity.child, place)
+            return _CompiledEntity(entity.frame, entity.child, None, self._row(body), place, is_body=place == _IDENTITY)
+        base, its_offset = self._spot(entity.within)
         if body == base:
-            return _CompiledEntity(part.frame, part.child, pose_numbers(its_offset.inverse() @ offset))
+            return _CompiledEntity(entity.frame, entity.child, pose_numbers(its_offset.inverse() @ offset))
         weld = self._sim.mj_model.body_weldid
-        if weld[body] == weld[base] != 0:  # no joint between them: they are as they were loaded for ever
-            place = pose_numbers(part.within.scene.pose_world.inverse() @ part.handle.scene.pose_world)
-            return _CompiledEntity(part.frame, part.child, place)
+        if weld[body] == weld[base] != 0:  # no joint between both bodies: the loaded pose is constant
+            place = pose_numbers(entity.within.scene.pose_world.inverse() @ entity.handle.scene.pose_world)
+            return _CompiledEntity(entity.frame, entity.child, place)
         back = pose_numbers(its_offset.inverse())
         own, rows = pose_numbers(offset), (self._row(body), self._row(base))
         are_bodies = own == _IDENTITY, back == _IDENTITY
-        return _CompiledEntity(part.frame, part.child, None, rows[0], own, rows[1], back, *are_bodies)
+        return _CompiledEntity(entity.frame, entity.child, None, rows[0], own, rows[1], back, *are_bodies)
 
     def _spot(self, handle: Any) -> tuple[int, Pose]:
-        """The body that carries a link or a model, and its frame in that of the body."""
+        """Return the body that carries a link or a model, and the entity's pose in that body's frame."""
         names, scene = self._sim.engine.names, handle.scene
         if handle.scoped in names.links:
             binding = names.link(handle.scoped)
@@ -165,7 +177,7 @@ class EntityPoses:
 
 
 class PoseSample:
-    """Where the bodies were at a tick, of which the poses are made once somebody looks at them."""
+    """Body poses of one tick. The entity poses are computed on first access, so unread messages cost little."""
 
     __slots__ = ("_placed", "_poses", "_positions", "_quaternions")
 
@@ -175,50 +187,63 @@ class PoseSample:
 
     @property
     def placed(self) -> list[FramePose]:
-        """The poses, in the order of the parts."""
+        """Frame, child and pose of each entity, in the order of the entities."""
         placed = self._placed
         if placed is None:
             placed = self._placed = self._poses.place(self._positions, self._quaternions)
         return placed
 
 
-def transforms_message(time_ns: int, taken: PoseSample, others: Sequence[FramePose] = ()) -> msgs.TFMessage:
-    """A `tf2_msgs/msg/TFMessage` of all parts, and others after them."""
+def transforms_message(time_ns: int, sample: PoseSample, others: Sequence[FramePose] = ()) -> msgs.TFMessage:
+    """Return a `tf2_msgs/msg/TFMessage` of all sampled entities, followed by other transforms.
+
+    Args:
+        time_ns: Time of the message [ns].
+        sample: Poses to convert.
+        others: Further transforms.
+    """
     types = message_types()
     message, transform = types["TransformStamped"], types["Transform"]
     vector, quaternion = types["Vector3"], types["Quaternion"]
     header = msgs.headers(time_ns)
     made = [
         message(header(frame), child, transform(vector(x, y, z), quaternion(i, j, k, w)))
-        for frame, child, (x, y, z, w, i, j, k) in (*taken.placed, *others)
+        for frame, child, (x, y, z, w, i, j, k) in (*sample.placed, *others)
     ]
     transforms: msgs.TFMessage = types["TFMessage"](made)
     return transforms
 
 
-def stamped_transform(time_ns: int, frame: str, child: str, seven: PoseNumbers) -> msgs.TransformStamped:
-    """A `geometry_msgs/msg/TransformStamped` of one part."""
+def stamped_transform(time_ns: int, frame: str, child: str, pose: PoseNumbers) -> msgs.TransformStamped:
+    """Return a `geometry_msgs/msg/TransformStamped` of one entity.
+
+    Args:
+        time_ns: Time of the message [ns].
+        frame: Parent frame.
+        child: Child frame.
+        pose: Pose of the child in the parent frame.
+    """
     types = message_types()
-    x, y, z, w, i, j, k = seven
+    x, y, z, w, i, j, k = pose
     place = types["Transform"](types["Vector3"](x, y, z), types["Quaternion"](i, j, k, w))
     stamped: msgs.TransformStamped = types["TransformStamped"](msgs.header(time_ns, frame), child, place)
     return stamped
 
 
 def links_moved_by_joints(joints: Iterable[SceneJoint]) -> frozenset[str]:
-    """Scoped names of the links at either end of a joint that is not fixed."""
+    """Return the scoped names of the links on both sides of every joint that is not fixed."""
     return frozenset(end for joint in joints if joint.type != "fixed" for end in (joint.parent_link, joint.child_link))
 
 
 def pose_numbers(pose: Pose) -> PoseNumbers:
-    """A pose as plain numbers."""
+    """Convert a pose into plain numbers."""
     x, y, z = pose.position.tolist()
     w, i, j, k = pose.quaternion.tolist()
     return x, y, z, w, i, j, k
 
 
 def _compose_poses(a: PoseNumbers, b: PoseNumbers) -> PoseNumbers:
-    """Where something is in the outer frame that is at `b` in the frame at `a`."""
+    """Return the product of two poses: `b` is given in the frame at `a`, the result in the frame of `a`."""
     ax, ay, az, aw, ai, aj, ak = a
     x, y, z, w, i, j, k = b
     tx, ty, tz = 2 * (aj * z - ak * y), 2 * (ak * x - ai * z), 2 * (ai * y - aj * x)

@@ -1,4 +1,4 @@
-"""Move a model by its velocity instead of by forces on its wheels, for velocity control and planar move."""
+"""Move a model by setting its velocity instead of wheel forces, for velocity control and planar move."""
 
 from __future__ import annotations
 
@@ -21,20 +21,20 @@ if TYPE_CHECKING:
 
 Triple = tuple[float, float, float]
 
-_STATIC, _OTHER = -1, -2  # owners of geoms that nobody moves here
+_STATIC, _OTHER = -1, -2  # owners of geoms that no motion moves
 _SIX = np.arange(6)
 
 
 class KinematicMotion:
-    """The free parts of a model, moved as one body; a handle, without state of its own.
+    """Free links of a model that move together as one rigid body. A deep copy returns the same object.
 
-    Joints below the free links move as they do; on a carried arm gravity and inertia act as ever.
+    Joints below the free links keep their velocities; gravity and inertia still act on a carried arm.
 
     Args:
-        sim: the simulation.
-        links: scoped names of links; those that move freely (not hung on another link or on the world) are moved.
-        carrier: scoped name of the link that the frame stands still in.
-        frame: in that link.
+        sim: Simulation of the model.
+        links: Scoped names of links. Links with a parent link or fixed to the world are not moved.
+        carrier: Scoped name of the link that carries the frame.
+        frame: Pose of the frame in the carrier.
     """
 
     def __init__(self, sim: Simulation, links: Iterable[str], carrier: str, frame: Pose = IDENTITY) -> None:
@@ -51,7 +51,7 @@ class KinematicMotion:
 
     @property
     def frame(self) -> Pose:
-        """The frame in the world; unlike a link's pose it is read without what follows from velocities set since."""
+        """World pose of the frame. Unlike a link's pose, reading it does not recompute after a velocity was set."""
         self.bind()
         physics = self._sim.engine.physics
         if physics.stage == STALE:
@@ -61,7 +61,7 @@ class KinematicMotion:
         return pose if self._offset == IDENTITY else pose @ self._offset
 
     def bind(self) -> None:
-        """Finds the addresses in the engine's present model."""
+        """Look up the addresses of the links in the current compiled model."""
         sim = self._sim
         if self._bound is sim.mj_model:
             return
@@ -75,13 +75,13 @@ class KinematicMotion:
 
 @dataclass(frozen=True, slots=True)
 class VelocityTarget:
-    """What is to be moved in the next step: everything turns and goes on with a frame that has this twist.
+    """Commanded motion for the next step: all links turn and translate with a frame that has this twist.
 
     Attributes:
-        motion: what is moved.
-        frame: in the world.
-        linear, angular: of the frame's origin, in the frame's axes [m/s, rad/s].
-        falls: the vertical speed is left to gravity while nothing touches the model.
+        motion: Links to move.
+        frame: Pose of the frame in the world.
+        linear, angular: Velocity of the frame's origin and angular velocity, in the frame's axes [m/s, rad/s].
+        falls: True to leave the vertical speed to gravity while the model has no contact.
     """
 
     motion: KinematicMotion
@@ -92,7 +92,10 @@ class VelocityTarget:
 
 
 class KinematicMover:
-    """Carries out moves of one step: what they have in common is done once. A handle, without state of its own."""
+    """Executor of velocity targets; the shared computation is done once per step.
+
+    A deep copy returns the same object.
+    """
 
     def __init__(self, sim: Simulation) -> None:
         self._sim = sim
@@ -102,10 +105,12 @@ class KinematicMover:
         return self
 
     def move(self, moves: Sequence[VelocityTarget]) -> None:
-        """For the next step only. At its end each frame is where its twist leads (along a screw, an arc in the plane).
+        """Apply the targets to the next step only.
+
+        At the end of the step each frame is where its twist leads: along a screw, in the plane along an arc.
 
         Args:
-            moves: of parts that no joint ties together.
+            moves: Targets whose links are not connected by joints.
         """
         if not moves:
             return
@@ -113,7 +118,7 @@ class KinematicMover:
         self._bind(tuple(move.motion for move in moves))
         if physics.stage == STALE:
             physics.fresh()
-        # positions and unconstrained accelerations are of that forward pass, whoever has moved another model since
+        # positions and unconstrained accelerations stay those of this forward pass, also after another model moved
         data = physics.data
         touched = self._smooth_contacts(data) if data.ncon else frozenset()
         mobility = self._mobilities(data)
@@ -138,24 +143,24 @@ class KinematicMover:
                 physics.changed_body(VELOCITY, body)
 
     def _mobilities(self, data: mujoco.MjData) -> Vector:
-        """Accelerations of all degrees of freedom by unit forces on the six of each free link, shape (6, nv).
+        """Return the accelerations for unit forces on the six degrees of freedom of each free link, shape (6, nv).
 
-        What the six of one link do to another's is zero: they are in different trees.
+        One table row serves all free links: they are in different trees, so forces on one do not accelerate another.
         """
         mujoco.mj_solveM(self._sim.mj_model, data, self._columns, self._units)
         return self._columns
 
     def _smooth_contacts(self, data: mujoco.MjData) -> frozenset[int]:
-        """Lets the models slide on what is static; returns which of them something touches.
+        """Remove the friction between moved models and static geometry; return the indices of the touched models.
 
-        What is carried presses on nothing, so nothing rubs; but the engine's friction presses by itself where something
-        slides fast (its cone is convex), and would lift and tilt the model.
+        A carried model presses on nothing, so there is no friction force to keep. MuJoCo's convex friction cone would
+        add a normal force at high sliding speeds, which lifts and tilts the model.
         """
         contacts = data.contact
         first, second = self._owners[contacts.geom.T]
         least, most = np.minimum(first, second), np.maximum(first, second)
         sliding = np.flatnonzero((most >= 0) & ((least == _STATIC) | (least == most)))
-        if len(sliding) and self._is_pyramidal:  # whose friction is in the constraints already
+        if len(sliding) and self._is_pyramidal:  # pyramidal friction is in the constraint rows already: rebuild them
             contacts.dim[sliding] = 1
             model = self._sim.mj_model
             mujoco.mj_makeConstraint(model, data)
@@ -169,7 +174,7 @@ class KinematicMover:
         return frozenset(first.tolist()) | frozenset(second.tolist())
 
     def _bind(self, motions: tuple[KinematicMotion, ...]) -> None:
-        """Tables for these motions in the engine's present model."""
+        """Build the tables for these motions in the current compiled model."""
         model = self._sim.mj_model
         if self._bound[0] is model and self._bound[1] == motions:
             return
@@ -186,7 +191,7 @@ class KinematicMover:
 
 
 def _solve_force(mobility: Vector, acceleration: Vector) -> Vector:
-    """The force (6,) that makes this acceleration; the mobility is symmetric and positive."""
+    """Return the force (6,) that produces this acceleration; the mobility is symmetric and positive definite."""
     factor, force = np.ascontiguousarray(mobility), np.empty(6)
     mujoco.mju_cholFactor(factor, 0.0)
     mujoco.mju_cholSolve(force, factor, acceleration)
@@ -195,9 +200,9 @@ def _solve_force(mobility: Vector, acceleration: Vector) -> Vector:
 
 @functools.lru_cache(maxsize=256)
 def _screw(linear: Triple, angular: Triple, step: float) -> tuple[Vector, Vector]:
-    """Shift (3,) and rotation matrix (3, 3) of a frame after a step with this twist in its own axes.
+    """Return the shift (3,) and rotation matrix (3, 3) of a frame after one step with this twist in its own axes.
 
-    The exponential of SE(3); a series of it where the quotients would lose digits.
+    It is the exponential map of SE(3); a series replaces the quotients where they would lose digits.
     """
     v, w = (np.clip(motion, -LARGEST, LARGEST) * step for motion in (linear, angular))
     square = float(w @ w)

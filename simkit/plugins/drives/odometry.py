@@ -1,4 +1,4 @@
-"""What wheeled bases share: dead reckoning from wheel travel, and the messages that carry it."""
+"""Odometry of wheeled bases: dead reckoning from wheel travel, and the messages that carry it."""
 
 from __future__ import annotations
 
@@ -22,44 +22,46 @@ if TYPE_CHECKING:
 ODOMETRY = "nav_msgs/msg/Odometry"
 TRANSFORMS = "tf2_msgs/msg/TFMessage"
 COMMAND_TYPES = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
-UNKNOWN = 1e12  # variance of what a planar base does not measure, as Gazebo writes it
-MEAN_STEPS = 10  # of the mean of a twist, as Gazebo's
-LONGEST = 1000  # steps that angles are kept of
+UNKNOWN = 1e12  # variance of quantities that a planar base does not measure, the same number as Gazebo's
+MEAN_STEPS = 10  # window of the mean twist [steps], the same as Gazebo's
+LONGEST = 1000  # stored angles [steps] before they are integrated
 
 Angles = tuple[float, ...]
-"""Of joints [rad]."""
+"""Joint angles [rad]."""
 
 Motion = tuple[float, float, float]
-"""How far ahead [m], to the left [m] and round [rad] a base has gone, in its own axes."""
+"""Displacement of a base in its own axes: forward [m], to the left [m] and rotation [rad]."""
 
 
 @dataclass(slots=True)
 class DeadReckoning:
-    """Planar pose of the point between two wheels, from how far each has rolled: x, y [m], yaw [rad]."""
+    """Planar pose of the midpoint between two wheels, integrated from their travel: x, y [m], yaw [rad]."""
 
     x: float = 0.0
     y: float = 0.0
     yaw: float = 0.0
 
     def advance(self, left: float, right: float, separation: float, sideways: float = 0.0) -> None:
-        """Rolls on along an arc of constant curvature.
+        """Advance the pose by the travel of both wheels, along an arc of constant curvature.
 
         Args:
-            left, right: distance rolled by each wheel [m].
-            separation: between the wheels [m].
-            sideways: distance slid to the left [m].
+            left: Distance rolled by the left wheel [m].
+            right: Distance rolled by the right wheel [m].
+            separation: Distance between the wheels [m].
+            sideways: Distance slid to the left [m].
         """
         self.go((left + right) / 2, sideways, (right - left) / separation)
 
     def go(self, ahead: float, left: float, turn: float) -> None:
-        """On along an arc of constant curvature: the exponential of SE(2).
+        """Advance the pose along an arc of constant curvature, by the exponential map of SE(2).
 
         Args:
-            ahead, left: in the base's own axes, which turn on the way [m].
-            turn: to the left [rad].
+            ahead: Forward distance in the base's own axes, which turn on the way [m].
+            left: Distance to the left in the same axes [m].
+            turn: Rotation to the left [rad].
         """
         half = turn / 2
-        # chord of the arc; the series keeps full precision where sin(x)/x would lose it
+        # ratio of chord to arc; below 1e-4 the series is more precise than sin(x)/x
         part = math.sin(half) / half if abs(half) > 1e-4 else 1 - half * half / 6
         cos, sin = math.cos(self.yaw + half) * part, math.sin(self.yaw + half) * part
         self.x += ahead * cos - left * sin
@@ -68,6 +70,7 @@ class DeadReckoning:
 
     @property
     def pose(self) -> Pose:
+        """Pose with z = 0."""
         return Pose((self.x, self.y, 0.0), quat_from_rpy(0.0, 0.0, self.yaw))
 
 
@@ -80,22 +83,28 @@ class BodyTwist:
 
 
 def rolling_twist(wheels: Sequence[Joint], radius: float, separation: float) -> BodyTwist:
-    """What the turning of the first two wheels, left and right, says of the body between them; lengths m."""
+    """Return the twist of a body from the speeds of its first two wheels, left and right.
+
+    Args:
+        wheels: Left and right wheel joint; further joints are ignored.
+        radius: Radius of the wheels [m].
+        separation: Distance between the wheels [m].
+    """
     left, right = (float(wheel.velocity) * radius for wheel in wheels[:2])
     return BodyTwist(((left + right) / 2, 0.0, 0.0), (0.0, 0.0, (right - left) / separation))
 
 
 class TravelOdometry(abc.ABC):
-    """Odometry from what the joints of a base say at the end of every step.
+    """Base class of odometry that is computed from joint angles at every step.
 
-    Angles are only noted at a step; what they say is worked out when it is asked for. The twist is the mean over the
-    last ten steps, or as many as there were, as Gazebo has it for most bases.
+    A step only stores the angles; the pose is integrated when it is read. The twist is the mean over the last ten
+    steps, or over all steps if there are fewer, as most of Gazebo's drives compute it.
 
     Attributes:
-        stride: how many steps are taken for one arc.
-        mean_steps: how many steps the twist is the mean over.
-        reckoning: where the base was on the plane at the last `reckon`; it begins at zero.
-        twist: over the last steps before that, in the base's axes.
+        stride: Number of steps that are integrated as one arc.
+        mean_steps: Number of steps in the mean twist.
+        reckoning: Pose on the plane at the last `reckon`; the first pose is zero.
+        twist: Mean twist at the last `reckon`, in the base's axes.
     """
 
     stride = MEAN_STEPS
@@ -104,29 +113,29 @@ class TravelOdometry(abc.ABC):
     def __init__(self, step: float) -> None:
         self._step = step
         self.reckoning, self.twist = DeadReckoning(), BodyTwist()
-        self._at: Angles | None = None  # angles that the way is reckoned up to
-        self._noted: list[Angles] = []  # one a step
-        self._recent: list[Angles] = []  # the last ones that the way is reckoned of
+        self._at: Angles | None = None  # angles at the last integrated point
+        self._noted: list[Angles] = []  # angles that are not integrated yet, one entry a step
+        self._recent: list[Angles] = []  # last integrated entries, for the mean twist
 
     @abc.abstractmethod
     def motion(self, before: Angles, after: Angles) -> Motion:
-        """What a change of angles [rad] says; it is additive along an arc."""
+        """Return the displacement for a change of angles [rad]; displacements along one arc add up."""
 
     def note(self, angles: Angles) -> None:
-        """Before every step."""
+        """Store the angles before a step."""
         if len(self._noted) >= LONGEST:
             self._roll(angles)
         self._noted.append(angles)
 
     def reckon(self, angles: Angles) -> None:
-        """After a step: brings `reckoning` and `twist` up to it."""
+        """Update `reckoning` and `twist` to the angles after a step."""
         self._roll(angles)
         elapsed = len(self._recent) * self._step
         ahead, left, turn = (total / elapsed for total in self._total_motion(angles))
         self.twist = BodyTwist((ahead, left, 0.0), (0.0, 0.0, turn))
 
     def _total_motion(self, angles: Angles) -> Motion:
-        """How far it went in the last steps, up to these angles."""
+        """Return the displacement over the last steps, up to these angles."""
         ahead = left = turn = 0.0
         for before, after in pairwise([*self._recent, angles]):
             more = self.motion(before, after)
@@ -134,7 +143,7 @@ class TravelOdometry(abc.ABC):
         return ahead, left, turn
 
     def _roll(self, angles: Angles) -> None:
-        """Along all that was noted, and on to these angles."""
+        """Integrate all stored angles and continue to these."""
         noted = self._noted
         last = self._at if self._at is not None else (noted or [angles])[0]
         for point in (*noted[self.stride :: self.stride], angles):
@@ -146,14 +155,15 @@ class TravelOdometry(abc.ABC):
 
 
 class WheelOdometry(TravelOdometry):
-    """Odometry from the angles of the left and the right wheel, as gz-math's `DiffDriveOdometry` has it.
+    """Odometry from the angles of the left and the right wheel, equal to gz-math's `DiffDriveOdometry`.
 
     Args:
-        radius, separation: of the wheels [m].
-        step: from one noting to the next [s].
+        radius: Radius of the wheels [m].
+        separation: Distance between the wheels [m].
+        step: Time between two calls of `note` [s].
 
     Attributes:
-        noter: notes for it what is still to be noted, where somebody does that for many (see `DriveFleet`).
+        noter: Callback that stores the pending angles, if a `DriveFleet` collects the angles of many drives.
     """
 
     noter: Callable[[], None] | None = None
@@ -163,12 +173,12 @@ class WheelOdometry(TravelOdometry):
         self._radius, self._separation = radius, separation
 
     def motion(self, before: Angles, after: Angles) -> Motion:
-        """Along the arc that both wheels roll."""
+        """Return the displacement along the arc that both wheels roll."""
         left, right = ((new - old) * self._radius for new, old in zip(after, before, strict=True))
         return (left + right) / 2, 0.0, (right - left) / self._separation
 
     def note(self, angles: Angles) -> None:
-        """Before every step."""
+        """Store the angles before a step."""
         self.catch_up()
         super().note(angles)
 
@@ -180,25 +190,31 @@ class WheelOdometry(TravelOdometry):
         super()._roll(angles)
 
     def catch_up(self) -> None:
-        """Has noted what others have seen for it."""
+        """Store the angles that a fleet has collected for this drive."""
         if self.noter is not None:
             self.noter()
 
     def note_all(self, angles: Sequence[Angles]) -> None:
-        """Those of several steps."""
+        """Store the angles of several steps."""
         if len(self._noted) + len(angles) <= LONGEST:
             self._noted += angles
             return
-        for one in angles:
-            super().note(one)
+        for step_angles in angles:
+            super().note(step_angles)
 
     def take(self, at: Angles, recent: Sequence[Angles], twist: tuple[float, float]) -> None:
-        """What others have reckoned for it: up to which angles, those of the steps before, speed ahead and turning."""
+        """Replace the integration state by results that a fleet computed.
+
+        Args:
+            at: Angles at the last integrated point [rad].
+            recent: Angles of the steps before [rad].
+            twist: Forward speed [m/s] and turning rate [rad/s].
+        """
         self._at, self._recent = at, list(recent)
         self.twist = BodyTwist((twist[0], 0.0, 0.0), (0.0, 0.0, twist[1]))
 
     def __deepcopy__(self, memo: dict[int, object]) -> WheelOdometry:
-        """A state of its own, for a snapshot."""
+        """Return a copy with a state of its own, for a snapshot."""
         self.catch_up()
         made = WheelOdometry(self._radius, self._separation, self._step)
         made.reckoning, made.twist, made._at = copy.copy(self.reckoning), self.twist, self._at
@@ -207,37 +223,37 @@ class WheelOdometry(TravelOdometry):
 
 
 def wheel_angles(left: Joint, right: Joint) -> tuple[float, float]:
-    """Of two joints with one axis [rad]: cheaper than their positions, for every step."""
+    """Return the angles of two single-axis joints [rad]; faster than `Joint.position`, for use at every step."""
     qpos = left._physics.data.qpos
     return qpos.item(left._one_qpos), qpos.item(right._one_qpos)
 
 
 def joint_angles(joints: Sequence[Joint]) -> Angles:
-    """The same of more joints."""
+    """Return the angles of any number of single-axis joints [rad], as `wheel_angles` does for two."""
     qpos: Vector = joints[0]._physics.data.qpos
     return tuple(qpos.item(joint._one_qpos) for joint in joints)
 
 
 def command_of(message: Any) -> tuple[float, float] | None:
-    """Forward speed [m/s] and turning rate [rad/s] of a Twist or TwistStamped; None unless both are finite."""
+    """Return the forward speed [m/s] and turning rate [rad/s] of a Twist or TwistStamped; None unless finite."""
     twist = getattr(message, "twist", message)
     forward, turn = float(twist.linear.x), float(twist.angular.z)
     return (forward, turn) if math.isfinite(forward) and math.isfinite(turn) else None
 
 
 class TrueMotion:
-    """Where a model really is and how it moves.
+    """Ground truth of a model's pose and twist.
 
     Args:
-        model: handle of the model.
-        canonical: handle of its canonical link, which carries the model's frame.
+        model: Handle of the model.
+        canonical: Handle of its canonical link, which carries the model's frame.
     """
 
     def __init__(self, model: Model, canonical: Link) -> None:
         self._link = canonical
-        # where both frames are one, the link's pose is cheaper to read
+        # if both frames coincide, the link's pose is cheaper to read
         self._frame: Model | Link = canonical if canonical.scene.pose_world == model.scene.pose_world else model
-        # from the link's origin to the model's, in the model's axes: fixed for ever
+        # constant vector from the link's origin to the model's, in the model's axes
         there = model.scene.pose_world.inverse().transform(canonical.scene.pose_world.position)
         self._arm = (-there).tolist()
 
@@ -245,14 +261,14 @@ class TrueMotion:
         return self
 
     def place(self) -> tuple[float, ...]:
-        """World pose of the model's frame as x, y, z, qw, qx, qy, qz: cheap enough for every step."""
+        """Return the world pose of the model's frame as x, y, z, qw, qx, qy, qz; cheap enough for every step."""
         if self._frame is self._link and (state := self._link.root_state()) is not None:
             return state
         pose = self._frame.pose
         return (*pose.position.tolist(), *pose.quaternion.tolist())
 
     def state(self) -> tuple[Pose, BodyTwist]:
-        """World pose of the model's frame, and that frame's velocity in its own axes."""
+        """Return the world pose of the model's frame, and that frame's twist in its own axes."""
         pose = self._frame.pose
         back = quat_conjugate(pose.quaternion)
         x, y, z = quat_rotate(back, self._link.linear_velocity).tolist()
@@ -262,7 +278,13 @@ class TrueMotion:
 
 
 def planar_covariance(x: float, y: float, yaw: float) -> Vector:
-    """6×6 row-major covariance, shape (36,): the three planar variances, and a huge one for the rest."""
+    """Return a 6×6 row-major covariance, shape (36,), of a planar pose.
+
+    Args:
+        x: Variance of x [m²].
+        y: Variance of y [m²].
+        yaw: Variance of yaw [rad²]. The other diagonal entries are `UNKNOWN`.
+    """
     return np.diag((x, y, UNKNOWN, UNKNOWN, UNKNOWN, yaw)).reshape(36)
 
 
@@ -275,14 +297,21 @@ def odometry_message(
     covariance: Vector | None = None,
     twist_covariance: Vector | None = None,
 ) -> msgs.Odometry:
-    """A `nav_msgs/msg/Odometry`: pose of `child` in `frame`, twist in `child`'s axes.
+    """Return a `nav_msgs/msg/Odometry`.
 
-    Covariances are row-major, shape (36,): zeros without one, and the twist's is the pose's where it has none.
+    Args:
+        time_ns: Time of the message [ns].
+        frame: Frame of the pose.
+        child: Frame whose pose is given, and whose axes the twist uses.
+        pose: Pose of `child` in `frame`.
+        twist: Twist of `child`.
+        covariance: Row-major covariance of the pose, shape (36,); zeros if omitted.
+        twist_covariance: Covariance of the twist, shape (36,); equal to the pose's if omitted.
     """
     types = message_types()
     point, vector, quaternion = types["Point"], types["Vector3"], types["Quaternion"]
     w, x, y, z = pose.quaternion.tolist()
-    # each message its own arrays: who receives one may keep or change it
+    # copies: a subscriber may keep or change the arrays of a message
     first = np.zeros(36) if covariance is None else covariance.copy()
     second = first.copy() if twist_covariance is None else twist_covariance.copy()
     place = types["Pose"](point(*pose.position.tolist()), quaternion(x, y, z, w))
@@ -297,7 +326,7 @@ def odometry_message(
 
 
 def transform(time_ns: int, frame: str, child: str, pose: Pose) -> msgs.TransformStamped:
-    """A `geometry_msgs/msg/TransformStamped`: where `child` is in `frame`."""
+    """Return a `geometry_msgs/msg/TransformStamped` with the pose of `child` in `frame`."""
     types = message_types()
     w, x, y, z = pose.quaternion.tolist()
     place = types["Transform"](types["Vector3"](*pose.position.tolist()), types["Quaternion"](x, y, z, w))
@@ -306,14 +335,19 @@ def transform(time_ns: int, frame: str, child: str, pose: Pose) -> msgs.Transfor
 
 
 def transforms(time_ns: int, *items: tuple[str, str, Pose]) -> msgs.TFMessage:
-    """A `tf2_msgs/msg/TFMessage`: for each (frame, child, pose), where `child` is in `frame`."""
+    """Return a `tf2_msgs/msg/TFMessage`.
+
+    Args:
+        time_ns: Time of the message [ns].
+        *items: Frame, child frame and pose of the child in the frame, for each transform.
+    """
     message: msgs.TFMessage = msgs.type_of(TRANSFORMS)([transform(time_ns, *item) for item in items])
     return message
 
 
 @functools.cache
 def message_types() -> Mapping[str, Any]:
-    """The classes themselves: filling them directly is several times faster than `msgs.make`."""
+    """Return the message classes by name; calling them directly is several times faster than `msgs.make`."""
     geometry = "Point Vector3 Quaternion Pose Twist PoseWithCovariance TwistWithCovariance Transform TransformStamped"
     others = (ODOMETRY, TRANSFORMS, "std_msgs/msg/Header", "builtin_interfaces/msg/Time")
     names = (*(f"geometry_msgs/msg/{name}" for name in geometry.split()), *others)

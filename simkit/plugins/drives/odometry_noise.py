@@ -1,10 +1,11 @@
-"""Odometry that errs as that of real wheels does, and knows how far it may be off.
+"""Odometry with the errors of real wheels, and the covariance that a drive predicts for them.
 
-The random part is the model of Siegwart and Nourbakhsh, "Introduction to Autonomous Mobile Robots", section 5.2.4:
-each wheel's travel has an error of its own whose variance grows with the way it rolls, k·|Δs|, whatever the rate of the
-odometry; the covariance of the pose goes along by equation 5.9. (Variances that grow with the square of a step's way,
-as in table 5.6 of Thrun, Burgard and Fox, "Probabilistic Robotics", vanish as steps get short.) The systematic part is
-what Borenstein and Feng (1996) measure on a robot: wheels and a track that are not what the drive takes them for.
+The random part is the model of Siegwart and Nourbakhsh, "Introduction to Autonomous Mobile Robots", section 5.2.4. The
+error of each wheel's travel has a variance that grows with the distance, k·|Δs|, independent of the update rate.
+Equation 5.9 propagates the covariance of the pose. Thrun, Burgard and Fox, "Probabilistic Robotics", table 5.6, use
+variances that grow with the square of a step's distance; these vanish as steps get short. The systematic part is the
+error that Borenstein and Feng (1996) measure on a robot: wheel radii and a wheel separation that differ from the values
+in the drive.
 """
 
 from __future__ import annotations
@@ -23,18 +24,19 @@ if TYPE_CHECKING:
     from simkit.runtime.engine.random_streams import RandomStream
 
 _PLANAR = np.ix_((0, 1, 5), (0, 1, 5))
-_FAR = 0.9  # of itself; a wheel is not taken for one of no size
+_FAR = 0.9  # largest relative error; at 1 the assumed size would be zero
 
 
 @dataclass(frozen=True, slots=True)
 class OdometryNoise:
-    """The `<odometry_noise>` block of a drive, of our own.
+    """Parameters of the `<odometry_noise>` block of a drive, a simkit extension.
 
     Attributes:
-        wheel_variance: k, variance of a wheel's travel per length of it [m²/m].
-        left_radius_error, right_radius_error: by what part of itself the drive takes a wheel for larger than it is.
-        separation_error: the same of the distance between the wheels.
-        resolution: of the wheels' angles [rad per count]; 0 counts nothing.
+        wheel_variance: Variance k of a wheel's travel per distance [m²/m].
+        left_radius_error, right_radius_error: Relative error of the radius that the drive assumes; positive if too
+            large.
+        separation_error: Relative error of the wheel separation that the drive assumes.
+        resolution: Encoder resolution [rad per count]; 0 for exact angles.
     """
 
     wheel_variance: float = 0.0
@@ -45,7 +47,7 @@ class OdometryNoise:
 
 
 class OdometryNoiseOptions(Options):
-    """The `<odometry_noise>` block."""
+    """Options of the `<odometry_noise>` block."""
 
     counts_per_revolution: float = number(1.0, minimum=1)
     wheel_variance: float = number(0.0, minimum=0, maximum=1e3)
@@ -55,7 +57,7 @@ class OdometryNoiseOptions(Options):
 
 
 def odometry_noise(options: OdometryNoiseOptions) -> OdometryNoise | None:
-    """The drive's `<odometry_noise>`, or None where it has none."""
+    """Return the noise of a drive's `<odometry_noise>` block, or None if the block is missing."""
     if not options.is_given:
         return None
     counts = options.counts_per_revolution if options.params.has("counts_per_revolution") else math.inf
@@ -69,22 +71,23 @@ def odometry_noise(options: OdometryNoiseOptions) -> OdometryNoise | None:
 
 
 class NoisyOdometry:
-    """Dead reckoning from the angles of two wheels as a drive reads them, and the covariance that it predicts.
+    """Dead reckoning from noisy wheel angles, with the covariance that the drive predicts.
 
-    The covariance is that of the random errors; of systematic ones a drive knows nothing.
+    The covariance contains the random errors only: a drive does not know its systematic errors.
 
     Args:
-        noise: what errs.
-        radius, separation: of the wheels, as they are [m].
-        stream: two normal numbers for each update.
-        angles: of the left and the right wheel at the start [rad].
-        start: where the reckoning begins.
+        noise: Errors of the wheels.
+        radius: True radius of the wheels [m].
+        separation: True distance between the wheels [m].
+        stream: Random stream; every update draws two normal numbers.
+        angles: Angles of the left and the right wheel at the start [rad].
+        start: First pose.
 
     Attributes:
-        reckoning: where the drive takes itself to be.
-        covariance: of x [m], y [m] and yaw [rad], shape (3, 3).
-        twist: over the last update, in the body's axes.
-        twist_covariance: of its forward speed [m/s] and turning rate [rad/s], shape (2, 2).
+        reckoning: Pose that the drive estimates.
+        covariance: Covariance of x [m], y [m] and yaw [rad], shape (3, 3).
+        twist: Twist over the last update, in the body's axes.
+        twist_covariance: Covariance of its forward speed [m/s] and turning rate [rad/s], shape (2, 2).
     """
 
     def __init__(
@@ -106,12 +109,13 @@ class NoisyOdometry:
         self.twist, self.twist_covariance = BodyTwist(), np.zeros((2, 2))
 
     def advance(self, left: float, right: float, elapsed: float, sideways: float = 0.0) -> None:
-        """Goes on to other angles of the wheels.
+        """Advance the estimate to new wheel angles.
 
         Args:
-            left, right: angles [rad].
-            elapsed: since the last update [s].
-            sideways: way across, which no wheel measures and none errs in [m].
+            left: Angle of the left wheel [rad].
+            right: Angle of the right wheel [rad].
+            elapsed: Time since the last update [s].
+            sideways: Displacement to the left [m]; wheels do not measure it, so it has no error.
         """
         self._index += 1
         counted = tuple(self._count(angle) for angle in (left, right))
@@ -125,12 +129,13 @@ class NoisyOdometry:
         left_way, right_way = rolled
         self.reckoning.advance(left_way, right_way, self._separation, sideways)
         if elapsed > 0:
-            self._tell_twist(rolled, variances, elapsed, sideways)
+            self._update_twist(rolled, variances, elapsed, sideways)
 
     def messages_covariance(self) -> tuple[Vector, Vector]:
-        """6×6 row-major covariances of pose and twist, shape (36,) each, in the order of ROS.
+        """Return the row-major 6×6 covariances of pose and twist in ROS order, shape (36,) each.
 
-        What wheels do not measure has a huge variance; the speed across, which they forbid, that of the speed ahead.
+        Quantities that wheels do not measure have a huge variance. The lateral speed, which wheels prevent, has the
+        variance of the forward speed.
         """
         pose, twist = (np.diag([UNKNOWN] * 6) for _ in range(2))
         pose[_PLANAR] = self.covariance
@@ -143,7 +148,7 @@ class NoisyOdometry:
         return math.floor(angle / step + 0.5) * step if step > 0 else angle
 
     def _spread(self, rolled: list[float], variances: Vector) -> None:
-        """Equation 5.9: the covariance before, carried along, and that of this way."""
+        """Propagate the covariance over this motion and add the motion's own covariance (equation 5.9)."""
         way, turn = (rolled[0] + rolled[1]) / 2, (rolled[1] - rolled[0]) / self._separation
         middle = self.reckoning.yaw + turn / 2
         cos, sin, arm = math.cos(middle), math.sin(middle), way / (2 * self._separation)
@@ -158,7 +163,7 @@ class NoisyOdometry:
         )
         self.covariance = along @ self.covariance @ along.T + (by_wheel * variances) @ by_wheel.T
 
-    def _tell_twist(self, rolled: list[float], variances: Vector, elapsed: float, sideways: float) -> None:
+    def _update_twist(self, rolled: list[float], variances: Vector, elapsed: float, sideways: float) -> None:
         width = self._separation
         ahead, turn = (rolled[0] + rolled[1]) / 2, (rolled[1] - rolled[0]) / width
         self.twist = BodyTwist((ahead / elapsed, sideways / elapsed, 0.0), (0.0, 0.0, turn / elapsed))
@@ -167,11 +172,12 @@ class NoisyOdometry:
 
 
 class EquivalentWheelAngles:
-    """A true motion as the angles that wheels without slip would have turned by.
+    """Wheel angles that would produce a true motion without slip.
 
     Args:
-        pose: where it begins.
-        radius, separation: of the wheels [m].
+        pose: First pose.
+        radius: Radius of the wheels [m].
+        separation: Distance between the wheels [m].
     """
 
     def __init__(self, pose: Pose, radius: float, separation: float) -> None:
@@ -181,16 +187,20 @@ class EquivalentWheelAngles:
 
     @property
     def start(self) -> DeadReckoning:
-        """The planar pose of the moment."""
+        """Planar pose at the last `follow`, at first the initial pose."""
         return DeadReckoning(*self._last)
 
     def follow(self, pose: Pose) -> tuple[float, float, float]:
-        """Goes on to a pose; angles of the left and right wheel [rad], and the way across since the last [m]."""
+        """Continue to a pose.
+
+        Returns:
+            The angles of the left and the right wheel [rad], and the displacement to the left since the last pose [m].
+        """
         x, y, yaw = _planar(pose)
         dx, dy = x - self._last[0], y - self._last[1]
         turn = math.remainder(yaw - self._last[2], 2 * math.pi)
         middle = self._last[2] + turn / 2
-        # arc over chord, the inverse of what the reckoning does
+        # ratio of arc to chord, the inverse of the ratio in `DeadReckoning.go`
         arc = turn / 2 / math.sin(turn / 2) if abs(turn) > 1e-4 else 1 + turn * turn / 24
         ahead = (dx * math.cos(middle) + dy * math.sin(middle)) * arc
         across = (dy * math.cos(middle) - dx * math.sin(middle)) * arc
@@ -202,7 +212,7 @@ class EquivalentWheelAngles:
 
 
 def replace_planar_pose(pose: Pose, reckoned: DeadReckoning) -> Pose:
-    """A true pose with the place and heading that a reckoning has instead; height and tilt stay."""
+    """Return a true pose with x, y and yaw from dead reckoning; height and tilt stay true."""
     turn = quat_from_rpy(0.0, 0.0, reckoned.yaw - _planar(pose)[2])
     return Pose((reckoned.x, reckoned.y, pose.position[2]), quat_multiply(turn, pose.quaternion))
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def frame_names(sim: Simulation) -> dict[str, str]:
-    """The frame of each link of each model, by its scoped name; see `StaticTransforms`."""
+    """Return the frame name of each link of each model, by scoped link name; `StaticTransforms` states the rule."""
     frames: dict[str, str] = {}
     taken: set[str] = set()
     for scene in _moving_models_first(sim):
@@ -34,17 +34,17 @@ def frame_names(sim: Simulation) -> dict[str, str]:
 
 
 def _moving_models_first(sim: Simulation) -> list[SceneModel]:
-    """Those that move come first: what stands around takes no name from a robot."""
+    """Return the models with movable ones first, so that a static model never takes a frame name from a robot."""
     return sorted((handle.scene for handle in sim.models.values()), key=lambda scene: scene.static)
 
 
 class StaticTransforms(WorldPlugin):
-    """Publishes, latched, how the fixed joints of each moving model tie its links, and sensor frames to their links.
+    """Publishes latched transforms: the fixed joints of each moving model, and sensor frames relative to their links.
 
-    Frames are plain link names as in ROS; where two models have a link of one name, the later model's frames are
-    `<model>/<link>`. A sensor whose frame is not a link's but its own (`model::link::sensor`, as gz has it) gets a
-    transform from its link, on static models too; a camera's `<optical_frame_id>` gets one from the sensor's frame,
-    unless it is a link's. Part of every world; looks once a second of simulated time for models that came or went.
+    Frames are plain link names as in ROS. If two models have a link of the same name, the frames of the later model are
+    `<model>/<link>`. A sensor that has a frame of its own (`model::link::sensor`, as in Gazebo) gets a transform from
+    its link, on static models too. A camera's `<optical_frame_id>` gets a transform from the sensor's frame, unless a
+    link has that name. Part of every world; checks once a second of simulated time for added and removed models.
     """
 
     after_step_rate = 1.0
@@ -59,7 +59,7 @@ class StaticTransforms(WorldPlugin):
         self.after_step()
 
     def after_step(self) -> None:
-        """Publishes all transforms again where the models have changed."""
+        """Publish all transforms again if the models have changed."""
         names = tuple(self.sim.models)
         if names == self._known:
             return
@@ -88,7 +88,7 @@ class StaticTransforms(WorldPlugin):
         links = {frames[link.scoped]: link.pose_world for link in scene.all_links()}
         for described in scene.all_sensors():
             link = children[described.parent] if described.on_joint else described.parent
-            # a Classic plugin names a link's frame; a kind that simkit does not have is in the scene only
+            # Classic's camera plugins name a link's frame; sensors of unsupported types exist in the scene only
             if described.plugins or link not in frames or not self.sim.contents.has_sensor(described.scoped):
                 continue
             sensor = self.sim.sensor(described.scoped)
@@ -98,7 +98,7 @@ class StaticTransforms(WorldPlugin):
             for optical, turned in sensor.optical_frames().items():
                 if optical in links or optical == frame:
                     continue
-                if frame in links:  # another link's perhaps
+                if frame in links:  # the sensor's frame may be another link
                     turned = links[frame].inverse() @ links[frames[link]] @ pose @ turned
                 yield frame, optical, turned
 
@@ -112,8 +112,8 @@ class RobotStatePublisherOptions(Options):
 class RobotStatePublisher(ModelPlugin):
     """Publishes on `/tf`, `<publish_frequency>` (20) times a second, each link that a joint moves in its parent link.
 
-    Frames have the names that `/tf_static` has. The poses are the true ones, also of joints without an encoder. What
-    makes them in ROS, `robot_state_publisher`, is a node of its own that is started beside Gazebo.
+    Frames have the same names as on `/tf_static`. The poses are ground truth, also for joints without an encoder. In
+    ROS, the node `robot_state_publisher`, which is started beside Gazebo, computes these transforms from joint states.
     """
 
     options = OptionsOf(RobotStatePublisherOptions)
@@ -129,20 +129,20 @@ class RobotStatePublisher(ModelPlugin):
         publish_while_subscribed(self, self._out, self._rate, "tell")
 
     def tell(self) -> None:
-        """Publishes."""
+        """Publish the transforms of all joints."""
         poses: EntityPoses = self.sim.engine.names.shared(f"joint frames {id(self)}", self._poses)
         self._out.publish_later(partial(transforms_message, self.sim.time_ns, poses.take()))
 
     def _poses(self) -> EntityPoses:
         frames, joints = frame_names(self.sim), list(self._robot.scene.all_joints())
-        told = {joint.child_link for joint in joints if joint.type == "fixed"}
-        parts = []
+        published_links = {joint.child_link for joint in joints if joint.type == "fixed"}
+        entities = []
         for joint in joints:
             parent, child = joint.parent_link, joint.child_link
-            if child in told or parent not in frames or child not in frames:  # no frame has a second parent
+            if child in published_links or parent not in frames or child not in frames:  # no frame has a second parent
                 continue
-            told.add(child)
-            parts.append(
+            published_links.add(child)
+            entities.append(
                 PosedEntity(frames[parent], frames[child], handle=self.sim.link(child), within=self.sim.link(parent))
             )
-        return EntityPoses(self.sim, parts)
+        return EntityPoses(self.sim, entities)

@@ -1,4 +1,4 @@
-"""Bounds on the speed, acceleration and jerk of commands."""
+"""Limits of the speed, acceleration and jerk of commands."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _QUANTITIES = ("velocity", "acceleration", "jerk")
 
 @dataclass(frozen=True, slots=True)
 class SpeedLimiter:
-    """Bounds on a commanded speed and its first two derivatives (SI units); infinite where there are none."""
+    """Bounds of a commanded speed and its first two derivatives (SI units); infinite where unlimited."""
 
     velocity: tuple[float, float] = (-math.inf, math.inf)
     acceleration: tuple[float, float] = (-math.inf, math.inf)
@@ -23,27 +23,28 @@ class SpeedLimiter:
         return self
 
     def limit(self, target: float, last: float, before_last: float, step: float) -> float:
-        """The speed to command now, bounded in jerk, then acceleration, then speed (gz-math's SpeedLimiter).
+        """Return the speed to command now, limited in jerk, then acceleration, then speed (gz-math's SpeedLimiter).
 
         Args:
-            target: wanted speed.
-            last, before_last: the two speeds commanded before.
-            step: time between commands [s].
+            target: Requested speed.
+            last: Speed of the last command.
+            before_last: Speed of the command before that.
+            step: Time between commands [s].
         """
         old = (last - before_last) / step
         jerk = _clamp(((target - last) / step - old) / step, self.jerk)
         acceleration = _clamp(old + jerk * step, self.acceleration)
         reached = last + acceleration * step
-        # without an active bound the target itself, not the target after rounding
+        # without an active limit the speed is exactly the target, free of rounding errors
         if abs(reached - target) <= 1e-12 * max(1.0, abs(target)):
             reached = target
         return _clamp(reached, self.velocity)
 
 
 class SpeedLimitOptions(Options):
-    """Bounds of the linear and the angular speed of a drive; `<max_velocity>` and its like are for both.
+    """Limits of the linear and the angular speed of a drive; `<max_velocity>` and its like apply to both.
 
-    A lower bound is not positive and an upper one not negative, so that a drive can stand still.
+    A lower limit must not be positive and an upper limit not negative, so that a drive can stop.
     """
 
     min_velocity: float = number(-math.inf, maximum=0.0, finite=False)
@@ -67,7 +68,7 @@ class SpeedLimitOptions(Options):
 
 
 class LimiterOptions(Options):
-    """Bounds of one speed; without one there is none."""
+    """Limits of one speed; unlimited by default."""
 
     min_velocity: float = number(-math.inf, maximum=0.0, finite=False)
     max_velocity: float = number(math.inf, minimum=0.0, finite=False)
@@ -78,7 +79,7 @@ class LimiterOptions(Options):
 
 
 def speed_limits(options: SpeedLimitOptions) -> tuple[SpeedLimiter, SpeedLimiter]:
-    """Limiters of the linear and the angular speed."""
+    """Return the limiters of the linear and the angular speed."""
     linear, angular = (
         SpeedLimiter(*((bounds[f"min_{way}_{q}"], bounds[f"max_{way}_{q}"]) for q in _QUANTITIES))
         for bounds in [{name: getattr(options, name) for name in SpeedLimitOptions.fields()}]
@@ -88,7 +89,7 @@ def speed_limits(options: SpeedLimitOptions) -> tuple[SpeedLimiter, SpeedLimiter
 
 
 def speed_limiter(options: LimiterOptions) -> SpeedLimiter:
-    """The limiter of one speed."""
+    """Return the limiter of one speed."""
     return SpeedLimiter(*((getattr(options, f"min_{q}"), getattr(options, f"max_{q}")) for q in _QUANTITIES))
 
 
@@ -99,9 +100,17 @@ def limit_each(
     before_last: Sequence[float],
     step: float,
 ) -> tuple[float, ...]:
-    """The speeds to command now, each bounded by its limiter; arguments as those of `SpeedLimiter.limit`."""
+    """Return the speeds to command now, each limited by its own limiter.
+
+    Args:
+        limiters: Limiter of each speed.
+        targets: Requested speeds.
+        last: Speeds of the last command.
+        before_last: Speeds of the command before that.
+        step: Time between commands [s].
+    """
     speeds = zip(limiters, targets, last, before_last, strict=True)
-    return tuple(limiter.limit(target, one, before, step) for limiter, target, one, before in speeds)
+    return tuple(limiter.limit(target, latest, before, step) for limiter, target, latest, before in speeds)
 
 
 def _clamp(value: float, bounds: tuple[float, float]) -> float:

@@ -1,4 +1,4 @@
-"""Belts and tracks: links whose surface runs, and the odometry of a vehicle from its commanded tracks."""
+"""Belts and tracks: links whose surface moves, and the odometry of a vehicle from its commanded track speeds."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ def belt_of(
     now: Callable[[], BeltMotion | None],
     friction: tuple[float, float] | None = None,
 ) -> Belt:
-    """The belt of a link in the engine's present model.
+    """Return the belt of a link in the current compiled model.
 
     Args:
-        sim: the simulation.
-        link: its scoped name.
-        track: frame of the track in the link: the belt runs along x, round y.
-        now: how it runs.
-        friction: along and across its way; None where it is as the file has it.
+        sim: Simulation of the link.
+        link: Scoped name of the link.
+        track: Pose of the track's frame in the link; the belt runs along its x axis, around its y axis.
+        now: Callback that returns the current motion of the belt.
+        friction: Coefficients along and across the belt; None to use the values of the file.
     """
     found = sim.engine.names.link(link)
     x, y, z = (found.offset @ track).matrix @ np.array((0.0, 1.0, 0.0))
@@ -41,23 +41,23 @@ def belt_of(
 
 
 def needs_direction(link: SceneLink) -> bool:
-    """Whether friction differs along and across on a link: then a belt gives it its direction though it stands."""
+    """Check whether a link's friction differs along and across; then even a stopped belt must define the direction."""
     return any(has_directional_friction(collision.surface) for collision in link.collisions)
 
 
 def report_missing_collisions(link: SceneLink, params: Params) -> None:
-    """Warns of a link without collisions: no contact, no belt."""
+    """Warn if a track link has no collisions, because a belt acts through contacts only."""
     if not link.collisions:
-        message = f"link {link.name!r} of a track has no <collision>: nothing is carried"
-        params.diagnostics.warning("SK-PLUGIN-101", message, params.where, "give it a collision")
+        message = f"link {link.name!r} of a track has no <collision>: the track moves nothing"
+        params.diagnostics.warning("SK-PLUGIN-101", message, params.where, "add a <collision> to the link")
 
 
 class TrackOdometry:
-    """Where a vehicle would be if its tracks were wheels that do not slip; begins at zero.
+    """Odometry of a tracked vehicle, computed as if its tracks were wheels without slip; the first pose is zero.
 
     Args:
-        separation: between the tracks [m].
-        now: time [ns].
+        separation: Distance between the tracks [m].
+        now: Current time [ns].
     """
 
     def __init__(self, separation: float, now: int) -> None:
@@ -66,12 +66,12 @@ class TrackOdometry:
         self._reckoning = DeadReckoning()
 
     def drive(self, left: float, right: float, now: int) -> None:
-        """From `now` [ns] on the tracks run at these speeds [m/s]."""
+        """Set the speeds of both tracks [m/s] from time `now` [ns] on."""
         self._reckoning, self._since = self._reckoned(now), now
         self._speeds = left, right
 
     def at(self, now: int) -> tuple[Pose, BodyTwist]:
-        """Pose and twist in the body's axes at `now` [ns]."""
+        """Return the pose, and the twist in the body's axes, at time `now` [ns]."""
         left, right = self._speeds
         turning = (right - left) / self._separation
         return self._reckoned(now).pose, BodyTwist(((left + right) / 2, 0.0, 0.0), (0.0, 0.0, turning))

@@ -1,4 +1,4 @@
-"""Base of gz's drives that follow a twist and tell odometry by their wheels."""
+"""Base class of Gazebo's drives that follow a twist and publish odometry from their wheels."""
 
 from __future__ import annotations
 
@@ -23,21 +23,30 @@ if TYPE_CHECKING:
     from simkit.scene import SceneJoint, SceneModel
 
 Speeds = tuple[float, ...]
-"""Speed ahead [m/s], perhaps to the left [m/s], and rate of turning [rad/s]."""
+"""Forward speed [m/s], for some drives the speed to the left [m/s], and turning rate [rad/s]."""
 
 
 class TwistDrive(ModelPlugin):
-    """Takes the speeds of the last twist, within limits, and publishes odometry and its transform."""
+    """Follows the last twist command within speed limits, and publishes odometry with its transform."""
 
     drives = True
-    _limiters: Sequence[SpeedLimiter]  # of each speed
-    _canonical: str  # scoped name of the link whose frame the odometry tells
-    _radius: float  # of the wheels [m]
+    _limiters: Sequence[SpeedLimiter]  # one for each speed
+    _canonical: str  # scoped name of the link that is the odometry's child frame
+    _radius: float  # wheel radius [m]
 
     def add_wheels(
         self, scene: SceneModel, builder: SpecBuilder, named: Mapping[str, Sequence[str]]
     ) -> list[SceneJoint]:
-        """Finds the wheels' joints by what they are (`left wheel`), and gives each a servo as strong as its joint."""
+        """Find the wheel joints and add a velocity servo to each, with the joint's effort limit.
+
+        Args:
+            scene: Model of the drive.
+            builder: Builder of the compiled model.
+            named: Joint names by role (`left wheel`).
+
+        Returns:
+            The joints that were found, in the order of the roles.
+        """
         wheels = find_wheels(scene, named, self.params)
         self._joint_names = [[joint.scoped for joint in joints] for joints in wheels.values()]
         self._servos = [
@@ -47,20 +56,20 @@ class TwistDrive(ModelPlugin):
         return [joint for joints in wheels.values() for joint in joints]
 
     def start(self) -> None:
-        """Begins at rest; to be called first in `load`."""
+        """Set all speeds to zero; call it first in `load`."""
         self.once = OneTimeWarnings(self)
         self._target: Speeds = (0.0,) * len(self._limiters)
         self._last = self._before_last = self._target
-        self._settled = True  # the speeds are what was asked for
+        self._settled = True  # the speeds have reached the command
 
     def open_topics(self, parent: Model, params: Params) -> None:
-        """Opens the topics of commands, odometry and its transform."""
+        """Open the topics of commands, odometry and its transform."""
         model = parent.name
         self.listen(read_topic(params, "topic", f"/model/{model}/cmd_vel"), COMMAND_TYPES, self.on_twist)
         self.open_odometry(parent, params)
 
     def open_odometry(self, parent: Model, params: Params) -> None:
-        """Opens the topics of odometry and its transform."""
+        """Open the topics of odometry and its transform."""
         model, link = parent.name, self._canonical.rsplit("::", 1)[-1]
         self._frame = params.text("frame_id", f"{model}/odom")
         self._child = params.text("child_frame_id", f"{model}/{link}")
@@ -70,7 +79,7 @@ class TwistDrive(ModelPlugin):
     # ------------------------------------------------------------------ commands
 
     def on_twist(self, message: Twist | TwistStamped) -> None:
-        """Takes the speeds of a `Twist` or `TwistStamped`."""
+        """Set the target speeds from a `Twist` or `TwistStamped`."""
         speeds = self.speeds_of(cast("Twist", getattr(message, "twist", message)))
         if all(map(math.isfinite, speeds)):
             self.aim(speeds)
@@ -78,22 +87,26 @@ class TwistDrive(ModelPlugin):
             self.once.not_finite()
 
     def speeds_of(self, twist: Twist) -> Speeds:
-        """The speeds in a twist, one for each limiter."""
+        """Return the speeds of a twist, one for each limiter."""
         return float(twist.linear.x), float(twist.angular.z)
 
     def aim(self, speeds: Speeds) -> None:
-        """Goes for other speeds from the next step on."""
+        """Set the target speeds from the next step on."""
         self._target, self._settled = speeds, False
 
     def next_speeds(self) -> Speeds:
-        """Takes the limited speeds one step towards the command."""
+        """Advance the limited speeds by one step towards the target, and return them."""
         speeds = limit_each(self._limiters, self._target, self._last, self._before_last, self.period)
         self._settled = speeds == self._last == self._before_last
         self._before_last, self._last = self._last, speeds
         return speeds
 
     def turn_wheels(self, rims: Sequence[float]) -> None:
-        """Turns the wheels of each side with these speeds of their rims [m/s]."""
+        """Set the wheel speed of each side.
+
+        Args:
+            rims: Circumferential wheel speed of each side [m/s].
+        """
         for servos, rim in zip(self._servos, rims, strict=True):
             for servo in servos:
                 self.sim.engine.set_control(servo, rim / self._radius)
@@ -101,7 +114,13 @@ class TwistDrive(ModelPlugin):
     # ------------------------------------------------------------------ readings
 
     def publish_odometry(self, pose: Pose, twist: BodyTwist, *covariances: Vector) -> None:
-        """Publishes where the base is, with its transform, to whoever listens."""
+        """Publish the pose of the base and its transform, if the topics have subscribers.
+
+        Args:
+            pose: Pose of the base in the odometry frame.
+            twist: Twist in the axes of the base.
+            *covariances: Covariances of pose and twist, as for `odometry_message`.
+        """
         now = self.sim.time_ns
         if self._odom.wanted:
             message = partial(odometry_message, now, self._frame, self._child, pose, twist, *covariances)

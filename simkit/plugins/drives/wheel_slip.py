@@ -1,5 +1,6 @@
-"""Wheel slip of gz and of Gazebo Classic: `gz::sim::systems::WheelSlip`, `libgazebo_ros_wheel_slip.so`,
-`libWheelSlipPlugin.so`.
+"""Wheel slip of Gazebo and Gazebo Classic.
+
+The module provides `gz::sim::systems::WheelSlip`, `libgazebo_ros_wheel_slip.so` and `libWheelSlipPlugin.so`.
 """
 
 from __future__ import annotations
@@ -34,14 +35,14 @@ LATERAL, LONGITUDINAL = "slip_compliance_unitless_lateral", "slip_compliance_uni
 
 @dataclass(frozen=True, slots=True)
 class Wheel:
-    """A `<wheel>` of the file.
+    """Wheel of a `<wheel>` block.
 
     Attributes:
-        name: plain name of the link.
-        contact: its link and joint.
-        radius: [m].
-        force: that the compliances are told at [N].
-        lateral, longitudinal: compliances along the axle and across it.
+        name: Plain name of the link.
+        contact: Link and joint of the wheel.
+        radius: Radius [m].
+        force: Normal force for which the compliances are given [N].
+        lateral, longitudinal: Compliances along the axle and across it.
     """
 
     name: str
@@ -56,7 +57,7 @@ _MOST = 1e6
 
 
 class WheelOptions(Options):
-    """A `<wheel>` block."""
+    """Options of a `<wheel>` block."""
 
     link_name: str = text(element="@link_name")
     slip_compliance_lateral: float = number(0.0, minimum=0, maximum=_MOST)
@@ -66,7 +67,7 @@ class WheelOptions(Options):
 
 
 class WheelSlipOptions(Options):
-    """Options of the plugins that let wheels slip."""
+    """Options shared by all wheel slip plugins."""
 
     wheels: tuple[WheelOptions, ...] = blocks(WheelOptions, element="wheel")
 
@@ -77,15 +78,15 @@ class RosWheelSlipOptions(WheelSlipOptions):
     wheel_spin_tolerance: float = number(1e-3, "m/s", minimum=0)
     publisher_update_rate: float = number(100.0, "Hz")
     slip_compliance_unitless_lateral: float = number(
-        -1.0, is_live=True, description="lateral slip compliance of every wheel; negative leaves them"
+        -1.0, is_live=True, description="lateral slip compliance of every wheel; negative values are ignored"
     )
     slip_compliance_unitless_longitudinal: float = number(
-        -1.0, is_live=True, description="longitudinal slip compliance of every wheel; negative leaves them"
+        -1.0, is_live=True, description="longitudinal slip compliance of every wheel; negative values are ignored"
     )
 
 
 class WheelSlipBase(ModelPlugin):
-    """Lets the contacts of wheels slip with the force on them; the compliances are live parameters.
+    """Lets wheels slip in proportion to the force on their contacts; the compliances are live parameters.
 
     The compliances of a wheel are the parameters `slip_compliance_unitless_lateral/<link>` and
     `slip_compliance_unitless_longitudinal/<link>` of the plugin's node; `/world/<world>/wheel_slip` sets them too.
@@ -98,34 +99,35 @@ class WheelSlipBase(ModelPlugin):
         if not self.options.wheels:
             params.text("wheel", required=True)
         self.wheels: list[Wheel] = []
-        taken: set[str] = set()
+        used_links: set[str] = set()
         for options in self.options.wheels:
             wheel = _read_wheel(scene, options)
             if wheel is None:
                 continue
-            if wheel.contact.link in taken:
-                message = f"link {wheel.name!r} has a <wheel> already; there is one for each"
+            if wheel.contact.link in used_links:
+                message = f"link {wheel.name!r} already has a <wheel>; remove the second one"
                 options.params.error("SK-PLUGIN-092", message)
                 continue
-            taken.add(wheel.contact.link)
+            used_links.add(wheel.contact.link)
             self.wheels.append(wheel)
         self.options.read_all()
 
     def load(self, parent: Model, params: Params) -> None:
         self.compliances = [
-            (self._own(LATERAL, w, w.lateral), self._own(LONGITUDINAL, w, w.longitudinal)) for w in self.wheels
+            (self._declare_compliance(LATERAL, w, w.lateral), self._declare_compliance(LONGITUDINAL, w, w.longitudinal))
+            for w in self.wheels
         ]
         self._scales = [wheel.radius / wheel.force for wheel in self.wheels]
         if self.wheels:
             self.sim.engine.friction.add_wheels(self, [wheel.contact for wheel in self.wheels], self.slips)
 
-    def _own(self, name: str, wheel: Wheel, value: float) -> Parameter[float]:
-        ahead = "along" if name == LATERAL else "across"
-        text = f"slip of wheel {wheel.name}, {ahead} its axle, where the force is {wheel.force:g} N"
+    def _declare_compliance(self, name: str, wheel: Wheel, value: float) -> Parameter[float]:
+        way = "along" if name == LATERAL else "across"
+        text = f"slip compliance of wheel {wheel.name} {way} its axle, at a normal force of {wheel.force:g} N"
         return self.declare(f"{name}/{wheel.name}", value, minimum=0.0, maximum=_MOST, description=text)
 
     def slips(self) -> list[tuple[float, float]]:
-        """Compliances of each wheel, per rate of turning [m/N]."""
+        """Return the compliances of each wheel per turning rate [m/N], lateral first."""
         return [
             (scale * across.value, scale * ahead.value)
             for scale, (across, ahead) in zip(self._scales, self.compliances, strict=True)
@@ -133,19 +135,19 @@ class WheelSlipBase(ModelPlugin):
 
 
 def _read_wheel(scene: SceneModel, options: WheelOptions) -> Wheel | None:
-    """One `<wheel>`; None after an error."""
+    """Read one `<wheel>` block; return None after an error."""
     block, lateral, longitudinal = options.params, options.slip_compliance_lateral, options.slip_compliance_longitudinal
     force = options.wheel_normal_force
     radius = options.wheel_radius if block.has("wheel_radius") else 0.0
     name = options.link_name
     if not name:
-        block.error("SK-PARAM-001", "<wheel> has no link_name; it is the link of the wheel")
+        block.error("SK-PARAM-001", '<wheel> has no link_name; write <wheel link_name="..."> with the wheel\'s link')
     link = find_link(scene, name, block) if name else None
     if link is None:
         return None
     joint = _wheel_joint(scene, link, block)
     if len(link.collisions) != 1:
-        message = f"link {name!r} has {len(link.collisions) or 'no'} collisions; a wheel that slips has one"
+        message = f"link {name!r} has {len(link.collisions) or 'no'} collisions; a wheel that slips needs exactly one"
         block.error("SK-PLUGIN-091", message)
     shape = link.collisions[0].geometry if link.collisions else None
     if not radius and isinstance(shape, (Cylinder, Sphere)):
@@ -159,18 +161,28 @@ def _read_wheel(scene: SceneModel, options: WheelOptions) -> Wheel | None:
 
 
 def _wheel_joint(scene: SceneModel, link: SceneLink, block: Params) -> SceneJoint | None:
-    """The one joint that a wheel turns on; None after an error."""
+    """Return the only joint that a wheel turns on, or None after an error."""
     joints = [joint for joint in scene.all_joints() if joint.child_link == link.scoped]
     if len(joints) != 1 or len(joints[0].axes) != 1:
         found = ", ".join(f"{joint.name!r} ({joint.type})" for joint in joints) or "none"
-        message = f"link {link.name!r} is the child of {found}; a wheel that slips turns on one joint with one axis"
+        message = f"link {link.name!r} is the child of {found}; a wheel that slips needs one joint with one axis"
         block.error("SK-PLUGIN-091", message)
         return None
     return joints[0]
 
 
 def set_compliances(sim: Simulation, links: set[str], lateral: float, longitudinal: float) -> list[str]:
-    """Sets the compliances of wheels among links, as `/world/<world>/wheel_slip` does; which wheels were there."""
+    """Set the compliances of all wheels among some links, as `/world/<world>/wheel_slip` does.
+
+    Args:
+        sim: Simulation of the wheels.
+        links: Scoped names of links.
+        lateral: Compliance along the axle.
+        longitudinal: Compliance across the axle.
+
+    Returns:
+        The scoped names of the links that are wheels.
+    """
     found: list[str] = []
     for plugin in sim.engine.friction.owners():
         if not isinstance(plugin, WheelSlipBase):
@@ -197,21 +209,21 @@ _UNSET = -1.0
 
 
 class _ClassicWheelSlip(WheelSlipBase):
-    """What both know of their wheels: how they slip now."""
+    """Base class of both Gazebo Classic variants, which publish the current slip of their wheels."""
 
     def load(self, parent: Model, params: Params) -> None:
         super().load(parent, params)
         self._model = parent
         down = self.sim.mj_model.opt.gravity
         size = float(np.linalg.norm(down))
-        # as Classic: downwards where the model started, turned with it
+        # Classic fixes the downward direction in the model's frame at the start, so it turns with the model
         world = down / size if size > 0 else np.array([0.0, 0.0, -1.0])
         self._down = quat_rotate(quat_conjugate(parent.scene.pose_world.quaternion), world).tolist()
         self._links = [self.sim.link(wheel.contact.link) for wheel in self.wheels]
         self._joints = [self.sim.joint(wheel.contact.joint) for wheel in self.wheels]
 
     def measured(self) -> list[tuple[Wheel, float, float, float]]:
-        """Of each wheel its speeds ahead and along the axle, and that of its rim [m/s]."""
+        """Return each wheel with its speeds forward, along the axle and at the rim [m/s]."""
         data = self.sim.engine.physics.fresh()
         down = quat_rotate(self._model.pose.quaternion, self._down)
         found = []
@@ -222,17 +234,23 @@ class _ClassicWheelSlip(WheelSlipBase):
         return found
 
     def set_all(self, side: int, value: float) -> None:
-        """One compliance of every wheel: 0 is the lateral one, 1 the longitudinal."""
+        """Set one compliance of every wheel.
+
+        Args:
+            side: 0 for the lateral compliance, 1 for the longitudinal one.
+            value: New compliance.
+        """
         for pair in self.compliances:
             self.sim.set_parameter(pair[side].node, pair[side].name, value)
 
 
 class GazeboRosWheelSlip(_ClassicWheelSlip):
-    """Lets wheels slip, and tells on `wheel_slip` by how much.
+    """Lets wheels slip, and publishes the slip of each wheel on `wheel_slip`.
 
-    The lateral slip is the angle between a wheel and the way it goes [rad], the longitudinal one the part of its rim
-    speed that it loses; both are 0 of a wheel whose rim moves slower than `<wheel_spin_tolerance>` (0.001 m/s). With
-    the parameters `slip_compliance_unitless_lateral` and `slip_compliance_unitless_longitudinal` all wheels are set.
+    The lateral slip is the angle between a wheel and its direction of motion [rad]. The longitudinal slip is the
+    fraction of the rim speed that is lost. Both are 0 for a wheel whose rim speed is below `<wheel_spin_tolerance>`
+    (0.001 m/s). The parameters `slip_compliance_unitless_lateral` and `slip_compliance_unitless_longitudinal` set all
+    wheels.
     """
 
     options = OptionsOf(RosWheelSlipOptions)
@@ -241,8 +259,9 @@ class GazeboRosWheelSlip(_ClassicWheelSlip):
     def load(self, parent: Model, params: Params) -> None:
         super().load(parent, params)
         for side, name in enumerate((LATERAL, LONGITUDINAL)):
-            what = f"{'lateral' if side == 0 else 'longitudinal'} slip compliance of every wheel; negative leaves them"
-            self.declare(name, _UNSET, description=what, on_change=partial(self._on_all, side))
+            kind = "lateral" if side == 0 else "longitudinal"
+            text = f"{kind} slip compliance of every wheel; negative values are ignored"
+            self.declare(name, _UNSET, description=text, on_change=partial(self._on_all, side))
         self._out = self.advertise("wheel_slip", _SLIP)
         publish_while_subscribed(self, self._out, max(0.0, self.options.publisher_update_rate), "tell")
 
@@ -251,7 +270,7 @@ class GazeboRosWheelSlip(_ClassicWheelSlip):
             self.set_all(side, value)
 
     def tell(self) -> None:
-        """Publishes."""
+        """Publish the slip of all wheels."""
         names: list[str] = []
         slips: list[tuple[float, float]] = []
         for wheel, ahead, sideways, rim in self.measured():
@@ -263,9 +282,9 @@ class GazeboRosWheelSlip(_ClassicWheelSlip):
 
 
 class ClassicWheelSlip(_ClassicWheelSlip):
-    """Lets wheels slip, and tells of each on `/<model>/wheel_slip/<link>` how fast.
+    """Lets wheels slip, and publishes the slip speed of each wheel on `/<model>/wheel_slip/<link>`.
 
-    It is a vector: the speed ahead less that of the rim, the speed sideways, and that of the rim [m/s].
+    The message is a vector: forward speed minus rim speed, sideways speed, and rim speed [m/s].
 
     Numbers on `/<model>/wheel_slip/lateral_compliance` and `longitudinal_compliance` set all wheels (in Gazebo Classic
     they are text).
@@ -293,14 +312,14 @@ class ClassicWheelSlip(_ClassicWheelSlip):
         if math.isfinite(value) and value >= 0.0:
             self.set_all(side, value)
         else:
-            self.log.warning("a compliance of %g is left out, it cannot be negative", value)
+            self.log.warning("compliance %g is ignored: it must be finite and not negative", value)
 
     def tell(self) -> None:
-        """Publishes what is heard."""
+        """Publish the slip of each wheel whose topic has a subscriber."""
         now = self.sim.time_ns
-        if vars(self).get("_told_ns") == now:
+        if vars(self).get("_published_ns") == now:
             return
-        self._told_ns = now
+        self._published_ns = now
         for out, (_, ahead, sideways, rim) in zip(self._outs, self.measured(), strict=True):
             if out.wanted:
                 out.publish(msgs.type_of(_VECTOR)(ahead - rim, sideways, rim))

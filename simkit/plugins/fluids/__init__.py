@@ -1,5 +1,6 @@
-"""What air and water do to links: wind, lift and drag, buoyancy.
+"""Forces of air and water on links: wind, lift and drag, and buoyancy.
 
-Poses and velocities of links enter, forces leave. The plugins that differ only by an alias lie here as well:
-`WindEffects`, `LiftDrag` and their twins of Classic. No fluid is simulated: each is a field that is given.
+The modules read poses and velocities of links and return forces. The package also contains the plugins whose Gazebo and
+Classic variants differ only in their aliases, such as `WindEffects` and `LiftDrag`. No fluid is simulated: each fluid
+is a prescribed field.
 """

@@ -1,4 +1,4 @@
-"""Buoyant force of a fluid in layers on the volumes of links, by Archimedes' principle."""
+"""Buoyant force of a layered fluid on the volumes of links, by Archimedes' principle."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ if TYPE_CHECKING:
     from simkit.runtime import Simulation
 
 _ZERO: Final = np.zeros(3)
-_SAME: Final = 1e-9  # [m] between centre of volume and centre of mass that are one point
-_FEW: Final = 32  # hulls, up to which plain numbers are several times faster than arrays
+_SAME: Final = 1e-9  # [m], largest distance at which centre of volume and centre of mass count as equal
+_FEW: Final = 32  # hulls; up to this number plain numbers are several times faster than arrays
 Three = tuple[float, float, float]
 
 
 @dataclass(frozen=True, slots=True)
 class Fluid:
-    """Layers of a fluid, level in the world.
+    """Horizontal layers of a fluid.
 
     Attributes:
-        densities: of each layer from the lowest up [kg/m³].
-        heights: where each but the lowest begins [m], rising.
+        densities: Density of each layer, lowest first [kg/m³].
+        heights: World height at which each layer except the lowest begins [m], in ascending order.
     """
 
     densities: tuple[float, ...]
@@ -41,12 +41,12 @@ class Fluid:
 
 @dataclass(frozen=True, slots=True)
 class Immersion:
-    """How everything lies in the layers now.
+    """Position of all hulls relative to the layers at one tick.
 
     Attributes:
-        low, high: the lowest and highest layer that each hull may reach into.
-        steady: links that are pushed by the same force while they stay in their layer, however they turn.
-        masses: of the fluid that each of these displaces [kg]; zero for others.
+        low, high: Indices of the lowest and highest layer that each hull may reach into.
+        steady: True for links whose force stays the same in any orientation, as long as they stay in their layer.
+        masses: Mass of the fluid that each steady link displaces [kg]; zero for the other links.
     """
 
     low: Sequence[int]
@@ -56,7 +56,7 @@ class Immersion:
 
 
 class _Part(NamedTuple):
-    """A hull in plain numbers; the solid's frame in the link's, whose axes are None where they are the link's own."""
+    """Hull in plain numbers. The frame of its solid is given in the link's frame; axes are None if they are equal."""
 
     owner: int
     volume: float
@@ -69,12 +69,12 @@ class _Part(NamedTuple):
 
 
 class BuoyantForces:
-    """The hulls of the engine's present model in a fluid. A handle.
+    """Buoyant forces on the hulls of one compiled model. A deep copy returns the same object.
 
     Args:
-        sim: the simulation.
-        hulls: by scoped link name.
-        fluid: around them.
+        sim: Simulation of the links.
+        hulls: Hulls by scoped link name.
+        fluid: Fluid around the hulls.
     """
 
     def __init__(self, sim: Simulation, hulls: Mapping[str, Sequence[Hull]], fluid: Fluid) -> None:
@@ -100,7 +100,7 @@ class BuoyantForces:
         return self
 
     def _find_even(self, model: mujoco.MjModel) -> npt.NDArray[np.bool_]:
-        """Links whose centre of volume is their centre of mass."""
+        """Return the mask of links whose centre of volume is their centre of mass."""
         middle = self._summed(self._volumes[:, None] * self._centres)
         middle /= np.maximum(self._whole[:, None], 1e-300)
         away = middle - model.body_ipos[self.links.bodies]
@@ -109,11 +109,11 @@ class BuoyantForces:
 
     @property
     def is_all_steady(self) -> bool:
-        """Whether nothing ever changes with how the links lie."""
+        """True if all forces are constant, whatever the poses of the links."""
         return not self.fluid.heights and bool(self._is_even.all())
 
     def lie(self, data: mujoco.MjData) -> Immersion:
-        """How everything lies, by the places in `data`."""
+        """Determine the layers of all hulls from the poses in `data`."""
         if not len(self._heights):
             if self._always is None:
                 lowest = [0] * len(self._hulls)
@@ -158,12 +158,12 @@ class BuoyantForces:
         return masses
 
     def push(self, data: mujoco.MjData, lie: Immersion, gravity: Vector) -> None:
-        """Pushes the links that are not steady, for the next step only.
+        """Push the links that are not steady, for the next step only.
 
         Args:
-            data: with places computed.
-            lie: how everything lies in it.
-            gravity: [m/s²], shape (3,).
+            data: Engine data with computed poses.
+            lie: Immersion for these poses.
+            gravity: Gravity in the world frame [m/s²], shape (3,).
         """
         if self._parts:
             self.links.push_some(data, self._wrenches_few(data, lie, gravity.tolist()))
@@ -171,7 +171,7 @@ class BuoyantForces:
             self.links.push(data, *self._wrenches(data, lie, gravity))
 
     def _wrenches_few(self, data: mujoco.MjData, lie: Immersion, gravity: list[float]) -> dict[int, list[float]]:
-        """By link: force at the centre of mass [N] and torque [N·m], world frame."""
+        """Return force at the centre of mass [N] and torque [N·m] by link index, world frame."""
         bodies = self.links.bodies
         axes, origins, masses = data.xmat[bodies].tolist(), data.xpos[bodies].tolist(), data.xipos[bodies].tolist()
         gx, gy, gz = gravity
@@ -196,7 +196,7 @@ class BuoyantForces:
         return found
 
     def _cut_few(self, part: _Part, axes: list[float], origin: list[float], low: int, high: int) -> tuple[float, Three]:
-        """Mass [kg] and centre [m, world] of the fluid that a hull in several layers displaces."""
+        """Return mass [kg] and world centre [m] of the fluid that is displaced by a hull in several layers."""
         assert part.solid is not None
         densities, heights = self.fluid.densities, self.fluid.heights
         start = _moved(axes, origin, part.origin)
@@ -214,7 +214,7 @@ class BuoyantForces:
         return mass, _moved(turned, start, (mx / share, my / share, mz / share))
 
     def _wrenches(self, data: mujoco.MjData, lie: Immersion, gravity: Vector) -> tuple[Vector, Vector]:
-        """On the links that are not steady; zero on others.
+        """Compute the wrenches on the links that are not steady; the other rows are zero.
 
         Returns:
             Forces at the centres of mass [N] and torques [N·m], world frame, shape (n, 3) each.
@@ -242,12 +242,15 @@ class BuoyantForces:
         masses: Vector,
         centres: Vector,
     ) -> None:
-        """Corrects masses [kg] and centres [m, world] of the displaced fluid of hulls that reach into several layers.
+        """Correct masses and centres of the displaced fluid of the hulls that reach into several layers.
 
         Args:
-            cuts: pairs of a place in the arrays below and a layer that ends within that hull, by place.
-            rows: the hulls.
-            axes, origins: of the links in the world.
+            cuts: Pairs of a row of the arrays below and a layer that ends within that hull, sorted by row.
+            rows: Index of the hull of each row.
+            axes: World rotation matrix of each row's link.
+            origins: World position of each row's link [m].
+            masses: Displaced masses [kg], changed in place.
+            centres: World centres of the displaced fluid [m], changed in place.
         """
         places, layers = cuts.T
         hulls = rows[places]
@@ -269,7 +272,7 @@ class BuoyantForces:
         at = np.unique(places)
         top = np.zeros(len(masses), dtype=np.intp)
         np.maximum.at(top, places, layers + 1)
-        last = places.searchsorted(at)  # the frame of each
+        last = places.searchsorted(at)  # first cut of each hull, for its frame
         whole = self._densities[top[at]] * self._volumes[rows[at]]
         masses[at] = np.maximum(whole + total[at], 0.0)
         first = first[at] + whole[:, None] * self._solid_centres[rows[at]]
@@ -277,7 +280,7 @@ class BuoyantForces:
         centres[at] = starts[last] + (turned[last] * middle[:, None, :]).sum(axis=2)
 
     def _summed(self, values: Vector, owners: npt.NDArray[np.intp] | None = None) -> Vector:
-        """Of each link, the sum over its hulls."""
+        """Return the sum over the hulls of each link."""
         found = np.zeros((len(self.links), values.shape[1]))
         np.add.at(found, self._owners if owners is None else owners, values)
         return found
@@ -296,7 +299,7 @@ def _part(owner: int, hull: Hull) -> _Part:
 
 
 def _moved(axes: Sequence[float], origin: Sequence[float], at: Three) -> Three:
-    """A point of a frame, given in the world."""
+    """Transform a point of a frame into the world."""
     a, b, c, d, e, f, g, h, i = axes
     x, y, z = at
     return (
@@ -307,7 +310,7 @@ def _moved(axes: Sequence[float], origin: Sequence[float], at: Three) -> Three:
 
 
 def _turned(axes: Sequence[float], by: list[list[float]]) -> list[float]:
-    """Product of two rotation matrices, row by row."""
+    """Return the product of two rotation matrices as nine numbers, row by row."""
     (a, b, c), (d, e, f), (g, h, i) = by
     rows = (axes[0:3], axes[3:6], axes[6:9])
     return [

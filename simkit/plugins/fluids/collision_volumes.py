@@ -1,4 +1,4 @@
-"""Volumes of links that displace air or water, from their collisions."""
+"""Volumes of links that displace air or water, derived from their collisions."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from simkit.scene import Geometry, Mesh, Polyline, SceneCollision, SceneLink
 
 @dataclass(frozen=True, eq=False)
 class Hull:
-    """What of a link displaces a fluid.
+    """Volume of one collision that displaces a fluid.
 
     Attributes:
-        volume: [m³].
-        centre: of it, in the link's frame [m], shape (3,).
-        reach: from the centre to its farthest point at most [m].
-        solid: its shape; None where only the numbers are known.
-        axes, origin: the solid's frame in the link's.
+        volume: Volume [m³].
+        centre: Centre of the volume in the link's frame [m], shape (3,).
+        reach: Upper bound of the distance from the centre to any point of the volume [m].
+        solid: Shape of the volume; None if only the numbers are known.
+        axes, origin: Frame of the solid in the link's frame.
     """
 
     volume: float
@@ -35,21 +35,21 @@ class Hull:
 
 
 class HullFactory:
-    """Makes hulls; shapes that come again are made once. A handle.
+    """Factory of hulls that converts equal shapes only once. A deep copy returns the same object.
 
     Args:
-        tell: called with the scoped name of a collision whose mesh is open, so that its convex hull is taken instead.
+        on_open_mesh: Callback for the scoped name of a collision with an open mesh, whose convex hull is used instead.
     """
 
-    def __init__(self, tell: Callable[[str], None]) -> None:
-        self._tell = tell
+    def __init__(self, on_open_mesh: Callable[[str], None]) -> None:
+        self._on_open_mesh = on_open_mesh
         self._solids: dict[Geometry, Solid | None] = {}
 
     def __deepcopy__(self, memo: dict[int, object]) -> HullFactory:
         return self
 
     def hulls(self, link: SceneLink) -> list[Hull]:
-        """One for each collision of a link that takes up space."""
+        """Return one hull for each collision of a link that has a volume."""
         return [hull for collision in link.collisions if (hull := self._hull(collision)) is not None]
 
     def _hull(self, collision: SceneCollision) -> Hull | None:
@@ -70,7 +70,7 @@ class HullFactory:
         if not len(faces):
             return None
         if mesh_volume(vertices, faces) <= 0:
-            self._tell(collision.scoped)
+            self._on_open_mesh(collision.scoped)
             convex = convex_hull(vertices)
             if convex is None or not len(convex[1]):
                 return None
@@ -80,7 +80,10 @@ class HullFactory:
 
 
 def _surface(shape: Geometry, collision: SceneCollision) -> tuple[Vector, npt.NDArray[np.int32]]:
-    """Vertices and faces; what is wrong with a file was said when the world was compiled."""
+    """Return vertices and faces of a mesh or outline.
+
+    Faults of a mesh file are dropped, because they were reported when the world was compiled.
+    """
     from simkit.compiler.meshes.mesh_part import join_parts
     from simkit.compiler.meshes.mesh_reader import load_mesh
     from simkit.compiler.shape_geometry import polyline_triangles

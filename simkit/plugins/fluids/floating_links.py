@@ -1,4 +1,4 @@
-"""Base of the buoyancy plugins of gz and of Gazebo Classic."""
+"""Base class of the buoyancy plugins of Gazebo and Gazebo Classic."""
 
 from __future__ import annotations
 
@@ -19,86 +19,86 @@ if TYPE_CHECKING:
 class BuoyancyBase(Plugin):
     """Pushes links by the weight of the fluid that they displace.
 
-    A link whose centre of volume is its centre of mass, wholly in one layer, is pushed by a force that stands: nothing
-    is done at a step.
+    A link is steady if its centre of volume is its centre of mass and it is within one layer. Its force is constant, so
+    it is set once and no step has to compute it.
     """
 
     _fluid: Fluid
 
     @abstractmethod
     def find_hulls(self) -> Mapping[str, Sequence[Hull]]:
-        """What floats of the present world, by scoped link name."""
+        """Return the hulls of the floating links in the current world, by scoped link name."""
 
     def start(self) -> None:
-        """To be called at the end of `load`."""
+        """Set up the forces; call it at the end of `load`."""
         self.once = OneTimeWarnings(self)
-        self._yard = HullFactory(self._tell_open)
+        self._factory = HullFactory(self._report_open_mesh)
         self._found: BuoyantForces | None = None
-        self._stood: tuple[object, ...] | None = None
-        self._standing: dict[str, tuple[float, ...]] = {}
+        self._steady_state: tuple[object, ...] | None = None
+        self._steady_wrenches: dict[str, tuple[float, ...]] = {}
         self._bind()
         if not self._fluid.heights:
-            self._stand(moving_data(self.sim))
+            self._set_steady_wrenches(moving_data(self.sim))
 
     @property
     def before_step_rate(self) -> float | None:
-        """Never while every force stands; after a spawn, a removal or another gravity that is looked at anew."""
+        """Never while all forces are constant; evaluated again after a spawn, a removal or a change of gravity."""
         found = self._found
         is_idle = (
             found is not None
             and found.links.is_current
             and (not len(found.links) or found.is_all_steady)
-            and self._stood is not None
-            and self._stood[-1] == self._gravity
+            and self._steady_state is not None
+            and self._steady_state[-1] == self._gravity
         )
         return NEVER if is_idle else None
 
     @before_step_rate.setter
     def before_step_rate(self, rate: float | None) -> None:
-        raise AttributeError("a fluid is called as long as what floats moves in it")
+        raise AttributeError("before_step_rate of a buoyancy plugin is read-only: it follows the floating links")
 
     @property
     def _gravity(self) -> tuple[float, ...]:
         return tuple(self.sim.mj_model.opt.gravity.tolist())
 
     def before_step(self) -> None:
-        """Pushes for the step to come."""
+        """Push the floating links for the next step."""
         if self._found is None or not self._found.links.is_current:
             self._bind()
         found = self._found
         if found is None:
             return
         data = moving_data(self.sim)
-        lie = self._stand(data)
+        lie = self._set_steady_wrenches(data)
         if not all(lie.steady):
             found.push(data, lie, self.sim.mj_model.opt.gravity)
         if self.before_step_rate is not None:
             self.sim.engine.reschedule()
 
     def _bind(self) -> None:
-        self._found, self._stood = BuoyantForces(self.sim, self.find_hulls(), self._fluid), None
+        self._found, self._steady_state = BuoyantForces(self.sim, self.find_hulls(), self._fluid), None
 
-    def _stand(self, data: mujoco.MjData) -> Immersion:
-        """Sets the forces that stand where they are others than before."""
+    def _set_steady_wrenches(self, data: mujoco.MjData) -> Immersion:
+        """Set the constant forces if they have changed, and return the current immersion."""
         found = self._found
         assert found is not None
         lie, gravity = found.lie(data), self._gravity
         now = (lie.steady, lie.masses, gravity)
-        if now != self._stood:
-            self._stood = now
-            self._standing = {
+        if now != self._steady_state:
+            self._steady_state = now
+            self._steady_wrenches = {
                 name: (*(-mass * g for g in gravity), 0.0, 0.0, 0.0)
                 for name, is_steady, mass in zip(found.links.names, lie.steady, lie.masses, strict=True)
                 if is_steady and mass
             }
-            self.sim.engine.wrenches.set(self, self._standing)
+            self.sim.engine.wrenches.set(self, self._steady_wrenches)
         return lie
 
     def set_state(self, state: Mapping[str, object]) -> None:
-        """Back to a state from `get_state`."""
+        """Restore a state from `get_state`."""
         super().set_state(state)
-        self.sim.engine.wrenches.set(self, self._standing, are_applied=True)
+        self.sim.engine.wrenches.set(self, self._steady_wrenches, are_applied=True)
 
-    def _tell_open(self, collision: str) -> None:
-        message = f"the mesh of {collision!r} is open and encloses nothing; its convex hull floats instead"
-        self.once.warn("SK-PLUGIN-112", collision, message, "close the mesh, or give the collision a plain shape")
+    def _report_open_mesh(self, collision: str) -> None:
+        message = f"the mesh of {collision!r} is open and has no volume; its convex hull is used instead"
+        self.once.warn("SK-PLUGIN-112", collision, message, "close the mesh, or use a primitive shape, such as <box>")

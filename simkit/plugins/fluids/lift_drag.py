@@ -1,12 +1,13 @@
 """Lift, drag and pitching moment of a wing: `gz::sim::systems::LiftDrag` and Gazebo Classic's `libLiftDragPlugin.so`.
 
-The coefficients are straight lines over the angle of attack, with another slope beyond the stall:
+The coefficients are linear in the angle of attack α, with a different slope beyond the stall:
 
     c(α) = slope · α                                   for |α| <= stall
     c(α) = ±slope · stall + slope_stall · (α ∓ stall)  beyond; lift and moment never change sign there
 
-each times cos²(sweep), the part of the stream that the leading edge feels. Lift and moment also grow with the angle of
-a control surface. Force = c · q · area with the dynamic pressure q = ½ρv² of the stream across the span.
+Each coefficient is multiplied by cos²(sweep), the part of the stream that is normal to the leading edge. The angle of a
+control surface adds to lift and moment. Force = c · q · area, where q = ½ρv² is the dynamic pressure of the stream
+normal to the span.
 """
 
 from __future__ import annotations
@@ -31,25 +32,25 @@ if TYPE_CHECKING:
 
 Triple = tuple[float, float, float]
 SLOWEST: Final = 0.01
-"""[m/s]; a slower stream does nothing."""
+"""Speed of the stream [m/s] below which no force acts."""
 _ZERO: Final[Triple] = (0.0, 0.0, 0.0)
-_STRAIGHT: Final = 1e-9  # sine of the angle below which a stream comes straight along a body of revolution
+_STRAIGHT: Final = 1e-9  # sine of the angle below which a stream counts as parallel to the axis of revolution
 
 
 @dataclass(frozen=True, slots=True)
 class CoefficientLine:
-    """A coefficient over the angle of attack.
+    """Coefficient over the angle of attack.
 
     Attributes:
-        slope: [1/rad] up to the stall.
-        beyond: [1/rad] from there on.
+        slope: Slope up to the stall [1/rad].
+        beyond: Slope beyond the stall [1/rad].
     """
 
     slope: float
     beyond: float
 
     def at(self, alpha: float, stall: float) -> float:
-        """The coefficient at an angle of attack [rad]."""
+        """Return the coefficient at an angle of attack [rad], for a given stall angle [rad]."""
         if alpha > stall:
             return self.slope * stall + self.beyond * (alpha - stall)
         if alpha < -stall:
@@ -57,7 +58,7 @@ class CoefficientLine:
         return self.slope * alpha
 
     def one_sided(self, alpha: float, stall: float) -> float:
-        """The same, which beyond the stall falls to zero and no further."""
+        """Return the same coefficient, limited to zero where it would change sign beyond the stall."""
         found = self.at(alpha, stall)
         if alpha > stall:
             return max(0.0, found)
@@ -66,19 +67,19 @@ class CoefficientLine:
 
 @dataclass(frozen=True, slots=True)
 class Aerofoil:
-    """A wing. Directions and points in the link's frame.
+    """Wing; directions and points in the link's frame.
 
     Attributes:
-        lift, drag, moment: coefficients.
-        stall: angle of attack at which it stalls [rad].
-        zero: added to every angle of attack [rad].
-        density: of the air or water [kg/m³].
-        area: [m²].
-        centre: of pressure [m].
-        forward, upward: unit vectors; the stream comes from the first, lift goes along the second.
-        is_radial: a body of revolution about `forward`: up is where the stream comes from.
-        is_reversible: works in a stream from behind, too.
-        lift_by_joint, moment_by_joint: by how much the coefficients grow with a control surface's angle [1/rad].
+        lift, drag, moment: Coefficients.
+        stall: Angle of attack at the stall [rad].
+        zero: Offset of the angle of attack [rad].
+        density: Density of the air or water [kg/m³].
+        area: Reference area [m²].
+        centre: Centre of pressure [m].
+        forward, upward: Unit vectors; the stream comes from `forward`, lift acts along `upward`.
+        is_radial: True for a body of revolution around `forward`, whose upward direction follows the stream.
+        is_reversible: True if a stream from behind also acts.
+        lift_by_joint, moment_by_joint: Increase of the coefficients per angle of the control surface [1/rad].
     """
 
     lift: CoefficientLine
@@ -97,11 +98,11 @@ class Aerofoil:
     moment_by_joint: float
 
     def load(self, velocity: Triple, angle: float = 0.0) -> tuple[Triple, Triple]:
-        """Force at the centre of pressure [N] and moment [N·m], link frame.
+        """Return the force at the centre of pressure [N] and the moment [N·m], link frame.
 
         Args:
-            velocity: of the centre of pressure through the air [m/s], link frame.
-            angle: of the control surface [rad].
+            velocity: Velocity of the centre of pressure relative to the air [m/s], link frame.
+            angle: Angle of the control surface [rad].
         """
         speed = math.sqrt(_dot(velocity, velocity))
         if speed <= SLOWEST or not (self.is_reversible or _dot(self.forward, velocity) > 0.0):
@@ -129,11 +130,11 @@ class Aerofoil:
             return self.upward
         aside = _cross(self.forward, velocity)
         if _dot(aside, aside) < (_STRAIGHT * speed) ** 2:
-            return _any_across(self.forward)  # straight from ahead: the angle of attack is zero about any axis
+            return _any_across(self.forward)  # parallel stream: the angle of attack is zero about any axis
         return unit(_cross(self.forward, aside))
 
     def _angle_of_attack(self, lift_way: Triple, up: Triple) -> float:
-        """Within ±90°: a stream from behind counts as one from ahead."""
+        """Return the angle of attack within ±90°: a stream from behind counts as one from the front."""
         aside = _cross(up, lift_way)
         angle = math.atan2(math.sqrt(_dot(aside, aside)), _dot(up, lift_way))
         alpha = self.zero + (angle if _dot(lift_way, self.forward) >= 0.0 else -angle)
@@ -144,7 +145,7 @@ _MOST = 1e9
 
 
 class AerofoilOptions(Options):
-    """A wing's options."""
+    """Options of a wing."""
 
     link_name: str = text(None, required=True)
     forward: tuple[float, float, float] = vector3((1.0, 0.0, 0.0))
@@ -166,25 +167,25 @@ class AerofoilOptions(Options):
 
 
 class MomentAerofoilOptions(AerofoilOptions):
-    """The same of a wing that makes a pitching moment."""
+    """Options of a wing that also produces a pitching moment."""
 
     reversible: bool = boolean()
     cm_delta: float = number(0.0, minimum=-_MOST, maximum=_MOST)
 
 
 def read_aerofoil(options: AerofoilOptions) -> Aerofoil:
-    """A plugin's aerofoil; what is wrong is reported."""
+    """Return the aerofoil of a plugin's options, and report invalid directions."""
     params, with_moment = options.params, options if isinstance(options, MomentAerofoilOptions) else None
     forward = _direction(params, "forward", options.forward, AerofoilOptions.forward)
     upward = _direction(params, "upward", options.upward, AerofoilOptions.upward)
     is_radial = options.radial_symmetry
     across = _cross(forward, upward)
     if not is_radial and _dot(across, across) < 1e-12:
-        params.error("SK-PLUGIN-110", "<forward> and <upward> point along one line; lift has no direction")
+        params.error("SK-PLUGIN-110", "<forward> and <upward> are parallel, so lift has no direction")
         upward = _any_across(forward)
     moment = CoefficientLine(options.cma, options.cma_stall)
     if not with_moment and (moment.slope or moment.beyond):
-        message = "<cma> and <cma_stall> have no effect: Gazebo Classic's wing makes no pitching moment"
+        message = "<cma> and <cma_stall> have no effect: Gazebo Classic's plugin applies no pitching moment"
         params.diagnostics.warning("SK-PLUGIN-111", message, params.where)
     return Aerofoil(
         lift=CoefficientLine(options.cla, options.cla_stall),
@@ -213,7 +214,7 @@ def _direction(params: Params, name: str, found: Triple, default: Any) -> Triple
 
 
 def unit(v: Triple) -> Triple:
-    """A vector of length 1; zero stays zero."""
+    """Return the vector scaled to length 1; a zero vector stays zero."""
     largest = max(abs(v[0]), abs(v[1]), abs(v[2]))
     if largest == 0.0:
         return _ZERO
@@ -240,10 +241,10 @@ def _scaled(v: Triple, by: float) -> Triple:
 
 
 class LiftDragBase(ModelPlugin):
-    """Lift, drag and moment on one link, by its motion through the air and by the angle of a control joint.
+    """Applies lift, drag and moment to one link, from its motion through the air and the angle of a control joint.
 
     Attributes:
-        is_about_mass: whether the centre of pressure is seen from the centre of mass instead of the link's origin.
+        is_about_mass: True if the centre of pressure is relative to the centre of mass instead of the link's origin.
     """
 
     options = OptionsOf(AerofoilOptions)
@@ -267,7 +268,7 @@ class LiftDragBase(ModelPlugin):
         self._joint = self.sim.joint(self._joint_name) if self._joint_name else None
 
     def before_step(self) -> None:
-        """Pushes for the step to come."""
+        """Push the link for the next step."""
         sim = self.sim
         body = sim.engine.names.links[self._scoped].body
         if body <= 0:
@@ -286,13 +287,13 @@ class LiftDragBase(ModelPlugin):
         sim.engine.physics.changed_body(CONTROL, body)
 
     def _motion(self, data: mujoco.MjData, body: int) -> tuple[Triple, Triple, list[float]]:
-        """The centre of pressure from the centre of mass [m], its velocity through the air [m/s], the link's axes."""
+        """Return the centre of pressure from the centre of mass [m], its air velocity [m/s] and the link's axes."""
         model = self.sim.mj_model
         axes: list[float] = data.xmat[body].tolist()
         px, py, pz = _turned(axes, self._centre)
         ox, oy, oz = data.xpos[body].tolist()
         gx, gy, gz = data.subtree_com[model.body_rootid[body]].tolist()
-        wx, wy, wz, vx, vy, vz = data.cvel[body].tolist()  # about the centre of mass of the whole tree
+        wx, wy, wz, vx, vy, vz = data.cvel[body].tolist()  # cvel refers to the centre of mass of the whole tree
         rx, ry, rz = ox + px - gx, oy + py - gy, oz + pz - gz
         ax, ay, az = self.sim.engine.wind.at(self.sim.tick)
         velocity = vx + wy * rz - wz * ry - ax, vy + wz * rx - wx * rz - ay, vz + wx * ry - wy * rx - az
@@ -301,7 +302,7 @@ class LiftDragBase(ModelPlugin):
 
 
 def _turned(axes: list[float], v: Triple) -> Triple:
-    """From link to world; the matrix by rows."""
+    """Rotate a vector from the link's frame into the world; the matrix is row-major."""
     x, y, z = v
     return (
         axes[0] * x + axes[1] * y + axes[2] * z,
@@ -320,10 +321,10 @@ def _turned_back(axes: list[float], v: Triple) -> Triple:
 
 
 class LiftDrag(LiftDragBase):
-    """Lift, drag and pitching moment of a wing, fin or blade, by straight lines over the angle of attack with a stall.
+    """Applies lift, drag and pitching moment to a wing, fin or blade, with coefficients that are linear up to a stall.
 
-    `<cp>` is in the link's frame. The air moves with the world's wind. Without `<reversible>` a stream from behind does
-    nothing.
+    `<cp>` is in the link's frame. The air moves with the world's wind. Without `<reversible>`, a stream from behind has
+    no effect.
     """
 
     options = OptionsOf(MomentAerofoilOptions)
@@ -332,9 +333,9 @@ class LiftDrag(LiftDragBase):
 
 
 class LiftDragPlugin(LiftDragBase):
-    """Lift and drag of a wing, fin or blade, from whichever side the stream comes; it makes no pitching moment.
+    """Applies lift and drag to a wing, fin or blade, for a stream from any side; it applies no pitching moment.
 
-    `<cp>` is seen from the link's centre of mass.
+    `<cp>` is relative to the link's centre of mass.
     """
 
     filenames = ("libLiftDragPlugin.so",)

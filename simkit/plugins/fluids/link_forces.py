@@ -1,4 +1,4 @@
-"""Read the motion of many links and write the forces on them in one go, step by step."""
+"""Read the motion of many links and apply forces to them, with one array operation per step."""
 
 from __future__ import annotations
 
@@ -21,30 +21,34 @@ _YZX, _ZXY = [1, 2, 0], [2, 0, 1]
 
 
 def moving_data(sim: Simulation) -> mujoco.MjData:
-    """The engine's data with places and velocities computed; the step that follows goes on from there."""
+    """Return the engine's data with computed poses and velocities; the next step reuses these results."""
     physics = sim.engine.physics
     return physics.data if physics.fresh_velocities() else physics.fresh()
 
 
 def cross(a: Vector, b: Vector) -> Vector:
-    """Cross products of rows, shape (n, 3); for a few of them several times faster than NumPy's."""
+    """Return the cross products of rows, shape (n, 3); for few rows several times faster than NumPy's function."""
     found: Vector = a[:, _YZX] * b[:, _ZXY] - a[:, _ZXY] * b[:, _YZX]
     return found
 
 
 class PushedLinks:
-    """Links of the engine's present model, by scoped name; those that never move are left out. A handle.
+    """Movable links of the current compiled model; static links are left out. A deep copy returns the same object.
+
+    Args:
+        sim: Simulation of the links.
+        names: Scoped names of links.
 
     Attributes:
-        names: of the links that move.
-        bodies: their ids, shape (n,).
-        ids: the same as plain numbers.
+        names: Scoped names of the movable links.
+        bodies: Their MuJoCo body indices, shape (n,).
+        ids: The same indices as plain integers.
     """
 
     def __init__(self, sim: Simulation, names: Sequence[str]) -> None:
         self._sim, self._model = sim, sim.mj_model
         links = sim.engine.names.links
-        # whoever sets the pose of a movable static model moves it, no force does
+        # a static model with a settable pose (a mocap body) does not react to forces
         moving = [name for name in names if name in links and links[name].body > 0 and links[name].mocap < 0]
         self.names = tuple(moving)
         self.bodies = np.array([links[name].body for name in moving], dtype=np.intp)
@@ -59,22 +63,27 @@ class PushedLinks:
 
     @property
     def is_current(self) -> bool:
-        """Whether the engine's model is still the one that these ids are of."""
+        """True while the engine uses the compiled model of these indices."""
         return self._model is self._sim.mj_model
 
     def axes(self, data: mujoco.MjData) -> Vector:
-        """Rotation matrices link to world, shape (n, 3, 3)."""
+        """Return the rotation matrices from link to world, shape (n, 3, 3)."""
         matrices: Vector = data.xmat[self.bodies].reshape(-1, 3, 3)
         return matrices
 
     def velocities(self, data: mujoco.MjData) -> Vector:
-        """Of the link origins [m/s], world frame, shape (n, 3)."""
-        motion = data.cvel[self.bodies]  # about the centre of mass of the whole tree
+        """Return the velocities of the link origins [m/s], world frame, shape (n, 3)."""
+        motion = data.cvel[self.bodies]  # cvel refers to the centre of mass of the whole tree
         found: Vector = motion[:, 3:] + cross(motion[:, :3], data.xpos[self.bodies] - data.subtree_com[self._roots])
         return found
 
     def velocities_few(self, data: mujoco.MjData, places: list[list[float]]) -> list[Three]:
-        """The same in plain numbers, of links whose origins in the world are known."""
+        """Return the same velocities as plain numbers.
+
+        Args:
+            data: Engine data from `moving_data`.
+            places: World positions of the link origins [m].
+        """
         found = []
         middles = data.subtree_com[self._roots].tolist()
         for motion, (x, y, z), (a, b, c) in zip(data.cvel[self.bodies].tolist(), places, middles, strict=True):
@@ -84,39 +93,44 @@ class PushedLinks:
         return found
 
     def push(self, data: mujoco.MjData, forces: Vector, torques: Vector | None = None) -> None:
-        """For the next step only, besides what else pushes.
+        """Add forces and torques for the next step only.
 
         Args:
-            data: as `moving_data` gives it.
-            forces: at the centres of mass [N], world frame, shape (n, 3).
-            torques: [N·m], world frame, shape (n, 3).
+            data: Engine data from `moving_data`.
+            forces: Forces at the centres of mass [N], world frame, shape (n, 3).
+            torques: Torques [N·m], world frame, shape (n, 3).
         """
         wrenches = np.zeros((len(self.bodies), 6))
         wrenches[:, :3] = forces
         if torques is not None:
             wrenches[:, 3:] = torques
-        felt = wrenches.any(axis=1)
-        if not felt.any():
+        is_pushed = wrenches.any(axis=1)
+        if not is_pushed.any():
             return
         bodies = self.bodies
-        if not felt.all():
-            bodies, wrenches = bodies[felt], wrenches[felt]
+        if not is_pushed.all():
+            bodies, wrenches = bodies[is_pushed], wrenches[is_pushed]
         data.xfrc_applied[bodies] += wrenches
-        self._tell(bodies.tolist())
+        self._notify_engine(bodies.tolist())
 
     def push_some(self, data: mujoco.MjData, wrenches: Mapping[int, Sequence[float]]) -> None:
-        """`push` of a few: by their place among the links, force [N] and torque [N·m] in the world frame."""
-        applied, told = data.xfrc_applied, []
+        """Add wrenches to a few links for the next step only.
+
+        Args:
+            data: Engine data from `moving_data`.
+            wrenches: Force [N] and torque [N·m] in the world frame, by index of the link.
+        """
+        applied, pushed_bodies = data.xfrc_applied, []
         for place, wrench in wrenches.items():
             if any(wrench):
                 body = self.ids[place]
                 applied[body] += wrench
-                told.append(body)
-        if told:
-            self._tell(told)
+                pushed_bodies.append(body)
+        if pushed_bodies:
+            self._notify_engine(pushed_bodies)
 
-    def _tell(self, bodies: list[int]) -> None:
-        """Says which were pushed."""
+    def _notify_engine(self, bodies: list[int]) -> None:
+        """Tell the engine which bodies have new forces, so that sleeping bodies wake up."""
         physics = self._sim.engine.physics
         physics.one_shot = True
         if physics.sleep.watches:

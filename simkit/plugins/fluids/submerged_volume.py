@@ -1,4 +1,4 @@
-"""Volume of a solid below a plane and its centroid: exact, for any slope of the plane."""
+"""Volume and centroid of the part of a solid below a plane: exact, for any slope of the plane."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ from simkit.pose import Vector
 from simkit.scene import Box, Capsule, Cone, Cylinder, Ellipsoid, Geometry, Mesh, Polyline, Sphere
 
 Triangles = Vector
-"""Corners of triangles, counter-clockwise seen from outside, shape (n, 3, 3)."""
+"""Corners of triangles, counter-clockwise if seen from outside, shape (n, 3, 3)."""
 
 
 Part = tuple[float, float, float, float]
-"""A volume [m³], and its volume times its centre [m⁴]."""
+"""Volume [m³], and volume times centre [m⁴]."""
 
 
 class Solid(ABC):
-    """A body that takes up space. Lengths in its own frame.
+    """Volume of a shape; lengths are in the frame of the shape.
 
     Attributes:
-        volume: [m³].
-        centre: of the volume [m], shape (3,).
-        reach: from the centre to its farthest point at most [m].
+        volume: Volume [m³].
+        centre: Centre of the volume [m], shape (3,).
+        reach: Upper bound of the distance from the centre to any point of the volume [m].
     """
 
     volume: float
@@ -37,19 +37,21 @@ class Solid(ABC):
 
     @abstractmethod
     def cut(self, x: float, y: float, z: float, height: float) -> Part:
-        """The part below a plane, in plain numbers: of a few hulls at a step, arrays would cost many times more.
+        """Compute the part below a plane in plain numbers, because arrays are many times slower for a few hulls.
 
         Args:
-            x, y, z: the plane's normal, a unit vector.
-            height: of the plane along it [m].
+            x: X component of the plane's unit normal.
+            y: Y component of the normal.
+            z: Z component of the normal.
+            height: Distance of the plane from the origin along the normal [m].
 
         Returns:
-            Its volume [m³], and its volume times its centre [m⁴].
+            The volume of the part [m³], and its volume times its centre [m⁴].
         """
 
 
 class EllipsoidSolid(Solid):
-    """An ellipsoid about the origin."""
+    """Ellipsoid around the origin."""
 
     def __init__(self, radii: tuple[float, float, float]) -> None:
         self._radii = x, y, z = radii
@@ -57,27 +59,27 @@ class EllipsoidSolid(Solid):
         self.centre, self.reach = np.zeros(3), max(radii)
 
     def cut(self, x: float, y: float, z: float, height: float) -> Part:
-        """As of the unit ball, which stretching along the axes makes this of."""
+        """Compute the part below a plane from a unit ball that is stretched along the axes."""
         rx, ry, rz = self._radii
         sx, sy, sz = rx * x, ry * y, rz * z
         length = math.sqrt(sx * sx + sy * sy + sz * sz)
-        depth = min(max(height / length + 1.0, 0.0), 2.0)  # of the cap, in a ball of radius 1
+        depth = min(max(height / length + 1.0, 0.0), 2.0)  # height of the cap, in a ball of radius 1
         volume = depth * depth * (3.0 - depth) / 4.0 * self.volume
         out = -0.75 * (2.0 - depth) ** 2 / (3.0 - depth) * volume / length
         return volume, out * rx * sx, out * ry * sy, out * rz * sz
 
 
 class Polyhedron(Solid):
-    """What triangles enclose.
+    """Volume that is enclosed by triangles.
 
     Attributes:
-        corners: of the triangles.
+        corners: Corners of the triangles.
     """
 
     def __init__(self, triangles: Triangles) -> None:
         self.corners = np.ascontiguousarray(triangles, float)
         volume, moment = _enclosed(self.corners)
-        if volume < 0:  # turned inside out
+        if volume < 0:  # the normals point inwards
             self.corners = np.ascontiguousarray(self.corners[:, ::-1])
         self.volume = abs(volume)
         self.centre = moment / volume if self.volume > 0 else np.zeros(3)
@@ -117,14 +119,14 @@ class Polyhedron(Solid):
                 lean += twelfth * (total * total + d * d + e * e + f * f)
             if dry == 0:
                 continue
-            # the tip of a corner that is alone on its side: a wet one is added, a dry one taken off again
+            # the tip at the corner that is alone on its side: a wet tip is added, a dry tip is subtracted
             is_alone_dry = dry == 1
             if (d > 0) != is_alone_dry:
                 if (e > 0) == is_alone_dry:
                     d, e, f, px, py, pz, qx, qy, qz, rx, ry, rz = e, f, d, qx, qy, qz, rx, ry, rz, px, py, pz
                 else:
                     d, e, f, px, py, pz, qx, qy, qz, rx, ry, rz = f, d, e, rx, ry, rz, px, py, pz, qx, qy, qz
-            u, v = d / (d - e), d / (d - f)  # of the edges, up to the plane
+            u, v = d / (d - e), d / (d - f)  # fractions of the two edges up to the plane
             flux *= -u * v if is_alone_dry else u * v
             volume += flux * d / 3
             twelfth = flux * d / 12
@@ -163,7 +165,7 @@ class Polyhedron(Solid):
 
 
 def _enclosed(corners: Triangles) -> tuple[float, Vector]:
-    """Volume and its moment, of the tetrahedra from the origin to triangles."""
+    """Return the volume and its first moment, summed over the tetrahedra from the origin to the triangles."""
     a, b, c = corners.transpose(1, 2, 0)
     sixth = a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])
     sixth /= 6.0
@@ -172,7 +174,7 @@ def _enclosed(corners: Triangles) -> tuple[float, Vector]:
 
 @dataclass(frozen=True, slots=True)
 class RevolvedSegment:
-    """A part of a solid of revolution about z: radius² = a + b·z + c·z² from `low` to `high`."""
+    """Segment of a solid of revolution about z: radius² = a + b·z + c·z² from `low` to `high`."""
 
     low: float
     high: float
@@ -181,35 +183,35 @@ class RevolvedSegment:
     c: float
 
     def square(self, z: Any) -> Any:
-        """radius² [m²]."""
+        """Return radius² [m²] at height z."""
         return self.a + z * (self.b + z * self.c)
 
     def between(self, middle: float, half: float) -> tuple[float, float]:
-        """Volume [m³] from middle − half to middle + half, and its integral of z [m⁴]."""
+        """Return the volume [m³] from middle − half to middle + half, and its integral of z [m⁴]."""
         slope, third = self.b + 2 * self.c * middle, half * half / 3
         volume = 2 * math.pi * half * (self.square(middle) + self.c * third)
         return volume, volume * middle + 2 * math.pi * half * slope * third
 
 
 _TURN = np.arange(3)
-_FEW: Final = 48  # triangles that are dealt with one by one
+_FEW: Final = 48  # triangles; up to this number a loop is faster than arrays
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
-# θ from -90° to 90°, z = sin θ: where a disc only just gets wet, the area is smooth in θ
+# substitution z = sin θ, θ from -90° to 90°: the wet area is smooth in θ where a disc begins to get wet
 _PLACES: Final = np.sin(_NODES * math.pi / 2)
 _SHARES: Final = _WEIGHTS * np.cos(_NODES * math.pi / 2) * math.pi / 2
 
 
 class SolidOfRevolution(Solid):
-    """A solid of revolution about z."""
+    """Solid of revolution about z."""
 
-    def __init__(self, stretches: tuple[RevolvedSegment, ...]) -> None:
-        self._stretches = stretches
+    def __init__(self, segments: tuple[RevolvedSegment, ...]) -> None:
+        self._segments = segments
         self.centre, self.volume, self.reach = np.zeros(3), 0.0, math.inf
         self.volume, *moment = self.cut(0.0, 0.0, 1.0, math.inf)
         self.centre = np.array(moment) / self.volume
         ends = [
             (z - self.centre[2]) ** 2 + max(s.a + z * (s.b + z * s.c), 0.0)
-            for s in stretches
+            for s in segments
             for z in np.linspace(s.low, s.high, 33).tolist()
         ]
         self.reach = math.sqrt(max(ends)) * 1.01
@@ -217,17 +219,17 @@ class SolidOfRevolution(Solid):
     def cut(self, x: float, y: float, z: float, height: float) -> Part:
         aside = math.hypot(x, y)
         volume = out = up = 0.0
-        for stretch in self._stretches:
-            for low, high in itertools.pairwise(_bounds(stretch, z, aside, height)):
+        for segment in self._segments:
+            for low, high in itertools.pairwise(_bounds(segment, z, aside, height)):
                 middle, half = (low + high) / 2, (high - low) / 2
-                room, edge = height - z * middle, aside * math.sqrt(max(stretch.square(middle), 0.0))
-                if room >= edge:  # every disc is wholly below
-                    whole, upwards = stretch.between(middle, half)
+                room, edge = height - z * middle, aside * math.sqrt(max(segment.square(middle), 0.0))
+                if room >= edge:  # every disc is completely below the plane
+                    whole, upwards = segment.between(middle, half)
                     volume += whole
                     up += upwards
                 elif room > -edge:
                     places = middle + half * _PLACES
-                    squares = np.maximum(stretch.square(places), 0.0)
+                    squares = np.maximum(segment.square(places), 0.0)
                     areas, moments = _segments(squares, height - z * places, aside)
                     volume += half * float(areas @ _SHARES)
                     up += half * float(areas @ (places * _SHARES))
@@ -238,7 +240,11 @@ class SolidOfRevolution(Solid):
 
 
 def _segments(squares: Vector, room: Vector, aside: float) -> tuple[Vector, Vector]:
-    """Of discs of radius² `squares`, the part with aside · u <= room: areas, and areas times their middle in u."""
+    """Integrate the wet part (aside · u <= room) of discs with radius² `squares`.
+
+    Returns:
+        The areas [m²], and the areas times their centroid in u [m³].
+    """
     radii = np.sqrt(squares)
     cut = np.clip(room / np.maximum(aside * radii, 1e-300), -1.0, 1.0)
     rest = 1.0 - cut * cut
@@ -247,34 +253,37 @@ def _segments(squares: Vector, room: Vector, aside: float) -> tuple[Vector, Vect
     return areas, -2 / 3 * squares * radii * rest * root
 
 
-def _bounds(stretch: RevolvedSegment, up: float, aside: float, height: float) -> list[float]:
-    """Where along the axis the plane enters or leaves the discs, with both ends: (height − up·z)² = aside²·radius²."""
+def _bounds(segment: RevolvedSegment, up: float, aside: float, height: float) -> list[float]:
+    """Return the ends of a segment, and the z between them where the plane reaches or leaves the rim of the discs.
+
+    These are the roots of (height − up·z)² = aside²·radius².
+    """
     found = []
     if math.isfinite(height):
         s = aside * aside
-        a, b, c = up * up - s * stretch.c, -2 * height * up - s * stretch.b, height * height - s * stretch.a
-        found = [z for z in _roots(a, b, c) if stretch.low < z < stretch.high]
-    return [stretch.low, *sorted(found), stretch.high]
+        a, b, c = up * up - s * segment.c, -2 * height * up - s * segment.b, height * height - s * segment.a
+        found = [z for z in _roots(a, b, c) if segment.low < z < segment.high]
+    return [segment.low, *sorted(found), segment.high]
 
 
 def _roots(a: float, b: float, c: float) -> list[float]:
-    """Real roots of a z² + b z + c."""
+    """Return the real roots of a z² + b z + c."""
     if abs(a) < 1e-14:
         return [-c / b] if abs(b) > 1e-14 else []
     inside = b * b - 4 * a * c
     if inside < 0:
-        # a plane across the axis touches every disc at once: rounding must not lose that
+        # a plane parallel to the slope has a double root, which rounding can turn into none
         return [-b / (2 * a)] if inside > -1e-12 * b * b else []
     half = -(b + math.copysign(math.sqrt(inside), b)) / 2
     return [half / a, c / half] if half else [0.0]
 
 
 def solid_of(shape: Geometry, triangles: Callable[[Geometry], Triangles | None]) -> Solid | None:
-    """The solid that a shape is; None for what takes up no space (a plane, a heightmap, an open mesh).
+    """Return the solid of a shape; None for shapes without a volume (plane, heightmap, open mesh).
 
     Args:
-        shape: of a collision.
-        triangles: gives those of a mesh or an extruded outline.
+        shape: Geometry of a collision.
+        triangles: Callback that returns the triangles of a mesh or an extruded outline.
     """
     match shape:
         case Box(size=(x, y, z)):
@@ -303,7 +312,7 @@ def solid_of(shape: Geometry, triangles: Callable[[Geometry], Triangles | None])
 
 
 def _box(x: float, y: float, z: float) -> Triangles:
-    """A box of half sizes, as twelve triangles."""
+    """Return the twelve triangles of a box with these half sizes."""
     triangles = []
     for axis in range(3):
         u, v = (axis + 1) % 3, (axis + 2) % 3

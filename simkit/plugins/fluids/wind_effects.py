@@ -1,6 +1,6 @@
 """Wind that pushes links: `gz::sim::systems::WindEffects` and Gazebo Classic's `libWindPlugin.so`.
 
-How strongly it pushes at which place is a number, or pieces of space with a sum of polynomials in each.
+The strength of the push is a number, or a field of boxes with a sum of polynomials in each.
 """
 
 from __future__ import annotations
@@ -35,18 +35,23 @@ if TYPE_CHECKING:
 WIND: Final = "simkit_msgs/msg/Wind"
 VECTOR: Final = "geometry_msgs/msg/Vector3"
 INFO: Final = "simkit_msgs/srv/WindInfo"
-_FEW: Final = 8  # links, up to which plain numbers are faster than arrays
+_FEW: Final = 8  # links; up to this number plain numbers are faster than arrays
 Four = tuple[float, float, float, float]
 _AXES: Final = ("px", "qy", "rz")
 _ZERO: Final[Four] = (0.0, 0.0, 0.0, 0.0)
 _ONE: Final = ((0.0, 0.0, 0.0, 1.0), _ZERO, _ZERO)
-_FARTHEST: Final = 1e6  # [m], where a polynomial is asked whether it is negative
-_ALLOWED: Final = "at least 0 everywhere: wind pushes along, not against"
+_FARTHEST: Final = 1e6  # [m], largest coordinate at which a polynomial is checked for negative values
+_ALLOWED: Final = "a factor of at least 0 everywhere, because wind cannot push against its direction"
 
 
 @dataclass(frozen=True, slots=True)
 class Interval:
-    """Of one coordinate [m]."""
+    """Interval of one coordinate [m].
+
+    Attributes:
+        low, high: Ends of the interval.
+        has_low, has_high: True if the end belongs to the interval.
+    """
 
     low: float = -math.inf
     high: float = math.inf
@@ -56,12 +61,12 @@ class Interval:
 
 @dataclass(frozen=True, slots=True)
 class FieldPiece:
-    """k · (p(x) + q(y) + r(z)) in a box of space.
+    """Polynomial k · (p(x) + q(y) + r(z)) in a box of space.
 
     Attributes:
-        where: intervals of x, y and z.
-        factor: k.
-        terms: coefficients of p, q and r, from the cube down.
+        where: Intervals of x, y and z.
+        factor: Factor k.
+        terms: Coefficients of p, q and r, highest power (cubic) first.
     """
 
     where: tuple[Interval, Interval, Interval]
@@ -69,11 +74,13 @@ class FieldPiece:
     terms: tuple[Four, Four, Four]
 
     def at(self, places: Vector) -> Vector:
+        """Return the values at points [m], shape (n, 3), as an array of shape (n,)."""
         a, b, c, d = np.array(self.terms).T
         found: Vector = self.factor * (((a * places + b) * places + c) * places + d).sum(axis=1)
         return found
 
     def holds(self, places: Vector) -> npt.NDArray[np.bool_]:
+        """Return the mask of the points [m], shape (n, 3), that are in the box."""
         inside = np.ones(len(places), bool)
         for values, interval in zip(places.T, self.where, strict=True):
             inside &= values >= interval.low if interval.has_low else values > interval.low
@@ -81,7 +88,7 @@ class FieldPiece:
         return inside
 
     def one_at(self, place: Sequence[float]) -> float | None:
-        """At one place; None where this piece does not hold it."""
+        """Return the value at one point, or None if the point is outside the box."""
         for value, interval in zip(place, self.where, strict=True):
             if not (value >= interval.low if interval.has_low else value > interval.low):
                 return None
@@ -92,25 +99,25 @@ class FieldPiece:
 
     @property
     def least(self) -> float:
-        """The smallest value in the box, as far as `_FARTHEST` out."""
+        """Smallest value in the box, up to coordinates of `_FARTHEST`."""
         extremes = [_extremes(c, span) for c, span in zip(self.terms, self.where, strict=True)]
         return min(self.factor * sum(corner) for corner in itertools.product(*extremes))
 
 
 @dataclass(frozen=True, slots=True)
 class WindField:
-    """The scaling factor of the wind's force [1/s]: of the first piece that holds a place, zero outside of all.
+    """Scaling factor of the wind's force [1/s] over space; the first piece that contains a point counts.
 
     Attributes:
-        pieces: where it is not the same everywhere.
-        everywhere: where it is.
+        pieces: Pieces of a field that varies in space; outside all of them the factor is zero.
+        everywhere: Value of a field without pieces.
     """
 
     pieces: tuple[FieldPiece, ...] = ()
     everywhere: float = 0.0
 
     def at(self, places: Vector) -> Vector | float:
-        """At places [m], shape (n, 3): shape (n,), or one for all."""
+        """Return the factors at points [m], shape (n, 3): an array of shape (n,), or one number if constant."""
         if not self.pieces:
             return self.everywhere
         found, is_open = np.zeros(len(places)), np.ones(len(places), bool)
@@ -122,7 +129,7 @@ class WindField:
         return found
 
     def one_at(self, place: Sequence[float]) -> float:
-        """At one place [m], in plain numbers."""
+        """Return the factor at one point [m], in plain numbers."""
         for piece in self.pieces:
             found = piece.one_at(place)
             if found is not None:
@@ -131,7 +138,7 @@ class WindField:
 
 
 class FieldPieceOptions(Options):
-    """A sum of polynomials: k · (p(x) + q(y) + r(z))."""
+    """Options of a sum of polynomials: k · (p(x) + q(y) + r(z))."""
 
     k: float = number(1.0, minimum=-1e9, maximum=1e9)
     px: tuple[float, ...] = vector(_ZERO)
@@ -140,17 +147,17 @@ class FieldPieceOptions(Options):
 
 
 class WindFieldOptions(FieldPieceOptions):
-    """The `<force_approximation_scaling_factor>` block."""
+    """Options of the `<force_approximation_scaling_factor>` block."""
 
     when: tuple[FieldPieceOptions, ...] = blocks(FieldPieceOptions)
 
 
 def read_field(params: Params, quirks: bool) -> WindField:
-    """A plugin's `<force_approximation_scaling_factor>`; what is wrong is reported.
+    """Return the field of a plugin's `<force_approximation_scaling_factor>`, and report invalid values.
 
     Args:
-        params: the plugin's.
-        quirks: a plain number counts squared, as gz has it.
+        params: Parameters of the plugin.
+        quirks: True to square a plain number, as Gazebo does.
     """
     name = "force_approximation_scaling_factor"
     block = params.child(name)
@@ -162,10 +169,10 @@ def read_field(params: Params, quirks: bool) -> WindField:
     options = WindFieldOptions(block)
     whens: tuple[FieldPieceOptions, ...] = options.when
     field = WindField(tuple(_piece(when) for when in whens) if whens else (_piece(options, is_bounded=False),))
-    for piece, one in zip(field.pieces, whens or (options,), strict=True):
+    for piece, piece_options in zip(field.pieces, whens or (options,), strict=True):
         if piece.least < -1e-9:
-            text = f"found <{one.params.name}> that comes down to {piece.least:g}, allowed is {_ALLOWED}"
-            one.params.error("SK-PARAM-002", text)
+            text = f"found <{piece_options.params.name}> with a minimum of {piece.least:g}, allowed is {_ALLOWED}"
+            piece_options.params.error("SK-PARAM-002", text)
     return field
 
 
@@ -180,7 +187,7 @@ def _piece(options: FieldPieceOptions, is_bounded: bool = True) -> FieldPiece:
 
 
 def _number_of(block: Params) -> float:
-    """The number that an element itself is."""
+    """Return the number that is the text of an element, or 0 after an error."""
     try:
         value = float(block.value)
     except ValueError:
@@ -198,10 +205,10 @@ def _interval(block: Params, axis: str) -> Interval:
 
 
 def _bound(block: Params, closed: str, opened: str, default: float) -> tuple[float, bool]:
-    given = [(name, block.attribute(name)) for name in (closed, opened) if block.attribute(name)]
-    if len(given) == 2:
+    bounds = [(name, block.attribute(name)) for name in (closed, opened) if block.attribute(name)]
+    if len(bounds) == 2:
         block.error("SK-PARAM-002", f"found {closed} and {opened} on one <{block.name}>, allowed is one of the two")
-    for name, text in given[:1]:
+    for name, text in bounds[:1]:
         try:
             value = float(text)
         except ValueError:
@@ -213,7 +220,7 @@ def _bound(block: Params, closed: str, opened: str, default: float) -> tuple[flo
 
 
 def _extremes(terms: Four, span: Interval) -> list[float]:
-    """Values of a cubic at the ends of an interval and where its slope is zero within."""
+    """Return the values of a cubic at the ends of an interval and at its extrema inside."""
     low, high = max(span.low, -_FARTHEST), min(span.high, _FARTHEST)
     slope = np.polyder(np.poly1d(terms)).coeffs
     turns = [float(r.real) for r in np.roots(slope) if abs(r.imag) < 1e-12] if np.any(slope) else []
@@ -228,10 +235,10 @@ class WindEffectsOptions(GustOptions):
 
 
 class WindPluginBase(WorldPlugin):
-    """Makes the world's wind rise, turn, swell and flutter, and pushes the links with `<enable_wind>` by it.
+    """Changes the world's wind over time, with gusts and noise, and pushes the links that have `<enable_wind>`.
 
-    A link of mass m feels m · factor · (velocity of the air − its own) at its centre of mass. `/world/<world>/wind`
-    sets the wind that is asked for, `/world/<world>/wind_info` tells it.
+    The force on a link of mass m is m · factor · (air velocity − link velocity), at its centre of mass. The topic
+    `/world/<world>/wind` sets the mean wind, and the service `/world/<world>/wind_info` returns it.
     """
 
     endpoints = (
@@ -247,53 +254,53 @@ class WindPluginBase(WorldPlugin):
         self._field = WindField(everywhere=1.0)
         if self.has_field:
             self._field = read_field(params, parent.world.gazebo_quirks)
-        self._seed: WindTarget = self._gusts.start(parent.world.wind)
+        self._target: WindTarget = self._gusts.start(parent.world.wind)
         self._streams = {channel: self.random(channel, 3) for channel in ("wind", "wind bias")}
-        self._felt: tuple[int, Velocity] | None = None
+        self._last_velocity: tuple[int, Velocity] | None = None
         self._links: PushedLinks | None = None
         self._bind()
         self._is_second = any(isinstance(plugin, WindPluginBase) for plugin in self._before())
         if self._is_second:
-            message = f"plugin {self.name!r}: the world has a wind plugin already; this one has no effect"
-            params.diagnostics.warning("SK-PLUGIN-111", message, self.where, "leave one of them")
+            message = f"plugin {self.name!r}: the world already has a wind plugin; this one has no effect"
+            params.diagnostics.warning("SK-PLUGIN-111", message, self.where, "remove one of them")
             return
         parent.engine.wind.source = self.velocity
         base = valid_topic(f"/world/{parent.world.name}")
         self.listen(f"{base}/wind", (WIND, VECTOR), self._on_wind)
-        self.offer(f"{base}/wind_info", INFO, self._tell)
+        self.offer(f"{base}/wind_info", INFO, self._on_wind_info)
 
     @property
     def before_step_rate(self) -> float | None:
-        """Never while nothing feels the wind; after a spawn or a removal that is looked at anew."""
+        """Never while the wind pushes no link; evaluated again after a spawn or a removal."""
         is_idle = self._links is not None and self._links.is_current and (not len(self._links) or self._is_calm)
         return NEVER if is_idle or self._is_second else None
 
     @before_step_rate.setter
     def before_step_rate(self, rate: float | None) -> None:
-        raise AttributeError("a wind is called as long as something feels it")
+        raise AttributeError("before_step_rate of a wind plugin is read-only: it follows the links in the wind")
 
     def _before(self) -> list[AttachedPlugin]:
-        """The plugins that stand before this one."""
+        """Return the plugins that come before this one."""
         return list(itertools.takewhile(lambda plugin: plugin is not self, self.sim.engine.structure.all_plugins()))
 
     @property
     def _is_calm(self) -> bool:
-        """Off: nothing is pushed, and what moves is not braked."""
-        return not self._seed.blows
+        """True while the wind is off: links are neither pushed nor braked."""
+        return not self._target.blows
 
     # ------------------------------------------------------------------ what it is
 
     def velocity(self, tick: int) -> Velocity:
-        """Velocity of the air [m/s], world frame, in the step that follows a tick."""
-        if self._felt is None or self._felt[0] != tick:
-            self._felt = tick, self._gusts.at(self._seed, tick, self._draw)
-        return self._felt[1]
+        """Return the velocity of the air [m/s], world frame, in the step after a tick."""
+        if self._last_velocity is None or self._last_velocity[0] != tick:
+            self._last_velocity = tick, self._gusts.at(self._target, tick, self._draw)
+        return self._last_velocity[1]
 
     def _draw(self, channel: str, index: int) -> Vector:
         return self._streams[channel].normal(index)
 
     def before_step(self) -> None:
-        """Pushes for the step to come."""
+        """Push the links for the next step."""
         if self._links is None or not self._links.is_current:
             self._bind()
             self.sim.engine.reschedule()
@@ -309,7 +316,7 @@ class WindPluginBase(WorldPlugin):
         links.push(data, (strength * air.T).T)
 
     def _push_few(self, links: PushedLinks, data: mujoco.MjData) -> None:
-        """The same in plain numbers."""
+        """Push few links, computed with plain numbers."""
         x, y, z = self.velocity(self.sim.tick)
         field, everywhere = self._field, None if self._field.pieces else self._field.everywhere
         places = data.xpos[links.bodies].tolist()
@@ -328,9 +335,9 @@ class WindPluginBase(WorldPlugin):
         self._masses = np.array([windy[name].inertial.mass for name in self._links.names], float)
 
     def set_state(self, state: Mapping[str, object]) -> None:
-        """Back to a state from `get_state`."""
+        """Restore a state from `get_state`."""
         super().set_state(state)
-        self._felt = None
+        self._last_velocity = None
 
     # ------------------------------------------------------------------ commands
 
@@ -342,14 +349,14 @@ class WindPluginBase(WorldPlugin):
             return
         blows = bool(getattr(message, "enable_wind", True))
         for sensor in self.sim.engine.structure.all_sensors():
-            sensor.take_held()  # what was held was measured in the old one
-        self._seed = self._gusts.changed(self._seed, velocity, blows, self.sim.tick)
-        self._felt = None
+            sensor.take_held()  # pending readings belong to the old wind
+        self._target = self._gusts.changed(self._target, velocity, blows, self.sim.tick)
+        self._last_velocity = None
         self.sim.engine.reschedule()
 
-    def _tell(self, request: object) -> dict[str, object]:
-        seed = self._seed
-        wind = {"linear_velocity": _fields(seed.velocity), "enable_wind": seed.blows}
+    def _on_wind_info(self, request: object) -> dict[str, object]:
+        target = self._target
+        wind = {"linear_velocity": _fields(target.velocity), "enable_wind": target.blows}
         return {"wind": wind, "velocity": _fields(self.velocity(self.sim.tick))}
 
 
@@ -358,9 +365,9 @@ def _fields(vector: Velocity) -> dict[str, float]:
 
 
 class WindEffects(WindPluginBase):
-    """The world's wind, as it rises, turns, swells and flutters; it pushes links with `<enable_wind>`.
+    """Changes the world's wind over time, with gusts and noise, and pushes the links that have `<enable_wind>`.
 
-    `<force_approximation_scaling_factor>` [1/s] is a number, or a sum of polynomials by `<when>`.
+    `<force_approximation_scaling_factor>` [1/s] is a number, or a sum of polynomials for each `<when>`.
     """
 
     options = OptionsOf(WindEffectsOptions)
@@ -369,9 +376,9 @@ class WindEffects(WindPluginBase):
 
 
 class WindPlugin(WindPluginBase):
-    """The world's wind, as it rises, turns, swells and flutters; it pushes links with `<enable_wind>`.
+    """Changes the world's wind over time, with gusts and noise, and pushes the links that have `<enable_wind>`.
 
-    What is asked for is a wind over the ground and a vertical one, each of its own strength.
+    The horizontal and the vertical wind have separate strengths.
     """
 
     filenames = ("libWindPlugin.so",)

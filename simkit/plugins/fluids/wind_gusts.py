@@ -1,4 +1,4 @@
-"""Wind of a world over time, by gz's model: it rises, turns, swells and has noise."""
+"""Wind of a world over time, by Gazebo's model: rise time, sine variation and noise."""
 
 from __future__ import annotations
 
@@ -14,12 +14,18 @@ if TYPE_CHECKING:
     from simkit.pose import Vector
 
 Velocity = tuple[float, float, float]
-_BACK = 360.0  # degrees
+_FULL_TURN = 360.0  # degrees
 
 
 @dataclass(frozen=True, slots=True)
 class WindNoise:
-    """White noise: `<noise>` with mean, stddev, bias_mean, bias_stddev and precision, in the unit of what it is on."""
+    """White noise of a `<noise>` block, in the unit of the quantity to which it is added.
+
+    Attributes:
+        mean, stddev: Mean and standard deviation of the noise.
+        bias_mean, bias_stddev: Mean and standard deviation of a constant bias.
+        precision: Step to which the value is rounded; 0 for none.
+    """
 
     mean: float = 0.0
     stddev: float = 0.0
@@ -28,7 +34,7 @@ class WindNoise:
     precision: float = 0.0
 
     def on(self, value: float, draw: Callable[[], float], bias: Callable[[], float]) -> float:
-        """The value with it; nothing is drawn that has no deviation."""
+        """Return the value with noise; no random number is drawn for a zero deviation."""
         value += self.mean + self.bias_mean
         if self.bias_stddev > 0:
             value += self.bias_stddev * bias()
@@ -39,13 +45,13 @@ class WindNoise:
 
 @dataclass(frozen=True, slots=True)
 class WindResponse:
-    """How one of the three follows what is asked for.
+    """Response of strength, heading or vertical speed to its target.
 
     Attributes:
-        rise: time constant [s].
-        swing: of a sine; for strength a part of itself, for the heading degrees.
-        period: of the sine [s].
-        flutter: noise.
+        rise: Time constant [s].
+        swing: Amplitude of a sine: relative for the strength, in degrees for the heading.
+        period: Period of the sine [s].
+        flutter: Noise.
     """
 
     rise: float = 1.0
@@ -53,25 +59,33 @@ class WindResponse:
     period: float = 1.0
     flutter: WindNoise | None = None
 
-    def follow(self, mean: float, asked: float, updates: int, step: float) -> float:
-        """Where the filter stands after some updates; one that rises within a step is there at once."""
+    def follow(self, mean: float, target: float, updates: int, step: float) -> float:
+        """Return the filter's value after some updates.
+
+        Args:
+            mean: Value before the updates.
+            target: Value that the filter approaches; with a time constant below one step it is reached at once.
+            updates: Number of updates.
+            step: Time between updates [s].
+        """
         left = 1.0 - min(step / self.rise, 1.0)
-        return asked + (mean - asked) * left**updates
+        return target + (mean - target) * left**updates
 
     def swings(self, time: float) -> float:
+        """Return the value of the sine at a time [s]."""
         return self.swing * math.sin(2 * math.pi * time / self.period) if self.swing else 0.0
 
 
 @dataclass(frozen=True, slots=True)
 class WindTarget:
-    """What is asked for, and where the filters stood when it was.
+    """Commanded wind, and the filter values at the time of the command.
 
     Attributes:
-        velocity: asked for [m/s], world frame.
-        blows: whether the wind is on; off, the filters stand still.
-        tick: since when.
-        strength, rising: means over the ground and vertical [m/s].
-        heading: mean [degrees]; None before the first update.
+        velocity: Commanded velocity [m/s], world frame.
+        blows: True while the wind is on; the filters keep their values while it is off.
+        tick: Tick of the command.
+        strength, rising: Filtered horizontal and vertical speeds at the command [m/s].
+        heading: Filtered heading at the command [degrees]; None before the first update.
     """
 
     velocity: Velocity
@@ -84,11 +98,11 @@ class WindTarget:
 
 @dataclass(frozen=True, slots=True)
 class Gusts:
-    """The wind of a world over time.
+    """Model of a world's wind over time.
 
     Attributes:
-        strength, heading, rising: over the ground, its direction, vertical.
-        step: of the physics [s].
+        strength, heading, rising: Responses of horizontal speed, horizontal direction and vertical speed.
+        step: Physics step [s].
     """
 
     strength: WindResponse
@@ -97,60 +111,67 @@ class Gusts:
     step: float
 
     def start(self, velocity: Velocity) -> WindTarget:
-        """A calm, with a wind that is asked for."""
+        """Return the initial state: no wind yet, with this velocity [m/s] as the target."""
         return WindTarget(velocity)
 
-    def means(self, seed: WindTarget, tick: int) -> tuple[float, float, float]:
-        """Where the filters stand in the step that follows a tick: strength, heading [degrees], vertical speed."""
-        updates = tick - seed.tick + 1 if seed.blows else 0
+    def means(self, target: WindTarget, tick: int) -> tuple[float, float, float]:
+        """Return strength [m/s], heading [degrees] and vertical speed [m/s] of the filters in the step after a tick."""
+        updates = tick - target.tick + 1 if target.blows else 0
         if updates <= 0:
-            return seed.strength, seed.heading or 0.0, seed.rising
-        x, y, z = seed.velocity
+            return target.strength, target.heading or 0.0, target.rising
+        x, y, z = target.velocity
         heading = math.degrees(math.atan2(y, x))
-        if seed.heading is not None:  # the short way round
-            turn = math.remainder(heading - seed.heading, _BACK)
-            heading = self.heading.follow(seed.heading, seed.heading + turn, updates, self.step)
+        if target.heading is not None:  # turn in the shorter direction
+            turn = math.remainder(heading - target.heading, _FULL_TURN)
+            heading = self.heading.follow(target.heading, target.heading + turn, updates, self.step)
         return (
-            self.strength.follow(seed.strength, math.hypot(x, y), updates, self.step),
+            self.strength.follow(target.strength, math.hypot(x, y), updates, self.step),
             heading,
-            self.rising.follow(seed.rising, z, updates, self.step),
+            self.rising.follow(target.rising, z, updates, self.step),
         )
 
-    def changed(self, seed: WindTarget, velocity: Velocity, blows: bool, tick: int) -> WindTarget:
-        """What is asked for from a tick on."""
-        strength, heading, rising = self.means(seed, tick - 1)
-        has_begun = seed.heading is not None or (seed.blows and tick > seed.tick)
-        return WindTarget(velocity, blows, tick, strength, rising, heading if has_begun else None)
-
-    def at(self, seed: WindTarget, tick: int, draw: Callable[[str, int], Vector]) -> Velocity:
-        """Velocity of the air [m/s] in the step that follows a tick; none while it is off.
+    def changed(self, target: WindTarget, velocity: Velocity, blows: bool, tick: int) -> WindTarget:
+        """Return the state for a new target from a tick on.
 
         Args:
-            seed: what is asked for.
-            tick: any from the seed's on.
-            draw: three standard normal numbers by channel and index.
+            target: State before the change.
+            velocity: New target [m/s], world frame.
+            blows: True to switch the wind on.
+            tick: Tick of the change.
         """
-        if not seed.blows:
+        strength, heading, rising = self.means(target, tick - 1)
+        has_begun = target.heading is not None or (target.blows and tick > target.tick)
+        return WindTarget(velocity, blows, tick, strength, rising, heading if has_begun else None)
+
+    def at(self, target: WindTarget, tick: int, draw: Callable[[str, int], Vector]) -> Velocity:
+        """Return the velocity of the air [m/s] in the step after a tick; zero while the wind is off.
+
+        Args:
+            target: State since the last command.
+            tick: Any tick from the state's tick on.
+            draw: Callback that returns three standard normal numbers for a channel and an index.
+        """
+        if not target.blows:
             return 0.0, 0.0, 0.0
-        strength, heading, rising = self.means(seed, tick)
+        strength, heading, rising = self.means(target, tick)
         time = (tick + 1) * self.step
         strength *= 1.0 + self.strength.swings(time)
         heading += self.heading.swings(time)
 
-        def fluttered(course: WindResponse, value: float, index: int) -> float:
-            if course.flutter is None:
+        def add_noise(response: WindResponse, value: float, index: int) -> float:
+            if response.flutter is None:
                 return value
-            return course.flutter.on(
+            return response.flutter.on(
                 value, lambda: float(draw("wind", tick)[index]), lambda: float(draw("wind bias", 0)[index])
             )
 
-        strength = fluttered(self.strength, strength, 0)
-        heading = math.radians(fluttered(self.heading, heading, 1))
-        return strength * math.cos(heading), strength * math.sin(heading), fluttered(self.rising, rising, 2)
+        strength = add_noise(self.strength, strength, 0)
+        heading = math.radians(add_noise(self.heading, heading, 1))
+        return strength * math.cos(heading), strength * math.sin(heading), add_noise(self.rising, rising, 2)
 
 
 class WindNoiseOptions(Options):
-    """A `<noise>` block."""
+    """Options of a `<noise>` block."""
 
     type_attribute: str = text(element="@type")
     type: str = text("none")
@@ -164,58 +185,58 @@ class WindNoiseOptions(Options):
 
 
 class _SineOptions(Options):
-    """The period of a `<sin>` block."""
+    """Options shared by all `<sin>` blocks."""
 
     period: float = number(1.0, "s", minimum=1e-6)
 
 
 class StrengthSineOptions(_SineOptions):
-    """The `<sin>` block of a strength."""
+    """Options of the `<sin>` block of a strength."""
 
     amplitude_percent: float = number(0.0, minimum=-1e6, maximum=1e6)
 
 
 class HeadingSineOptions(_SineOptions):
-    """The `<sin>` block of a heading."""
+    """Options of the `<sin>` block of a heading."""
 
     amplitude: float = number(0.0, "deg", minimum=-1e6, maximum=1e6)
 
 
 class VerticalWindOptions(Options):
-    """The `<vertical>` block."""
+    """Options of the `<vertical>` block."""
 
     time_for_rise: float = number(1.0, "s", minimum=1e-6)
     noise: WindNoiseOptions = block(WindNoiseOptions)
 
 
 class WindStrengthOptions(VerticalWindOptions):
-    """The `<magnitude>` block."""
+    """Options of the `<magnitude>` block."""
 
     sin: StrengthSineOptions = block(StrengthSineOptions)
 
 
 class WindHeadingOptions(VerticalWindOptions):
-    """The `<direction>` block."""
+    """Options of the `<direction>` block."""
 
     sin: HeadingSineOptions = block(HeadingSineOptions)
 
 
 class HorizontalWindOptions(Options):
-    """The `<horizontal>` block."""
+    """Options of the `<horizontal>` block."""
 
     magnitude: WindStrengthOptions = block(WindStrengthOptions)
     direction: WindHeadingOptions = block(WindHeadingOptions)
 
 
 class GustOptions(Options):
-    """How a world's wind changes."""
+    """Options of a wind that changes over time."""
 
     horizontal: HorizontalWindOptions = block(HorizontalWindOptions)
     vertical: VerticalWindOptions = block(VerticalWindOptions)
 
 
 def read_gusts(options: GustOptions, step: float) -> Gusts:
-    """The `<horizontal>` and `<vertical>` of a wind plugin; what is wrong is reported."""
+    """Return the wind model of the `<horizontal>` and `<vertical>` blocks, and report invalid values."""
     strength, heading, vertical = options.horizontal.magnitude, options.horizontal.direction, options.vertical
     return Gusts(
         strength=WindResponse(
@@ -241,7 +262,7 @@ def _read_noise(options: WindNoiseOptions) -> WindNoise | None:
         return None
     for name in ("dynamic_bias_stddev", "dynamic_bias_correlation_time"):
         if getattr(options, name):
-            message = f"<{name}> has no effect on wind, in Gazebo neither; <time_for_rise> and <sin> make it slow"
+            message = f"<{name}> has no effect on wind, as in Gazebo; use <time_for_rise> and <sin> for slow changes"
             noise.diagnostics.warning("SK-PLUGIN-111", message, noise.block(name).where)
     precision = options.precision if kind == kinds[1] else 0.0
     return WindNoise(options.mean, options.stddev, options.bias_mean, options.bias_stddev, precision)

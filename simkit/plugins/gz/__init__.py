@@ -1,5 +1,6 @@
-"""Systems of gz-sim, one kind a file.
+"""Systems of gz-sim, one kind in each file.
 
-A system enters as the plugin of a file, by its library or its class; it leaves topics and commands as in Gazebo. What a
-system shares with its twin of Gazebo Classic lies in `drives`, `joints` and `fluids`, never here.
+A system is loaded as a plugin of a world file, by the name of its library or its class. It has the same topics and
+commands as in Gazebo. Code that a system shares with its Gazebo Classic counterpart is in `drives`, `joints` and
+`fluids`.
 """

@@ -1,4 +1,4 @@
-"""gz's Ackermann steering: `gz::sim::systems::AckermannSteering`."""
+"""Ackermann steering of Gazebo: `gz::sim::systems::AckermannSteering`."""
 
 from __future__ import annotations
 
@@ -30,20 +30,20 @@ if TYPE_CHECKING:
     from simkit.runtime import Model
     from simkit.scene import SceneModel
 
-_STRAIGHT = 1e-3  # rate of turning [rad/s] below which gz drives straight on
+_STRAIGHT = 1e-3  # turning rate [rad/s] below which Gazebo drives straight ahead
 _SIDES = ("left", "right")
 
 
 class AckermannOdometry(TravelOdometry):
-    """Of the mean of two wheels' turns and of two wheels' steering, in the middle of the unsteered axle.
+    """Odometry of the middle of the unsteered axle, from the mean wheel angle and the mean steering angle.
 
-    Values noted are angles of the left and right wheel and of the left and right steering. The twist is that of the
-    last step, as Gazebo's.
+    The stored angles are those of the left and right wheel and of the left and right steering joint. The twist is that
+    of the last step, as in Gazebo.
 
     Args:
-        radius: of the wheels [m].
-        base: between the axles [m].
-        step: from one noting to the next [s].
+        radius: Radius of the wheels [m].
+        base: Distance between the axles [m].
+        step: Time between two calls of `note` [s].
     """
 
     stride = mean_steps = 1
@@ -53,7 +53,7 @@ class AckermannOdometry(TravelOdometry):
         self._radius, self._base = radius, base
 
     def motion(self, before: Angles, after: Angles) -> Motion:
-        """Along the arc that the steering says."""
+        """Return the displacement along the arc of the mean steering angle."""
         ahead = self._radius * ((after[0] - before[0]) + (after[1] - before[1])) / 2
         return ahead, 0.0, ahead * math.tan((after[2] + after[3]) / 2) / self._base
 
@@ -88,9 +88,9 @@ class AckermannSteeringOptions(SpeedLimitOptions):
 class AckermannSteering(TwistDrive):
     """Steers two front wheels and drives wheels behind them (or all) from `/model/<model>/cmd_vel`.
 
-    With `<steering_only>` it steers alone, by an angle on `/model/<model>/steer_angle`, or with `<use_actuator_msg>` by
-    position number `<actuator_number>` on `/actuators`. Odometry is by the wheels' turns and the steering's angles; it
-    starts at zero, in the middle of the rear axle.
+    With `<steering_only>` the plugin only steers. The angle comes on `/model/<model>/steer_angle`, or with
+    `<use_actuator_msg>` as position number `<actuator_number>` on `/actuators`. The odometry is computed from the wheel
+    angles and the steering angles; it starts at zero, in the middle of the rear axle.
     """
 
     endpoints = (
@@ -116,19 +116,19 @@ class AckermannSteering(TwistDrive):
         if not self._only:
             self._width = self.options.kingpin_width
             self._radius = self.options.wheel_radius
-            # gz publishes at every step where the frequency is zero
+            # a frequency of zero means every step, as in Gazebo
             self.after_step_rate = self.options.odom_publish_frequency
             named = {"left wheel": self.options.left_joint, "right wheel": self.options.right_joint}
             self.add_wheels(scene, builder, named)
 
     def _prepare_steering(
-        self, element: str, scene: SceneModel, params: Params, builder: SpecBuilder
+        self, name: str, scene: SceneModel, params: Params, builder: SpecBuilder
     ) -> list[tuple[str, ActuatorRef]]:
-        """Joints of one side's steering, and their servos."""
-        named = params.all(element)
-        if not named:
-            params.text(element, required=True)
-        found = [find_drive_joint(scene, one.value, "steered wheel", one) for one in named]
+        """Return the steering joints of one side with their servos."""
+        elements = params.all(name)
+        if not elements:
+            params.text(name, required=True)
+        found = [find_drive_joint(scene, element.value, "steered wheel", element) for element in elements]
         joints = [joint for joint in found if joint is not None]
         return [
             (j.scoped, builder.add_velocity_servo(j.scoped, max_effort=j.axes[0].effort, owner=self.name))
@@ -137,8 +137,8 @@ class AckermannSteering(TwistDrive):
 
     def load(self, parent: Model, params: Params) -> None:
         self.start()
-        what = "speed of the steering per error of its angle [1/s]"
-        self._gain = self.declare("steer_p_gain", 1.0, minimum=0.0, maximum=1e6, description=what)
+        description = "steering speed per error of the steering angle [1/s]"
+        self._gain = self.declare("steer_p_gain", 1.0, minimum=0.0, maximum=1e6, description=description)
         self._read_rest_of_gains(params)
         self._rims = [0.0, 0.0]
         self._turners = [self.sim.joint(joints[0][0]) for joints in self._steering]
@@ -151,7 +151,10 @@ class AckermannSteering(TwistDrive):
         self.open_odometry(parent, params)
 
     def _read_rest_of_gains(self, params: Params) -> None:
-        """Of gz's controller, which begins anew at every step: i and d are further proportional parts."""
+        """Read the other numbers of the steering controller.
+
+        Gazebo resets this controller at every step, so its i and d gains act as additional proportional gains.
+        """
         i, d = (params.number(f"steer_{name}_gain", 0.0, minimum=0) for name in "id")
         least, most = self.options.steer_i_min, self.options.steer_i_max
         self._integral, self._slope = (i, least, most), d
@@ -182,7 +185,7 @@ class AckermannSteering(TwistDrive):
     def _on_actuators(self, message: Actuators) -> None:
         if self._number >= len(message.position):
             count = len(message.position)
-            self.log.warning("a message with %d positions has none of number %d; it is left out", count, self._number)
+            self.log.warning("ignored a message with %d positions: it has no number %d", count, self._number)
         else:
             self._steer(float(message.position[self._number]))
 
@@ -193,11 +196,11 @@ class AckermannSteering(TwistDrive):
             self.once.not_finite()
 
     def before_step(self) -> None:
-        """Takes the limited command one step further, and turns wheels and steering."""
+        """Advance the limited command by one step, and set the speeds of wheels and steering."""
         if not self._only:
             self._odometry.note(joint_angles((*self._wheels, *self._turners)))
         forward, turn = self.next_speeds()
-        if self._only:  # then the second is the angle
+        if self._only:  # the second value is then the steering angle
             turn = max(-self._limit, min(self._limit, turn))
             self._last = (forward, turn)
             angles = steering_angles(math.tan(turn), self._base, self._separation)
@@ -213,18 +216,23 @@ class AckermannSteering(TwistDrive):
                     self.sim.engine.set_control(servo, speed)
 
     def _slope_of(self, forward: float, turn: float) -> float:
-        """Tangent of the steering in the middle for a speed and a rate of turning, within the limit."""
+        """Return the tangent of the steering angle of a virtual middle wheel, within the limit.
+
+        Args:
+            forward: Forward speed [m/s].
+            turn: Turning rate [rad/s].
+        """
         if abs(turn) < _STRAIGHT:
             return 0.0
         tightest = self._base / math.sin(self._limit)
         radius = forward / turn
         if forward == 0.0 or abs(radius) < tightest:
-            # standing it steers as if to go ahead
+            # at zero speed it steers as for forward motion
             radius = math.copysign(tightest, turn if forward == 0.0 else radius)
         return self._base / radius
 
     def _drive(self, forward: float, slope: float) -> None:
-        """Turns the driven wheels, the outer ones faster."""
+        """Set the speeds of the driven wheels; the outer wheels turn faster."""
         share = self._separation * slope / (2 * self._base)
         for side, part in enumerate((1 - share, 1 + share)):
             rim = forward * part
@@ -234,7 +242,7 @@ class AckermannSteering(TwistDrive):
                     self.sim.engine.set_control(motor, rim / self._radius)
 
     def _correction(self, error: float) -> float:
-        """Speed of the steering for an error of its angle."""
+        """Return the steering speed for an error of the steering angle [rad]."""
         i, least, most = self._integral
         summed = i * error * self.period
         if most >= least:
@@ -246,7 +254,7 @@ class AckermannSteering(TwistDrive):
     # ------------------------------------------------------------------ readings
 
     def after_step(self) -> None:
-        """Odometry and its transform."""
+        """Publish odometry and its transform."""
         if self._only:
             return
         self._odometry.reckon(joint_angles((*self._wheels, *self._turners)))

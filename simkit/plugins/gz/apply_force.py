@@ -1,4 +1,7 @@
-"""gz's forces: `gz::sim::systems::ApplyLinkWrench` on links and `gz::sim::systems::ApplyJointForce` on joints."""
+"""External forces of Gazebo on links and joints.
+
+The systems are `gz::sim::systems::ApplyLinkWrench` and `gz::sim::systems::ApplyJointForce`.
+"""
 
 from __future__ import annotations
 
@@ -38,7 +41,7 @@ _TYPES: Final = {"model": _MODEL, "link": _LINK}
 
 @dataclass(frozen=True)
 class _Wrench:
-    """A persistent wrench: force [N] and torque [N·m] in the world frame on what `name` and `type` say."""
+    """Persistent wrench on an entity: force [N] and torque [N·m] in the world frame."""
 
     name: str
     type: int
@@ -47,7 +50,7 @@ class _Wrench:
 
 
 class PersistentWrenchOptions(Options):
-    """The `<persistent>` block."""
+    """Options of a `<persistent>` block."""
 
     entity_name: str = text(required=True)
     entity_type: str = choice(("model", "link"), "link")
@@ -66,11 +69,11 @@ class ApplyLinkWrenchOptions(Options):
 
 
 class ApplyLinkWrench(WorldPlugin):
-    """Pushes links at their centre of mass, or models at their canonical link's, in the world frame.
+    """Pushes links at their centre of mass, or models at that of their canonical link, in the world frame.
 
-    `<persistent>` elements and messages on `/world/<world>/wrench/persistent` push at every step until the entity is
-    named on `/world/<world>/wrench/clear`; a message on `/world/<world>/wrench` pushes in the next step only. An entity
-    that is not there is waited for. Messages name an entity, or give its id.
+    `<persistent>` elements and messages on `/world/<world>/wrench/persistent` push at every step. They end when a
+    message on `/world/<world>/wrench/clear` names the entity. A message on `/world/<world>/wrench` pushes in the next
+    step only. A missing entity is pushed as soon as it exists. Messages contain the name or the id of an entity.
     """
 
     options = OptionsOf(ApplyLinkWrenchOptions)
@@ -80,8 +83,8 @@ class ApplyLinkWrench(WorldPlugin):
     def load(self, parent: Simulation, params: Params) -> None:
         self.once = OneTimeWarnings(self)
         self._verbose = self.options.verbose
-        self._persistent = [w for one in self.options.persistent if (w := self._read(one)) is not None]
-        self._stand()
+        self._persistent = [w for block in self.options.persistent if (w := self._read(block)) is not None]
+        self._set_wrenches()
         base = f"/world/{parent.world.name}/wrench"
         self.listen(read_topic(params, "topic", base), ENTITY_WRENCH, self._on_wrench)
         self.listen(read_topic(params, "topic_persistent", f"{base}/persistent"), ENTITY_WRENCH, self._on_persistent)
@@ -98,12 +101,12 @@ class ApplyLinkWrench(WorldPlugin):
             return None
         wrench = _Wrench(name, _TYPES[kind], force, torque)
         if self._target(name, wrench.type) is None:
-            message = f"plugin {self.name!r}: there is no {kind} {name!r} to push; it is waited for"
+            message = f"plugin {self.name!r}: there is no {kind} {name!r} to push yet"
             element.diagnostics.warning("SK-JOINT-013", message, self.where)
         return wrench
 
     def _target(self, name: str, kind: int) -> Link | None:
-        """The link that a name means: exactly, or the first whose scoped name ends so."""
+        """Return the link for a name: an exact match, or the first whose scoped name ends with `::<name>`."""
         tables = self.sim.contents.handles.tables
         if kind != _MODEL:
             link = _find_entity(tables["link"], name)
@@ -115,14 +118,14 @@ class ApplyLinkWrench(WorldPlugin):
         return self.sim.link(model.scene.canonical_link)
 
     def set_state(self, state: Mapping[str, object]) -> None:
-        """Back to a state from `get_state`."""
+        """Restore a state from `get_state`."""
         super().set_state(state)
-        self._stand(are_applied=True)
+        self._set_wrenches(are_applied=True)
 
     # ------------------------------------------------------------------ commands
 
     def _on_wrench(self, message: EntityWrench) -> None:
-        wrench = self._of(message)
+        wrench = self._read_wrench(message)
         if wrench is None:
             return
         link = self._target(wrench.name, wrench.type)
@@ -130,18 +133,18 @@ class ApplyLinkWrench(WorldPlugin):
             self.log.warning("%s: there is no entity %r to push", self.name, wrench.name)
             return
         link.apply_wrench(wrench.force, wrench.torque)
-        self._say("pushes %s for one step", wrench.name)
+        self._log_if_verbose("pushes %s for one step", wrench.name)
 
     def _on_persistent(self, message: EntityWrench) -> None:
-        wrench = self._of(message)
+        wrench = self._read_wrench(message)
         if wrench is None:
             return
         self._persistent = [*self._persistent, wrench]
-        self._say("pushes %s until it is cleared", wrench.name)
-        self._stand()
+        self._log_if_verbose("pushes %s until it is cleared", wrench.name)
+        self._set_wrenches()
 
     def _on_clear(self, message: Entity) -> None:
-        found = self._entity(message)
+        found = self._name_and_type(message)
         if found is None:
             return
         name, kind = found
@@ -152,25 +155,25 @@ class ApplyLinkWrench(WorldPlugin):
             is_same = target is cleared if cleared is not None else wrench.name == name
             if not is_same:
                 kept.append(wrench)
-        self._say("no longer pushes %s", name)
+        self._log_if_verbose("no longer pushes %s", name)
         self._persistent = kept
-        self._stand()
+        self._set_wrenches()
 
     def before_step(self) -> None:
-        self._stand()
+        self._set_wrenches()
 
     # ------------------------------------------------------------------ inside
 
-    def _of(self, message: EntityWrench) -> _Wrench | None:
-        found = self._entity(message.entity)
+    def _read_wrench(self, message: EntityWrench) -> _Wrench | None:
+        found = self._name_and_type(message.entity)
         force, torque = _xyz(message.wrench.force), _xyz(message.wrench.torque)
         if not all(map(math.isfinite, (*force, *torque))):
             self.once.not_finite("a wrench")
             return None
         return None if found is None else _Wrench(*found, force, torque)
 
-    def _entity(self, entity: Entity) -> tuple[str, int] | None:
-        """Name and type of what a message means; None, and a line in the log, where that cannot be pushed."""
+    def _name_and_type(self, entity: Entity) -> tuple[str, int] | None:
+        """Return the name and type of the entity in a message, or log a warning and return None."""
         if entity.type not in (_ANY, _MODEL, _LINK):
             self.log.warning("%s: only models and links can be pushed, found type %d", self.name, entity.type)
             return None
@@ -183,8 +186,8 @@ class ApplyLinkWrench(WorldPlugin):
             return None
         return name, _TYPES[kind]
 
-    def _stand(self, *, are_applied: bool = False) -> None:
-        """Sets all wrenches that last; asked again at every step only while an entity is waited for."""
+    def _set_wrenches(self, *, are_applied: bool = False) -> None:
+        """Set the sum of all persistent wrenches; it is repeated at every step only while an entity is missing."""
         total: dict[str, Vector] = {}
         is_missing = False
         for wrench in self._persistent:
@@ -197,7 +200,7 @@ class ApplyLinkWrench(WorldPlugin):
         self.sim.engine.wrenches.set(self, total, are_applied=are_applied)
         set_before_step_rate(self, None if is_missing else NEVER)
 
-    def _say(self, text: str, name: str) -> None:
+    def _log_if_verbose(self, text: str, name: str) -> None:
         if self._verbose:
             self.log.info("%s: " + text, self.name, name)
 
@@ -219,10 +222,10 @@ class ApplyJointForceOptions(Options):
 
 
 class ApplyJointForce(ModelPlugin):
-    """Pushes a joint about its first axis with the effort [N·m or N] of the last message, at every step.
+    """Applies the effort [N·m or N] of the last message to the first axis of a joint, at every step.
 
-    Commands come on `/model/<model>/joint/<joint>/cmd_force`. The effort adds to what plugins before it in the file
-    have set for the step; what comes after it and sets an effort of its own takes its place, as in gz.
+    Commands come on `/model/<model>/joint/<joint>/cmd_force`. The effort is added to the efforts of plugins before this
+    one in the file. A later plugin that sets an effort of its own replaces it, as in Gazebo.
     """
 
     endpoints = (listens("/model/{model}/joint/{joint_name}/cmd_force", DOUBLE),)
@@ -234,27 +237,27 @@ class ApplyJointForce(ModelPlugin):
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         names = params.all("joint_name")
         for extra in names[1:]:
-            message = f"plugin {self.name!r} takes one <joint_name>; {extra.value!r} is not used"
-            params.diagnostics.warning("SK-PLUGIN-044", message, extra.where, "a plugin for each joint")
+            message = f"plugin {self.name!r} uses one <joint_name>; {extra.value!r} is not used"
+            params.diagnostics.warning("SK-PLUGIN-044", message, extra.where, "add one plugin for each joint")
         found = find_joints(scene, params, most=1)
         self._scoped = found[0].scoped if found else ""
-        self._written = names[0].value if names else ""
+        self._joint_name = names[0].value if names else ""
 
     def load(self, parent: Model, params: Params) -> None:
         self.once = OneTimeWarnings(self)
         self._axis = JointAxis(self.sim.joint(self._scoped)) if self._scoped else None
         self._effort = 0.0
-        self.listen(valid_topic(f"/model/{parent.name}/joint/{self._written}/cmd_force"), DOUBLE, self._on_command)
+        self.listen(valid_topic(f"/model/{parent.name}/joint/{self._joint_name}/cmd_force"), DOUBLE, self._on_command)
 
     def _on_command(self, message: Float64) -> None:
         effort = float(message.data)
         if math.isfinite(effort):
             self._effort = effort
         else:
-            self.once.left_out("finite", f"the command {effort} is left out; allowed is a finite number")
+            self.once.left_out("finite", f"the command {effort} is ignored; allowed is a finite number")
 
     def explain_divergence(self, name: str) -> str:
-        """What this plugin may have to do with the physics leaving the numbers; empty for nothing."""
+        """Describe the effort of this plugin on a joint whose physics diverged, or return an empty text."""
         if not self._effort or self._axis is None or not self._axis.is_meant(name):
             return ""
         return f"plugin {self.name!r} ({self.where}) pushes joint {self._axis.joint.scoped!r} with {self._effort:g}"

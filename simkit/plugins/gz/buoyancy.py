@@ -1,4 +1,4 @@
-"""gz's buoyancy: `gz::sim::systems::Buoyancy`."""
+"""Buoyancy of Gazebo: `gz::sim::systems::Buoyancy`."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ if TYPE_CHECKING:
     from simkit.runtime import Simulation
 
 WATER: Final = 1000.0
-"""[kg/m³]"""
+"""Density of water [kg/m³], the default."""
 
 
 class DensityChangeOptions(Options):
-    """The `<density_change>` block."""
+    """Options of a `<density_change>` block."""
 
     above_depth: float = number(minimum=-1e9, maximum=1e9, required=True)
     density: float = number(minimum=0.0, maximum=1e9, required=True)
 
 
 class GradedBuoyancyOptions(Options):
-    """The `<graded_buoyancy>` block."""
+    """Options of the `<graded_buoyancy>` block."""
 
     density_change: tuple[DensityChangeOptions, ...] = blocks(DensityChangeOptions)
     default_density: float = number(WATER, "kg/m³", minimum=0.0, maximum=1e9)
@@ -43,9 +43,9 @@ class BuoyancyOptions(Options):
 
 
 class Buoyancy(BuoyancyBase, WorldPlugin):
-    """The whole world lies in a fluid or in level layers of several; every link floats by its collisions' volume.
+    """Fills the world with a fluid, or with horizontal layers of several, and lifts links by their collisions' volume.
 
-    `<enable>` names the models and links that do, where not all should.
+    `<enable>` limits the effect to the named models and links.
     """
 
     options = OptionsOf(BuoyancyOptions)
@@ -59,14 +59,14 @@ class Buoyancy(BuoyancyBase, WorldPlugin):
         names = {scope for link in parent.engine.names.links for scope in _scopes(link)}
         for name, element in enabled:
             if name not in names:
-                message = f"plugin {self.name!r}: there is no model or link {name!r} to float; it is waited for"
+                message = f"plugin {self.name!r}: there is no model or link {name!r} to float yet"
                 params.diagnostics.warning("SK-PLUGIN-113", message, element.where, did_you_mean(name, names))
         self.start()
 
     def find_hulls(self) -> Mapping[str, Sequence[Hull]]:
-        """Of every link that moves and is to float."""
+        """Return the hulls of all movable and enabled links."""
         return {
-            name: self._yard.hulls(binding.scene)
+            name: self._factory.hulls(binding.scene)
             for name, binding in self.sim.engine.names.links.items()
             if binding.body > 0 and (not self._enabled or not self._enabled.isdisjoint(_scopes(name)))
         }
@@ -76,12 +76,12 @@ class Buoyancy(BuoyancyBase, WorldPlugin):
         if params.has("uniform_fluid_density"):
             if graded.is_given:
                 graded.params.mark_all_read()
-                message = "found both <uniform_fluid_density> and <graded_buoyancy>: the former is used, as in Gazebo"
+                message = "found both <uniform_fluid_density> and <graded_buoyancy>: the first is used, as in Gazebo"
                 params.diagnostics.warning("SK-PLUGIN-111", message, graded.params.where)
             return Fluid((self.options.uniform_fluid_density,))
         if not graded.is_given:
-            message = f"plugin {self.name!r} says nothing of the fluid: water of {WATER:g} kg/m³ is everywhere"
-            hint = "<uniform_fluid_density> or <graded_buoyancy>"
+            message = f"plugin {self.name!r} defines no fluid: the whole world is filled with water of {WATER:g} kg/m³"
+            hint = "add <uniform_fluid_density> or <graded_buoyancy>"
             params.diagnostics.warning("SK-PLUGIN-114", message, self.where, hint)
             return Fluid((WATER,))
         layers: dict[float, float] = {}
@@ -92,6 +92,6 @@ class Buoyancy(BuoyancyBase, WorldPlugin):
 
 
 def _scopes(link: str) -> list[str]:
-    """A link's scoped name and those of what it is in."""
+    """Return the scoped name of a link and those of the models around it."""
     parts = link.split("::")
     return ["::".join(parts[:count]) for count in range(1, len(parts) + 1)]

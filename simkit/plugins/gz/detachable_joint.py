@@ -1,4 +1,4 @@
-"""gz's joint that lets go: `gz::sim::systems::DetachableJoint`."""
+"""Detachable joint of Gazebo: `gz::sim::systems::DetachableJoint`."""
 
 from __future__ import annotations
 
@@ -38,10 +38,10 @@ class DetachableJointOptions(Options):
 
 
 class DetachableJoint(ModelPlugin):
-    """Holds a link of another model on a link of this one until a message lets it go; another message holds it again.
+    """Attaches a link of another model to a link of this one; messages detach it and attach it again.
 
-    The links are held as they stand at that moment. A child model that is not there (yet) is waited for. Each change
-    is told on the output topic, "attached" or "detached".
+    The links keep their relative pose of the moment of attachment. A missing child model is attached as soon as it
+    exists. Each change is published on the output topic, as "attached" or "detached".
     """
 
     endpoints = (
@@ -58,47 +58,47 @@ class DetachableJoint(ModelPlugin):
         self._parent = find_named_link(scene, "parent_link", params)
         self._child_model = read_required_name(params, "child_model")
         self._child_link = read_required_name(params, "child_link")
-        self._wanted = self.options.initial_attach
+        self._shall_attach = self.options.initial_attach
         self._quiet = self.options.suppress_child_warning
-        taken = {name for record in builder.records.values() for name in record.equalities}
+        used_names = {name for record in builder.records.values() for name in record.equalities}
         base = f"{scene.scoped}#detachable"
-        self._weld = next(name for k in range(len(taken) + 1) if (name := f"{base}{k}") not in taken)
+        self._weld = next(name for k in range(len(used_names) + 1) if (name := f"{base}{k}") not in used_names)
         self._child = self._find((r.scene for r in builder.records.values()), params)
         if self._parent and self._child:
-            builder.add_weld(self._weld, self._parent, self._child, active=self._wanted)
+            builder.add_weld(self._weld, self._parent, self._child, active=self._shall_attach)
 
     def _find(self, models: Iterable[SceneModel], params: Params) -> str:
-        """Scoped name of the child link; empty, with a report, where it is not there."""
+        """Return the scoped name of the child link, or warn and return an empty text."""
         found = {m.scoped: m for top in models for m in top.all_models()}
         name = self._own if self._child_model == "__model__" else self._child_model
         named = [m for scoped, m in found.items() if scoped == name or scoped.endswith("::" + name)]
-        # of several of that name, one within this model
+        # among several models of that name, prefer one inside this model
         inner = [m for m in named if m.scoped == name or m.scoped.startswith(self._own)] or named[:1]
         links = [link.scoped for m in inner for link in m.all_links() if link.scoped.endswith("::" + self._child_link)]
         if links:
             return links[0]
-        if not self._quiet and not self._told_missing:
-            what = f"link {self._child_link!r} of model {name!r}" if inner else f"model {name!r}"
-            self._told_missing = True
-            message = f"plugin {self.name!r}: there is no {what} to attach; it is waited for"
-            hint = "<suppress_child_warning> says that this is meant"
+        if not self._quiet and not self._is_missing_reported:
+            missing = f"link {self._child_link!r} of model {name!r}" if inner else f"model {name!r}"
+            self._is_missing_reported = True
+            message = f"plugin {self.name!r}: there is no {missing} to attach yet"
+            hint = "if this is intended, add <suppress_child_warning>true</suppress_child_warning>"
             params.diagnostics.warning("SK-JOINT-013", message, self.where, hint)
         return ""
 
-    _told_missing = False
+    _is_missing_reported = False
 
     def load(self, parent: Model, params: Params) -> None:
         own = f"/model/{parent.name}/detachable_joint"
         old = self.options.topic
         detach = read_topic(params, "detach_topic" if params.has("detach_topic") else "topic", f"{own}/detach")
         if old and valid_topic(old) != detach:
-            message = f"<topic> is {old!r} and <detach_topic> is {detach!r}: the latter counts"
+            message = f"<topic> is {old!r} and <detach_topic> is {detach!r}: <detach_topic> is used"
             params.diagnostics.warning("SK-PARAM-004", message, self.where)
         state = read_topic(params, "output_topic", f"/model/{self._child_model}/detachable_joint/state")
         self.listen(detach, EMPTY, self._on_detach)
         self.listen(read_topic(params, "attach_topic", f"{own}/attach"), EMPTY, self._on_attach)
         self._state = self.advertise(state, STRING)
-        # what was attached from the start is told with the first step
+        # an initial attachment is published in the first step
         self._is_attached = False
 
     def reset(self) -> None:
@@ -110,17 +110,17 @@ class DetachableJoint(ModelPlugin):
         if self._is_attached and self._is_there():
             self.sim.contents.set_weld(self._weld, False)
             self._is_attached = False
-            self._tell("detached")
+            self._publish_state("detached")
 
     def _on_attach(self, _: object) -> None:
         if not (self._is_attached and self._is_there()):
-            self._wanted, self._is_attached = True, False
+            self._shall_attach, self._is_attached = True, False
             self._set_pace()
 
     def before_step(self) -> None:
         if self._is_attached and not self._is_there():
             self._is_attached = False
-        if not self._wanted or self._is_attached or not self._parent:
+        if not self._shall_attach or self._is_attached or not self._parent:
             self._set_pace()
             return
         if not self._is_there():
@@ -130,8 +130,8 @@ class DetachableJoint(ModelPlugin):
                 return
             self.sim.contents.add_weld(self._weld, self._parent, self._child)
         self.sim.contents.set_weld(self._weld, True)
-        self._wanted, self._is_attached = False, True
-        self._tell("attached")
+        self._shall_attach, self._is_attached = False, True
+        self._publish_state("attached")
         self._set_pace()
 
     # ------------------------------------------------------------------ inside
@@ -144,9 +144,9 @@ class DetachableJoint(ModelPlugin):
         return True
 
     def _set_pace(self) -> None:
-        """Asked at every step only while there is something to attach."""
-        set_before_step_rate(self, None if self._wanted and not self._is_attached else NEVER)
+        """Run at every step only while a child is to be attached."""
+        set_before_step_rate(self, None if self._shall_attach and not self._is_attached else NEVER)
 
-    def _tell(self, state: str) -> None:
+    def _publish_state(self, state: str) -> None:
         if self._state.wanted:
             self._state.publish(msgs.type_of(STRING)(state))

@@ -1,4 +1,4 @@
-"""gz's differential drive: `gz::sim::systems::DiffDrive`, also with several wheels on each side (skid steering)."""
+"""Differential drive of Gazebo, also with several wheels on each side: `gz::sim::systems::DiffDrive`."""
 
 from __future__ import annotations
 
@@ -52,12 +52,11 @@ class DiffDriveOptions(SpeedLimitOptions):
 
 
 class DiffDrive(TwistDrive):
-    """Drives the wheels from `/model/<model>/cmd_vel`; odometry by the wheels' turns on `/model/<model>/odometry`.
+    """Drives the wheels from `/model/<model>/cmd_vel`, and publishes wheel odometry on `/model/<model>/odometry`.
 
-    Odometry is that of the first pair of wheels. It starts at zero, in the point between them; its twist is the mean
-    over the last ten steps. With `<publish_ground_truth>` (simkit's own) the true pose goes out on
-    `/model/<model>/ground_truth/odom`, and with `<odometry_noise>` (simkit's own) the odometry errs and tells its
-    covariance.
+    The odometry is that of the first pair of wheels. It starts at zero, at the point between them; its twist is the
+    mean over the last ten steps. Two options are simkit's own. `<publish_ground_truth>` publishes the true pose on
+    `/model/<model>/ground_truth/odom`. `<odometry_noise>` adds errors to the odometry, with their covariance.
     """
 
     options = OptionsOf(DiffDriveOptions)
@@ -69,7 +68,7 @@ class DiffDrive(TwistDrive):
         self._radius = self.options.wheel_radius
         self._limiters = speed_limits(self.options)
         self._canonical = scene.canonical_link
-        # gz publishes at every step where the frequency is zero
+        # a frequency of zero means every step, as in Gazebo
         self.after_step_rate = self.options.odom_publish_frequency
         sides = {"left wheel": self.options.left_joint, "right wheel": self.options.right_joint}
         self.add_wheels(scene, builder, sides)
@@ -81,10 +80,10 @@ class DiffDrive(TwistDrive):
         self._enabled = True
         self._odometry = WheelOdometry(self._radius, self._separation, self.period)
         noise = odometry_noise(self.options.odometry_noise)
-        self._erring: NoisyOdometry | None = None
+        self._noisy: NoisyOdometry | None = None
         if noise is not None:
             stream = self.random("odometry_noise", 2)
-            self._erring = NoisyOdometry(noise, self._radius, self._separation, stream, wheel_angles(*self._pair))
+            self._noisy = NoisyOdometry(noise, self._radius, self._separation, stream, wheel_angles(*self._pair))
         self._last_ns = self.sim.time_ns
         self.open_topics(parent, params)
         self.listen(valid_topic(f"/model/{parent.name}/enable"), "std_msgs/msg/Bool", self._on_enable)
@@ -94,7 +93,7 @@ class DiffDrive(TwistDrive):
     # ------------------------------------------------------------------ commands
 
     def speed_bounds(self, _: str) -> tuple[tuple[float, float], tuple[float, float]]:
-        """Least and greatest speed ahead [m/s] and rate of turning [rad/s] that commands are held to."""
+        """Return the limits of the commands: smallest and largest forward speed [m/s] and turning rate [rad/s]."""
         linear, angular = self._limiters
         return linear.velocity, angular.velocity
 
@@ -108,19 +107,19 @@ class DiffDrive(TwistDrive):
             super().aim((0.0, 0.0))
 
     def before_step(self) -> None:
-        """Notes the wheels' angles, and takes the limited speeds one step towards the command."""
+        """Store the wheel angles, and advance the limited speeds by one step towards the command."""
         self._odometry.note(wheel_angles(*self._pair))
         if not self._settled:
             self._command()
 
     @classmethod
     def before_step_together(cls, drives: Sequence[DiffDrive]) -> Callable[[Iterable[DiffDrive]], None]:
-        """Of many."""
+        """Return a function that runs `before_step` of many drives at once."""
         return DriveFleet(drives).before_step
 
     @classmethod
     def after_step_together(cls, drives: Sequence[DiffDrive]) -> Callable[[Iterable[DiffDrive]], None]:
-        """Of many."""
+        """Return a function that runs `after_step` of many drives at once."""
         return fleet_of(drives).after_step
 
     def _command(self) -> None:
@@ -131,23 +130,23 @@ class DiffDrive(TwistDrive):
     # ------------------------------------------------------------------ readings
 
     def after_step(self) -> None:
-        """Odometry and its transform."""
-        now, erring, odometry = self.sim.time_ns, self._erring, self._odometry
+        """Publish odometry and its transform."""
+        now, noisy, odometry = self.sim.time_ns, self._noisy, self._odometry
         angles = wheel_angles(*self._pair)
         odometry.reckon(angles)
-        if erring is None:
+        if noisy is None:
             self.publish_odometry(odometry.reckoning.pose, odometry.twist)
         else:
             elapsed, self._last_ns = (now - self._last_ns) * 1e-9, now
-            erring.advance(*angles, elapsed)
-            covariances = erring.messages_covariance() if erring.noise.wheel_variance else ()
-            self.publish_odometry(erring.reckoning.pose, erring.twist, *covariances)
+            noisy.advance(*angles, elapsed)
+            covariances = noisy.messages_covariance() if noisy.noise.wheel_variance else ()
+            self.publish_odometry(noisy.reckoning.pose, noisy.twist, *covariances)
         if self._truth is not None and self._truth.wanted:
             self._truth.publish(odometry_message(now, "world", self._child, *self._true.state()))
 
 
 class DriveFleet:
-    """Drives of one simulation, in the order of the document."""
+    """Group of all drives of a simulation in document order, whose wheels are read with one array operation."""
 
     def __init__(self, drives: Sequence[DiffDrive]) -> None:
         self._drives, self._sim = list(drives), drives[0].sim
@@ -156,15 +155,15 @@ class DriveFleet:
         self._rows: list[Vector] = []
         self._odometries = [drive._odometry for drive in drives]
         for odometry in self._odometries:
-            odometry.catch_up()  # with the fleet before
+            odometry.catch_up()  # with the angles that the previous fleet holds
             odometry.noter = self.hand_over
         self._radius = np.array([odometry._radius for odometry in self._odometries])
         self._separation = np.array([odometry._separation for odometry in self._odometries])
-        self._reckoned: tuple[Vector, list[Vector]] | None = None  # angles up to which, and those of the steps before
+        self._reckoned: tuple[Vector, list[Vector]] | None = None  # integrated angles, and those of the steps before
         self._twists: list[tuple[float, float]] = []
 
     def holds(self, drives: Sequence[DiffDrive]) -> bool:
-        """Whether it is of these drives, in the state that they are in."""
+        """Check whether the fleet consists of these drives with their current odometry objects."""
         return len(drives) == len(self._drives) and all(
             drive is mine and drive._odometry is odometry
             for drive, mine, odometry in zip(drives, self._drives, self._odometries, strict=True)
@@ -173,9 +172,9 @@ class DriveFleet:
     # ------------------------------------------------------------------ before a step
 
     def before_step(self, rota: Iterable[DiffDrive]) -> None:
-        """What `DiffDrive.before_step` does, for all of them."""
+        """Run `DiffDrive.before_step` for all drives."""
         if self._drives[0]._odometry is not self._odometries[0]:
-            for drive in rota:  # back at another state, and no new schedule yet
+            for drive in rota:  # a state was restored, and the schedule is not renewed yet
                 drive.before_step()
             return
         self._rows.append(self._physics.data.qpos.take(self._wheels))
@@ -189,7 +188,7 @@ class DriveFleet:
     # ------------------------------------------------------------------ after a step
 
     def after_step(self, rota: Iterable[DiffDrive]) -> None:
-        """What `DiffDrive.after_step` does, for all of them."""
+        """Run `DiffDrive.after_step` for all drives."""
         if self._drives[0]._odometry is not self._odometries[0] or not self._take_over():
             for drive in rota:
                 drive.after_step()
@@ -198,18 +197,22 @@ class DriveFleet:
         now, physics, tick = self._sim.time_ns, self._physics, self._physics.tick
         for drive, odometry, twist in zip(rota, self._odometries, self._twists, strict=True):
             way, odom, tf = odometry.reckoning, drive._odom, drive._tf
-            told = now, drive._frame, drive._child, way.x, way.y, way.yaw
+            fields = now, drive._frame, drive._child, way.x, way.y, way.yaw
             if odom.wanted:
-                odom.publish_later(partial(planar_odometry, *told, *twist))
+                odom.publish_later(partial(planar_odometry, *fields, *twist))
             if tf.wanted:
-                tf.publish_later(partial(planar_transform, *told))
+                tf.publish_later(partial(planar_transform, *fields))
             if drive._truth is not None and drive._truth.wanted:
                 drive._truth.publish(odometry_message(now, "world", drive._child, *drive._true.state()))
-            if physics.tick != tick:  # who was called went back to another state
+            if physics.tick != tick:  # a subscriber restored another state
                 return
 
     def _take_over(self) -> bool:
-        """Holds what the odometries do from now on; False where they are not alike."""
+        """Take over the integration from the odometries.
+
+        Returns:
+            False if the odometries differ in their number of stored steps, or if one has noise.
+        """
         if self._reckoned is not None:
             return True
         first, all_of = self._odometries[0], self._odometries
@@ -217,7 +220,7 @@ class DriveFleet:
             return False
         for drive, odometry in zip(self._drives, all_of, strict=True):
             alike = odometry._at is not None and len(odometry._recent) == len(first._recent)
-            if not alike or odometry._noted or drive._erring is not None:
+            if not alike or odometry._noted or drive._noisy is not None:
                 return False
         at = np.array([odometry._at for odometry in all_of]).reshape(-1)
         recent = np.array([odometry._recent for odometry in all_of])  # drive, step, wheel
@@ -225,7 +228,7 @@ class DriveFleet:
         return True
 
     def _reckon(self) -> None:
-        """`WheelOdometry.reckon` of all."""
+        """Do the work of `WheelOdometry.reckon` for all drives."""
         assert self._reckoned is not None
         (last, recent), rows = self._reckoned, self._rows
         mean, step = MEAN_STEPS, self._odometries[0]._step
@@ -242,10 +245,10 @@ class DriveFleet:
         ahead, turn = (left + right) / 2 / elapsed, (right - left) / self._separation / elapsed
         self._twists = list(zip(ahead.tolist(), turn.tolist(), strict=True))
 
-    # ------------------------------------------------------------------ whoever looks
+    # ------------------------------------------------------------------ results for the odometries
 
     def hand_over(self) -> None:
-        """Gives every odometry what is held for it."""
+        """Give every odometry the angles and results that the fleet holds for it."""
         held, self._reckoned = self._reckoned, None
         if held is not None:
             ends, before = held[0].reshape(-1, 2).tolist(), np.stack(held[1]).reshape(len(held[1]), -1, 2)
@@ -260,13 +263,13 @@ class DriveFleet:
 
 
 def fleet_of(drives: Sequence[DiffDrive]) -> DriveFleet:
-    """The fleet that reads the wheels of these drives; one of their own where they are parts of several."""
+    """Return the fleet that reads the wheels of these drives, or `SeparateReadings` if there is no single one."""
     noter = getattr(drives[0]._odometry.noter, "__self__", None)
     return noter if isinstance(noter, DriveFleet) and noter.holds(drives) else SeparateReadings(drives)
 
 
 class SeparateReadings(DriveFleet):
-    """Drives that are due together after a step, and are read before it with others: each for itself."""
+    """Drives that publish in the same step but belong to a larger fleet, so that each is read separately."""
 
     def __init__(self, drives: Sequence[DiffDrive]) -> None:
         self._drives = list(drives)
@@ -280,7 +283,7 @@ class SeparateReadings(DriveFleet):
 
 
 def _attitude(yaw: float) -> tuple[float, float, float, float]:
-    """What `quat_from_rpy` gives of a yaw alone, its zeros with their signs, as (w, x, y, z)."""
+    """Return `quat_from_rpy` of a yaw alone, as (w, x, y, z), with the same signs of its zeros."""
     cos, sin = math.cos(yaw / 2), math.sin(yaw / 2)
     return cos + 0.0 * sin, 0.0 * cos - 0.0 * sin, 0.0 * cos + 0.0 * sin, sin - 0.0 * cos
 
@@ -288,7 +291,18 @@ def _attitude(yaw: float) -> tuple[float, float, float, float]:
 def planar_odometry(
     time_ns: int, frame: str, child: str, x: float, y: float, yaw: float, ahead: float, turn: float
 ) -> Odometry:
-    """A `nav_msgs/msg/Odometry` in the plane, without covariance: pose [m, rad], speed ahead [m/s], turning [rad/s]."""
+    """Return a planar `nav_msgs/msg/Odometry` without covariance.
+
+    Args:
+        time_ns: Time of the message [ns].
+        frame: Frame of the pose.
+        child: Frame of the base.
+        x: Position along x [m].
+        y: Position along y [m].
+        yaw: Heading [rad].
+        ahead: Forward speed [m/s].
+        turn: Turning rate [rad/s].
+    """
     types = message_types()
     w, qx, qy, qz = _attitude(yaw)
     place = types["Pose"](types["Point"](x, y, 0.0), types["Quaternion"](qx, qy, qz, w))
@@ -304,7 +318,7 @@ def planar_odometry(
 
 
 def planar_transform(time_ns: int, frame: str, child: str, x: float, y: float, yaw: float) -> TFMessage:
-    """A `tf2_msgs/msg/TFMessage` of one transform in the plane [m, rad]."""
+    """Return a `tf2_msgs/msg/TFMessage` with one planar transform [m, rad]."""
     types = message_types()
     w, qx, qy, qz = _attitude(yaw)
     place = types["Transform"](types["Vector3"](x, y, 0.0), types["Quaternion"](qx, qy, qz, w))

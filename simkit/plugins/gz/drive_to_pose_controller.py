@@ -1,4 +1,4 @@
-"""gz's way to a pose: `gz::sim::systems::DriveToPoseController`."""
+"""Pose controller of Gazebo for drives: `gz::sim::systems::DriveToPoseController`."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ if TYPE_CHECKING:
     from simkit.runtime import Model
 
 PoseMessage = Any
-"""A message of poses, a pose or a transform in it, or a part of that: types that share no base."""
+"""Message with poses, or a pose, transform, position or rotation inside it; these types share no base class."""
 
 Planar = tuple[float, float, float]
-"""x, y [m] and yaw [rad]."""
+"""Planar pose: x, y [m] and yaw [rad]."""
 
 POSE: Final = "geometry_msgs/msg/Pose"
 TWIST: Final = "geometry_msgs/msg/Twist"
@@ -28,12 +28,13 @@ TARGETS: Final = ("geometry_msgs/msg/PoseArray", "geometry_msgs/msg/PoseStamped"
 
 
 class DriveToPoseController(ModelPlugin):
-    """Sends a robot that takes twists to a pose: it turns to the place, drives there, and turns to the heading.
+    """Drives a robot to a pose with twist commands: it turns to the position, drives there, and turns to the heading.
 
-    The target comes on `/model/<model>/cmd_pose`; where the robot is, it hears on `/model/<model>/pose`, from an
-    odometry publisher. The speeds are the errors times `<linear_p_gain>` and `<angular_p_gain>`, one at a time, at
-    every step on `/model/<model>/cmd_vel`; an error within `<linear_deviation>` or `<angular_deviation>` is none. The
-    pose at which it stops is told on `/model/<model>/reached_pose`. The four numbers are live parameters.
+    The target comes on `/model/<model>/cmd_pose`, and the pose of the robot on `/model/<model>/pose`, from an odometry
+    publisher. The speeds are the errors times `<linear_p_gain>` and `<angular_p_gain>`. Only one of the two is active
+    at a time; it is published at every step on `/model/<model>/cmd_vel`. An error within `<linear_deviation>` or
+    `<angular_deviation>` counts as zero. The final pose is published on `/model/<model>/reached_pose`. The four numbers
+    are live parameters.
     """
 
     filenames = ("gz-sim-drive-to-pose-controller-system",)
@@ -43,25 +44,25 @@ class DriveToPoseController(ModelPlugin):
     def load(self, parent: Model, params: Params) -> None:
         self.once = OneTimeWarnings(self)
         self._linear_gain = self.declare(
-            "linear_p_gain", 1.0, minimum=0.0, description="speed ahead [m/s] for each metre that is left"
+            "linear_p_gain", 1.0, minimum=0.0, description="forward speed [m/s] per metre of remaining distance"
         )
         self._angular_gain = self.declare(
-            "angular_p_gain", 2.0, minimum=0.0, description="turning [rad/s] for each radian that is left"
+            "angular_p_gain", 2.0, minimum=0.0, description="turning rate [rad/s] per radian of remaining angle"
         )
-        self._near = self.declare(
-            "linear_deviation", 0.1, minimum=0.0, description="how near the place is near enough [m]"
+        self._position_tolerance = self.declare(
+            "linear_deviation", 0.1, minimum=0.0, description="distance at which the position counts as reached [m]"
         )
-        self._straight = self.declare(
-            "angular_deviation", 0.05, minimum=0.0, description="how near a direction is near enough [rad]"
+        self._angle_tolerance = self.declare(
+            "angular_deviation", 0.05, minimum=0.0, description="angle at which a direction counts as reached [rad]"
         )
         self._target: Planar | None = None
-        self._place: Planar | None = None
+        self._robot_pose: Planar | None = None
         self._pose: PoseMessage = None
         own = f"/model/{parent.name}"
         self._speed = self.advertise(valid_topic(f"{own}/cmd_vel"), TWIST)
         self._reached = self.advertise(valid_topic(f"{own}/reached_pose"), POSE)
-        self._place_topic = valid_topic(f"{own}/pose")
-        self.subscribe(self._place_topic, self._on_place)
+        self._pose_topic = valid_topic(f"{own}/pose")
+        self.subscribe(self._pose_topic, self._on_pose)
         self.listen(valid_topic(f"{own}/cmd_pose"), TARGETS, self._on_target)
         self._set_pace()
 
@@ -71,7 +72,7 @@ class DriveToPoseController(ModelPlugin):
         found = _first_pose(message)
         target = None if found is None else _planar(found)
         if found is None:
-            self.once.left_out("empty", "a target without a pose is left out")
+            self.once.left_out("empty", "a target message without a pose is ignored")
         elif target is None:
             self.once.not_finite("a target")
         else:
@@ -79,34 +80,35 @@ class DriveToPoseController(ModelPlugin):
             self._check_ends()
             self._set_pace()
 
-    def _on_place(self, message: PoseMessage) -> None:
+    def _on_pose(self, message: PoseMessage) -> None:
         found = _first_pose(message)
         place = None if found is None else _planar(found)
         if place is not None:
-            self._place, self._pose = place, found
+            self._robot_pose, self._pose = place, found
 
     def _check_ends(self) -> None:
-        """Says what is missing: whoever tells where the robot is, or whoever moves it."""
+        """Warn if no plugin publishes the pose of the robot, or if no plugin subscribes to its speeds."""
         topics = self.sim.topics()
-        if self._place is None and self._place_topic not in topics:
-            message = f"nobody tells on {self._place_topic} where the robot is; it does not start"
-            self.once.warn("SK-PLUGIN-132", "place", message, "give the model an OdometryPublisher")
+        if self._robot_pose is None and self._pose_topic not in topics:
+            message = f"no publisher on {self._pose_topic} gives the robot's pose, so the robot does not start"
+            self.once.warn("SK-PLUGIN-132", "place", message, "add an OdometryPublisher to the model")
         ends = self.sim.communication.bus.endpoints(self._speed.topic)
         if not self._speed.wanted and not any(does == "takes" for *_, does in ends):
-            message = f"nobody takes speeds on {self._speed.topic}"
-            self.once.warn("SK-PLUGIN-132", "speed", message, "give the model a DiffDrive, or its <topic> that name")
+            message = f"no plugin subscribes to the speeds on {self._speed.topic}"
+            hint = "add a DiffDrive to the model, or set the <topic> of its drive to this name"
+            self.once.warn("SK-PLUGIN-132", "speed", message, hint)
 
     def _set_pace(self) -> None:
-        """Works at every step only while there is a target."""
+        """Run at every step only while there is a target."""
         set_after_step_rate(self, NEVER if self._target is None else None)
 
     # ------------------------------------------------------------------ driving
 
     def after_step(self) -> None:
-        """Tells the speeds that bring it nearer."""
-        if self._target is None or self._place is None:
+        """Publish the speeds that bring the robot nearer to its target."""
+        if self._target is None or self._robot_pose is None:
             return
-        ahead, turn = self._errors(self._target, self._place)
+        ahead, turn = self._errors(self._target, self._robot_pose)
         linear, angular = self._linear_gain.value * ahead, self._angular_gain.value * turn
         self._speed.publish(msgs.make(TWIST, linear={"x": linear}, angular={"z": angular}))
         if ahead == 0.0 and turn == 0.0:
@@ -116,19 +118,19 @@ class DriveToPoseController(ModelPlugin):
             self._set_pace()
 
     def _errors(self, target: Planar, place: Planar) -> tuple[float, float]:
-        """What is left to drive [m] and to turn [rad]; one of the two at a time, none of either at the pose."""
+        """Return the distance [m] and the angle [rad] to go; at most one of them is not zero."""
         x, y = target[0] - place[0], target[1] - place[1]
-        left = math.hypot(x, y)
-        is_there = left <= self._near.value
-        wanted = target[2] if is_there else math.atan2(y, x)
-        turn = math.remainder(wanted - place[2], math.tau)
-        if abs(turn) > self._straight.value:
+        distance = math.hypot(x, y)
+        is_there = distance <= self._position_tolerance.value
+        heading = target[2] if is_there else math.atan2(y, x)
+        turn = math.remainder(heading - place[2], math.tau)
+        if abs(turn) > self._angle_tolerance.value:
             return 0.0, turn
-        return (0.0 if is_there else left), 0.0
+        return (0.0 if is_there else distance), 0.0
 
 
 def _first_pose(message: PoseMessage) -> PoseMessage:
-    """The first pose of a message of poses: a Pose or a Transform; None where there is none."""
+    """Return the first Pose or Transform of a message, or None if there is no pose."""
     if hasattr(message, "transforms"):
         return message.transforms[0].transform if message.transforms else None
     if hasattr(message, "poses"):
@@ -141,7 +143,10 @@ def _place_and_turn(pose: PoseMessage) -> tuple[PoseMessage, PoseMessage]:
 
 
 def _planar(pose: PoseMessage) -> Planar | None:
-    """x, y and yaw; None where they are no numbers. A quaternion of zeros, as an empty message has, is no turn."""
+    """Return x, y and yaw, or None for NaN or infinite values.
+
+    A quaternion of zeros, as in an empty message, counts as no rotation.
+    """
     place, turn = _place_and_turn(pose)
     quaternion = (turn.w, turn.x, turn.y, turn.z)
     yaw = float(rpy_from_quat(quaternion)[2]) if any(quaternion) else 0.0

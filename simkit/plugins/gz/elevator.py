@@ -1,4 +1,4 @@
-"""gz's elevator: `gz::sim::systems::Elevator`."""
+"""Elevator of Gazebo: `gz::sim::systems::Elevator`."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ Phase = Literal["idle", "moving", "opening", "waiting", "closing"]
 DOUBLE: Final = "std_msgs/msg/Float64"
 INT: Final = "std_msgs/msg/Int32"
 _FARTHEST: Final = 1e6
-"""[m] that a door opens at most; an axis without limits has more."""
-_CABIN_WITHIN: Final = 0.15  # [m]
-_DOOR_WITHIN: Final = 0.02  # [m]
-_AT_REST: Final = 0.01  # [m/s]
+"""Largest opening of a door [m]; the upper limit of an axis without limits is larger."""
+_CABIN_WITHIN: Final = 0.15  # position tolerance of the cabin [m]
+_DOOR_WITHIN: Final = 0.02  # position tolerance of a door [m]
+_AT_REST: Final = 0.01  # largest speed that counts as rest [m/s]
 _FREE: Final = 0.005
-"""[m] that a range may be short of the lidar's largest while the doorway is free."""
+"""Difference between the lidar's largest range and a measured range up to which the doorway counts as free [m]."""
 
 
 class ElevatorOptions(Options):
@@ -49,13 +49,13 @@ class ElevatorOptions(Options):
 
 
 class Elevator(ModelPlugin):
-    """Takes the cabin to the floor that comes on `<cmd_topic>`, opens its door there, waits, and closes it.
+    """Moves the cabin to the floor that comes on `<cmd_topic>`, opens the door there, waits, and closes it.
 
-    Links `floor_0`, `floor_1`, … mark the heights that the joint `lift` is to have, joints `door_0`, `door_1`, … open
-    at their upper limit and are closed at 0. The joints are moved by a JointPositionController each, which is told
-    where to on `/model/<model>/joint/<joint>/0/cmd_pos`. A lidar on `/model/<model>/<door joint>/lidar` whose first
-    range is short holds the door open while it waits. A command that comes while a door closes stops on the way where
-    it lies on it; one that comes before is kept until then. The floor next to the cabin is told on `<state_topic>`.
+    Links `floor_0`, `floor_1`, … mark the heights of the joint `lift`. Joints `door_0`, `door_1`, … are open at their
+    upper limit and closed at 0. A JointPositionController moves each joint; its target is published on
+    `/model/<model>/joint/<joint>/0/cmd_pos`. A lidar on `/model/<model>/<door joint>/lidar` whose first range is short
+    keeps the open door from closing. A command while a door closes adds a stop, in between if it is on the way. A
+    command before that is stored until the door closes. The floor nearest to the cabin is published on `<state_topic>`.
     """
 
     endpoints = (
@@ -79,7 +79,7 @@ class Elevator(ModelPlugin):
         if not count:
             names = [link.name for link in scene.all_links()]
             message = f"plugin {self.name!r}: no link of model {scene.scoped!r} is named {floor}0; it has: "
-            params.error("SK-PLUGIN-003", message + ", ".join(map(repr, names)), "<floor_link_prefix> names another")
+            params.error("SK-PLUGIN-003", message + ", ".join(map(repr, names)), "set <floor_link_prefix>")
         floors = [find_link(scene, f"{floor}{k}", params) for k in range(count)]
         upright = scene.pose_world.inverse()
         self._heights = [float((upright @ link.pose_world).position[2]) for link in floors if link is not None]
@@ -88,8 +88,8 @@ class Elevator(ModelPlugin):
         self._open = [joint.axes[0].upper for joint in doors if joint is not None]
         for joint in doors:
             if joint is not None and not joint.axes[0].upper <= _FARTHEST:
-                message = f"plugin {self.name!r}: door joint {joint.name!r} has no upper limit, at which it is open"
-                params.error("SK-PLUGIN-133", message, "give its axis <limit><upper>")
+                message = f"plugin {self.name!r}: door joint {joint.name!r} has no upper limit, its open position"
+                params.error("SK-PLUGIN-133", message, "add <limit><upper> to its axis")
         self._joint_names = [cabin, *(f"{door}{k}" for k in range(count))]
 
     def load(self, parent: Model, params: Params) -> None:
@@ -102,8 +102,8 @@ class Elevator(ModelPlugin):
         self._state = self.advertise(read_topic(params, "state_topic", f"{own}/state"), INT)
         self._phase: Phase = "idle"
         self._targets: list[int] = []
-        self._kept: list[int] = []
-        self._at = 0  # the floor whose door is dealt with
+        self._stored_commands: list[int] = []
+        self._at = 0  # floor of the active door
         self._until_ns = 0
         self._was_blocked = False
         self._blocked = [False] * len(self._doors)
@@ -116,12 +116,12 @@ class Elevator(ModelPlugin):
 
     @property
     def floor(self) -> int:
-        """The floor that the cabin is next to."""
+        """Index of the floor nearest to the cabin."""
         height = self._lift.position
         return min(range(len(self._heights)), key=lambda k: abs(self._heights[k] - height))
 
     def tell_floor(self) -> None:
-        """Publishes it."""
+        """Publish the floor nearest to the cabin."""
         self._state.publish(msgs.make(INT, data=self.floor))
 
     # ------------------------------------------------------------------ messages
@@ -132,7 +132,7 @@ class Elevator(ModelPlugin):
             top = len(self._heights) - 1
             self.once.left_out(f"floor {target}", f"there is no floor {target}, floors are 0 to {top}")
         elif self._phase == "idle":
-            self._put(target)
+            self._add_stop(target)
             self._at = self.floor
             if self._targets[0] == self._at:
                 self._targets = self._targets[1:]
@@ -140,12 +140,12 @@ class Elevator(ModelPlugin):
             else:
                 self._go("moving")
         elif self._phase == "closing":
-            self._put(target)
+            self._add_stop(target)
         else:
-            self._kept = [*self._kept, target]
+            self._stored_commands = [*self._stored_commands, target]
 
-    def _put(self, target: int) -> None:
-        """Adds a floor to go to: before the first one that it is on the way to, else at the end."""
+    def _add_stop(self, target: int) -> None:
+        """Add a floor to the stops: before the first stop that lies beyond it, else at the end."""
         if target in self._targets:
             return
         before = self.floor
@@ -163,10 +163,10 @@ class Elevator(ModelPlugin):
             if blocked != self._blocked[door]:
                 self._blocked = [*self._blocked[:door], blocked, *self._blocked[door + 1 :]]
 
-    # ------------------------------------------------------------------ the way of a cabin
+    # ------------------------------------------------------------------ motion of cabin and doors
 
     def after_step(self) -> None:
-        """Goes on where something has come to its end."""
+        """Start the next phase if the current one has finished."""
         phase = self._phase
         if phase == "moving":
             if self._has_come(self._lift, self._heights[self._targets[0]], _CABIN_WITHIN):
@@ -191,9 +191,9 @@ class Elevator(ModelPlugin):
             self._open_door()
         elif phase == "closing":
             self._send(1 + self._at, 0.0)
-            kept, self._kept = self._kept, []
-            for target in kept:
-                self._put(target)
+            commands, self._stored_commands = self._stored_commands, []
+            for target in commands:
+                self._add_stop(target)
         self.log.info("%s: %s at floor %d", self.name, phase, self._at)
         self._set_pace()
 
@@ -201,12 +201,13 @@ class Elevator(ModelPlugin):
         mover = self._movers[joint]
         ends = self.sim.communication.bus.endpoints(mover.topic)
         if not mover.wanted and not any(does == "takes" for *_, does in ends):
-            hint = f"give the model a JointPositionController for joint {self._joint_names[joint]!r}"
-            self.once.warn("SK-PLUGIN-132", mover.topic, f"nobody takes positions on {mover.topic}", hint)
+            message = f"no plugin subscribes to the positions on {mover.topic}"
+            hint = f"add a JointPositionController for joint {self._joint_names[joint]!r} to the model"
+            self.once.warn("SK-PLUGIN-132", mover.topic, message, hint)
         mover.publish(msgs.make(DOUBLE, data=position))
 
     def _has_waited(self) -> bool:
-        """Whether the door has been open long enough, since the doorway was last blocked."""
+        """Check whether the door has been open long enough since the doorway was last blocked."""
         is_blocked, now = self._blocked[self._at], self.sim.time_ns
         if self._was_blocked and not is_blocked:
             self._open_door()
@@ -214,7 +215,7 @@ class Elevator(ModelPlugin):
         return not is_blocked and now >= self._until_ns
 
     def _open_door(self) -> None:
-        """Waits from now on for the whole time that a door stays open."""
+        """Restart the time that the door stays open."""
         self._until_ns = self.sim.time_ns + round(self.options.open_door_wait_duration * 1e9)
         self._was_blocked = False
 
@@ -222,5 +223,5 @@ class Elevator(ModelPlugin):
         return abs(axis.position - target) <= within and abs(axis.velocity) <= _AT_REST
 
     def _set_pace(self) -> None:
-        """Looks only while it is under way."""
+        """Run only while the elevator is not idle."""
         set_after_step_rate(self, NEVER if self._phase == "idle" else self.options.update_rate)

@@ -1,4 +1,4 @@
-"""gz's actor that walks after something: `gz::sim::systems::FollowActor`."""
+"""Actor of Gazebo that follows a model or link: `gz::sim::systems::FollowActor`."""
 
 from __future__ import annotations
 
@@ -40,13 +40,13 @@ class FollowActorOptions(Options):
 
 
 class FollowActor(ModelPlugin):
-    """Has its actor walk after `<target>`, a model or a link, in place of its script.
+    """Makes its actor walk after `<target>`, a model or a link, in place of its script.
 
-    It goes straight towards the target at `<velocity>` while that is farther than `<min_distance>` and not farther
-    than `<max_distance>`, both in the plane, and looks at it; else it stands. Where to is decided 50 times a second of
-    simulated time, and where it is follows from that for every instant in between. A skin's animation (`<animation>`,
-    else the first) goes on by `<animation_x_vel>` seconds a metre; a person of our own walks in step with the way. A
-    target that is not there is waited for.
+    The actor walks straight towards the target at `<velocity>`, and faces it, while the planar distance is between
+    `<min_distance>` and `<max_distance>`. Otherwise the actor stands. The direction is decided 50 times a second of
+    simulated time, and the position follows from it for every instant in between. The animation of a skin
+    (`<animation>`, else the first) advances by `<animation_x_vel>` seconds per metre. simkit's own figure moves its
+    legs in step with that distance. A missing target is followed as soon as it exists.
     """
 
     options = OptionsOf(FollowActorOptions)
@@ -60,19 +60,19 @@ class FollowActor(ModelPlugin):
         options.read_all()
         cast = scene.moved_by
         if not isinstance(cast, AnimatedActor):
-            message = f"plugin {self.name!r} is for an actor, {scene.scoped!r} is a model"
-            params.error("SK-PLUGIN-134", message, "put it into an <actor>")
+            message = f"plugin {self.name!r} needs an actor, but {scene.scoped!r} is a model"
+            params.error("SK-PLUGIN-134", message, "move the plugin into an <actor>")
             return
         known = sorted(name for name in cast.rig.clips if name) if isinstance(cast.rig, SkinRig) else []
         if known and options.animation and options.animation not in known:
-            what = f"actor {scene.scoped!r} has no animation {options.animation!r}"
-            message = f"plugin {self.name!r}: {what}; the first plays"
+            missing = f"actor {scene.scoped!r} has no animation {options.animation!r}"
+            message = f"plugin {self.name!r}: {missing}; the first one is played"
             hint = did_you_mean(options.animation, known) or f"animations: {', '.join(known)}"
             params.diagnostics.warning("SK-ACTOR-003", message, self.where, hint)
         least, most = options.min_distance, options.max_distance
         if most < least:
             message = f"plugin {self.name!r}: <max_distance> {most:g} is below <min_distance> {least:g}"
-            params.diagnostics.warning("SK-PLUGIN-135", f"{message}; it never walks", self.where)
+            params.diagnostics.warning("SK-PLUGIN-135", f"{message}, so the actor never walks", self.where)
 
     def load(self, parent: Model, params: Params) -> None:
         scene: SceneModel = parent.scene
@@ -82,26 +82,25 @@ class FollowActor(ModelPlugin):
         pose = scene.pose_world
         self._x, self._y, self._z = pose.position.tolist()
         self._yaw = float(pose.rpy[2])
-        self._behind = 0.0  # [m]
-        # from an instant on it goes that way, for so many metres at most
+        self._travel = 0.0  # distance walked so far [m]
+        # time of the last decision, direction from then on, and largest distance to walk [m]
         self._since_ns, self._way, self._left = self.sim.time_ns, (0.0, 0.0), 0.0
         self._is_following = True
         self._shown = (math.nan, 0.0, 0.0, False)
-        self.before_step_rate = None  # at once, then on the grid
+        self.before_step_rate = None  # the first decision is immediate, later ones follow the rate
         if self._find() is None:
             models = sorted(self.sim.contents.handles.tables["model"])
-            what = f"there is no model or link {self._target!r} to walk after"
-            message = f"plugin {self.name!r}: {what}; it is waited for"
+            message = f"plugin {self.name!r}: there is no model or link {self._target!r} to follow yet"
             params.diagnostics.warning("SK-PLUGIN-136", message, self.where, did_you_mean(self._target, models))
 
     def reset(self) -> None:
         self.sim.engine.reschedule()
 
     def before_step(self) -> None:
-        """Takes it to where it is by now, and says where to from there."""
+        """Update the actor's position, and decide its next direction."""
         gone = self._gone()
         self._x, self._y = self._x + gone * self._way[0], self._y + gone * self._way[1]
-        self._behind += gone
+        self._travel += gone
         self._since_ns, self._left = self.sim.time_ns, 0.0
         self._aim()
         if self.before_step_rate is None:
@@ -109,7 +108,7 @@ class FollowActor(ModelPlugin):
             self.sim.engine.reschedule()
 
     def _gone(self) -> float:
-        """Metres since the last decision."""
+        """Return the distance walked since the last decision [m]."""
         return min(self._left, self.options.velocity * (self.sim.time_ns - self._since_ns) * 1e-9)
 
     def _aim(self) -> None:
@@ -124,39 +123,39 @@ class FollowActor(ModelPlugin):
         is_within = far <= self.options.max_distance
         if is_within != self._is_following:
             self._is_following = is_within
-            told = "is near enough, it walks" if is_within else "is too far, it stands"
-            self.log.info("%s: %s %s", self.name, self._target, told)
+            change = "is near enough, the actor walks" if is_within else "is too far away, the actor stops"
+            self.log.info("%s: %s %s", self.name, self._target, change)
         if is_within:
             self._way, self._left = (x / far, y / far), far - self.options.min_distance
             self._yaw = math.atan2(y, x)
 
     def _find(self) -> Model | Link | None:
-        """The model or link of that name: exactly, or the first whose scoped name ends so."""
+        """Return the target: an exact match, or the first model or link whose scoped name ends with `::<target>`."""
         tables = self.sim.contents.handles.tables
         tables_by_name: tuple[dict[str, Model | Link], ...] = (tables["model"], tables["link"])
         for table in tables_by_name:
             if self._target in table:
                 return table[self._target]
         ending = f"::{self._target}"
-        things: Iterator[tuple[str, Model | Link]] = chain(tables["model"].items(), tables["link"].items())
-        return next((thing for name, thing in things if name.endswith(ending)), None)
+        handles: Iterator[tuple[str, Model | Link]] = chain(tables["model"].items(), tables["link"].items())
+        return next((handle for name, handle in handles if name.endswith(ending)), None)
 
-    # ------------------------------------------------------------------ what is seen
+    # ------------------------------------------------------------------ scenery
 
     def move_scenery(self) -> None:
-        """Puts the actor where it is at the time of the simulation."""
+        """Set the actor's pose for the current simulated time."""
         gone = self._gone()
-        x, y, behind = self._x + gone * self._way[0], self._y + gone * self._way[1], self._behind + gone
+        x, y, travel = self._x + gone * self._way[0], self._y + gone * self._way[1], self._travel + gone
         goes, sim = self._left > gone, self.sim
         data, places = sim.mj_data, sim.engine.names.shared(f"actor {id(self)}", self._find_bodies)
         shown = x, y, self._yaw, goes
         if shown == self._shown and data.mocap_pos[places[0]].tolist() == [x, y, self._z]:
             return
         self._shown = shown
-        poses = self._gait.poses((x, y, self._z), self._yaw, behind, goes)
+        poses = self._gait.poses((x, y, self._z), self._yaw, travel, goes)
         data.mocap_pos[places], data.mocap_quat[places] = poses[:, :3], poses[:, 3:]
         sim.engine.physics.changed(STALE)
 
     def _find_bodies(self) -> npt.NDArray[np.intp]:
-        """Where the actor's links are among the engine's movable bodies."""
+        """Return the mocap indices of the actor's links."""
         return np.array([self.sim.engine.names.link(link).mocap for link in self._links], dtype=np.intp)

@@ -1,4 +1,4 @@
-"""Plugin that runs a system written for gz-sim: an object or a module with `configure`, `pre_update`, `update`, …"""
+"""Plugin that runs a system written for gz-sim: an object or a module with `configure`, `pre_update`, `update`, …."""
 
 from __future__ import annotations
 
@@ -24,27 +24,27 @@ if TYPE_CHECKING:
     from simkit.runtime import Simulation
 
 HOOKS: Final = ("configure", "pre_update", "update", "post_update", "reset", "shutdown")
-"""What a system may have; without one of them it is none."""
+"""Hooks of a system; an object without any of them is not a system."""
 
 System = Any
-"""An object or a module with some of the hooks, which a user wrote."""
+"""Object or module of a user with some of the hooks."""
 
 _OWN: Final = str(Path(__file__).resolve().parents[2]) + os.sep
 _MODULE = (types.ModuleType, types.FunctionType, types.BuiltinFunctionType, type)
 
 _STATELESS: Final = (type(threading.Lock()), type(threading.RLock()), types.ModuleType)
-"""What systems hold and what has nothing to bring back: locks against threads that there are none of here, modules."""
+"""Types of attributes without a state to restore: modules, and locks, because simkit calls systems in one thread."""
 
 
 class GzSystem(Plugin):
-    """A plugin that stands for a system of gz. Its state is that of the system.
+    """Plugin that wraps a system of Gazebo. Its state is that of the system.
 
     Args:
-        system: an object or a module with some of the hooks; None where a subclass finds it in `find_system`.
+        system: Object or module with some of the hooks; None if a subclass finds it in `find_system`.
 
     Attributes:
-        system: what has the hooks; None before `load`.
-        shadow: whether simkit's `gz` modules go before installed ones.
+        system: Object with the hooks; None before `load`.
+        shadow: True if simkit's `gz` modules take precedence over installed ones.
     """
 
     parent_kind = "any"
@@ -52,20 +52,19 @@ class GzSystem(Plugin):
     shadow = False
 
     def __init__(self, system: System = None) -> None:
-        self._given = system
+        self._initial_system = system
         self.system: System = None
         self._calls: dict[str, Callable[..., None]] = {}
-        self._outside: set[str] = set()  # attributes that snapshots leave as they are
-        self._hub: Any = None  # what the systems of a simulation share
+        self._outside: set[str] = set()  # attributes that snapshots do not contain
+        self._hub: Any = None  # state shared by all systems of the simulation
 
     # ------------------------------------------------------------------ simkit's hooks
 
     def find_system(self) -> System:
-        """The system to hang here; None where there is none, which has been reported."""
-        return self._given
+        """Return the system to run; None after a reported error."""
+        return self._initial_system
 
     def load(self, parent: object, params: Params) -> None:
-
         self._hub = hub_of(self.sim)
         self._hub.ecm.published = _joint_state_publishers
         before, hook = simulation_context.enter_simulation(self.sim, self), "get_system"
@@ -88,7 +87,7 @@ class GzSystem(Plugin):
             self.call("pre_update", self._hub.info(1))
 
     def update_step(self) -> None:
-        """After all `before_step`s; the last system then has the commands of all carried out."""
+        """Call `update` after all `before_step` hooks; the last system then executes the commands of all systems."""
         if "update" in self._calls:
             self.call("update", self._hub.info(1))
         self._hub.look()
@@ -108,7 +107,12 @@ class GzSystem(Plugin):
             self.call("shutdown")
 
     def call(self, hook: str, *info: object) -> None:
-        """Calls a hook of the system, where it has it; what it raises is the plugin's."""
+        """Call a hook of the system if it exists; exceptions are reported as faults of this plugin.
+
+        Args:
+            hook: Name of the hook.
+            *info: `UpdateInfo` of the step; omitted for `shutdown`.
+        """
         method = self._calls.get(hook)
         if method is None:
             return
@@ -125,9 +129,12 @@ class GzSystem(Plugin):
     # ------------------------------------------------------------------ state
 
     def get_state(self) -> dict[str, Any]:
-        """The system's attributes (a module's variables), each copied by itself; the first has the entities too."""
+        """Return the system's attributes (a module's variables), each copied separately.
+
+        The state of the first system also contains the entities.
+        """
         if self._hub is None:
-            return {}  # it was never loaded
+            return {}  # the plugin was never loaded
         memo: dict[int, object] = {id(self): self, id(self.system): self.system}
         state: dict[str, object] = {}
         for name, value in _variables(self.system).items():
@@ -143,33 +150,33 @@ class GzSystem(Plugin):
         return {"variables": state, "entities": shared}
 
     def set_state(self, state: Mapping[str, Any]) -> None:
-        """Back to a state from `get_state`; attributes made since are dropped, uncopied ones stay as they are."""
+        """Restore a state from `get_state`; attributes added since are deleted, uncopied ones keep their values."""
         if not state:
             return
         memo: dict[int, object] = {id(self): self, id(self.system): self.system}
-        kept, own = copy.deepcopy(dict(state["variables"]), memo), getattr(self.system, "__dict__", {})
-        for name in [n for n in _variables(self.system) if n not in kept and n not in self._outside]:
+        saved, own = copy.deepcopy(dict(state["variables"]), memo), getattr(self.system, "__dict__", {})
+        for name in [n for n in _variables(self.system) if n not in saved and n not in self._outside]:
             del own[name]
-        own.update(kept)
+        own.update(saved)
         if state["entities"] is not None:
             self._hub.ecm.set_state(state["entities"])
 
     def _report_uncopied(self, name: str, error: Exception) -> None:
         if name not in self._outside:
             self._outside.add(name)
-            which = f"plugin {self.name!r}: attribute {name!r}"
-            message = f"{which} cannot be copied, snapshots and reset leave it as it is: {error}"
-            self.sim.engine.reports.warning("SK-PLUGIN-006", message, self.where, "give it a __deepcopy__")
+            attribute = f"plugin {self.name!r}: attribute {name!r}"
+            message = f"{attribute} cannot be copied, so snapshots and resets do not restore it: {error}"
+            self.sim.engine.reports.warning("SK-PLUGIN-006", message, self.where, "add __deepcopy__ to its class")
 
 
 def line_of(error: BaseException) -> str:
-    """Where in the user's code it was raised: ` at file:line`."""
+    """Return the place in the user's code that raised an exception, as ` at file:line`."""
     frames = [f for f in traceback.extract_tb(error.__traceback__) if not f.filename.startswith(_OWN)]
     return f" at {frames[-1].filename}:{frames[-1].lineno}" if frames else ""
 
 
 def _variables(system: object) -> dict[str, object]:
-    """What of a system is state: an object's attributes, a module's variables that are data."""
+    """Return the state of a system: an object's attributes, or a module's variables that hold data."""
     own = getattr(system, "__dict__", {})
     if not isinstance(system, types.ModuleType):
         return dict(own)
@@ -182,8 +189,7 @@ def _joint_state_publishers(sim: Simulation) -> frozenset[str]:
 
 
 def _entity_of(ecm: EntityComponentManager, parent: object) -> int:
-    """The number of what a plugin hangs on."""
-
+    """Return the entity number of a plugin's parent."""
     scoped = getattr(parent, "scoped", "")
     if not scoped:
         return WORLD_ENTITY

@@ -1,4 +1,4 @@
-"""gz's control of joints: `gz::sim::systems::JointController` and `gz::sim::systems::JointPositionController`."""
+"""Joint controllers of Gazebo: `gz::sim::systems::JointController` and `gz::sim::systems::JointPositionController`."""
 
 from __future__ import annotations
 
@@ -31,11 +31,11 @@ class JointControllerOptions(JointCommandOptions):
 class JointController(JointCommander):
     """Turns one or more joints, about their first axis, at a commanded velocity [rad/s or m/s].
 
-    By velocity: the efforts, within their limits, that bring the joints to it within one step. With
-    `<use_force_commands>`: a PID on the velocity of the first joint gives the effort of all; `<disable_braking>` leaves
-    out what would slow them down. Commands come on `/model/<model>/joint/<joint>/cmd_vel`, on `<sub_topic>` below the
-    model or on `<topic>`, or as one of many actuators (`<use_actuator_msg>`, `<actuator_number>`). The numbers of the
-    PID are live parameters.
+    By default the efforts, within their limits, bring the joints to the velocity within one step. With
+    `<use_force_commands>`, a PID on the velocity of the first joint gives the effort of all joints; `<disable_braking>`
+    then suppresses efforts that slow them down. Commands come on `/model/<model>/joint/<joint>/cmd_vel`, on
+    `<sub_topic>` below the model or on `<topic>`, or as one of many actuators (`<use_actuator_msg>`,
+    `<actuator_number>`). The numbers of the PID are live parameters.
     """
 
     endpoints = (
@@ -50,7 +50,7 @@ class JointController(JointCommander):
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         super().prepare(scene, params, builder)
-        self.own_topic = f"joint/{self._first}/cmd_vel"
+        self.own_topic = f"joint/{self._first_name}/cmd_vel"
 
     def load(self, parent: Model, params: Params) -> None:
         super().load(parent, params)
@@ -82,13 +82,14 @@ class JointPositionControllerOptions(JointCommandOptions):
 
 
 class JointPositionController(JointCommander):
-    """Brings one or more joints to a commanded position [rad or m].
+    """Moves one or more joints to a commanded position [rad or m].
 
-    A PID on the position of the first joint gives the effort of all. With `<use_velocity_commands>` they move instead
-    at the velocity that reaches the position within one step, at most `<cmd_max>` where the file gives one. Commands
-    come on `/model/<model>/joint/<joint>/<joint_index>/cmd_pos`, on `<sub_topic>` below the model or on `<topic>`, or
-    as one of many actuators (`<use_actuator_msg>`, `<actuator_number>`); the first target is `<initial_position>`.
-    `<joint_index>` is the axis of a joint that has several. The numbers of the PID are live parameters.
+    A PID on the position of the first joint gives the effort of all joints. With `<use_velocity_commands>` the joints
+    move instead at the velocity that reaches the position within one step, at most `<cmd_max>` if the file contains it.
+    Commands come on `/model/<model>/joint/<joint>/<joint_index>/cmd_pos`, on `<sub_topic>` below the model or on
+    `<topic>`, or as one of many actuators (`<use_actuator_msg>`, `<actuator_number>`). The first target is
+    `<initial_position>`. `<joint_index>` selects the axis of a joint with several axes. The numbers of the PID are live
+    parameters.
     """
 
     endpoints = (
@@ -104,7 +105,7 @@ class JointPositionController(JointCommander):
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         self._index = self.options.joint_index
         super().prepare(scene, params, builder)
-        self.own_topic = f"joint/{self._first}/{self._index}/cmd_pos"
+        self.own_topic = f"joint/{self._first_name}/{self._index}/cmd_pos"
 
     def load(self, parent: Model, params: Params) -> None:
         super().load(parent, params)
@@ -114,8 +115,8 @@ class JointPositionController(JointCommander):
             self.declare_controller(Pid(1.0, 0.1, 0.01, 1.0, -1.0, 1000.0, -1000.0))
             return
         if params.has("cmd_max"):
-            says = "largest velocity [rad/s or m/s]"
-            self._fastest = self.declare("cmd_max", 1000.0, minimum=0.0, description=says)
+            description = "largest velocity [rad/s or m/s]"
+            self._fastest = self.declare("cmd_max", 1000.0, minimum=0.0, description=description)
         unused = tuple(name for name in GAINS if name != "cmd_max")
         self.say_gains_are_unused(params, unused, "with <use_velocity_commands>")
 

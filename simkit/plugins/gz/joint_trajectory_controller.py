@@ -1,4 +1,4 @@
-"""gz's trajectories of joints: `gz::sim::systems::JointTrajectoryController`."""
+"""Joint trajectory controller of Gazebo: `gz::sim::systems::JointTrajectoryController`."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ _DEFAULTS: Final = {"i_max": -1.0, "cmd_max": -1.0}
 
 @dataclass(slots=True)
 class _Axis:
-    """A joint with its two controllers and what it is to do now."""
+    """Joint with its two controllers and its present targets."""
 
     joint: JointAxis
     position_pid: Pid
@@ -79,18 +79,18 @@ class JointTrajectoryControllerOptions(Options):
 
 
 class JointTrajectoryController(ControlledJoints, ModelPlugin):
-    """Follows a `JointTrajectory` with a PID on position, a PID on velocity, and efforts, which add up.
+    """Follows a `JointTrajectory` with the sum of a PID on position, a PID on velocity, and the efforts of the points.
 
-    The target is the first point whose time is not over, as a whole: gz does not interpolate. Of a point only the
-    fields that it has change the target; after the last one it holds. A new message takes the place of the trajectory
-    that runs. The start is the step after the message comes, or with `<use_header_start_time>` the time in its header.
-    Each time that the target changes, how much of the trajectory is begun goes out on `<topic>_progress`.
+    The target is the first point whose time has not passed: Gazebo does not interpolate. Only the fields that a point
+    has change the target; the last point is held. A new message replaces the active trajectory. A trajectory starts in
+    the step after its message, or with `<use_header_start_time>` at the time in its header. At each change of the
+    target, the fraction of started points is published on `<topic>_progress`.
 
-    `<simkit:interpolation>` linear, cubic or quintic (`simkit.plugins.joints.joint_trajectory`) moves positions and
-    velocities from point to point instead.
+    `<simkit:interpolation>` linear, cubic or quintic (`simkit.plugins.joints.joint_trajectory`) interpolates positions
+    and velocities between the points instead.
 
-    Without `<joint_name>` all joints of the model with one axis. The numbers of the controllers are repeated, one
-    for each joint in that order, and are live parameters (`<joint>.position_p_gain`).
+    Without `<joint_name>` all joints of the model with one axis are controlled. Each number of the controllers is
+    repeated, once per joint in that order, and is a live parameter (`<joint>.position_p_gain`).
     """
 
     endpoints = (
@@ -113,26 +113,26 @@ class JointTrajectoryController(ControlledJoints, ModelPlugin):
                 message = f"joint {joint.name!r} is {joint.type}; allowed is one of " + ", ".join(sorted(_ONE_AXIS))
                 element.error("SK-PLUGIN-003", message)
             elif joint in chosen:
-                message = f"plugin {self.name!r}: joint {joint.name!r} comes twice"
-                params.diagnostics.warning("SK-PLUGIN-044", message, element.where, "the first one counts")
+                message = f"plugin {self.name!r}: joint {joint.name!r} is listed twice; the first entry is used"
+                params.diagnostics.warning("SK-PLUGIN-044", message, element.where, "remove one of the entries")
             else:
                 chosen.append(joint)
         if not elements:
             chosen = [joint for joint in scene.joints if joint.type in _ONE_AXIS and len(joint.axes) == 1]
             if not chosen:
-                message = f"model {scene.scoped!r} has no joint with one axis, which plugin {self.name!r} is for"
+                message = f"model {scene.scoped!r} has no joint with one axis, which plugin {self.name!r} needs"
                 params.error("SK-PLUGIN-003", message)
         self._scoped = [joint.scoped for joint in chosen]
 
     @property
     def node(self) -> str:
-        """Name of its node, for its parameters, where the file gives it none but its class."""
+        """Name of the plugin's node for its parameters, if the file sets none."""
         return valid_topic(f"/model/{self.scoped.replace('::', '/')}/joint_trajectory_controller")
 
     def load(self, parent: Model, params: Params) -> None:
         self.once = OneTimeWarnings(self)
         self._axes = self._read_axes(params)
-        attribute = self.options.use_header_start_time_attribute  # gz looks for it there, its manual has an element
+        attribute = self.options.use_header_start_time_attribute  # Gazebo reads an attribute, its manual has an element
         self._by_header = params.boolean("use_header_start_time", attribute.lower() in ("true", "1"))
         self._rule: Any = self.options.interpolation
         topic = valid_topic(self.options.topic or f"/model/{parent.name}/joint_trajectory")
@@ -146,7 +146,7 @@ class JointTrajectoryController(ControlledJoints, ModelPlugin):
         self._start, self._index = 0, -1
 
     def _read_axes(self, params: Params) -> dict[str, _Axis]:
-        """Every joint with its numbers, by name."""
+        """Return every joint with its controllers, by name."""
         count = len(self._scoped)
         table = {
             f"{kind}_{name}": self._repeated(params, f"{kind}_{name}", _DEFAULTS.get(name, 0.0))
@@ -172,12 +172,12 @@ class JointTrajectoryController(ControlledJoints, ModelPlugin):
         return pid
 
     def _repeated(self, params: Params, element: str, default: float) -> list[float]:
-        """A number for each joint: those of the elements in order, then the default."""
+        """Return one number per joint: the values of the repeated element in order, then the default."""
         found: tuple[float, ...] = getattr(self.options, element)
         count = len(self._scoped)
         if len(found) > count:
             message = f"plugin {self.name!r}: {len(found)} times <{element}> for {count} joint{'s'[: count != 1]}"
-            hint = "one each, in the order of <joint_name>; those too many have no effect"
+            hint = "use one for each joint, in the order of <joint_name>; surplus values have no effect"
             params.diagnostics.warning("SK-PLUGIN-044", message, params.all(element)[count].where, hint)
         return [*found, *[default] * count][:count]
 
@@ -191,20 +191,21 @@ class JointTrajectoryController(ControlledJoints, ModelPlugin):
         names, points = [str(name) for name in message.joint_names], read_points(message)
         fault = trajectory_faults(names, points) if names else "it names no joints"
         if fault:
-            self.once.left_out(fault, f"a trajectory is left out: {fault}")
+            self.once.left_out(fault, f"a trajectory is ignored: {fault}")
             return
         for name in names:
             if name not in self._axes:
-                what = f"a trajectory is for joint {name!r} too, which is not controlled; that part of it is left out"
-                self.once.left_out(name, what, suggest_names(name, list(self._axes)))
+                message_text = f"a trajectory contains joint {name!r}, which is not controlled; that part is ignored"
+                self.once.left_out(name, message_text, suggest_names(name, list(self._axes)))
         if any(point.accelerations for point in points) and self._rule != "quintic":
-            what = "accelerations of a trajectory are not used"
-            self.once.warn("SK-PLUGIN-045", "accelerations", what, "<simkit:interpolation>quintic uses them")
+            warning = "accelerations of a trajectory are not used"
+            hint = "set <simkit:interpolation>quintic</simkit:interpolation> to use them"
+            self.once.warn("SK-PLUGIN-045", "accelerations", warning, hint)
         start = nanoseconds(message.header.stamp) if self._by_header else 0
         self._message = names, points, start
 
     def _begin(self, now: int) -> None:
-        """Takes up the trajectory that came last."""
+        """Start the trajectory of the last message."""
         assert self._message is not None
         self._names, self._points, start = self._message
         self._message = None
@@ -221,7 +222,7 @@ class JointTrajectoryController(ControlledJoints, ModelPlugin):
                 found.path = JointPath.through(here, self._points, place, self._rule)
 
     def _follow(self, now: int) -> None:
-        """Sets the targets for now."""
+        """Set the targets for this time."""
         since = now - self._start
         if not self._points or since < 0:
             return
@@ -248,7 +249,7 @@ class JointTrajectoryController(ControlledJoints, ModelPlugin):
         if self._message is not None:
             self._begin(now)
         self._follow(now)
-        if not self._is_ready:  # gz asks for the state of the joints in its first step
+        if not self._is_ready:  # Gazebo only creates the components of the joints' state in its first step
             self._is_ready = True
             return
         step = self.period

@@ -1,4 +1,4 @@
-"""gz's blows: `gz::sim::systems::KineticEnergyMonitor`."""
+"""Kinetic energy monitor of Gazebo: `gz::sim::systems::KineticEnergyMonitor`."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from simkit.scene import SceneModel
 
 DOUBLE: Final = "std_msgs/msg/Float64"
-_BODY: Final = int(mujoco.mjtObj.mjOBJ_BODY)  # at its centre of mass, along the axes of its inertia
+_BODY: Final = int(mujoco.mjtObj.mjOBJ_BODY)  # velocity at the centre of mass, in the axes of the inertia
 
 
 class KineticEnergyMonitorOptions(Options):
@@ -33,9 +33,9 @@ class KineticEnergyMonitorOptions(Options):
 
 
 class KineticEnergyMonitor(ModelPlugin):
-    """Tells how much kinetic energy [J] a link lost within one step, where that is more than a threshold.
+    """Publishes the kinetic energy [J] that a link lost within one step, if it exceeds a threshold.
 
-    The energy is that of the link's own mass and inertia, moving and turning: m v²/2 + ω·Iω/2.
+    The energy is that of the link's own mass and inertia, for translation and rotation: m v²/2 + ω·Iω/2.
     """
 
     options = OptionsOf(KineticEnergyMonitorOptions)
@@ -53,18 +53,18 @@ class KineticEnergyMonitor(ModelPlugin):
         watch_while_subscribed(self, (self._lost,), "look")
 
     def begin(self) -> None:
-        """What the link has when somebody begins to listen."""
+        """Store the present energy when the first subscriber appears."""
         self._energy = self._present()
 
     def look(self) -> None:
-        """Compares with the step before."""
+        """Compare the energy with that of the step before."""
         before, self._energy = self._energy, self._present()
         lost = before - self._energy
         if lost > self._threshold and self._lost.wanted:
             self._lost.publish(msgs.type_of(DOUBLE)(lost))
 
     def _present(self) -> float:
-        """Kinetic energy of the link [J]."""
+        """Return the kinetic energy of the link [J]."""
         sim = self.sim
         body = sim.engine.names.link(self._scoped).body
         if not body:

@@ -1,4 +1,4 @@
-"""gz's battery: `gz::sim::systems::LinearBatteryPlugin`."""
+"""Battery of Gazebo: `gz::sim::systems::LinearBatteryPlugin`."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 BOOL: Final = "std_msgs/msg/Bool"
 SET_BOOL: Final = "std_srvs/srv/SetBool"
 _RENDERED: Final = ("camera", "depth", "gpu_", "segmentation", "boundingbox", "thermal")
-"""Parts of the names of kinds of sensors that gz's Sensors system has; a logical camera has a system of its own."""
-_LEAST_EFFORT: Final = 1e-9  # [N·m or N]
+"""Parts of the type names of sensors in Gazebo's Sensors system; a logical camera has a system of its own."""
+_LEAST_EFFORT: Final = 1e-9  # smallest effort that counts as a command [N·m or N]
 
 
 class LinearBatteryOptions(Options):
@@ -51,10 +51,10 @@ class LinearBatteryOptions(Options):
 
 
 class LinearBattery(Battery):
-    """A battery that a load drains and a charger fills; empty, it lets go of the joints of its model.
+    """Simulates a battery that a load drains and a charger fills; an empty battery disables the joints of its model.
 
-    It drains from the first command to a joint of the model on, from the first message on a `<power_draining_topic>`,
-    or from the start. Its state is on `/model/<model>/battery/<battery>/state` at 50 Hz.
+    The battery drains from the start, from the first command to a joint of the model, or from the first message on a
+    `<power_draining_topic>`. Its state is published on `/model/<model>/battery/<battery>/state` at 50 Hz.
     """
 
     endpoints = (
@@ -84,29 +84,29 @@ class LinearBattery(Battery):
     def _read_cell(self, params: Params) -> Cell:
         options = self.options
         voltage, capacity, charge = options.voltage, options.capacity, options.initial_charge
-        kept = max(0.0, min(capacity, charge))
-        if kept != charge:
-            allowed = f"is not from 0 to {capacity:g}"
-            self._warn(params, f"<initial_charge> {charge:g} {allowed}, {kept:g} is used", "initial_charge")
+        clamped = max(0.0, min(capacity, charge))
+        if clamped != charge:
+            fault = f"is not between 0 and {capacity:g}"
+            self._warn(params, f"<initial_charge> {charge:g} {fault}; {clamped:g} is used", "initial_charge")
         tau = options.smooth_current_tau
         if tau <= 0.0:
-            what = f"<smooth_current_tau> {tau:g} is not above 0, 1 is used, as in Gazebo"
-            self._warn(params, what, "smooth_current_tau")
+            message = f"<smooth_current_tau> {tau:g} is not above 0; 1 is used, as in Gazebo"
+            self._warn(params, message, "smooth_current_tau")
             tau = 1.0
         constant, linear = options.open_circuit_voltage_constant_coef, options.open_circuit_voltage_linear_coef
-        if capacity and abs(constant + linear * (1.0 - kept / capacity)) < 1e-3:
-            hint = "give <open_circuit_voltage_constant_coef>: the voltage of the full battery"
-            self._warn(params, "the open-circuit voltage is 0, so that nothing can be drawn", hint=hint)
-        return Cell(constant, linear, capacity or 1.0, options.resistance, tau, voltage, kept)
+        if capacity and abs(constant + linear * (1.0 - clamped / capacity)) < 1e-3:
+            hint = "set <open_circuit_voltage_constant_coef> to the voltage of the full battery"
+            self._warn(params, "the open-circuit voltage is 0, so the battery supplies no power", hint=hint)
+        return Cell(constant, linear, capacity or 1.0, options.resistance, tau, voltage, clamped)
 
-    def _warn(self, params: Params, what: str, element: str = "", hint: str = "") -> None:
+    def _warn(self, params: Params, message: str, element: str = "", hint: str = "") -> None:
         where = params.block(element).where if element else self.where
-        params.diagnostics.warning("SK-PLUGIN-123", f"plugin {self.name!r}: {what}", where, hint)
+        params.diagnostics.warning("SK-PLUGIN-123", f"plugin {self.name!r}: {message}", where, hint)
 
     def load(self, parent: Model, params: Params) -> None:
         if not params.has("power_load"):
-            self._warn(params, "there is no <power_load> [W]: nothing drains the battery")
-        self._power = self.declare("power_load", 0.0, description="what is drawn while the battery drains [W]")
+            self._warn(params, "there is no <power_load> [W], so nothing drains the battery")
+        self._power = self.declare("power_load", 0.0, description="power drawn while the battery drains [W]")
         self._is_dead = False
         self._held: dict[str, tuple[Vector, Vector, Vector]] = {}
         base = self.open_state(parent.name)
@@ -120,7 +120,7 @@ class LinearBattery(Battery):
             self.subscribe(valid_topic(topic), partial(self._set_drained, False), keep=1)
 
     def _supply(self, scene: SceneModel) -> None:
-        """Has the model's rendered sensors rest while the battery is empty, where the Sensors system asks for it."""
+        """Stop the model's rendered sensors while the battery is empty, if the Sensors system enables this."""
         systems = (p for p in self.sim.engine.structure.all_plugins() if isinstance(p, SensorsSystem))
         if not any(system.stops_without_power for system in systems):
             return
@@ -130,12 +130,12 @@ class LinearBattery(Battery):
                 self.sim.sensor(sensor.scoped).sample_only_while(lambda: not self.is_empty)
 
     def _offer_recharge(self, base: str, *, by_topic: bool) -> None:
-        # what comes with the request does not count, as in gz: the name says what is to be
+        # the data of the request is ignored, as in Gazebo: the name of the service decides
         for word, charger in (("start", self._charger), ("stop", None)):
-            name, does = valid_topic(f"{base}/recharge/{word}"), partial(self._set_charger, charger)
-            self.offer(name, SET_BOOL, does)
+            name, handler = valid_topic(f"{base}/recharge/{word}"), partial(self._set_charger, charger)
+            self.offer(name, SET_BOOL, handler)
             if by_topic:
-                self.listen(name, BOOL, does)
+                self.listen(name, BOOL, handler)
 
     # ------------------------------------------------------------------ commands
 
@@ -150,23 +150,23 @@ class LinearBattery(Battery):
 
     @property
     def is_empty(self) -> bool:
-        """Whether nothing is left."""
+        """True if the battery has no charge left."""
         return self.cell.soc <= 0.0
 
     def demand(self) -> float:
         return float(self._power.value) + super().demand()
 
     def after_step(self) -> None:
-        """Takes one step, and lets go of the joints or takes them up again."""
+        """Advance the battery by one step, and disable or enable the joints if the battery became empty or charged."""
         if not self.is_drained:
             self.is_drained = self._is_commanded()
         super().after_step()
         if self.is_empty != self._is_dead:
             self._is_dead = self.is_empty
-            (self._let_go if self._is_dead else self._take_up)()
+            (self._disable_joints if self._is_dead else self._enable_joints)()
 
     def _is_commanded(self) -> bool:
-        """Whether a joint of the model was commanded in this step: a control or an effort other than zero."""
+        """Check whether a joint of the model was commanded in this step: a control or an effort other than zero."""
         physics = self.sim.engine.physics
         if not (physics.data.ctrl.any() or physics.last_applied.any()):
             return False
@@ -175,7 +175,7 @@ class LinearBattery(Battery):
         return self.sim.engine.velocity_servos.is_commanded(actuators) or bool(pushed.any())
 
     def _find_parts(self) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
-        """Degrees of freedom of the model's joints, and the actuators on them."""
+        """Return the degrees of freedom of the model's joints, and the actuators on them."""
         handles = [self.sim.joint(name) for name in self._joints]
         dofs = [dof for joint in handles for dof in joint.mj_dofs]
         actuators = [self._actuators_of(joint) for joint in handles]
@@ -187,8 +187,8 @@ class LinearBattery(Battery):
         on_joint = model.actuator_trntype == mujoco.mjtTrn.mjTRN_JOINT
         return np.flatnonzero(on_joint & np.isin(model.actuator_trnid[:, 0], ids))
 
-    def _let_go(self) -> None:
-        """Nothing commands the joints any more, as gz's physics has it of a model whose battery is empty."""
+    def _disable_joints(self) -> None:
+        """Remove all commands from the joints, as Gazebo's physics does for a model with an empty battery."""
         gains, biases = self.sim.engine.touch("actuator_gainprm"), self.sim.engine.touch("actuator_biasprm")
         for name in self._joints:
             joint = self.sim.joint(name)
@@ -199,8 +199,8 @@ class LinearBattery(Battery):
             gains[actuators], biases[actuators] = 0.0, 0.0
         self.log.warning("%s: battery %r is empty", self.scoped, self.battery)
 
-    def _take_up(self) -> None:
-        """The joints obey again."""
+    def _enable_joints(self) -> None:
+        """Restore the commands of the joints."""
         gains, biases = self.sim.engine.touch("actuator_gainprm"), self.sim.engine.touch("actuator_biasprm")
         for name, (efforts, gain, bias) in self._held.items():
             joint = self.sim.joint(name)

@@ -1,4 +1,4 @@
-"""gz's log of a run: `gz::sim::systems::LogRecord`, as a bag."""
+"""Log of a run, as Gazebo's `gz::sim::systems::LogRecord`, written as a bag."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _IS_PATTERN: Final = re.compile(r"[*?\[\]().]")
 
 
 class _Log:
-    """The recording of a run; a handle, which stays what it is through resets and restores."""
+    """Recording of a run. Snapshots, resets and restores keep the same object."""
 
     def __init__(self) -> None:
         self.recorder: Recorder | None = None
@@ -51,9 +51,9 @@ class LogRecordOptions(Options):
 
 
 class LogRecord(WorldPlugin):
-    """Records the run to `<record_path>/state.mcap`: the world's SDF, where its links are, and `<record_topic>`s.
+    """Records the run to `<record_path>/state.mcap`: the world's SDF, the poses of its links, and `<record_topic>`s.
 
-    The file is begun with the first step; one that is there is written over, as in gz.
+    The file is created in the first step and replaces an existing one, as in Gazebo.
     """
 
     endpoints = (
@@ -61,7 +61,7 @@ class LogRecord(WorldPlugin):
         publishes("/world/{world}/changed_state", TRANSFORMS),
     )
     options = OptionsOf(LogRecordOptions)
-    names = ("gz::sim::systems::LogRecord",)  # its file holds LogPlayback too
+    names = ("gz::sim::systems::LogRecord",)  # no filename: Gazebo's library also contains LogPlayback
 
     def prepare(self, scene: object, params: Params, builder: SpecBuilder) -> None:
         self._path = self._read_path(params)
@@ -70,24 +70,27 @@ class LogRecord(WorldPlugin):
         self._report_unused(params)
 
     def _read_path(self, params: Params) -> Path | None:
-        written = self.options.record_path
-        if not written:
+        record_path = self.options.record_path
+        if not record_path:
             message = f"plugin {self.name!r} has no <record_path>; nothing is recorded"
-            hint = "name a folder below the working directory, or use `simkit run --record OUT.mcap`"
+            hint = "set <record_path> to a folder below the working directory, or use `simkit run --record OUT.mcap`"
             params.diagnostics.warning("SK-PLUGIN-127", message, self.where, hint)
             return None
-        path = allowed_folder(written)
+        path = allowed_folder(record_path)
         if path is None or (path.exists() and not path.is_dir()):
-            what = "is no folder" if path else "lies outside the folders that may be written to"
-            message = f"plugin {self.name!r}: <record_path> {written} {what}; nothing is recorded"
+            fault = "is not a folder" if path else "is outside the folders that simkit may write to"
+            message = f"plugin {self.name!r}: <record_path> {record_path} {fault}; nothing is recorded"
             variable = f"the environment variable {SAVE_PATH_VARIABLE}"
-            hint = f"a path below the working directory, or the folder's name in {variable}"
+            hint = f"use a path below the working directory, or allow the folder in {variable}"
             params.diagnostics.warning("SK-PLUGIN-127", message, params.block("record_path").where, hint)
             return None
         return path
 
     def _read_topics(self, params: Params) -> tuple[frozenset[str], tuple[re.Pattern[str], ...]]:
-        """Topics by name, and those by regular expression: as in gz, whatever has one of `*?[]().` in it."""
+        """Return the topics by name and by regular expression.
+
+        A text with one of the characters `*?[]().` is an expression, as in Gazebo.
+        """
         plain, patterns = set(), []
         for element in params.all("record_topic"):
             if not _IS_PATTERN.search(element.value):
@@ -103,25 +106,25 @@ class LogRecord(WorldPlugin):
     def _report_unused(self, params: Params) -> None:
         unused = []
         if self.options.record_resources:
-            unused.append("<record_resources>: meshes stay where they are")
+            unused.append("<record_resources>: meshes are not copied")
         if self.options.compress:
-            unused.append("<compress>: a bag is compressed as it is written")
+            unused.append("<compress>: a bag is always compressed")
         if self.options.compress_path:
-            unused.append("<compress_path>: there is one file, in <record_path>")
+            unused.append("<compress_path>: the only file is in <record_path>")
         if unused:
-            message = f"plugin {self.name!r} does without {'; '.join(unused)}"
+            message = f"plugin {self.name!r} ignores {'; '.join(unused)}"
             params.diagnostics.note("SK-PLUGIN-128", message, self.where)
 
     def load(self, parent: Simulation, params: Params) -> None:
         self.once, self._log = OneTimeWarnings(self), _Log()
         self.before_step_rate = self.after_step_rate = NEVER
-        others = [
+        recorders = [
             p for p in self.sim.engine.structure.all_plugins() if isinstance(p, LogRecord) and p._path is not None
         ]
         if self._path is None:
             return
-        if others[0] is not self:
-            message = f"plugin {self.name!r}: another one records already; this one does not, as in Gazebo"
+        if recorders[0] is not self:
+            message = f"plugin {self.name!r}: another LogRecord already records; this one does not, as in Gazebo"
             params.diagnostics.warning("SK-PLUGIN-127", message, self.where)
             return
         self.before_step_rate = None
@@ -134,7 +137,7 @@ class LogRecord(WorldPlugin):
     # ------------------------------------------------------------------ running
 
     def before_step(self) -> None:
-        """Begins the recording, once."""
+        """Start the recording in the first step."""
         if not self._log.was_begun:
             self._begin()
         self.before_step_rate = NEVER
@@ -153,7 +156,7 @@ class LogRecord(WorldPlugin):
             self.once.warn("SK-PLUGIN-127", "begin", f"nothing is recorded: {error}")
             return
         self._sdf.publish(msgs.type_of(STRING)(self.sim.control.to_sdf()))
-        self._tell_state()
+        self._publish_state()
 
     def _is_recorded(self, topic: str) -> bool:
         own = topic in (self._sdf.topic, self._state.topic) or topic in self._plain
@@ -164,10 +167,10 @@ class LogRecord(WorldPlugin):
         if recorder is not None and recorder.failure is not None:
             self.once.warn("SK-PLUGIN-127", "failed", str(recorder.failure))
         if self._state.wanted:
-            self._tell_state()
+            self._publish_state()
 
-    def _tell_state(self) -> None:
-        """The poses of the links that moved since the last time, in the world."""
+    def _publish_state(self) -> None:
+        """Publish the world poses of the links that moved since the last call."""
         sim, moved = self.sim, []
         for scoped, link in sim.contents.handles.tables["link"].items():
             pose = link.pose
@@ -184,15 +187,18 @@ class LogRecord(WorldPlugin):
 
 
 class LogPlayback(WorldPlugin):
-    """gz's replay of its logs, which simkit does not have: a run with the same seed is the same bit for bit."""
+    """Replaces Gazebo's replay of logs, which simkit does not support.
+
+    A run with the same seed is identical bit for bit, so that a replay is not needed.
+    """
 
     names = ("gz::sim::systems::LogPlayback",)
 
     def prepare(self, scene: object, params: Params, builder: SpecBuilder) -> None:
         params.mark_all_read()
-        message = f"plugin {self.name!r}: logs of Gazebo are not played back; the world runs as it is"
+        message = f"plugin {self.name!r}: playback of Gazebo's logs is not supported; the world is simulated instead"
         hint = "run the world with the same seed, or read a bag with `simkit topic echo --bag`"
         params.diagnostics.warning("SK-PLUGIN-129", message, self.where, hint)
 
     def load(self, parent: Simulation, params: Params) -> None:
-        """Nothing to do."""
+        """Do nothing."""

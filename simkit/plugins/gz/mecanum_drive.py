@@ -1,7 +1,7 @@
-"""gz's mecanum drive: `gz::sim::systems::MecanumDrive`, four wheels (or groups of them) with rollers at 45 degrees.
+"""Mecanum drive of Gazebo: `gz::sim::systems::MecanumDrive`, four wheels (or groups) with rollers at 45 degrees.
 
-The plugin only turns the wheels. That they roll across is in their collisions, whose friction differs along and across
-`<fdir1>`: see `simkit.runtime.contact.anisotropic_friction`.
+The plugin only turns the wheels. The effect of the rollers comes from the wheels' collisions, whose friction differs
+along and across `<fdir1>`: see `simkit.runtime.contact.anisotropic_friction`.
 """
 
 from __future__ import annotations
@@ -24,16 +24,16 @@ if TYPE_CHECKING:
 
 _PLACES = ("front_left", "front_right", "back_left", "back_right")
 _SIGNS = ((1, -1, -1), (1, 1, 1), (1, 1, -1), (1, -1, 1))
-"""How a wheel's rim moves with the base's speed ahead, its speed to the left and its turning, by place."""
+"""Signs of the rim speed for forward speed, speed to the left and turning of the base, for each wheel position."""
 
 
 class MecanumOdometry(TravelOdometry):
-    """Of one wheel at each place.
+    """Odometry from one wheel at each of the four positions.
 
     Args:
-        radius: of the wheels [m].
-        arm: half the distance between the sides and half that between the axles together [m].
-        step: from one noting to the next [s].
+        radius: Radius of the wheels [m].
+        arm: Half the distance between the sides plus half the distance between the axles [m].
+        step: Time between two calls of `note` [s].
     """
 
     def __init__(self, radius: float, arm: float, step: float) -> None:
@@ -41,7 +41,7 @@ class MecanumOdometry(TravelOdometry):
         self._radius, self._arm = radius, arm
 
     def motion(self, before: Angles, after: Angles) -> Motion:
-        """The mean of what the wheels say."""
+        """Return the mean displacement that the wheels measure."""
         rims = [(b - a) * self._radius for a, b in zip(before, after, strict=True)]
         ahead, left, turn = (
             sum(sign[axis] * rim for sign, rim in zip(_SIGNS, rims, strict=True)) / 4 for axis in range(3)
@@ -66,10 +66,10 @@ class MecanumDriveOptions(SpeedLimitOptions):
 
 
 class MecanumDrive(TwistDrive):
-    """Drives four wheels with rollers from `/model/<model>/cmd_vel`: ahead, sideways and round.
+    """Drives four wheels with rollers from `/model/<model>/cmd_vel`: forwards, sideways and turning.
 
-    Odometry by the wheels' turns goes out on `/model/<model>/odometry` and `/model/<model>/tf`. It starts at zero, in
-    the middle of the wheels; its twist is the mean over the last ten steps.
+    The wheel odometry is published on `/model/<model>/odometry` and `/model/<model>/tf`. It starts at zero, in the
+    middle of the wheels; its twist is the mean over the last ten steps.
     """
 
     options = OptionsOf(MecanumDriveOptions)
@@ -83,7 +83,7 @@ class MecanumDrive(TwistDrive):
         linear, angular = speed_limits(self.options)
         self._limiters = (linear, linear, angular)
         self._canonical = scene.canonical_link
-        # gz publishes at every step where the frequency is zero
+        # a frequency of zero means every step, as in Gazebo
         self.after_step_rate = self.options.odom_publish_frequency
         named = {
             "front left wheel": self.options.front_left_joint,
@@ -91,7 +91,7 @@ class MecanumDrive(TwistDrive):
             "back left wheel": self.options.back_left_joint,
             "back right wheel": self.options.back_right_joint,
         }
-        _report_rubber(scene, self.add_wheels(scene, builder, named), params)
+        _report_missing_rollers(scene, self.add_wheels(scene, builder, named), params)
 
     def load(self, parent: Model, params: Params) -> None:
         self.start()
@@ -103,24 +103,24 @@ class MecanumDrive(TwistDrive):
         return float(twist.linear.x), float(twist.linear.y), float(twist.angular.z)
 
     def before_step(self) -> None:
-        """Notes the wheels' angles, and takes the limited speeds one step towards the command."""
+        """Store the wheel angles, and advance the limited speeds by one step towards the command."""
         self._odometry.note(joint_angles(self._wheels))
         if not self._settled:
             ahead, left, turn = self.next_speeds()
             self.turn_wheels([a * ahead + b * left + c * turn * self._arm for a, b, c in _SIGNS])
 
     def after_step(self) -> None:
-        """Odometry and its transform."""
+        """Publish odometry and its transform."""
         self._odometry.reckon(joint_angles(self._wheels))
         self.publish_odometry(self._odometry.reckoning.pose, self._odometry.twist)
 
 
-def _report_rubber(scene: SceneModel, wheels: Sequence[SceneJoint], params: Params) -> None:
-    """Warns where a wheel holds in every direction: the base then only drags sideways."""
+def _report_missing_rollers(scene: SceneModel, wheels: Sequence[SceneJoint], params: Params) -> None:
+    """Warn about wheels with equal friction in every direction, with which the base can only drag sideways."""
     surfaces = {link.scoped: [c.surface for c in link.collisions] for link in scene.all_links()}
-    rubber = [j for j in wheels if (own := surfaces.get(j.child_link)) and not any(map(has_directional_friction, own))]
-    if rubber:
-        names = ", ".join(repr(joint.child_link.rsplit("::", 1)[-1]) for joint in rubber)
-        message = f"mecanum drive: friction of {names} is the same in every direction; such wheels have no rollers"
-        hint = '<mu>1</mu><mu2>0</mu2><fdir1 gz:expressed_in="chassis">1 -1 0</fdir1> in the surface of the collision'
+    plain = [j for j in wheels if (own := surfaces.get(j.child_link)) and not any(map(has_directional_friction, own))]
+    if plain:
+        names = ", ".join(repr(joint.child_link.rsplit("::", 1)[-1]) for joint in plain)
+        message = f"mecanum drive: friction of {names} is equal in every direction, so these wheels have no rollers"
+        hint = 'add <mu>1</mu><mu2>0</mu2><fdir1 gz:expressed_in="chassis">1 -1 0</fdir1> to <ode> of each collision'
         params.diagnostics.warning("SK-PLUGIN-090", message, params.where, hint)

@@ -1,4 +1,4 @@
-"""gz's odometry from the true motion: `gz::sim::systems::OdometryPublisher`."""
+"""Odometry of Gazebo from the true motion: `gz::sim::systems::OdometryPublisher`."""
 
 from __future__ import annotations
 
@@ -44,12 +44,12 @@ class OdometryPublisherOptions(Options):
 
 
 class OdometryPublisher(ModelPlugin):
-    """Tells where the model really is in the world, and how it moves, as odometry and as a transform.
+    """Publishes the true pose and motion of the model in the world, as odometry and as a transform.
 
-    With two dimensions (the default) height and all motion out of the plane are zero; the orientation is whole.
+    With two dimensions (the default), height and all motion out of the plane are zero; the orientation is complete.
     `<xyz_offset>` and `<rpy_offset>` place the base frame in the model. `<gaussian_noise>` is the standard deviation of
-    the noise on each part of the twist [m/s, rad/s], and its square stands on the diagonals of the odometry with
-    covariance. The twist is the mean over the last ten steps, as Gazebo's is: 4.5 steps late.
+    the noise on each component of the twist [m/s, rad/s]; its square is on the diagonals of the odometry with
+    covariance. The twist is the mean over the last ten steps, as in Gazebo: it is 4.5 steps late.
     """
 
     options = OptionsOf(OdometryPublisherOptions)
@@ -62,7 +62,7 @@ class OdometryPublisher(ModelPlugin):
         if self._dimensions not in (2, 3):
             element = params.child("dimensions") or params
             element.error("SK-PARAM-002", f"found <dimensions>{self._dimensions}</dimensions>, allowed is 2 or 3")
-        # gz publishes at every step where the frequency is zero
+        # a frequency of zero means every step, as in Gazebo
         self.after_step_rate = self.options.odom_publish_frequency
         turn = quat_from_rpy(*self.options.rpy_offset)
         self._offset = Pose(self.options.xyz_offset, turn)
@@ -78,29 +78,29 @@ class OdometryPublisher(ModelPlugin):
         self._index = 0
         covariance = read_topic(params, "odom_covariance_topic", f"{own}/odometry_with_covariance")
         self._odom = self.advertise(read_topic(params, "odom_topic", f"{own}/odometry"), ODOMETRY)
-        self._sure = self.advertise(covariance, ODOMETRY)
+        self._noisy = self.advertise(covariance, ODOMETRY)
         self._tf = self.advertise(read_topic(params, "tf_topic", f"{own}/pose"), TRANSFORMS)
 
     def before_step(self) -> None:
-        """Remembers where the model is."""
+        """Store the pose of the model."""
         self._trail.append(self._true.place())
 
     def after_step(self) -> None:
-        """Odometry and its transform."""
-        self._index += 1  # counted whether read or not, so that who listens does not change the noise
-        if not (self._odom.wanted or self._sure.wanted or self._tf.wanted):
+        """Publish odometry and its transform."""
+        self._index += 1  # counted without subscribers too, so that subscriptions do not change the noise
+        if not (self._odom.wanted or self._noisy.wanted or self._tf.wanted):
             return
         now, (pose, twist) = self.sim.time_ns, self._reading()
         if self._odom.wanted:
             self._odom.publish_later(partial(odometry_message, now, self._frame, self._base, pose, twist))
-        if self._sure.wanted:
+        if self._noisy.wanted:
             spread = np.diag([self._noise**2] * 6).reshape(36)
-            self._sure.publish_later(partial(odometry_message, now, self._frame, self._base, pose, twist, spread))
+            self._noisy.publish_later(partial(odometry_message, now, self._frame, self._base, pose, twist, spread))
         if self._tf.wanted:
             self._tf.publish_later(partial(transforms, now, (self._frame, self._base, pose)))
 
     def _reading(self) -> tuple[Pose, BodyTwist]:
-        """Pose of the base frame in the world, and the mean of its twist over the last steps, in its own axes."""
+        """Return the world pose of the base frame, and the mean of its twist over the last steps, in its own axes."""
         trail = np.array((*self._trail, self._true.place()))
         positions, turns = self._base_of(trail)
         pose = Pose(positions[-1], turns[-1])
@@ -113,19 +113,22 @@ class OdometryPublisher(ModelPlugin):
         return pose, BodyTwist((linear + noise[:3]).tolist(), (angular + noise[3:]).tolist())
 
     def _base_of(self, trail: Vector) -> tuple[Vector, Vector]:
-        """Positions (n, 3) and quaternions (n, 4) of the base frame, of those of the model (n, 7)."""
+        """Return positions (n, 3) and quaternions (n, 4) of the base frame for poses (n, 7) of the model."""
         if self._offset == IDENTITY:
             return trail[:, :3], trail[:, 3:]
         poses = [Pose(row[:3], row[3:]) @ self._offset for row in trail]
         return np.array([p.position for p in poses]), np.array([p.quaternion for p in poses])
 
     def _mean_twist(self, positions: Vector, turns: Vector) -> tuple[Vector, Vector]:
-        """Linear and angular velocity, each step's in the base's axes at its end (in the plane: of its yaw alone)."""
+        """Return the mean linear and angular velocity; each step counts in the base's axes at its end.
+
+        With two dimensions these axes are turned by the yaw alone.
+        """
         step = self.period
         linear, angular = np.zeros(3), np.zeros(3)
         for k in range(1, len(turns)):
             back = quat_conjugate(turns[k])
-            # the turning is about the same axis in the axes before and after it
+            # the rotation axis has the same components in the frames before and after the step
             turned = np.empty(3)
             mujoco.mju_quat2Vel(turned, quat_multiply(quat_conjugate(turns[k - 1]), turns[k]), step)
             angular += turned

@@ -1,4 +1,4 @@
-"""gz's performers, and who tells of them: `gz::sim::systems::PerformerDetector`."""
+"""Performers of Gazebo and their detector: `gz::sim::systems::PerformerDetector`."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ if TYPE_CHECKING:
 POSE: Final = "geometry_msgs/msg/PoseStamped"
 STATUS: Final = "simkit_msgs/msg/PerformerStatus"
 DETAILS: Final = "/details"
-"""After a detector's topic: the one on which it says all that it knows."""
+"""Suffix of the topic with a detector's complete status."""
 
 
 @dataclass(frozen=True)
 class Performer:
-    """A model that levels and detectors look for, with the box [m] around its origin that stands for it."""
+    """Model that detectors look for, with half the size of its box around the model's origin [m]."""
 
     name: str
     model: str
@@ -37,19 +37,19 @@ class Performer:
 
 
 class BoxOptions(Options):
-    """The `<box>` block."""
+    """Options of a `<box>` block."""
 
     size: tuple[float, float, float] = vector3(required=True)
 
 
 class BoxGeometryOptions(Options):
-    """The `<geometry>` block."""
+    """Options of a `<geometry>` block with a box."""
 
     box: BoxOptions = block(BoxOptions)
 
 
 class PerformerOptions(Options):
-    """The `<performer>` block."""
+    """Options of a `<performer>` block."""
 
     name: str = text(element="@name")
     ref: str = text(required=True)
@@ -64,7 +64,7 @@ class PerformersOptions(Options):
 
 
 class Performers(WorldPlugin):
-    """gz's `<plugin name="gz::sim">`: which models are performers. Levels are not simulated: all is always loaded."""
+    """Reads the performers of a `<plugin name="gz::sim">`. Levels are not simulated: all models are always loaded."""
 
     options = OptionsOf(PerformersOptions)
     names = ("gz::sim", "ignition::gazebo")
@@ -82,7 +82,7 @@ class Performers(WorldPlugin):
                     element.error("SK-PARAM-002", f"found a <box> of {size}, allowed are lengths above 0")
                 continue
             if model and model not in models:
-                message = f"performer {name!r} is model {model!r}, which is not there (yet); it is waited for"
+                message = f"performer {name!r} is model {model!r}, which does not exist yet"
                 params.diagnostics.warning("SK-PLUGIN-125", message, element.where, did_you_mean(model, models))
             self.performers += (Performer(name, model, (size[0] / 2, size[1] / 2, size[2] / 2)),)
         if params.has("level"):
@@ -92,11 +92,11 @@ class Performers(WorldPlugin):
             params.diagnostics.note("SK-PLUGIN-126", message, params.block("level").where)
 
     def load(self, parent: Simulation, params: Params) -> None:
-        """Nothing to do."""
+        """Do nothing."""
 
 
 class HeaderDataOptions(Options):
-    """The `<header_data>` block."""
+    """Options of a `<header_data>` block."""
 
     key: str = text()
     value: str = text()
@@ -112,9 +112,9 @@ class PerformerDetectorOptions(Options):
 
 
 class PerformerDetector(ModelPlugin):
-    """Says when a performer's box comes into the box of this model, and when it leaves it.
+    """Publishes a message when a performer's box enters or leaves the box of this model.
 
-    Both boxes stay along the axes of the world, as in gz, however their models turn.
+    Both boxes stay aligned with the axes of the world, as in Gazebo, in any orientation of their models.
     """
 
     options = OptionsOf(PerformerDetectorOptions)
@@ -145,49 +145,52 @@ class PerformerDetector(ModelPlugin):
         self._poses, self._details = self.advertise(topic, POSE), self.advertise(topic + DETAILS, STATUS)
         self._known = self._performers()
         if not self._known:
-            message = f"plugin {self.name!r}: the world names no performers; it finds nothing"
-            hint = 'a <plugin name="gz::sim" filename="dummy"> with <performer> in the world'
+            message = f"plugin {self.name!r}: the world has no performers, so the detector finds nothing"
+            hint = 'add <plugin name="gz::sim" filename="dummy"> with a <performer> to the world'
             params.diagnostics.warning("SK-PLUGIN-125", message, self.where, hint)
         watch_while_subscribed(self, (self._poses, self._details), "look")
 
     def begin(self) -> None:
-        """What is inside when somebody begins to listen is no news, but at the very start."""
-        there = () if self.sim.tick == self._born else self._found()
-        self._inside = tuple(name for name, _, is_inside in there if is_inside)
+        """Store the performers that are inside when the first subscriber appears.
+
+        They are not published, except at the very start of the simulation.
+        """
+        found = () if self.sim.tick == self._born else self._found()
+        self._inside = tuple(name for name, _, is_inside in found if is_inside)
 
     def look(self) -> None:
-        """Tells who came and who went."""
-        there = self._found()
-        names = tuple(name for name, _, is_inside in there if is_inside)
-        for name, place, is_inside in there:
+        """Publish the performers that entered or left since the last step."""
+        found = self._found()
+        names = tuple(name for name, _, is_inside in found if is_inside)
+        for name, place, is_inside in found:
             if is_inside != (name in self._inside):
-                kept = tuple(one for one in self._inside if one != name)
-                self._inside = (*kept, name) if is_inside else kept
-                self._tell(name, place, is_inside)
-        self._inside = tuple(name for name in self._inside if name in names)  # without those that were removed
+                others = tuple(inside for inside in self._inside if inside != name)
+                self._inside = (*others, name) if is_inside else others
+                self._publish(name, place, is_inside)
+        self._inside = tuple(name for name in self._inside if name in names)  # drop removed models
 
     def _performers(self) -> tuple[Performer, ...]:
-        """Of the world's plugins, which are there from its beginning to its end."""
+        """Return the performers of the world's plugins, which do not change during a run."""
         plugins = self.sim.engine.structure.all_plugins()
-        return tuple(one for plugin in plugins if isinstance(plugin, Performers) for one in plugin.performers)
+        return tuple(found for plugin in plugins if isinstance(plugin, Performers) for found in plugin.performers)
 
     def _found(self) -> list[tuple[str, Pose, bool]]:
-        """The performers' models, where they are in the world, and whether their boxes meet this one."""
+        """Return the performers' models with their world poses and whether their boxes overlap this one."""
         models = self.sim.models
-        there = [one for one in self._known if one.model in models]
-        if not there:
+        present = [performer for performer in self._known if performer.model in models]
+        if not present:
             return []
         own = self._model.pose
         centre = own.position if self._is_centred else own.position + quat_rotate(own.quaternion, self._offset)
         (x, y, z), (a, b, c), found = centre.tolist(), self._half, []
-        for performer in there:
+        for performer in present:
             pose = models[performer.model].pose
             (u, v, w), (p, q, r) = pose.position.tolist(), performer.half
             is_inside = abs(u - x) <= a + p and abs(v - y) <= b + q and abs(w - z) <= c + r
             found.append((performer.model, pose, is_inside))
         return found
 
-    def _tell(self, name: str, pose: Pose, state: bool) -> None:
+    def _publish(self, name: str, pose: Pose, state: bool) -> None:
         own = self._model.pose
         header = msgs.header(self.sim.time_ns, self._model.name)
         fields = pose_fields(own.inverse() @ pose)
@@ -195,12 +198,12 @@ class PerformerDetector(ModelPlugin):
             self._poses.publish(msgs.make(POSE, header=header, pose=fields))
         if self._details.wanted:
             keys, values = [key for key, _ in self._data], [value for _, value in self._data]
-            told = {"name": name, "pose": fields, "state": state, "count": len(self._inside)}
-            self._details.publish(msgs.make(STATUS, header=header, **told, keys=keys, values=values))
+            status = {"name": name, "pose": fields, "state": state, "count": len(self._inside)}
+            self._details.publish(msgs.make(STATUS, header=header, **status, keys=keys, values=values))
 
 
 def pose_of_status(status: msgs.PerformerStatus) -> Message:
-    """The `gz.msgs.Pose` that a detector publishes in gz, with what gz has in its header."""
+    """Return the `gz.msgs.Pose` that Gazebo's detector publishes for a status, with Gazebo's header data."""
     found: Any = MESSAGE_CLASSES["Pose"](name=status.name)
     for ours, theirs in ((found.position, status.pose.position), (found.orientation, status.pose.orientation)):
         for axis in ours.FIELDS:

@@ -1,4 +1,4 @@
-"""gz's poses of a model and its parts: `gz::sim::systems::PosePublisher`."""
+"""Poses of a model and its entities, published as Gazebo's `gz::sim::systems::PosePublisher` does."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _TYPES: Final = (
     "geometry_msgs/msg/Transform",
     "geometry_msgs/msg/Pose",
 )
-"""What a bridge may make of one gz pose."""
+"""Message types to which a bridge can convert one Gazebo pose."""
 
 
 class PosePublisherOptions(Options):
@@ -55,17 +55,17 @@ class PosePublisherOptions(Options):
 
 
 class PosePublisher(ModelPlugin):
-    """Tells on `/model/<model>/pose` where the parts of its model are, each in the frame of what it is part of.
+    """Publishes on `/model/<model>/pose` the poses of the model's entities, each in the frame of its parent.
 
-    Links by default; with `<publish_visual_pose>`, `<publish_collision_pose>`, `<publish_sensor_pose>`,
-    `<publish_nested_model_pose>` and `<publish_model_pose>` (as the nested ones' where it is not given) more of them.
-    With `<use_pose_vector_msg>` they come in one `tf2_msgs/msg/TFMessage`, else one by one, each a
-    `geometry_msgs/msg/TransformStamped` or what `<simkit:pose_type>` says. Frames are scoped names without the world's,
-    and the world's name for what is in it.
+    Links are published by default. `<publish_visual_pose>`, `<publish_collision_pose>`, `<publish_sensor_pose>`,
+    `<publish_nested_model_pose>` and `<publish_model_pose>` (by default as for nested models) add more entities. With
+    `<use_pose_vector_msg>` all poses come in one `tf2_msgs/msg/TFMessage`. Otherwise each pose is a message, by default
+    `geometry_msgs/msg/TransformStamped`; `<simkit:pose_type>` selects another type. Frames are scoped names without the
+    world's name; the parent of a top-level model is the world's name.
 
-    With `<static_publisher>` only links that a joint moves are told there. All else goes out on `<topic>_static`, the
-    model's own pose included, as in gz. `<update_frequency>` and `<static_update_frequency>` [Hz] that are not positive
-    mean every step.
+    With `<static_publisher>` this topic only has the links that a joint moves. All other poses are published on
+    `<topic>_static`, including the model's own pose, as in Gazebo. An `<update_frequency>` or
+    `<static_update_frequency>` [Hz] that is not positive means every step.
     """
 
     endpoints = (
@@ -77,7 +77,7 @@ class PosePublisher(ModelPlugin):
     names = ("gz::sim::systems::PosePublisher",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        self._wants = {
+        self._published_kinds = {
             "nested": self.options.publish_nested_model_pose,
             "link": self.options.publish_link_pose,
             "visual": self.options.publish_visual_pose,
@@ -99,9 +99,9 @@ class PosePublisher(ModelPlugin):
         self._out = self.advertise(self._topic, self._type)
         self._static = self.advertise(f"{self._topic}_static", self._type) if self.options.static_publisher else None
         self._jointed = links_moved_by_joints(parent.scene.all_joints())
-        parts = [*self._of_model(parent.scene)]
-        self._resting = [part for part in parts if not part.moves]
-        self._moving = [part for part in parts if part.moves]
+        entities = [*self._of_model(parent.scene)]
+        self._resting = [entity for entity in entities if not entity.moves]
+        self._moving = [entity for entity in entities if entity.moves]
         if self._static is None:
             self._moving = self._resting + self._moving
 
@@ -115,62 +115,62 @@ class PosePublisher(ModelPlugin):
     # ------------------------------------------------------------------ inside
 
     def _is_due(self, rate: float) -> bool:
-        """Whether this tick is one of a rate's; the hook is called on those of both rates."""
+        """Check whether this tick is one of a rate's, because the hook is called at the ticks of both rates."""
         grid, tick = self.sim.engine.clock.grid(rate), self.sim.tick
         return grid is None or grid.next(tick - 1) == tick
 
-    def _publish(self, out: Publisher, which: str, parts: list[PosedEntity]) -> None:
-        poses = self.sim.engine.names.shared(f"{which} poses {id(self)}", partial(EntityPoses, self.sim, parts))
-        taken, time_ns = poses.take(), self.sim.time_ns
+    def _publish(self, out: Publisher, group: str, entities: list[PosedEntity]) -> None:
+        poses = self.sim.engine.names.shared(f"{group} poses {id(self)}", partial(EntityPoses, self.sim, entities))
+        sample, time_ns = poses.take(), self.sim.time_ns
         if self._type == TRANSFORMS:
-            out.publish_later(partial(transforms_message, time_ns, taken))
+            out.publish_later(partial(transforms_message, time_ns, sample))
             return
-        for index in range(len(parts)):
-            out.publish_later(partial(_message, self._type, time_ns, taken, index))
+        for index in range(len(entities)):
+            out.publish_later(partial(_message, self._type, time_ns, sample, index))
 
     def _of_model(self, scene: SceneModel) -> Iterator[PosedEntity]:
         model = self.sim.model(scene.scoped)
         outer = scene.scoped.rpartition("::")[0]
-        if outer and self._wants["nested"]:
+        if outer and self._published_kinds["nested"]:
             yield PosedEntity(outer, scene.scoped, handle=model, within=self.sim.model(outer))
-        elif not outer and self._wants["model"]:
+        elif not outer and self._published_kinds["model"]:
             yield PosedEntity(self.sim.world.name, scene.scoped, handle=model)
         for link in scene.links:
-            if self._wants["link"]:
+            if self._published_kinds["link"]:
                 yield self._link(link, scene)
             yield from self._on_link(link)
         for joint in scene.joints:
-            for sensor in joint.sensors if self._wants["sensor"] else ():
+            for sensor in joint.sensors if self._published_kinds["sensor"] else ():
                 yield PosedEntity(joint.scoped, sensor.scoped, joint.pose_world.inverse() @ sensor.pose_world)
         for nested in scene.models:
             yield from self._of_model(nested)
 
     def _link(self, link: SceneLink, outer: SceneModel) -> PosedEntity:
-        if link.scoped == outer.canonical_link:  # it carries the model's frame
+        if link.scoped == outer.canonical_link:  # carries the model's frame, so its pose is constant
             return PosedEntity(outer.scoped, link.scoped, outer.pose_world.inverse() @ link.pose_world)
         model, handle = self.sim.model(outer.scoped), self.sim.link(link.scoped)
         return PosedEntity(outer.scoped, link.scoped, None, handle, model, link.scoped in self._jointed)
 
     def _on_link(self, link: SceneLink) -> Iterator[PosedEntity]:
-        parts: dict[str, tuple[SceneVisual | SceneCollision | SceneSensor, ...]]
-        parts = {"visual": link.visuals, "collision": link.collisions, "sensor": link.sensors}
-        for kind, found in parts.items():
-            for part in found if self._wants[kind] else ():
-                yield PosedEntity(link.scoped, part.scoped, part.pose_link)
+        children: dict[str, tuple[SceneVisual | SceneCollision | SceneSensor, ...]]
+        children = {"visual": link.visuals, "collision": link.collisions, "sensor": link.sensors}
+        for kind, found in children.items():
+            for child in found if self._published_kinds[kind] else ():
+                yield PosedEntity(link.scoped, child.scoped, child.pose_link)
 
 
 def _common_rate(rate: float, other: float) -> float:
-    """A rate whose ticks include those of both, 0 (every step) where neither is a multiple of the other."""
+    """Return a rate whose ticks include those of both rates; 0 (every step) if neither is a multiple of the other."""
     low, high = sorted((rate, other))
     return high if low > 0 and (high / low).is_integer() else 0.0
 
 
-def _message(type_name: str, time_ns: int, taken: PoseSample, index: int) -> object:
-    """The message of one part."""
-    frame, child, seven = taken.placed[index]
+def _message(type_name: str, time_ns: int, sample: PoseSample, index: int) -> object:
+    """Return the message of one entity."""
+    frame, child, pose = sample.placed[index]
     if type_name == STAMPED:
-        return stamped_transform(time_ns, frame, child, seven)
-    x, y, z, w, i, j, k = seven
+        return stamped_transform(time_ns, frame, child, pose)
+    x, y, z, w, i, j, k = pose
     place, turn = {"x": x, "y": y, "z": z}, {"x": i, "y": j, "z": k, "w": w}
     if type_name.endswith("/Transform"):
         return msgs.make(type_name, translation=place, rotation=turn)

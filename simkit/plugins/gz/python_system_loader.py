@@ -1,4 +1,4 @@
-"""gz-sim's `PythonSystemLoader`: a world names a Python module whose `get_system` gives a system."""
+"""Python systems of gz-sim: `PythonSystemLoader` loads a module whose `get_system` returns a system."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
 
 VARIABLES: Final = ("GZ_SIM_SYSTEM_PLUGIN_PATH", "IGN_GAZEBO_SYSTEM_PLUGIN_PATH", "PYTHONPATH")
-"""Variables of the environment whose folders the user allows Python to be taken from."""
+"""Environment variables with folders from which Python modules may be loaded."""
 
 SHADOW: Final = "SIMKIT_SHADOW_GZ"
 _NAME: Final = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)*\Z")
@@ -36,11 +36,11 @@ class PythonSystemLoaderOptions(Options):
 
 
 class PythonSystemLoader(GzSystem):
-    """Finds `<module_name>` in the folders that the user allows, and hangs what its `get_system()` gives on the entity.
+    """Loads `<module_name>` from the folders that the user allows, and runs the system that its `get_system()` returns.
 
-    Searched are the plugin paths, then the folders of `GZ_SIM_SYSTEM_PLUGIN_PATH` and `PYTHONPATH`, then modules of
-    installed packages that an entry point of the group `simkit.plugins` names. `<simkit:shadow_gz>` lets simkit's `gz`
-    modules go before installed ones.
+    The search order is: the plugin paths, the folders of `GZ_SIM_SYSTEM_PLUGIN_PATH` and `PYTHONPATH`, then modules of
+    installed packages with an entry point in the group `simkit.plugins`. With `<simkit:shadow_gz>`, simkit's `gz`
+    modules take precedence over installed ones.
     """
 
     options = OptionsOf(PythonSystemLoaderOptions)
@@ -49,65 +49,66 @@ class PythonSystemLoader(GzSystem):
 
     def prepare(self, scene: object, params: Params, builder: SpecBuilder) -> None:
         self._module_name = self.options.module_name
-        asked = os.environ.get(SHADOW, "") not in ("", "0")
-        self.shadow = params.boolean("shadow_gz", asked)
+        default = os.environ.get(SHADOW, "") not in ("", "0")
+        self.shadow = params.boolean("shadow_gz", default)
         self._module: types.ModuleType | None = None
         self._file: Path | None = None
         if not self._module_name:
             return
         if not _NAME.match(self._module_name):
-            message = f"<module_name>{self._module_name}</module_name> is no name of a Python module"
-            params.error("SK-PLUGIN-080", message, "the name as after `import`: without folder and without .py")
+            message = f"<module_name>{self._module_name}</module_name> is not the name of a Python module"
+            params.error("SK-PLUGIN-080", message, "write the name as after `import`: without folder and without .py")
             return
         self._find(params)
 
     def _find(self, params: Params) -> None:
-        """Finds and imports the module, or says why not."""
+        """Find and import the module, or report why that is not possible."""
         folders = [path.absolute() for path in (*self.plugin_paths, *folders_of_environment())]
         found = _file_of(self._module_name, folders)
         if found is not None:
             self._file, folder = found
             if not has_get_system(self._file):
-                message = f"{self._file} has no get_system, which PythonSystemLoader calls; it is not run"
-                params.error("SK-PLUGIN-081", message, "def get_system(): return MySystem()")
+                message = f"{self._file} has no function get_system for PythonSystemLoader; the file is not run"
+                params.error("SK-PLUGIN-081", message, "add def get_system(): return MySystem()")
                 return
             self._import(params, folder, folders)
         elif self._module_name in {p.value.split(":")[0].strip() for p in entry_points(group=ENTRY_POINT_GROUP)}:
             self._import(params, None, folders)
         else:
-            searched = ", ".join(map(str, folders)) or "no folder, since none is allowed"
-            hint = "allow its folder with --plugin-path or plugin_paths, or name it in GZ_SIM_SYSTEM_PLUGIN_PATH"
-            message = f"no module {self._module_name!r} for PythonSystemLoader; searched: {searched}; it is left out"
+            searched = ", ".join(map(str, folders)) or "no folder, because none is allowed"
+            hint = "allow its folder with --plugin-path or plugin_paths, or add it to GZ_SIM_SYSTEM_PLUGIN_PATH"
+            missing = f"no module {self._module_name!r} for PythonSystemLoader"
+            message = f"{missing}; the plugin is ignored; searched: {searched}"
             params.diagnostics.warning("SK-PLUGIN-080", message, self.where, hint)
             params.mark_all_read()
 
     def _import(self, params: Params, folder: Path | None, folders: list[Path]) -> None:
         added = [str(f) for f in folders if str(f) not in sys.path]
-        sys.path.extend(added)  # it may import what lies beside it
+        sys.path.extend(added)  # the module may import its neighbours
         try:
             with import_hook.importable(self.shadow):
                 name = self._module_name if folder is None else f"{_package_of(folder)}.{self._module_name}"
-                importlib.invalidate_caches()  # it may have been written a moment ago
+                importlib.invalidate_caches()  # the file may be newer than Python's folder cache
                 self._module = importlib.import_module(name)
                 self._report_installed(params)
         except (Exception, SystemExit) as error:  # noqa: BLE001 - a user's module may raise anything
             message = f"importing {self._module_name!r}{line_of(error)} failed: {type(error).__name__}: {error}"
             params.error("SK-PLUGIN-082", message)
         finally:
-            for one in added:
-                sys.path.remove(one)
+            for path in added:
+                sys.path.remove(path)
 
     def _report_installed(self, params: Params) -> None:
-        """Says which installed modules of Gazebo the import found instead of simkit's."""
+        """Report the installed Gazebo modules that the import found instead of simkit's."""
         for name, module in sorted(sys.modules.items()):
             target = import_hook.module_behind(name)
             if not target or import_hook.is_shim(module) or name.split(".")[0] == "simkit":
                 continue
             place = getattr(module, "__file__", None) or "a package"
-            message = f"module {name} is installed ({place}) and goes before simkit's own"
-            hint = f"<simkit:shadow_gz>true</simkit:shadow_gz> or {SHADOW}=1 lets simkit's go first"
+            message = f"module {name} is installed ({place}) and takes precedence over simkit's own"
+            hint = f"add <simkit:shadow_gz>true</simkit:shadow_gz> or set {SHADOW}=1 to use simkit's"
             if target.endswith(".sim"):
-                params.error("SK-PLUGIN-083", f"{message}; it knows nothing of a simulation of simkit's", hint)
+                params.error("SK-PLUGIN-083", f"{message}; it cannot access a simulation of simkit", hint)
             else:
                 params.diagnostics.note("SK-PLUGIN-083", message, self.where, hint)
 
@@ -116,20 +117,23 @@ class PythonSystemLoader(GzSystem):
             return None
         system = self._module.get_system()
         if not any(callable(getattr(system, hook, None)) for hook in HOOKS):
-            message = f"get_system() of {self._module_name!r} gives {type(system).__name__}, which has no hook"
-            self.params.error("SK-PLUGIN-084", message, "hooks: " + ", ".join(HOOKS))
+            message = f"get_system() of {self._module_name!r} returns {type(system).__name__}, which has no hook"
+            self.params.error("SK-PLUGIN-084", message, "define one of the hooks: " + ", ".join(HOOKS))
             return None
         return system
 
 
 def folders_of_environment() -> list[Path]:
-    """The folders that the variables of the environment name, in order; relative ones are meant from here."""
+    """Return the existing folders in the environment variables; relative paths start at the working directory."""
     named = [part for variable in VARIABLES for part in os.environ.get(variable, "").split(os.pathsep) if part]
     return [Path(part) for part in dict.fromkeys(named) if Path(part).is_dir()]
 
 
 def _file_of(name: str, folders: list[Path]) -> tuple[Path, Path] | None:
-    """The file of a module and the folder it was found in; what a link leads out of the folder to does not count."""
+    """Return the file of a module and its search folder.
+
+    A file behind a link that leads out of the folder is ignored.
+    """
     relative = Path(*name.split("."))
     for folder in folders:
         for file in (folder / relative / "__init__.py", folder / relative.with_suffix(".py")):
@@ -139,7 +143,7 @@ def _file_of(name: str, folders: list[Path]) -> tuple[Path, Path] | None:
 
 
 def _package_of(folder: Path) -> str:
-    """A package of its own for the modules of a folder, so that they shadow nothing; made at the first use."""
+    """Return the name of a separate package for the modules of a folder, so that they shadow no other modules."""
     name = f"simkit_gz_systems_{hashlib.sha1(str(folder.resolve()).encode(), usedforsecurity=False).hexdigest()[:16]}"
     if name not in sys.modules:
         package = types.ModuleType(name)
@@ -149,11 +153,11 @@ def _package_of(folder: Path) -> str:
 
 
 def has_get_system(file: Path) -> bool:
-    """Whether a file makes something called `get_system`; it is read, not run. True too where it is no Python."""
+    """Check whether a file defines the name `get_system`, without running it; True also for invalid Python."""
     try:
         tree = ast.parse(file.read_bytes(), str(file))
     except (SyntaxError, ValueError):
-        return True  # the import says what is wrong
+        return True  # the import reports the error
     for node in ast.walk(tree):
         if isinstance(node, (ast.FunctionDef, ast.ClassDef)) and node.name == "get_system":
             return True

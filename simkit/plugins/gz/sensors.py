@@ -1,4 +1,7 @@
-"""gz's systems for sensors: Sensors, whose colours cameras see, and Magnetometer; simkit does the rest by itself."""
+"""Sensor systems of Gazebo: Sensors, which sets the colours of camera images, and Magnetometer.
+
+simkit simulates sensors without these plugins.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +20,7 @@ if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
 
 _COLOURS = {"background_color": "background", "ambient_light": "ambient"}
-"""Parameter -> the colour of the scene that it stands for."""
+"""Parameter name -> colour of the scene."""
 
 
 class SensorsSystemOptions(Options):
@@ -29,11 +32,10 @@ class SensorsSystemOptions(Options):
 
 
 class SensorsSystem(Plugin):
-    """Tells cameras the colours of background and ambient light, in place of the scene's; the rest simkit does anyway.
+    """Sets the background and ambient colours of camera images, in place of the scene's.
 
-    With `<disable_on_drained_battery>` cameras and GPU lidars of a model rest while its battery is empty.
-
-    The colours are taken by `with_sensors_colours`, before anything is built.
+    Sensors run without this plugin. With `<disable_on_drained_battery>`, cameras and GPU lidars of a model stop while
+    its battery is empty. `with_sensors_colours` applies the colours before the world is built.
     """
 
     options = OptionsOf(SensorsSystemOptions)
@@ -44,36 +46,36 @@ class SensorsSystem(Plugin):
     stops_without_power = False
 
     def prepare(self, scene: object, params: Params, builder: SpecBuilder) -> None:
-        given = {child.name for child in params.children} - {"disable_on_drained_battery"}
+        elements = {child.name for child in params.children} - {"disable_on_drained_battery"}
         self.stops_without_power = self.options.disable_on_drained_battery
         params.mark_all_read()
         used: list[str] = []
-        beaten: list[str] = []
+        overridden: list[str] = []
         for name, place in _COLOURS.items():
             colour = _colour(params, name)
             if colour is not None:
                 is_used = colour == getattr(builder.world.surroundings, place)
-                (used if is_used else beaten).append(f"<{name}>")
-        unused = [f"<{name}>" for name in sorted(given - set(_COLOURS))]
-        message = "plugin 'Sensors' is not needed: simkit does what it stands for by itself"
+                (used if is_used else overridden).append(f"<{name}>")
+        unused = [f"<{name}>" for name in sorted(elements - set(_COLOURS))]
+        message = "plugin 'Sensors' is not needed: simkit simulates sensors without it"
         if used:
             message += f"; used instead of the scene's colours: {', '.join(used)}"
         if unused:
             message += f"; not used: {', '.join(unused)}"
         params.diagnostics.note("SK-PLUGIN-005", message, self.where)
-        for name in beaten:
-            message = f"{name} of plugin 'Sensors' has no effect: the scene's colour comes from elsewhere"
-            hint = "one Sensors plugin, in the world; --set scene.ambient and scene.background come before it"
+        for name in overridden:
+            message = f"{name} of plugin 'Sensors' has no effect: another setting defines the scene's colour"
+            hint = "keep one Sensors plugin, in the world; --set scene.ambient and scene.background override it"
             params.diagnostics.warning("SK-PLUGIN-011", message, self.where, hint)
 
     def load(self, parent: object, params: Params) -> None:
-        """Nothing to do."""
+        """Do nothing."""
 
 
 def with_sensors_colours(scene: Scene) -> Scene:
-    """The scene in the colours that its Sensors system names, as gz-sim has it: they override those of `<scene>`.
+    """Return the scene with the colours of its Sensors system, which override those of `<scene>`, as in Gazebo.
 
-    The system may stand in the world or, as many robots have it, in a model.
+    The system may be in the world or, as in many robots, in a model.
     """
     worlds = tuple(_coloured(world, world.plugins, world.models) for world in scene.worlds)
     if any(new is not old for new, old in zip(worlds, scene.worlds, strict=True)):
@@ -102,18 +104,17 @@ def _coloured(world: SceneWorld, plugins: tuple[ScenePlugin, ...], models: tuple
 
 
 def _is_sensors_system(plugin: ScenePlugin) -> bool:
-
     return any(name in (*SensorsSystem.filenames, *SensorsSystem.names) for name in aliases(plugin))
 
 
 def _colour(params: Params, name: str) -> Colour | None:
-    """A colour of three numbers, or four, from 0 to 1; None where it is not given or none."""
-    given = params.child(name)
-    if given is None:
+    """Read a colour of three or four numbers from 0 to 1; None if it is missing or invalid."""
+    element = params.child(name)
+    if element is None:
         return None
-    size = 4 if len(given.value.split()) > 3 else 3
+    size = 4 if len(element.value.split()) > 3 else 3
     numbers = params.vector(name, size, (math.nan,) * size)
-    if math.isnan(numbers[0]):  # it is reported
+    if math.isnan(numbers[0]):  # params.vector has reported the error
         return None
     red, green, blue, alpha = (min(1.0, max(0.0, number)) for number in (*numbers, 1.0)[:4])
     return red, green, blue, alpha
@@ -127,10 +128,10 @@ class MagnetometerSystemOptions(Options):
 
 
 class MagnetometerSystem(Plugin):
-    """Stands for gz's Magnetometer system.
+    """Reads the options of Gazebo's Magnetometer system.
 
-    `<use_units_gauss>` and `<use_earth_frame_ned>`, which Gazebo takes for true where a file does not say, are about
-    the Earth's field; here they count where they are written (and in a world with `<gazebo_quirks>`).
+    `<use_units_gauss>` and `<use_earth_frame_ned>` define the Earth's field. Gazebo's default for both is true. In
+    simkit they count only if the file contains them (and in a world with `<gazebo_quirks>`).
     """
 
     options = OptionsOf(MagnetometerSystemOptions)
@@ -139,11 +140,11 @@ class MagnetometerSystem(Plugin):
     names = ("gz::sim::systems::Magnetometer",)
 
     def prepare(self, scene: object, params: Params, builder: SpecBuilder) -> None:
-        given = [name for name in self.options.fields() if params.has(name)]
+        present = [name for name in self.options.fields() if params.has(name)]
         _ = self.options.use_units_gauss, self.options.use_earth_frame_ned
-        if not given:
-            message = "plugin 'Magnetometer' is not needed: simkit does what it stands for by itself"
+        if not present:
+            message = "plugin 'Magnetometer' is not needed: simkit simulates magnetometers without it"
             params.diagnostics.note("SK-PLUGIN-005", message, self.where)
 
     def load(self, parent: object, params: Params) -> None:
-        """Nothing to do."""
+        """Do nothing."""

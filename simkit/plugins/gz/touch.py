@@ -1,4 +1,4 @@
-"""gz's touch detector: `gz::sim::systems::TouchPlugin`."""
+"""Touch detector of Gazebo: `gz::sim::systems::TouchPlugin`."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ SET_BOOL: Final = "std_srvs/srv/SetBool"
 
 
 class TouchOptions(Options):
-    """Options that touch detectors share."""
+    """Options shared by touch detectors."""
 
     target: str = text(required=True)
     time: float = number(None, "s", minimum=0.0, maximum=1e9, required=True)
@@ -35,12 +35,12 @@ class TouchOptions(Options):
 
 
 class TouchTimer(ModelPlugin):
-    """What gz's and Classic's share: how long a target has been touched without a break."""
+    """Base class of the touch detectors of Gazebo and Gazebo Classic: measures the time of uninterrupted contact."""
 
     options = OptionsOf(TouchOptions)
     reads_contacts: ClassVar[bool] = True
     message_type: ClassVar[str] = BOOL
-    is_exclusive: ClassVar[bool] = False  # whether touching anything else is a break
+    is_exclusive: ClassVar[bool] = False  # True if contact with any other object interrupts the time
 
     def _read_common(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         self._target = read_required_name(params, "target")
@@ -53,15 +53,15 @@ class TouchTimer(ModelPlugin):
         self._world = builder.world.name
 
     def _watch(self, watched: Iterable[str], params: Params) -> None:
-        """Opens the topics and begins to look at collisions."""
+        """Open the topics and start to watch these collisions, given by scoped name."""
         self._touched = self.advertise(f"{self._topic}/touched", self.message_type)
         self.listen(f"{self._topic}/enable", self.message_type, self._on_enable)
         self._watched = frozenset(watched)
-        self._since = -1  # [ns]; -1 while it does not touch
+        self._since = -1  # start of the contact [ns]; -1 without contact
         self._set_pace()
         names = collision_table(self.sim.engine.compiled).names
         if not any(self._is_target(name) for name in names):
-            message = f"plugin {self.name!r}: no collision has {self._target!r} in its name; one is waited for"
+            message = f"plugin {self.name!r}: no collision has {self._target!r} in its name yet"
             models = sorted({part for name in names for part in name.split("::")})
             params.diagnostics.warning("SK-SENSOR-044", message, self.where, did_you_mean(self._target, models))
 
@@ -76,8 +76,8 @@ class TouchTimer(ModelPlugin):
             self._since = -1
             return
         if self.is_exclusive:
-            one, other = found.geoms.T
-            if not ((target[one] & model[other]) | (model[one] & target[other])).all():
+            first, second = found.geoms.T
+            if not ((target[first] & model[second]) | (model[first] & target[second])).all():
                 self._since = -1
                 return
         now = sim.time_ns
@@ -90,16 +90,16 @@ class TouchTimer(ModelPlugin):
     # ------------------------------------------------------------------ inside
 
     def _masks(self) -> tuple[Bools, Bools, Bools]:
-        """Which geoms are watched, which are targets, and which are of this model."""
+        """Return the masks of watched geoms, target geoms and geoms of this model."""
         collisions = collision_table(self.sim.engine.compiled)
         targets = {name for name in collisions.names if self._is_target(name)}
         own = {name for name in collisions.names if name.startswith(f"{self.scoped}::")}
         return collisions.mask(self._watched), collisions.mask(targets), collisions.mask(own)
 
     def _is_target(self, scoped: str) -> bool:
-        """Whether the target is part of a collision's name, as simkit or as gz writes it.
+        """Check whether a collision's name contains the target, in simkit's or in Gazebo's notation.
 
-        gz has `world/w/model/m/link/l/collision/c`, and in its documentation `/m/l/c`.
+        Gazebo uses `world/w/model/m/link/l/collision/c`, and in its documentation `/m/l/c`.
         """
         *models, link, collision = scoped.split("::")
         kinds = "".join(f"/model/{m}" for m in models)
@@ -114,7 +114,7 @@ class TouchTimer(ModelPlugin):
         self._set_pace()
 
     def _set_pace(self) -> None:
-        """Looks at every step only while it is enabled."""
+        """Run at every step only while the detector is enabled."""
         set_after_step_rate(self, None if self._is_enabled else NEVER)
 
 
@@ -126,11 +126,12 @@ class TouchPluginOptions(TouchOptions):
 
 
 class TouchPlugin(TouchTimer):
-    """Says once that its model has touched a target for a while without a break, then rests until it is enabled again.
+    """Publishes one message after its model has touched a target for a given time without interruption.
 
-    What counts are the collisions that contact sensors on the model's links watch (or those named in `<collision>`,
-    with `<create_contact_sensor_for_collision>` also without a sensor), and every collision whose scoped name contains
-    `<target>`. Other things may be touched meanwhile, as in gz.
+    The detector is then disabled until a message enables it again. It watches the collisions of contact sensors on the
+    model's links, or those named in `<collision>`. With `<create_contact_sensor_for_collision>` a named collision needs
+    no sensor. A target is every collision whose scoped name contains `<target>`. Contact with other objects does not
+    interrupt the time, as in Gazebo.
     """
 
     endpoints = (
@@ -149,7 +150,7 @@ class TouchPlugin(TouchTimer):
         self._may_create = self.options.create_contact_sensor_for_collision
 
     def _find(self, collisions: list[SceneCollision], scene: SceneModel, params: Params) -> tuple[str, ...]:
-        """Scoped names of the collisions that `<collision>` names."""
+        """Return the scoped names of the collisions that `<collision>` names."""
         found: dict[str, None] = {}
         for element in params.all("collision"):
             same = [c.scoped for c in collisions if f"::{c.scoped}".endswith(f"::{element.value}")]
@@ -170,18 +171,18 @@ class TouchPlugin(TouchTimer):
             watched = [name for name in self._named if self._may_create or name in watched]
         if not watched:
             message = f"plugin {self.name!r}: no contact sensor watches a collision of model {parent.name!r}"
-            hint = "put a contact sensor on its link, or name <collision> and <create_contact_sensor_for_collision>"
-            params.diagnostics.warning("SK-SENSOR-043", f"{message}; it never touches", self.where, hint)
+            hint = "add a contact sensor to its link, or <collision> and <create_contact_sensor_for_collision>"
+            params.diagnostics.warning("SK-SENSOR-043", f"{message}; no touch is detected", self.where, hint)
         self._watch(watched, params)
-        if self._together()[0] is self:  # the first answers for all of its namespace
+        if self._same_namespace()[0] is self:  # the first detector offers the service for all of its namespace
             self.offer(f"{self._topic}/enable", SET_BOOL, self._on_call)
 
-    def _together(self) -> list[TouchPlugin]:
-        """The detectors of its namespace, in the order of the file."""
+    def _same_namespace(self) -> list[TouchPlugin]:
+        """Return the detectors with the same namespace, in the order of the file."""
         detectors = [p for p in self.sim.engine.structure.all_plugins() if isinstance(p, TouchPlugin)]
         return [p for p in detectors if p._topic == self._topic]
 
     def _on_call(self, request: msgs.SetBool_Request) -> dict[str, object]:
-        for detector in self._together():
+        for detector in self._same_namespace():
             detector._enable(bool(request.data))
         return {"success": True}

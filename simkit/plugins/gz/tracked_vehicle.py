@@ -1,5 +1,7 @@
-"""gz's tracks: `gz::sim::systems::TrackController`, conveyor belts too, and `gz::sim::systems::TrackedVehicle`, which
-tells track controllers how fast to run.
+"""Tracks of Gazebo: track controllers and tracked vehicles.
+
+`gz::sim::systems::TrackController` moves a track or a conveyor belt. `gz::sim::systems::TrackedVehicle` sends speeds to
+track controllers.
 """
 
 from __future__ import annotations
@@ -38,8 +40,8 @@ if TYPE_CHECKING:
 
 SPEED = "std_msgs/msg/Float64"
 CENTRE = ("geometry_msgs/msg/Vector3", "geometry_msgs/msg/Point")
-_STRAIGHT = 1e-6  # rate of turning [rad/s] below which it drives straight, and speed [m/s] below which on the spot
-_STILL = 1e-6  # change of a speed in a step below which the tracks are not told again
+_STRAIGHT = 1e-6  # turning rate [rad/s] below which motion is straight; forward speed [m/s] below which it is a spin
+_STILL = 1e-6  # change of a speed per step below which no new speeds are sent to the tracks
 _SIDES = ("left", "right")
 
 
@@ -57,13 +59,13 @@ class TrackControllerOptions(LimiterOptions):
 
 
 class TrackController(ModelPlugin):
-    """Has the surface of a link run: a conveyor belt, or a track of a vehicle.
+    """Moves the surface of a link: a conveyor belt, or a track of a vehicle.
 
-    The belt runs along x of the link (turned by `<track_orientation>`), round its y: with a positive speed, told on
-    `/model/<model>/link/<link>/track_cmd_vel`, what lies on top goes along x, and what is below goes back, so that a
-    vehicle drives along x. A point on `.../track_cmd_center_of_rotation` bends its way to a circle round that point of
-    the world; one that is not finite makes it straight again. How far and how fast the belt runs is on
-    `/model/<model>/link/<link>/odometry`.
+    The belt runs along the x axis of the link (turned by `<track_orientation>`), around its y axis. Its speed comes on
+    `/model/<model>/link/<link>/track_cmd_vel`. At a positive speed, objects on top move along x and the ground below
+    moves back, so that a vehicle drives along x. A point on `.../track_cmd_center_of_rotation` bends the motion to a
+    circle around that point of the world; a point that is NaN or infinite makes it straight again. Travel and speed of
+    the belt are published on `/model/<model>/link/<link>/odometry`.
     """
 
     endpoints = (
@@ -87,16 +89,16 @@ class TrackController(ModelPlugin):
             report_missing_collisions(link, named)
         self._track = Pose.from_rpy(0.0, 0.0, 0.0, *self.options.track_orientation)
         self._limiter = speed_limiter(self.options)
-        self._patience = self.options.max_command_age
+        self._command_timeout = self.options.max_command_age
         self._odometry_rate = self.options.odometry_publish_frequency
         if self.options.debug:
-            params.diagnostics.note("SK-PLUGIN-100", "<debug> of a track draws nothing here", params.where)
+            params.diagnostics.note("SK-PLUGIN-100", "<debug> of a track has no effect in simkit", params.where)
 
     def load(self, parent: Model, params: Params) -> None:
         self.once = OneTimeWarnings(self)
         self.before_step_rate = NEVER
-        self._wanted, self._told_tick = 0.0, -1
-        self._speed, self._history = 0.0, (0.0, 0.0)  # now, and at the two steps before
+        self._target_speed, self._command_tick = 0.0, -1
+        self._speed, self._history = 0.0, (0.0, 0.0)  # current speed, and those of the two steps before
         self._centre: tuple[float, float, float] | None = None
         self._run: BeltMotion | None = BeltMotion(0.0) if self._is_directed else None
         self._tick, self._place = self.sim.tick, (self.sim.tick, 0.0)
@@ -120,7 +122,7 @@ class TrackController(ModelPlugin):
         if not math.isfinite(speed):
             self.once.not_finite()
             return
-        self._wanted = speed
+        self._target_speed = speed
         self._begin()
 
     def _on_centre(self, message: msgs.Vector3 | msgs.Point) -> None:
@@ -129,26 +131,26 @@ class TrackController(ModelPlugin):
         self._begin()
 
     def _begin(self) -> None:
-        """A command has come, between two steps: for the step to come already."""
-        self._told_tick = self.sim.tick
+        """Apply a command that came between two steps in the next step."""
+        self._command_tick = self.sim.tick
         self.before_step()
         set_before_step_rate(self, None)
 
     def before_step(self) -> None:
-        """Takes the limited speed one step towards the command; called no more once it is there."""
+        """Advance the limited speed by one step towards the command; not called any more when it is reached."""
         tick = self.sim.tick
         if tick != self._tick:
             self._tick, self._history = tick, (self._speed, self._history[0])
         last, before = self._history
-        waits = self._wanted != 0.0 and math.isfinite(self._patience)
-        if waits and (tick - self._told_tick) * self.period > self._patience + 1e-12:
-            self._wanted, waits = 0.0, False
-        speed = self._limiter.limit(self._wanted, last, before, self.period)
+        waits = self._target_speed != 0.0 and math.isfinite(self._command_timeout)
+        if waits and (tick - self._command_tick) * self.period > self._command_timeout + 1e-12:
+            self._target_speed, waits = 0.0, False
+        speed = self._limiter.limit(self._target_speed, last, before, self.period)
         if speed != self._speed:
-            self._place = (tick, self._way(tick))
+            self._place = (tick, self._travel(tick))
             self._speed = speed
         self._apply()
-        if not waits and speed == last == before and self.before_step_rate is None and tick != self._told_tick:
+        if not waits and speed == last == before and self.before_step_rate is None and tick != self._command_tick:
             self.before_step_rate = NEVER
             self.sim.engine.reschedule()
 
@@ -161,19 +163,19 @@ class TrackController(ModelPlugin):
 
     # ------------------------------------------------------------------ readings
 
-    def _way(self, tick: int) -> float:
-        """How far the belt has run [m]."""
-        since, way = self._place
-        return way + self._speed * (tick - since) * self.period
+    def _travel(self, tick: int) -> float:
+        """Return the travel of the belt at a tick [m]."""
+        since, travel = self._place
+        return travel + self._speed * (tick - since) * self.period
 
     def publish(self) -> None:
-        """How far the belt has run [m], and how fast it does [m/s]."""
-        pose, twist = Pose((self._way(self.sim.tick), 0.0, 0.0)), BodyTwist((self._speed, 0.0, 0.0))
+        """Publish travel [m] and speed [m/s] of the belt."""
+        pose, twist = Pose((self._travel(self.sim.tick), 0.0, 0.0)), BodyTwist((self._speed, 0.0, 0.0))
         self._odometry.publish_later(partial(odometry_message, self.sim.time_ns, "", "", pose, twist))
 
 
 class TrackOptions(Options):
-    """A `<left_track>` or `<right_track>` block."""
+    """Options of a `<left_track>` or `<right_track>` block."""
 
     link: str = text(required=True)
     velocity_topic: str = text()
@@ -202,9 +204,9 @@ class TrackedVehicleOptions(Options):
 class TrackedVehicle(TwistDrive):
     """Drives tracks, each with a `TrackController` of its own, from `/model/<model>/cmd_vel`.
 
-    A track turns the vehicle by skidding, so for a rate of turning it runs faster than a wheel would: by one over
-    `<steering_efficiency>`, also told on `/model/<model>/steering_efficiency`. All tracks hear round which point the
-    vehicle is to turn. Odometry on `/model/<model>/odometry` is what wheels at these speeds would say.
+    Tracks turn the vehicle by skidding, so for a turning rate they run faster than wheels would. The factor is one over
+    `<steering_efficiency>`, which also comes on `/model/<model>/steering_efficiency`. All tracks receive the centre of
+    rotation of the vehicle. The odometry on `/model/<model>/odometry` is that of wheels with the same speeds.
     """
 
     endpoints = (
@@ -236,25 +238,27 @@ class TrackedVehicle(TwistDrive):
         ]
         self._separation = self.options.tracks_separation
         self._efficiency = self.options.steering_efficiency
-        _ = self.options.tracks_height  # gz's odometry divides by it and multiplies again
+        _ = self.options.tracks_height  # it cancels out in Gazebo's odometry
         self._limiters = [speed_limiter(self.options.linear_velocity), speed_limiter(self.options.angular_velocity)]
         self._odometry_rate = self.options.odom_publish_frequency
         if self.options.debug:
-            params.diagnostics.note("SK-PLUGIN-100", "<debug> of a tracked vehicle draws nothing here", params.where)
+            params.diagnostics.note(
+                "SK-PLUGIN-100", "<debug> of tracked vehicles has no effect in simkit", params.where
+            )
 
     def _read_side(self, element: str, found: Sequence[TrackOptions], scene: SceneModel) -> list[tuple[str, str]]:
-        """The topics of speed and centre that the controllers of one side's tracks listen to."""
+        """Return the speed and centre topics of the track controllers on one side."""
         if not found:
             self.params.text(element, required=True)
         tracks = []
         for options in found:
-            one, name = options.params, options.link
-            named = one.child("link")
+            block, name = options.params, options.link
+            named = block.child("link")
             if named is not None and name:
                 find_link(scene, name, named)
             prefix = f"/model/{scene.name}/link/{name}"
-            velocity = read_topic(one, "velocity_topic", f"{prefix}/track_cmd_vel")
-            centre = read_topic(one, "center_of_rotation_topic", f"{prefix}/track_cmd_center_of_rotation")
+            velocity = read_topic(block, "velocity_topic", f"{prefix}/track_cmd_vel")
+            centre = read_topic(block, "center_of_rotation_topic", f"{prefix}/track_cmd_center_of_rotation")
             tracks.append((velocity, centre))
         return tracks
 
@@ -285,24 +289,24 @@ class TrackedVehicle(TwistDrive):
             self._efficiency = efficiency
             self._begin()
         else:
-            self.once.left_out("efficiency", "a steering efficiency that is not a positive number is left out")
+            self.once.left_out("efficiency", "a steering efficiency is ignored; allowed is a positive number")
 
     def _begin(self) -> None:
         self._is_new = True
         set_after_step_rate(self, None)
 
     def after_step(self) -> None:
-        """Takes the limited speeds one step towards the command, and tells the tracks, for the next step."""
+        """Advance the limited speeds by one step towards the command, and send them to the tracks for the next step."""
         ahead, turning = self.next_speeds()
         changes = any(abs(now - last) > _STILL for now, last in zip(self._last, self._before_last, strict=True))
-        tells, self._is_new = self._is_new or changes, False
-        if tells:
-            self._tell(ahead, turning)
+        is_sent, self._is_new = self._is_new or changes, False
+        if is_sent:
+            self._command_tracks(ahead, turning)
         elif self._settled:
             self.after_step_rate = NEVER
             self.sim.engine.reschedule()
 
-    def _tell(self, ahead: float, turning: float) -> None:
+    def _command_tracks(self, ahead: float, turning: float) -> None:
         half = turning * self._separation / (2.0 * self._efficiency)
         left, right = ahead - half, ahead + half
         self._odometry.drive(left, right, self.sim.time_ns)
@@ -314,7 +318,7 @@ class TrackedVehicle(TwistDrive):
                 centre.publish(vector(x, y, z))
 
     def _centre(self, ahead: float, turning: float) -> tuple[float, float, float]:
-        """The point of the world that it turns round [m]; infinitely far where it drives straight."""
+        """Return the centre of rotation in the world [m]; infinite for straight motion."""
         if abs(turning) < _STRAIGHT:
             return math.inf, math.inf, math.inf
         pose = self.sim.link(self._canonical).pose
@@ -325,13 +329,13 @@ class TrackedVehicle(TwistDrive):
     # ------------------------------------------------------------------ readings
 
     def publish_pose(self) -> None:
-        """Odometry of the speeds that the tracks were told."""
+        """Publish the odometry of the commanded track speeds."""
         now = self.sim.time_ns
         pose, twist = self._odometry.at(now)
         self._odom.publish_later(partial(odometry_message, now, self._frame, self._child, pose, twist))
 
     def publish_transform(self) -> None:
-        """The same as a transform."""
+        """Publish the transform of the odometry."""
         now = self.sim.time_ns
         pose, _ = self._odometry.at(now)
         self._tf.publish_later(partial(transforms, now, (self._frame, self._child, pose)))

@@ -1,4 +1,4 @@
-"""gz's pusher along waypoints: `gz::sim::systems::TrajectoryFollower`."""
+"""Trajectory follower of Gazebo, which pushes a link along waypoints: `gz::sim::systems::TrajectoryFollower`."""
 
 from __future__ import annotations
 
@@ -26,23 +26,23 @@ _KINDS: Final = ("waypoints", "circle", "line")
 _ON_A_CIRCLE: Final = 8
 _FARTHEST: Final = 1e9  # [m]
 _STRAIGHT: Final = math.radians(0.1)
-"""Bearing at which `<zero_vel_on_bearing_reached>` stops the turning."""
+"""Bearing [rad] at which `<zero_vel_on_bearing_reached>` stops the rotation."""
 
 
 class TrajectoryFollowerWaypointsOptions(Options):
-    """The `<waypoints>` block."""
+    """Options of the `<waypoints>` block."""
 
     waypoint: tuple[float, ...] = vector(None, size=2)
 
 
 class TrajectoryFollowerCircleOptions(Options):
-    """The `<circle>` block."""
+    """Options of the `<circle>` block."""
 
     radius: float = number(0.0, "m", minimum=0.0, maximum=1000000000.0)
 
 
 class TrajectoryFollowerLineOptions(Options):
-    """The `<line>` block."""
+    """Options of the `<line>` block."""
 
     direction: float = number(0.0)
     length: float = number(0.0, "m", minimum=-1000000000.0, maximum=1000000000.0)
@@ -67,13 +67,14 @@ class TrajectoryFollowerOptions(Options):
 class TrajectoryFollower(ModelPlugin):
     """Pushes a link from waypoint to waypoint in the plane, by one force and one torque.
 
-    While the next waypoint lies farther than `<bearing_tolerance>` from straight ahead (the link's x), the link is
-    turned by `<torque>` about its own z; else `<force>` pushes it along its own x, both at the centre of mass. A
-    waypoint within `<range_tolerance>` is reached. The last one is kept: a link that is carried away from it comes
-    back. `<line>` and `<circle>` count from where the link is at the start. True on
-    `/model/<model>/trajectory_follower/pause` pauses, false goes on.
+    While the direction to the next waypoint differs by more than `<bearing_tolerance>` from the link's x axis,
+    `<torque>` turns the link around its own z axis. Otherwise `<force>` pushes the link along its own x axis. Both act
+    at the centre of mass. A waypoint within `<range_tolerance>` is reached. The last waypoint stays active: a displaced
+    link comes back. `<line>` and `<circle>` begin at the initial position of the link. On
+    `/model/<model>/trajectory_follower/pause`, true pauses the motion and false continues it.
 
-    gz pushes along the axes of `<inertial><pose>`; here it is the link's own, the same unless that pose is turned.
+    Gazebo pushes along the axes of `<inertial><pose>`. simkit uses the link's axes, which are equal unless that pose is
+    rotated.
     """
 
     options = OptionsOf(TrajectoryFollowerOptions)
@@ -83,18 +84,18 @@ class TrajectoryFollower(ModelPlugin):
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         self._scoped = find_named_link(scene, "link_name", params)
-        start = next((one.pose_world for one in scene.all_links() if one.scoped == self._scoped), scene.pose_world)
+        start = next((link.pose_world for link in scene.all_links() if link.scoped == self._scoped), scene.pose_world)
         self._points = _waypoints(params, start, self.name)
         self.options.read_all()
 
     def load(self, parent: Model, params: Params) -> None:
         self.once = OneTimeWarnings(self)
         self._is_paused, self._is_held = False, False
-        self._way = list(self._points)
+        self._remaining = list(self._points)
         self._link = self.sim.link(self._scoped)
         if self.options.zero_vel_on_bearing_reached and not self._link.is_free:
-            message = "joints or the world hold the link: <zero_vel_on_bearing_reached> has no effect"
-            self.once.warn("SK-PLUGIN-131", "held", message, "name the link that carries the model")
+            message = "<zero_vel_on_bearing_reached> has no effect: a joint holds the link at its parent or the world"
+            self.once.warn("SK-PLUGIN-131", "held", message, "set <link_name> to the root link of the model")
         self._set_pace()
         own = f"/model/{parent.name}/trajectory_follower/pause"
         self.listen(read_topic(params, "topic", own), BOOL, self._on_pause)
@@ -104,15 +105,15 @@ class TrajectoryFollower(ModelPlugin):
         self._set_pace()
 
     def _set_pace(self) -> None:
-        """Looks at every step unless it is paused, or has nowhere to go."""
-        set_before_step_rate(self, NEVER if self._is_paused or not self._way else None)
+        """Run at every step unless the motion is paused or there are no waypoints."""
+        set_before_step_rate(self, NEVER if self._is_paused or not self._remaining else None)
 
     def before_step(self) -> None:
-        if not self._way or self._is_paused:
+        if not self._remaining or self._is_paused:
             return
         pose, options = self._link.pose, self.options
-        (x, y), (goal_x, goal_y) = pose.position[:2].tolist(), self._way[0]
-        way = goal_x - x, goal_y - y, 0.0  # heights are left out
+        (x, y), (goal_x, goal_y) = pose.position[:2].tolist(), self._remaining[0]
+        way = goal_x - x, goal_y - y, 0.0  # heights are ignored
         if math.hypot(*way) <= options.range_tolerance:
             self._go_on()
             return
@@ -125,46 +126,47 @@ class TrajectoryFollower(ModelPlugin):
             return
         self._link.apply_wrench(pose.rotate((options.force, 0.0, 0.0)))
         if options.zero_vel_on_bearing_reached and self._link.is_free:
-            # from straight ahead on, until the bearing leaves the tolerance
+            # hold the rotation from bearing zero until the bearing exceeds the tolerance
             self._is_held = self._is_held or abs(bearing) <= _STRAIGHT
             if self._is_held:
                 self._link.set_velocity(self._link.linear_velocity)
 
     def _go_on(self) -> None:
-        """To the next waypoint; the last one stays."""
-        if len(self._way) > 1:
-            reached, *rest = self._way
-            self._way = [*rest, reached] if self.options.loop else rest
+        """Continue to the next waypoint; the last one stays active."""
+        if len(self._remaining) > 1:
+            reached, *rest = self._remaining
+            self._remaining = [*rest, reached] if self.options.loop else rest
 
 
 def _waypoints(params: Params, start: Pose, name: str) -> list[Point]:
-    """The waypoints in the world [m]: those of `<waypoints>`, else of `<circle>`, else of `<line>`."""
-    given = [kind for kind in _KINDS if params.has(kind)]
-    if not given:
-        message = f"plugin {name!r} has no <waypoints>, <circle> or <line>: it pushes nothing"
-        params.diagnostics.warning("SK-PLUGIN-130", message, params.where, "<waypoints><waypoint>2 0</waypoint>")
+    """Return the waypoints in the world [m]: those of `<waypoints>`, else of `<circle>`, else of `<line>`."""
+    kinds = [kind for kind in _KINDS if params.has(kind)]
+    if not kinds:
+        message = f"plugin {name!r} has no <waypoints>, <circle> or <line>, so it pushes nothing"
+        hint = "add <waypoints><waypoint>2 0</waypoint></waypoints>"
+        params.diagnostics.warning("SK-PLUGIN-130", message, params.where, hint)
         return []
-    if len(given) > 1:
-        others = " and ".join(f"<{kind}>" for kind in given[1:])
-        message = f"plugin {name!r} follows <{given[0]}>, and not its {others}"
-        params.diagnostics.warning("SK-PLUGIN-130", message, params.where, "leave one of them")
+    if len(kinds) > 1:
+        others = " and ".join(f"<{kind}>" for kind in kinds[1:])
+        message = f"plugin {name!r} follows <{kinds[0]}>; its {others} has no effect"
+        params.diagnostics.warning("SK-PLUGIN-130", message, params.where, "remove all but one of them")
     found = {
-        "waypoints": _listed_waypoints(params.block("waypoints"), given[0] == "waypoints"),
-        "circle": _circle_waypoints(params.block("circle"), start, given[0] == "circle"),
-        "line": _line_waypoints(params.block("line"), start, given[0] == "line"),
+        "waypoints": _listed_waypoints(params.block("waypoints"), kinds[0] == "waypoints"),
+        "circle": _circle_waypoints(params.block("circle"), start, kinds[0] == "circle"),
+        "line": _line_waypoints(params.block("line"), start, kinds[0] == "line"),
     }
-    return found[given[0]]
+    return found[kinds[0]]
 
 
 def _listed_waypoints(block: Params, is_followed: bool) -> list[Point]:
-    found = [(x, y) for x, y in (one.vector("waypoint", 2) for one in block.each("waypoint"))]
+    found = [(x, y) for x, y in (waypoint.vector("waypoint", 2) for waypoint in block.each("waypoint"))]
     if is_followed and not found:
         block.error("SK-PARAM-001", "<waypoints> needs <waypoint>: x and y [m] in the world")
     return found
 
 
 def _circle_waypoints(block: Params, start: Pose, is_followed: bool) -> list[Point]:
-    """Eight points of a circle about the start."""
+    """Return eight points of a circle around the start."""
     radius = block.number("radius", 0.0, required=is_followed, minimum=0.0, maximum=_FARTHEST)
     x, y = start.position[:2].tolist()
     angles = [math.tau * k / _ON_A_CIRCLE for k in range(_ON_A_CIRCLE)]
@@ -172,7 +174,7 @@ def _circle_waypoints(block: Params, start: Pose, is_followed: bool) -> list[Poi
 
 
 def _line_waypoints(block: Params, start: Pose, is_followed: bool) -> list[Point]:
-    """The start, and the end of a line from there; its direction [rad] counts from the link's."""
+    """Return the start and the end of a line from there; its direction [rad] is relative to the link's."""
     angle = block.number("direction", 0.0, required=is_followed)
     length = block.number("length", 0.0, required=is_followed, minimum=-_FARTHEST, maximum=_FARTHEST)
     far = start.rotate((length * math.cos(angle), length * math.sin(angle), 0.0))

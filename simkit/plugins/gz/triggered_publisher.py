@@ -1,4 +1,4 @@
-"""gz's messages that answer messages: `gz::sim::systems::TriggeredPublisher`."""
+"""Messages in response to messages, as in Gazebo's `gz::sim::systems::TriggeredPublisher`."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _MS: Final = 1_000_000  # [ns]
 
 @dataclass(frozen=True)
 class _Output:
-    """What is published, by whom."""
+    """Message to publish, with its publisher and its ROS type."""
 
     publisher: Publisher
     message: Message
@@ -41,7 +41,7 @@ class _Output:
 
 @dataclass(frozen=True)
 class _Request:
-    """A service that is called, with what, and what its answer is in gz."""
+    """Service to call, with its request and Gazebo's type of its response."""
 
     service: str
     message: Message
@@ -49,14 +49,14 @@ class _Request:
 
 
 class TriggeredPublisherOutputOptions(Options):
-    """The `<output>` block."""
+    """Options of an `<output>` block."""
 
     type_: str = text(element="@type")
     topic: str = text(element="@topic")
 
 
 class TriggeredPublisherServiceOptions(Options):
-    """The `<service>` block."""
+    """Options of a `<service>` block."""
 
     name: str = text(element="@name")
     req_msg: str = text(element="@reqMsg")
@@ -66,7 +66,7 @@ class TriggeredPublisherServiceOptions(Options):
 
 
 class TriggeredPublisherMatchOptions(Options):
-    """The `<match>` block."""
+    """Options of a `<match>` block."""
 
     field: str = text(element="@field")
     logic_type: str = text("positive", element="@logic_type")
@@ -83,10 +83,10 @@ class TriggeredPublisherOptions(Options):
 
 
 class TriggeredPublisher(WorldPlugin):
-    """Publishes messages, and calls services, whenever a message comes that meets every `<match>`.
+    """Publishes messages and calls services whenever an input message meets every `<match>`.
 
-    Messages are written in protobuf's text form and named by their types in gz. A message is met between two steps;
-    what answers it goes out at once, or at the first step at or after `<delay_ms>` of simulated time.
+    Messages are written in protobuf's text format, with Gazebo's type names. Inputs are checked between two steps. The
+    outputs follow at once, or at the first step at or after `<delay_ms>` of simulated time.
     """
 
     options = OptionsOf(TriggeredPublisherOptions)
@@ -106,8 +106,8 @@ class TriggeredPublisher(WorldPlugin):
         if not inputs:
             _ = self.options.input
         for extra in inputs[1:]:
-            message = f"plugin {self.name!r} takes one <input>; another is not used"
-            params.diagnostics.warning("SK-PLUGIN-124", message, extra.where, "a plugin for each input")
+            message = f"plugin {self.name!r} uses one <input>; this one is not used"
+            params.diagnostics.warning("SK-PLUGIN-124", message, extra.where, "add one plugin for each input")
             extra.mark_all_read()
         if inputs:
             self._read_input(inputs[0])
@@ -118,18 +118,18 @@ class TriggeredPublisher(WorldPlugin):
         kind, topic = self._kind(element, "type"), _topic(element)
         matchers = element.all("match")
         if kind is None or not topic:
-            for one in matchers:
-                one.mark_all_read()
+            for match in matchers:
+                match.mark_all_read()
             return
-        self._kind_heard = kind
-        self._matchers = [m for one in matchers if (m := self._read_match(kind, one)) is not None]
-        if matchers and not any(one.value for one in matchers):
+        self._input_kind = kind
+        self._matchers = [m for match in matchers if (m := self._read_match(kind, match)) is not None]
+        if matchers and not any(match.value for match in matchers):
             element.error("SK-PARAM-002", "found no <match> with a text, allowed is one, or none at all")
             return
         if kind is MESSAGE_CLASSES["Pose"] and any(
-            one.attributes.get("field", "").startswith("header.") for one in matchers
+            match.attributes.get("field", "").startswith("header.") for match in matchers
         ):
-            # a stamped pose has no place for what gz has in the header beside the frame
+            # ROS's stamped pose has no fields for Gazebo's header data, so listen to the detailed status
             self.listen(topic + DETAILS, STATUS, self._on_status)
             return
         known, twins = self.sim.topics().get(topic), [twin.ros for twin in twins_of(kind)]
@@ -165,44 +165,44 @@ class TriggeredPublisher(WorldPlugin):
 
     def _read_request(self, element: Params) -> _Request | None:
         name, text = element.attribute("name"), element.attribute("reqMsg")
-        element.attribute("timeout")  # [ms]; a service answers at once
+        element.attribute("timeout")  # [ms], unused: services respond at once
         kind = self._kind(element, "reqType", SERVICE_REQUEST_TYPES)
         answer = self._kind(element, "repType", MESSAGE_CLASSES)
         if not name:
-            element.error("SK-PARAM-001", "<service> needs a name=: the service's")
+            element.error("SK-PARAM-001", '<service> needs name="...", the name of the service')
         if kind is None or answer is None or not name:
             return None
         message = _message(kind, text, element, "reqMsg")
         return None if message is None else _Request(valid_topic(name), message, answer)
 
     def _kind(self, element: Params, attribute: str, known: Iterable[str] | None = None) -> type[Message] | None:
-        """The message class that an attribute names; None after an error."""
+        """Return the message class that an attribute names, or None after an error."""
         written = element.attribute(attribute)
         if not written:
             element.error("SK-PARAM-001", f'<{element.name}> needs {attribute}=: a type such as "gz.msgs.Boolean"')
             return None
         package, _, name = written.rpartition(".")
-        listed = [one for one in MESSAGE_CLASSES if _has_ros_type(one)] if known is None else list(known)
+        listed = [name for name in MESSAGE_CLASSES if _has_ros_type(name)] if known is None else list(known)
         if name in listed and package in ("gz.msgs", "ignition.msgs"):
             return message_class(name)
         hint = did_you_mean(name, listed) or f"allowed are {', '.join(sorted(listed))} of gz.msgs"
-        message = f'<{element.name} {attribute}="{written}">: no message of that type can come or go here'
+        message = f'<{element.name} {attribute}="{written}">: messages of this type are not supported here'
         element.error("SK-PLUGIN-120", message, hint)
         return None
 
-    # ------------------------------------------------------------------ what comes
+    # ------------------------------------------------------------------ messages
 
     def _on_message(self, message: object) -> None:
-        self._hear(from_ros(self._kind_heard, message) if self._matchers else None)
+        self._check(from_ros(self._input_kind, message) if self._matchers else None)
 
     def _on_status(self, message: PerformerStatus) -> None:
-        self._hear(pose_of_status(message))
+        self._check(pose_of_status(message))
 
-    def _hear(self, message: Message | None) -> None:
+    def _check(self, message: Message | None) -> None:
         if message is not None and not all(matcher.meets(message) for matcher in self._matchers):
             return
         if self._delay == 0:
-            self._answer()
+            self._respond()
             return
         self._due.append(self.sim.time_ns + self._delay)
         self._set_pace()
@@ -213,25 +213,25 @@ class TriggeredPublisher(WorldPlugin):
     def before_step(self) -> None:
         while self._due and self._due[0] <= self.sim.time_ns:
             self._due.popleft()
-            self._answer()
+            self._respond()
         self._set_pace()
 
     def _set_pace(self) -> None:
-        """Looks at the time at every step only while something waits for it."""
+        """Run at every step only while a delayed output is pending."""
         set_before_step_rate(self, None if self._due else NEVER)
 
-    def _answer(self) -> None:
+    def _respond(self) -> None:
         for out in self._outputs:
             if out.publisher.wanted:
                 out.publisher.publish(to_ros(out.message, out.ros))
         for request in self._requests:
-            was_taken, answer = call_service(self.sim, request.service, request.message, request.answer)
-            if not was_taken:
+            was_called, answer = call_service(self.sim, request.service, request.message, request.answer)
+            if not was_called:
                 hint = did_you_mean(request.service, self.sim.communication.services.names())
-                message = f"there is no service {request.service!r} that takes its request"
+                message = f"there is no service {request.service!r} for this request type"
                 self.once.warn("SK-PLUGIN-122", request.service, message, hint)
             elif "data" in request.answer.FIELDS and answer.data is False:
-                message = f"service {request.service!r} was called and did not succeed"
+                message = f"service {request.service!r} was called and reported failure"
                 self.once.warn("SK-PLUGIN-122", f"{request.service} failed", message)
 
 
@@ -243,11 +243,11 @@ def _has_ros_type(name: str) -> bool:
 
 
 def _topic(element: Params) -> str:
-    """The topic that an element names; empty after an error."""
+    """Return the topic that an element names, or an empty text after an error."""
     written = element.attribute("topic")
     topic = valid_topic(written)
     if topic == "/":
-        element.error("SK-PARAM-001", f"<{element.name}> needs a topic=: a topic's name, found {written!r}")
+        element.error("SK-PARAM-001", f'<{element.name}> needs topic="...", the name of a topic; found {written!r}')
         return ""
     return topic
 
@@ -264,13 +264,13 @@ def _tolerance(element: Params) -> float:
     return tolerance
 
 
-def _message(kind: type[Message], text: str, element: Params, what: str) -> Message | None:
+def _message(kind: type[Message], text: str, element: Params, label: str) -> Message | None:
     try:
         message = parse_message(kind, text)
         for twin in twins_of(kind)[:1] if _has_ros_type(kind.__name__) else ():
-            to_ros(message, twin.ros)  # what the type cannot hold is said now
+            to_ros(message, twin.ros)  # report values that the ROS type cannot hold at load time
     except MessageError as error:
-        element.error("SK-PLUGIN-121", f"{what} {_shortened(text)}: {error}")
+        element.error("SK-PLUGIN-121", f"{label} {_shortened(text)}: {error}")
         return None
     return message
 

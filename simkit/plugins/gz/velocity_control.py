@@ -1,4 +1,4 @@
-"""gz's velocity control: `gz::sim::systems::VelocityControl`."""
+"""Velocity control of Gazebo: `gz::sim::systems::VelocityControl`."""
 
 from __future__ import annotations
 
@@ -35,12 +35,12 @@ class VelocityControlOptions(Options):
 
 
 class VelocityControl(ModelPlugin):
-    """Moves the model with the twist on `/model/<model>/cmd_vel`, in the model's own axes, about the model's origin.
+    """Moves the model with the twist on `/model/<model>/cmd_vel`, in the model's own axes, around the model's origin.
 
-    It holds still until a command comes, or goes on with `<initial_linear>` and `<initial_angular>`; the last command
-    holds. Nothing else moves the model but contacts: it stays in the air, and needs no wheels. For each `<link_name>`
-    there is `/model/<model>/link/<link>/cmd_vel`, a twist in the link's own axes: from the first command on, the link
-    and all that joints tie it to are moved with that.
+    The model rests until the first command, or starts with `<initial_linear>` and `<initial_angular>`; the last command
+    stays active. Apart from contacts nothing else moves the model: it stays in the air, and needs no wheels. For each
+    `<link_name>`, a twist in the link's own axes comes on `/model/<model>/link/<link>/cmd_vel`. From the first such
+    command on, it moves the link and all links that joints connect to it.
     """
 
     options = OptionsOf(VelocityControlOptions)
@@ -60,11 +60,11 @@ class VelocityControl(ModelPlugin):
         self._target: Motion = self.options.initial_linear, self.options.initial_angular
         self._link_targets: dict[str, Motion] = {}
         self._mover = KinematicMover(self.sim)
-        trees = _links_by_tree(self.sim, list(self._links))
-        self._whole = self._held(self._links)
-        # of each link that may be commanded, the tree of links that goes with it
+        trees = _connected_links(self.sim, list(self._links))
+        self._whole = self._with_model_frame(self._links)
+        # links that move with each commandable link
         self._parts = {name: KinematicMotion(self.sim, trees[link], link) for name, link in self._link_names.items()}
-        # and the rest of the model, which its own command moves
+        # remaining links, which the model's own command moves, by the names of the commanded links
         self._rests: dict[frozenset[str], KinematicMotion] = {}
         for name in [name for name, part in self._parts.items() if not part] + ([] if self._whole else [""]):
             self._report_fixed(name)
@@ -74,9 +74,9 @@ class VelocityControl(ModelPlugin):
             self.listen(valid_topic(f"{own}/link/{name}/cmd_vel"), COMMAND_TYPES, partial(self._on_link_command, name))
 
     def _report_fixed(self, link: str) -> None:
-        what = f"link {link!r} of model {self.scoped!r}" if link else f"model {self.scoped!r}"
-        message = f"plugin {self.name!r}: {what} is joined to the world and stays where it is; no command moves it"
-        self.params.diagnostics.warning("SK-PLUGIN-053", message, self.where, "leave out the joint to the world")
+        entity = f"link {link!r} of model {self.scoped!r}" if link else f"model {self.scoped!r}"
+        message = f"plugin {self.name!r}: {entity} has a joint to the world, so no command moves it"
+        self.params.diagnostics.warning("SK-PLUGIN-053", message, self.where, "remove the joint to the world")
 
     # ------------------------------------------------------------------ commands
 
@@ -88,7 +88,7 @@ class VelocityControl(ModelPlugin):
     def _on_link_command(self, link: str, message: Twist | TwistStamped) -> None:
         motion = self._motion_of(message)
         if motion is not None:
-            self._link_targets.pop(link, None)  # the last command stands last
+            self._link_targets.pop(link, None)  # keep the order of the commands
             self._link_targets[link] = motion
 
     def _motion_of(self, message: Any) -> Motion | None:
@@ -100,12 +100,12 @@ class VelocityControl(ModelPlugin):
         return None
 
     def before_step(self) -> None:
-        """Sets the velocities that hold through the step."""
+        """Set the velocities for the next step."""
         self._mover.move(self._moves())
 
     @classmethod
     def before_step_together(cls, plugins: Sequence[VelocityControl]) -> Callable[[Iterable[VelocityControl]], None]:
-        """The same of many: what they share is worked out once."""
+        """Return a function that runs `before_step` of many plugins, with their common computation done once."""
         mover = KinematicMover(plugins[0].sim)
 
         def run(rota: Iterable[VelocityControl]) -> None:
@@ -114,30 +114,30 @@ class VelocityControl(ModelPlugin):
         return run
 
     def _moves(self) -> list[VelocityTarget]:
-        """What is to be moved now."""
+        """Return the motions of the next step."""
         if not self._link_targets:
             return [VelocityTarget(self._whole, self._whole.frame, *self._target)] if self._whole else []
         rest = self._rest()
         moves = [VelocityTarget(rest, rest.frame, *self._target)] if rest else []
-        trees = {self._parts[name].links: name for name in self._link_targets}  # of one tree the last command counts
+        trees = {self._parts[name].links: name for name in self._link_targets}  # the last command of a tree wins
         parts = [(self._parts[name], self._link_targets[name]) for name in trees.values()]
         return moves + [VelocityTarget(part, part.frame, *motion) for part, motion in parts if part]
 
-    def _held(self, links: Iterable[str]) -> KinematicMotion:
-        """Links of the model, to be moved with its frame."""
+    def _with_model_frame(self, links: Iterable[str]) -> KinematicMotion:
+        """Return these links of the model as one motion with the model's frame."""
         return KinematicMotion(self.sim, links, self._canonical, self._links[self._canonical].inverse() @ self._pose)
 
     def _rest(self) -> KinematicMotion:
-        """What of the model no link's command moves."""
+        """Return the links of the model that no link command moves, as one motion."""
         commanded = frozenset(self._link_targets)
         if commanded not in self._rests:
             gone = {link for name in commanded for link in self._parts[name].links}
-            self._rests[commanded] = self._held([link for link in self._links if link not in gone])
+            self._rests[commanded] = self._with_model_frame([link for link in self._links if link not in gone])
         return self._rests[commanded]
 
 
-def _links_by_tree(sim: Simulation, links: list[str]) -> dict[str, list[str]]:
-    """Of each link, the links that hang together with it by joints, itself among them."""
+def _connected_links(sim: Simulation, links: list[str]) -> dict[str, list[str]]:
+    """Return for each link all links that joints connect to it, including itself."""
     model, names = sim.mj_model, sim.engine.names
     root = {link: int(model.body_rootid[names.link(link).body]) for link in links}
     return {link: [other for other in links if root[other] == root[link]] for link in links}

@@ -1,5 +1,6 @@
-"""gz's properties of visuals that cameras tell: labels by `gz::sim::systems::Label`, temperatures by
-`gz::sim::systems::Thermal`, and `gz::sim::systems::ThermalSensor` on what sees those.
+"""Properties of visuals that cameras measure: labels and temperatures.
+
+The systems are `gz::sim::systems::Label`, `gz::sim::systems::Thermal` and `gz::sim::systems::ThermalSensor`.
 """
 
 from __future__ import annotations
@@ -34,9 +35,9 @@ class ThermalOptions(Options):
 
 
 class Thermal(Plugin):
-    """Gives its visual a temperature [K], or a picture of temperatures.
+    """Gives its visual a temperature [K], or an image of temperatures.
 
-    On a model or a link, where it does nothing in Gazebo, it counts for every visual there that has none of its own.
+    On a model or a link, where Gazebo ignores it, it applies to every visual there without a temperature of its own.
     """
 
     options = OptionsOf(ThermalOptions)
@@ -52,7 +53,7 @@ class Thermal(Plugin):
         if params.has("heat_signature"):
             if params.has("temperature"):
                 params.child("temperature")
-                message = "found both <temperature> and <heat_signature>: the latter is used, as in Gazebo"
+                message = "found both <temperature> and <heat_signature>: the second is used, as in Gazebo"
                 params.diagnostics.warning(_WITHOUT_EFFECT, message, params.block("temperature").where)
             self._range = _read_range(params)
             self._picture = _find_picture(self.options, builder)
@@ -60,12 +61,12 @@ class Thermal(Plugin):
             self._temperature = _read_kelvins(params, "temperature")
             for name in ("min_temp", "max_temp"):
                 if params.has(name):
-                    message = f"<{name}> is for a <heat_signature>; beside <temperature> it has no effect"
+                    message = f"<{name}> has no effect with <temperature>: it belongs to <heat_signature>"
                     params.diagnostics.warning(_WITHOUT_EFFECT, message, params.block(name).where)
         else:
-            params.error("SK-PARAM-001", f"plugin {self.name!r} needs a <temperature> [K] or a <heat_signature>")
+            params.error("SK-PARAM-001", f"plugin {self.name!r} needs <temperature> [K] or <heat_signature>")
         if not self._has_place(scene, builder.world.gazebo_quirks):
-            message = f"plugin {self.name!r} on {self.scoped!r} has no effect: nothing is drawn of that"
+            message = f"plugin {self.name!r} on {self.scoped!r} has no effect: it is not on a visual"
             params.diagnostics.warning(_WITHOUT_EFFECT, message, self.where, "move it into the <visual>")
             self._temperature = self._picture = None
 
@@ -85,22 +86,25 @@ class Thermal(Plugin):
 def _read_kelvins(params: Params, name: str) -> float:
     found = params.number(name)
     if found < 0:
-        message = f"found <{name}> {found:g}: nothing is colder than 0 K, which is used, as in Gazebo"
+        message = f"found <{name}> {found:g}, allowed is at least 0 K: 0 is used, as in Gazebo"
         params.diagnostics.warning(_WITHOUT_EFFECT, message, params.block(name).where)
     return max(found, 0.0)
 
 
 def _read_range(params: Params) -> tuple[float | None, float | None]:
-    """Temperatures [K] of a heat signature where it is black and where it is red; None where not given."""
+    """Return the temperatures [K] of black and red pixels of a heat signature; None if not limits."""
     low, high = (_read_kelvins(params, name) if params.has(name) else None for name in ("min_temp", "max_temp"))
     if low is not None and high is not None and low > high:
-        message = f"found <min_temp> {low:g} above <max_temp> {high:g}: they are exchanged, as in Gazebo"
+        message = f"found <min_temp> {low:g} above <max_temp> {high:g}: both are swapped, as in Gazebo"
         params.diagnostics.warning(_WITHOUT_EFFECT, message, params.block("min_temp").where)
     return low, high
 
 
 def _find_picture(options: ThermalOptions, builder: SpecBuilder) -> Path | None:
-    """The file of a heat signature; where there is none that can be read, its surface is as warm as the air."""
+    """Return the image file of a heat signature.
+
+    Without a readable file, the surface gets the temperature of the air.
+    """
     params, uri = options.params, options.heat_signature
     element = params.block("heat_signature")
     folder = Path(element.where.file).parent if element.where.file else None
@@ -113,15 +117,15 @@ def _find_picture(options: ThermalOptions, builder: SpecBuilder) -> Path | None:
             return path
         except MeshFileError as error:
             problem = str(error)
-    message = f"heat signature {uri!r} {problem}; its surface has the temperature of the air"
+    message = f"heat signature {uri!r} {problem}; the surface gets the temperature of the air"
     params.diagnostics.warning("SK-SENSOR-142", message, element.where)
     return None
 
 
-def _sorted_range(given: tuple[float | None, float | None], sim: Simulation) -> tuple[float, float]:
-    """Temperatures where a picture is black and where it is red [K]: that of the air where none is given."""
+def _sorted_range(limits: tuple[float | None, float | None], sim: Simulation) -> tuple[float, float]:
+    """Return the temperatures of black and red pixels [K], the smaller one first; the air's if not limits."""
     air = (sim.world.atmosphere or Atmosphere()).temperature
-    low, high = (air if end is None else end for end in given)
+    low, high = (air if limit is None else limit for limit in limits)
     return min(low, high), max(low, high)
 
 
@@ -172,10 +176,10 @@ class LabelOptions(Options):
 
 
 class Label(Plugin):
-    """Gives its model, or its one visual, the number that segmentation and bounding box cameras tell.
+    """Gives its model, or its one visual, the number that segmentation and bounding box cameras publish.
 
-    A visual's own counts more than its model's, a nested model's more than the outer one's. Of two on one element the
-    later counts.
+    The label of a visual overrides that of its model, and the label of a nested model that of the outer one. Of two
+    labels on one element the later one counts.
     """
 
     options = OptionsOf(LabelOptions)
@@ -187,11 +191,11 @@ class Label(Plugin):
 
     def prepare(self, scene: SceneModel | SceneVisual, params: Params, builder: SpecBuilder) -> None:
         self._label = self.options.label
-        self._is_lost = self.scoped != scene.scoped
-        if self._is_lost:
-            message = f"plugin {self.name!r} labels a model or a visual, it hangs on {self.scoped!r}; it has no effect"
+        self._is_misplaced = self.scoped != scene.scoped
+        if self._is_misplaced:
+            message = f"plugin {self.name!r} has no effect on {self.scoped!r}: it labels a model or a visual"
             params.diagnostics.warning("SK-PLUGIN-007", message, self.where, "move it into the <model> or a <visual>")
 
     def load(self, parent: Model | Visual, params: Params) -> None:
-        if not self._is_lost:
+        if not self._is_misplaced:
             self.sim.contents.labels[parent.scoped] = self._label

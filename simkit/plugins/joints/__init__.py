@@ -1,4 +1,5 @@
-"""What plugins that command joints share: one axis, a PID, servos, trajectories, the trees that joints lie in.
+"""Shared code of the plugins that command joints: one axis, a PID, servos, trajectories and kinematic trees.
 
-Targets enter, efforts leave, within the limits of each joint. No topic is opened here but by `JointCommander`.
+A plugin hands in target values; the modules return efforts within the limits of each joint. No module opens a topic,
+except `JointCommander`.
 """

@@ -1,4 +1,4 @@
-"""One degree of freedom of a joint, as plugins read and push it."""
+"""One degree of freedom of a joint, with methods to read its state and set its effort."""
 
 from __future__ import annotations
 
@@ -15,13 +15,14 @@ from simkit.scene import SceneJoint, SceneModel
 
 
 class JointAxis:
-    """An axis of a joint; positions rad or m, efforts N·m or N.
+    """Axis of a joint; positions in rad or m, efforts in N·m or N.
 
     Attributes:
-        joint: the handle.
-        name: the joint's name.
-        index: which of the joint's axes.
-        dof: its number among MuJoCo's degrees of freedom; another after a spawn or a removal, so it is asked for.
+        joint: Handle of the joint.
+        name: Name of the joint.
+        index: Index of the axis in the joint.
+        dof: Index among MuJoCo's degrees of freedom. It changes when a model is spawned or removed, so it is not
+            stored.
     """
 
     def __init__(self, joint: Any, index: int = 0) -> None:
@@ -30,40 +31,45 @@ class JointAxis:
 
     @property
     def dof(self) -> int:
+        """Index among MuJoCo's degrees of freedom."""
         dof: int = self.joint.mj_dofs[self.index]
         return dof
 
     @property
     def position(self) -> float:
+        """Position [rad or m]."""
         value = self.joint.position
         return float(value) if self._is_alone else float(value[self.index])
 
     @property
     def velocity(self) -> float:
+        """Velocity [rad/s or m/s]."""
         value = self.joint.velocity
         return float(value) if self._is_alone else float(value[self.index])
 
     @property
     def effort_limit(self) -> float:
+        """Effort limit [N·m or N]; infinite if unlimited."""
         return self._limit(self.joint._effort_limit)
 
     @property
     def velocity_limit(self) -> float:
+        """Velocity limit [rad/s or m/s]; infinite if unlimited."""
         return self._limit(self.joint._velocity_limit)
 
     def _limit(self, limits: Vector) -> float:
-        # asked for at every step, and much cheaper than by the joint's property
+        # read at every step, and much cheaper than the joint's property
         value: float = limits.item(self.index if len(limits) > 1 else 0)
         return value
 
     def is_meant(self, name: str) -> bool:
-        """Whether a scoped name is that of the joint, or of the top-level model that it is in."""
+        """Check whether a scoped name is that of the joint or of its top-level model."""
         return name in (self.joint.scoped, self.joint.scoped.split("::")[0])
 
     def push(self, effort: float) -> None:
-        """Sets the effort of the next step, in place of what was set before.
+        """Set the effort of the next step, in place of an earlier one.
 
-        What is no longer a number becomes so large a one that the physics diverges, and says so.
+        NaN and infinite values become a finite effort that is so large that the physics reports its divergence.
         """
         effort = max(-LARGEST, min(LARGEST, float(effort)))
         if self._is_alone:
@@ -74,7 +80,7 @@ class JointAxis:
             self.joint.set_effort(efforts)
 
     def add(self, effort: float) -> None:
-        """Adds to the effort of the next step."""
+        """Add to the effort of the next step."""
         self.push(effort + float(self._pending()[self.index]))
 
     def _pending(self) -> Vector:
@@ -86,35 +92,39 @@ class JointAxis:
 
 
 def find_joints(scene: SceneModel, params: Params, axis: int = 0, most: int | None = None) -> list[SceneJoint]:
-    """The joints that the first `most` `<joint_name>` elements name, each with more than `axis` axes.
+    """Find the joints that the `<joint_name>` elements name, and report the names that cannot be used.
 
-    Errors for the others, and where there is no such element.
+    Args:
+        scene: Model that contains the joints.
+        params: Parameters of the plugin; a missing `<joint_name>` is an error.
+        axis: Index of the required axis; joints with fewer axes are an error.
+        most: Number of `<joint_name>` elements to read; None for all.
     """
     found = []
     element = "joint_name"
     elements = params.all(element)[:most]
     if not elements:
         params.text(element, required=True)
-    for one in elements:
-        if not one.value:
-            one.error("SK-PARAM-002", f"found an empty <{element}>, allowed is the name of a joint")
+    for joint_name in elements:
+        if not joint_name.value:
+            joint_name.error("SK-PARAM-002", f"found an empty <{element}>, allowed is the name of a joint")
             continue
-        joint = find_joint(scene, one.value, one)
-        if joint is not None and has_axis(joint, axis, one):
+        joint = find_joint(scene, joint_name.value, joint_name)
+        if joint is not None and has_axis(joint, axis, joint_name):
             found.append(joint)
     return found
 
 
 def has_axis(joint: SceneJoint, axis: int, params: Params) -> bool:
-    """Whether a joint has that axis; an error says how many it has."""
+    """Check whether a joint has the axis with this index, and report an error if not."""
     if axis < len(joint.axes):
         return True
     count = len(joint.axes) or "no"
     message = f"joint {joint.name!r} is {joint.type} and has {count} {'axis' if count == 1 else 'axes'}"
-    params.error("SK-PLUGIN-003", f"{message}; one with axis number {axis} is needed")
+    params.error("SK-PLUGIN-003", f"{message}; the plugin needs a joint with axis number {axis}")
     return False
 
 
 def suggest_names(name: str, names: Sequence[str]) -> str:
-    """What a message says where a joint is not known: the closest name, or all of them."""
+    """Return the end of a 'joint not found' message: the closest name, or all of them."""
     return did_you_mean(name, names) or "there is " + (", ".join(map(repr, names[:20])) or "none")

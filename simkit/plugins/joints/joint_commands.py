@@ -1,4 +1,4 @@
-"""Base of gz's systems that command joints: names, topics, targets, reports."""
+"""Base class of Gazebo's systems that command joints: names, topics, targets and reports."""
 
 from __future__ import annotations
 
@@ -30,37 +30,41 @@ ACTUATORS: Final = "actuator_msgs/msg/Actuators"
 
 
 class ControlledJoints:
-    """Mixin of plugins with controllers: which joints they drive, and what is said where one runs away."""
+    """Mixin of plugins with PID controllers: lists the driven joints, and reports an unstable controller."""
 
     name: str
     where: Where
     once: OneTimeWarnings
 
     def controllers(self) -> list[tuple[JointAxis, Pid]]:
-        """The joints with their controllers."""
+        """Return the driven joint axes with their controllers."""
         return []
 
     def watch(self, axis: JointAxis, pid: Pid) -> None:
-        """Reports a controller that runs away."""
+        """Warn once about an unstable controller."""
         if pid.swings.runs_away:
             message = (
-                f"the PID of joint {axis.joint.scoped!r} is not stable: its error swings ever wider or from one bound "
-                f"of the effort to the other (p_gain {pid.p:g}, i_gain {pid.i:g}, d_gain {pid.d:g})"
+                f"the PID of joint {axis.joint.scoped!r} is unstable: its error oscillates with growing amplitude or "
+                f"between both effort limits (p_gain {pid.p:g}, i_gain {pid.i:g}, d_gain {pid.d:g})"
             )
-            hint = "smaller gains, a smaller max_step_size, or damping in the joint"
+            hint = "use smaller gains or a smaller max_step_size, or add damping to the joint"
             self.once.warn("SK-PLUGIN-040", f"unstable {axis.joint.scoped}", message, hint)
 
     def explain_divergence(self, name: str) -> str:
-        """What this plugin may have to do with the physics leaving the numbers; empty for nothing.
+        """Describe the effect of this plugin on a joint whose physics diverged.
 
         Args:
-            name: scoped name of a joint, or of a top-level model: then it tells of the joint that is pushed hardest.
+            name: Scoped name of a joint, or of a top-level model. For a model, the joint with the largest effort is
+                described.
+
+        Returns:
+            A sentence, or an empty text if the plugin drives no such joint.
         """
-        own = [pair for pair in self.controllers() if pair[0].is_meant(name)]
-        if not own:
+        matching = [pair for pair in self.controllers() if pair[0].is_meant(name)]
+        if not matching:
             return ""
-        own.sort(key=lambda pair: -abs(pair[1].command))
-        axis, pid = own[0]
+        matching.sort(key=lambda pair: -abs(pair[1].command))
+        axis, pid = matching[0]
         gains = f"p_gain {pid.p:g}, i_gain {pid.i:g}, d_gain {pid.d:g}"
         return (
             f"plugin {self.name!r} ({self.where}) drives joint {axis.joint.scoped!r} by a PID ({gains}); "
@@ -69,7 +73,7 @@ class ControlledJoints:
 
 
 class JointCommandOptions(PidOptions):
-    """Options that all systems which command joints have."""
+    """Options shared by all systems that command joints."""
 
     joint_names: tuple[str, ...] = texts(element="joint_name", required=True)
     use_actuator_msg: bool = boolean()
@@ -79,14 +83,14 @@ class JointCommandOptions(PidOptions):
 
 
 class JointCommander(ControlledJoints, ModelPlugin):
-    """Base of the systems that bring one or more joints to a commanded value, that of the first for all.
+    """Base class of the systems that bring one or more joints to a commanded value; the first joint's error drives all.
 
-    gz asks for a joint's state in its first step and commands from the second on.
+    Gazebo only creates the components of the joint's state in its first step, so commands act from the second step on.
 
     Attributes:
-        own_topic: the default topic, below the model's.
-        actuator_field: field of an `Actuators` message that holds the commands.
-        target_element: element that holds the first target.
+        own_topic: Default topic, below the model's topics.
+        actuator_field: Field of an `Actuators` message that holds the commands.
+        target_element: Element that holds the first target.
     """
 
     options = OptionsOf(JointCommandOptions)
@@ -100,11 +104,11 @@ class JointCommander(ControlledJoints, ModelPlugin):
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         faults = params.diagnostics.error_count
         found = find_joints(scene, params, axis=self._index)
-        if params.diagnostics.error_count > faults:  # it will not be loaded: what else is wrong is said now
+        if params.diagnostics.error_count > faults:  # the plugin will not be loaded, so report all other errors now
             for element in FIELDS:
                 params.number(element)
         self._scoped = [joint.scoped for joint in found]
-        self._first = next((e.value for e in params.all("joint_name") if e.value), "")
+        self._first_name = next((e.value for e in params.all("joint_name") if e.value), "")
 
     def load(self, parent: Model, params: Params) -> None:
         self.once = OneTimeWarnings(self)
@@ -113,25 +117,25 @@ class JointCommander(ControlledJoints, ModelPlugin):
         self._is_ready = False
         self._pid: Pid | None = None
         self._servo = VelocityServo()
-        self._wish: float | None = None
-        self._crew_of: _VelocityGroup | None = None
+        self._commanded_velocity: float | None = None
+        self._group: _VelocityGroup | None = None
         self._listen(parent, params)
 
     @property
     def node(self) -> str:
-        """Name of its node, for its parameters, where the file gives it none but its class."""
-        joint = f"/model/{self.scoped}/joint/{self._first}".replace("::", "/")
+        """Name of the plugin's node for its parameters, if the file sets none: the joint's topic and the controller."""
+        joint = f"/model/{self.scoped}/joint/{self._first_name}".replace("::", "/")
         axis = f"_{self._index}" if self._index else ""
         return valid_topic(f"{joint}/{self.actuator_field}_controller{axis}")
 
     def _listen(self, parent: Model, params: Params) -> None:
-        """Opens the topic that commands come on, by gz's rules: `<topic>`, else `<sub_topic>`, else its own."""
+        """Subscribe to the command topic by Gazebo's rules: `<topic>`, else `<sub_topic>`, else the default."""
         self._number = -1
         if self.options.use_actuator_msg:
             if params.has("actuator_number"):
                 self._number = self.options.actuator_number
             else:
-                message = "<use_actuator_msg> needs <actuator_number>; commands are taken as single numbers"
+                message = "<use_actuator_msg> needs <actuator_number>; commands are read from Float64 messages instead"
                 self.once.warn("SK-PLUGIN-042", "number", message)
         else:
             _ = self.options.actuator_number
@@ -153,16 +157,20 @@ class JointCommander(ControlledJoints, ModelPlugin):
             self._aim(float(values[self._number]))
         else:
             what = f"a message with {len(values)} numbers in {self.actuator_field} has none for actuator {self._number}"
-            self.once.left_out("short", f"{what}; it is left out")
+            self.once.left_out("short", f"{what}; the message is ignored")
 
     def _aim(self, target: float) -> None:
         if math.isfinite(target):
             self._target = target
         else:
-            self.once.left_out("finite", f"the command {target} is left out; allowed is a finite number")
+            self.once.left_out("finite", f"the command {target} is ignored; allowed is a finite number")
 
     def declare_controller(self, first: Pid) -> None:
-        """Takes up a controller whose numbers, unless the file has others, are those of `first`."""
+        """Set the controller and declare its gains as live parameters.
+
+        Args:
+            first: Controller with the default gains, which the file can override.
+        """
 
         def present() -> Pid:
             assert self._pid is not None
@@ -174,14 +182,14 @@ class JointCommander(ControlledJoints, ModelPlugin):
         return [] if self._pid is None else [(axis, self._pid) for axis in self.axes]
 
     def explain_divergence(self, name: str) -> str:
-        """As `ControlledJoints` has it, and of a joint that is to move at a velocity, at which."""
+        """Describe a velocity command at a diverged joint, or else the controller as the base class does."""
         axis = next((axis for axis in self.axes if axis.is_meant(name)), None)
-        if axis is None or self._wish is None:
+        if axis is None or self._commanded_velocity is None:
             return super().explain_divergence(name)
-        return f"plugin {self.name!r} ({self.where}) has joint {axis.joint.scoped!r} move at {self._wish:g}"
+        return f"plugin {self.name!r} ({self.where}) moves joint {axis.joint.scoped!r} at {self._commanded_velocity:g}"
 
     def before_step(self) -> None:
-        self._wish = None
+        self._commanded_velocity = None
         if self.axes and self._is_ready:
             self.command()
         self._is_ready = True
@@ -190,10 +198,10 @@ class JointCommander(ControlledJoints, ModelPlugin):
 
     @abc.abstractmethod
     def command(self) -> None:
-        """Brings the joints nearer to the target, by `push` or `turn`."""
+        """Bring the joints nearer to the target, by `push` or `turn`."""
 
     def push(self, error: float) -> None:
-        """Pushes all joints as the controller says to an error of the first."""
+        """Push all joints with the effort that the controller returns for an error of the first joint."""
         assert self._pid is not None
         effort = self._pid.update(error, self.period)
         for axis in self.axes:
@@ -202,35 +210,44 @@ class JointCommander(ControlledJoints, ModelPlugin):
             self.watch(self.axes[0], self._pid)
 
     def turn(self, velocity: float) -> None:
-        """Has all joints move at a velocity in the next step."""
-        self._wish = velocity
+        """Command a velocity of all joints for the next step."""
+        self._commanded_velocity = velocity
 
     def _drive(self) -> None:
-        """The last of all plugins that command velocities moves the joints of all: they hang together."""
-        crew, structure = self._crew_of, self.sim.engine.structure
-        if crew is None or crew.structure is not structure:
+        """Apply the velocities of all plugins in the last one, because joints of one tree need a common solution."""
+        group, structure = self._group, self.sim.engine.structure
+        if group is None or group.structure is not structure:
             members = [p for p in structure.all_plugins() if isinstance(p, JointCommander) and p._by_velocity]
-            crew = self._crew_of = _VelocityGroup(structure, members)
+            group = self._group = _VelocityGroup(structure, members)
         is_disabled = self.sim.engine.faults.is_disabled
-        if self is next(p for p in reversed(crew.members) if not is_disabled(p)):
+        if self is next(p for p in reversed(group.members) if not is_disabled(p)):
             pairs = [
-                (axis, p._wish) for p in crew.members if p._wish is not None and not is_disabled(p) for axis in p.axes
+                (axis, p._commanded_velocity)
+                for p in group.members
+                if p._commanded_velocity is not None and not is_disabled(p)
+                for axis in p.axes
             ]
             if pairs:
                 axes, velocities = zip(*pairs, strict=True)
-                self._servo.drive(self.sim, axes, velocities, crew.layouts)
+                self._servo.drive(self.sim, axes, velocities, group.layouts)
 
-    def say_gains_are_unused(self, params: Params, unused: Sequence[str], why: str) -> None:
-        """Warns of numbers of a controller that is not used."""
+    def say_gains_are_unused(self, params: Params, unused: Sequence[str], reason: str) -> None:
+        """Warn about gains in the file that have no effect.
+
+        Args:
+            params: Parameters of the plugin.
+            unused: Names of the elements that may be present.
+            reason: End of the message.
+        """
         found = [name for name in unused if params.all(name)]
         if found:
             listed = ", ".join(f"<{name}>" for name in found)
-            message = f"plugin {self.name!r}: {listed} {'has' if len(found) == 1 else 'have'} no effect {why}"
+            message = f"plugin {self.name!r}: {listed} {'has' if len(found) == 1 else 'have'} no effect {reason}"
             params.diagnostics.warning("SK-PLUGIN-043", message, self.where)
 
 
 class _VelocityGroup:
-    """The plugins that command velocities in one structure, and how what they move lies in the engine's model."""
+    """Plugins that command velocities in one structure, with the kinematic trees of their joints."""
 
     def __init__(self, structure: object, members: list[JointCommander]) -> None:
         self.structure, self.members = structure, members

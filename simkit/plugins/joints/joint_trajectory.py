@@ -1,4 +1,4 @@
-"""A trajectory of joints in time: the active point, and the interpolation between two points."""
+"""Joint trajectory over time: the active point, and the interpolation between two points."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ SECOND: Final = 1_000_000_000
 
 @dataclass(frozen=True, slots=True)
 class JointTarget:
-    """Of one joint: position, velocity and acceleration [rad or m, per s, per s²]."""
+    """Target of one joint: position, velocity and acceleration [rad or m, per s, per s²]."""
 
     position: float
     velocity: float = 0.0
@@ -25,11 +25,11 @@ class JointTarget:
 
 @dataclass(frozen=True, slots=True)
 class TrajectoryPoint:
-    """One point of a trajectory; a list may be shorter than the names, or empty.
+    """Point of a trajectory; each list may be shorter than the list of joint names, or empty.
 
     Attributes:
-        time: from the start [ns].
-        positions, velocities, accelerations, efforts: by the order of the names.
+        time: Time from the start [ns].
+        positions, velocities, accelerations, efforts: Values in the order of the joint names.
     """
 
     time: int
@@ -40,7 +40,7 @@ class TrajectoryPoint:
 
 
 def read_points(message: JointTrajectory) -> list[TrajectoryPoint]:
-    """The points of a `trajectory_msgs/msg/JointTrajectory`."""
+    """Return the points of a `trajectory_msgs/msg/JointTrajectory`."""
     return [
         TrajectoryPoint(
             nanoseconds(p.time_from_start),
@@ -51,19 +51,27 @@ def read_points(message: JointTrajectory) -> list[TrajectoryPoint]:
 
 
 def nanoseconds(stamp: Duration | Time) -> int:
-    """A time or duration message in [ns]."""
+    """Convert a time or duration message to [ns]."""
     return int(stamp.sec) * SECOND + int(stamp.nanosec)
 
 
 def trajectory_faults(names: list[str], points: list[TrajectoryPoint]) -> str:
-    """What makes a trajectory unusable: numbers that are none, times that go back; empty for nothing."""
+    """Check a trajectory for NaN or infinite numbers, decreasing times and surplus numbers.
+
+    Args:
+        names: Joint names.
+        points: Points of the trajectory.
+
+    Returns:
+        A description of the first fault, or an empty text.
+    """
     before = 0
     for i, point in enumerate(points):
         fields = point.positions, point.velocities, point.accelerations, point.efforts
         if not all(abs(value) < float("inf") for values in fields for value in values):
-            return f"point {i} has a number that is not finite"
+            return f"point {i} has a NaN or infinite number"
         if point.time < before:
-            return f"point {i} is at {point.time / SECOND:g} s, the one before it at {before / SECOND:g} s"
+            return f"point {i} is at {point.time / SECOND:g} s, but the point before it is at {before / SECOND:g} s"
         before = point.time
         most = max(map(len, fields))
         if most > len(names):
@@ -72,18 +80,18 @@ def trajectory_faults(names: list[str], points: list[TrajectoryPoint]) -> str:
 
 
 def active_point(times: list[int], now: int) -> int:
-    """The first point whose time [ns] is not yet over at `now`; the last one after all."""
+    """Return the index of the first point whose time [ns] is not before `now`; the last index after the end."""
     return min(bisect_left(times, now), len(times) - 1)
 
 
 @dataclass(frozen=True, slots=True)
 class JointPath:
-    """Where a joint is to be at every time.
+    """Interpolated target of one joint over time.
 
     Attributes:
-        times: where one piece ends and the next begins, from the start [ns]; the first is 0.
-        pieces: between them, coefficients of rising powers of the seconds since its beginning.
-        last: after all.
+        times: Boundaries between the pieces, from the start [ns]; the first is 0.
+        pieces: Polynomial of each piece: coefficients of rising powers of the seconds since the start of the piece.
+        last: Target after the end.
     """
 
     times: tuple[int, ...]
@@ -94,16 +102,17 @@ class JointPath:
     def through(
         cls, start: JointTarget, points: list[TrajectoryPoint], joint: int, rule: Interpolation
     ) -> JointPath | None:
-        """The path of a joint through the points that hold a position for it; None where none does.
+        """Return the path of a joint through the points that have a position for it, or None if no point has one.
 
-        linear: straight from point to point. cubic: at the points' velocities; a point that has none is passed at the
-        mean of the slopes before and after it, or at rest where these differ in sign, and the last at rest. quintic: at
-        their accelerations as well, 0 where none is given.
+        - linear: straight line from point to point.
+        - cubic: through the velocities of the points. A point without one gets the mean of the slopes before and after
+          it, or zero if these differ in sign; the last point gets zero.
+        - quintic: through the accelerations as well; a missing one is 0.
 
         Args:
-            start: of the joint when the trajectory begins, unless a point at time 0 says where.
-            points: of the trajectory.
-            joint: its place among the names.
+            start: State of the joint at the start; used if no point has time 0.
+            points: Points of the trajectory.
+            joint: Index of the joint among the names.
             rule: "linear", "cubic" or "quintic".
         """
         held = [p for p in points if joint < len(p.positions)]
@@ -127,7 +136,7 @@ class JointPath:
         return cls(tuple(times), tuple(pieces), last)
 
     def at(self, now: int) -> JointTarget:
-        """Where it is to be `now` [ns] after the start."""
+        """Return the target at `now` [ns] after the start."""
         if now >= self.times[-1]:
             return self.last
         i = max(bisect_right(self.times, now) - 1, 0)
@@ -139,7 +148,7 @@ def _value_of_joint(values: tuple[float, ...], joint: int) -> float:
 
 
 def _velocity(points: list[TrajectoryPoint], joint: int, i: int) -> float:
-    """At a point: its own, or one that fits its neighbours."""
+    """Return the velocity of the joint at a point: the given one, or one derived from the neighbouring points."""
     if joint < len(points[i].velocities):
         return points[i].velocities[joint]
     if i == 0 or i == len(points) - 1:
@@ -161,13 +170,13 @@ def _linear(ends: Pair, _: Pair, __: Pair, t: float) -> tuple[float, ...]:
 
 
 def _cubic(ends: Pair, velocities: Pair, _: Pair, t: float) -> tuple[float, ...]:
-    """Coefficients of rising powers of the Hermite cubic over a time t."""
+    """Return the coefficients of rising powers of the Hermite cubic over a time t."""
     rise, (v0, v1) = ends[1] - ends[0], velocities
     return ends[0], v0, (3.0 * rise / t - 2.0 * v0 - v1) / t, (-2.0 * rise / t + v0 + v1) / t**2
 
 
 def _quintic(ends: Pair, velocities: Pair, accelerations: Pair, t: float) -> tuple[float, ...]:
-    """Coefficients of rising powers of the quintic over a time t."""
+    """Return the coefficients of rising powers of the quintic over a time t."""
     rise, (v0, v1), (a0, a1) = ends[1] - ends[0], velocities, accelerations
     return (
         ends[0],

@@ -1,4 +1,4 @@
-"""Kinematic trees of the joints that are driven together, and bounds on their efforts."""
+"""Kinematic trees of the joints that are driven together, and limits of their efforts."""
 
 from __future__ import annotations
 
@@ -17,31 +17,36 @@ Integers = npt.NDArray[np.intp]
 Flags = npt.NDArray[np.bool_]
 
 Keys = tuple[tuple[str, int], ...]
-"""Scoped name and axis of each of some joints."""
+"""Scoped name and axis index of each joint."""
 
 _HOLD: Final = 10.0
-"""Weights of all that hangs together: what a joint without an effort limit gives against what holds it."""
+"""Effort of a joint without an effort limit against an obstacle, as a multiple of the weight of its whole tree."""
 
-_GRAVITY: Final = 9.81  # [m/s²]; of weights, also where the world has none
+_GRAVITY: Final = 9.81  # [m/s²]; also used in a world without gravity, where the limit must not be zero
 
 
 @dataclass(frozen=True, slots=True)
 class KinematicTrees:
-    """What stays the same of some joints as long as the engine's model does; sorted by their kinematic trees.
+    """Constant data of the driven joints for one compiled model, sorted by kinematic tree.
+
+    There are n joints. Each tree has the same number of slots for its joints; unused slots are padding.
 
     Attributes:
-        axes, order: of the joints, and their places among those that were given.
-        keys: their names.
-        dofs, joints, positions, bodies: their numbers among the engine's things, each (n,).
-        tree, starts: of each joint, and where each tree begins (trees,).
-        is_used: of the slots for the joints of each tree, those that there is a joint for (trees, slots).
-        damped: which of the engine's degrees of freedom are damped (nv,).
-        is_damped: whether one is that counts here.
-        all: the joints' degrees of freedom, in those slots, then the damped ones of the same tree (trees, all slots).
-        is_any: which slots of these are in use.
-        place: where the joints are in that, flattened.
-        units: unit efforts on all of them, a slot a row (all slots, nv).
-        hold: what a joint without an effort limit may give beyond what moves it when nothing is touched.
+        axes: Joint axes, sorted by tree.
+        order: Index of each axis in the input.
+        keys: Scoped name and axis index of each joint.
+        dofs, joints, positions: MuJoCo's indices of the degrees of freedom, joints and qpos entries, each (n,).
+        bodies: MuJoCo's indices of the moved bodies.
+        tree: Index of each joint's tree (n,).
+        starts: Index of the first joint of each tree (trees,).
+        is_used: True for slots that have a driven joint (trees, slots).
+        damped: True for damped degrees of freedom of the compiled model (nv,).
+        is_damped: True if a tree of the driven joints has a damped degree of freedom.
+        all: Degrees of freedom of the slots, then the other damped ones of the same tree (trees, all slots).
+        is_any: True for slots of `all` that are in use.
+        place: Indices of the joints in the flattened `all`.
+        units: Unit efforts on all degrees of freedom, one row per slot (all slots, nv).
+        hold: Additional effort of a joint without a limit, beyond the effort that moves it without contacts.
     """
 
     axes: tuple[JointAxis, ...]
@@ -64,6 +69,12 @@ class KinematicTrees:
 
     @classmethod
     def of(cls, model: mujoco.MjModel, axes: Sequence[JointAxis]) -> KinematicTrees:
+        """Sort joint axes by kinematic tree.
+
+        Args:
+            model: Compiled model.
+            axes: Driven axes; if an axis occurs twice, the last one counts.
+        """
         last = {(axis.joint.scoped, axis.index): i for i, axis in enumerate(axes)}
         numbers = {tree: i for i, tree in enumerate(dict.fromkeys(int(model.dof_treeid[a.dof]) for a in axes))}
         tree_of = {key: numbers[int(model.dof_treeid[axes[i].dof])] for key, i in last.items()}
@@ -104,40 +115,40 @@ class KinematicTrees:
         )
 
     def fits(self, model: mujoco.MjModel) -> bool:
-        """Whether the same degrees of freedom are damped as when it was made."""
+        """Check whether the same degrees of freedom are damped as when this object was made."""
         return np.array_equal(model.dof_damping > 0.0, self.damped)
 
     def spread(self, values: Vector) -> Vector:
-        """Values of the joints in the slots of their trees (trees, slots), zero in the others."""
+        """Return joint values in the slots of their trees (trees, slots), with zeros in the unused slots."""
         found = np.zeros(self.is_used.shape)
         found[self.is_used] = values
         return found
 
     def times(self, matrices: Vector, values: Vector) -> Vector:
-        """A matrix of each tree (trees, slots, slots) times the values of its joints (n,)."""
+        """Multiply a matrix of each tree (trees, slots, slots) by the values of its joints (n,)."""
         found: Vector = (matrices @ self.spread(values)[..., None])[..., 0][self.is_used]
         return found
 
     def any_of_tree(self, flags: Flags) -> Flags:
-        """Whether a flag of a tree's joints (n,) is set (trees,)."""
+        """Check for each tree whether a flag of its joints (n,) is set; the result has shape (trees,)."""
         found: Flags = np.logical_or.reduceat(flags, self.starts)
         return found
 
     def most_of_tree(self, values: Vector) -> Vector:
-        """The largest of the values of each tree's joints (trees,)."""
+        """Return the largest value of each tree's joints (trees,)."""
         found: Vector = np.maximum.reduceat(values, self.starts)
         return found
 
 
 def _padded(rows: list[list[int]]) -> tuple[Integers, Flags]:
-    """Rows of different lengths as one table, and which of it is in use; the rest is 0."""
+    """Return rows of different lengths as one zero-padded table, and the mask of its used entries."""
     width = max(map(len, rows))
     table = np.array([[*row, *[0] * (width - len(row))] for row in rows])
     return table, np.arange(width) < np.array([[len(row)] for row in rows])
 
 
 def _weights(model: mujoco.MjModel, dofs: Sequence[int]) -> Vector:
-    """Of all that hangs together with each joint: [N] of a slider; of a hinge [N·m] at the length of what it moves."""
+    """Return the weight of each joint's tree: [N] for a slider, times the reach of its links [N·m] for a hinge."""
     reach, found = _reaches(model), []
     for dof in dofs:
         joint, body = int(model.dof_jntid[dof]), int(model.dof_bodyid[dof])
@@ -148,13 +159,13 @@ def _weights(model: mujoco.MjModel, dofs: Sequence[int]) -> Vector:
 
 
 def _reaches(model: mujoco.MjModel) -> list[float]:
-    """How far from the frame of each body anything of it, or of what hangs on it, can be [m]."""
+    """Return the largest distance from the frame of each body to any point of the body or its descendants [m]."""
     own = np.linalg.norm(model.body_ipos, axis=1)
-    # of a body without shape nothing but its inertia says how large it is: by the radius of gyration
+    # a body without geoms has no size but that of its inertia: use the radius of gyration
     gyration = np.sqrt(model.body_inertia.max(axis=1) / np.maximum(model.body_mass, mujoco.mjMINVAL))
     own += np.where(model.body_geomnum == 0, gyration, 0.0)
     np.maximum.at(own, model.geom_bodyid, np.linalg.norm(model.geom_pos, axis=1) + model.geom_rbound)
     reach, shifts, parents = own.tolist(), np.linalg.norm(model.body_pos, axis=1).tolist(), model.body_parentid.tolist()
-    for body in range(model.nbody - 1, 0, -1):  # a body comes after its parent
+    for body in range(model.nbody - 1, 0, -1):  # MuJoCo sorts each body after its parent
         reach[parents[body]] = max(reach[parents[body]], shifts[body] + reach[body])
     return reach  # type: ignore[no-any-return]

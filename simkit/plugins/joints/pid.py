@@ -1,4 +1,4 @@
-"""The controller that gz's joint systems share."""
+"""PID controller of Gazebo's joint systems."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ FIELDS: Final[Mapping[str, str]] = {
     "cmd_min": "command_min",
     "cmd_offset": "offset",
 }
-"""Element of gz's joint systems -> attribute of `Pid`, in its order."""
+"""Element name in Gazebo's joint systems -> attribute of `Pid`, in the order of its attributes."""
 
 _EFFORT: Final = "N·m or N"
 
 
 class PidOptions(Options):
-    """The numbers of a PID that gives an effort, as live parameters."""
+    """Options of a PID whose output is an effort; all are live parameters."""
 
     p_gain: float = number(1.0, _EFFORT, is_live=True, description="proportional gain: effort [N·m or N] per error")
     i_gain: float = number(
@@ -41,7 +41,7 @@ class PidOptions(Options):
         1.0,
         _EFFORT,
         is_live=True,
-        description="upper bound of the integral's part of the effort [N·m or N]; no bound where it is below i_min",
+        description="upper bound of the integral's part of the effort [N·m or N]; no bound if it is below i_min",
     )
     i_min: float = number(
         -1.0, _EFFORT, is_live=True, description="lower bound of the integral's part of the effort [N·m or N]"
@@ -50,7 +50,7 @@ class PidOptions(Options):
         1000.0,
         _EFFORT,
         is_live=True,
-        description="upper bound of the effort [N·m or N]; no bound where it is below cmd_min",
+        description="upper bound of the effort [N·m or N]; no bound if it is below cmd_min",
     )
     cmd_min: float = number(-1000.0, _EFFORT, is_live=True, description="lower bound of the effort [N·m or N]")
     cmd_offset: float = number(0.0, _EFFORT, is_live=True, description="added to the effort [N·m or N]")
@@ -58,15 +58,17 @@ class PidOptions(Options):
 
 @dataclass(slots=True)
 class Pid:
-    """gz-math's PID of an error measured − wanted: offset − p − i − d.
+    """PID controller of gz-math: output = offset − p − i − d, for the error measured − commanded.
 
     Attributes:
-        i_max, i_min: bounds of the integral's part of the output; none where i_max < i_min.
-        command_max, command_min: of the output; none where the first is below the second.
-        integral: that part now.
-        last: the error before; 0 at the start, so that the first call has a derivative.
-        command: the last output.
-        swings: how the error has swung about zero.
+        p, i, d: Gains.
+        i_max, i_min: Limits of the integral term; no limit if i_max < i_min.
+        command_max, command_min: Limits of the output; no limit if command_max < command_min.
+        offset: Constant part of the output.
+        integral: Current integral term.
+        last: Error of the last call; 0 at the start, so that the first call has a derivative.
+        command: Last output.
+        swings: Detector of an unstable loop.
     """
 
     p: float
@@ -84,42 +86,47 @@ class Pid:
 
     @classmethod
     def of(cls, numbers: Mapping[str, float]) -> Pid:
-        """Of the numbers by the names of their elements: `p_gain` and so on."""
+        """Create a controller from numbers by element name, such as `p_gain`."""
         return cls(*(numbers[name] for name in FIELDS))
 
     def update(self, error: float, step: float) -> float:
-        """The output for an error now, `step` [s] after the last."""
+        """Return the output for an error.
+
+        Args:
+            error: Measured minus commanded value.
+            step: Time since the last call [s].
+        """
         if step <= 0.0 or not math.isfinite(error):
             return 0.0
         self.integral = _within(self.integral + self.i * step * error, self.i_min, self.i_max)
         slope = (error - self.last) / step
         self.last = error
-        wanted = self.offset - self.p * error - self.integral - self.d * slope
-        self.command = _within(wanted, self.command_min, self.command_max)
-        self.swings.see(error, self.command != wanted)
+        unlimited = self.offset - self.p * error - self.integral - self.d * slope
+        self.command = _within(unlimited, self.command_min, self.command_max)
+        self.swings.see(error, self.command != unlimited)
         return self.command
 
     def restart(self) -> None:
-        """Forgets what was: as before the first call."""
+        """Clear the state, as before the first call."""
         self.integral = self.last = self.command = 0.0
         self.swings = DivergenceDetector()
 
 
 @dataclass(slots=True)
 class DivergenceDetector:
-    """Tells a loop that runs away from one that settles, by the peaks between two zeros of its error.
+    """Detector of an unstable control loop, based on the peaks of the error between its zero crossings.
 
-    Each of `GROWING` peaks in a row higher by `GROWTH` than the last one on the same side, or `SATURATED` in a row at
-    the bounds of the output without getting smaller: such a loop is unstable, and only its bounds hold it. Peaks below
-    `SMALL` [rad, m, rad/s or m/s] are noise.
+    A loop is unstable after `GROWING` peaks in a row, each higher by the factor `GROWTH` than the last peak on the same
+    side. A loop is also unstable after `SATURATED` peaks in a row with a limited output that do not get smaller. Peaks
+    below `SMALL` [rad, m, rad/s or m/s] count as noise.
 
     Attributes:
-        last: the error before.
-        peak: the highest error since the last zero.
-        before, earlier: those of the two swings before.
-        is_saturated: whether the output was at a bound since the last zero.
-        grown: peaks in a row that grew.
-        held: peaks in a row at the bounds that did not get smaller.
+        last: Last error that is not zero.
+        peak: Highest error since the last zero crossing.
+        before, earlier: Peaks of the last swing and of the swing before that.
+        is_saturated: True if the output was limited since the last zero crossing.
+        grown: Number of peaks in a row that grew.
+        held: Number of peaks in a row with a limited output that did not get smaller.
     """
 
     GROWING = 12
@@ -137,7 +144,12 @@ class DivergenceDetector:
     held: int = 0
 
     def see(self, error: float, is_saturated: bool) -> None:
-        """Takes note of an error, and of whether the output was at a bound."""
+        """Update the detector by one control step.
+
+        Args:
+            error: Error of the step.
+            is_saturated: True if the output was limited.
+        """
         if error * self.last < 0.0:
             has_grown = self.peak > self.GROWTH * self.earlier > 0.0 and self.peak > self.SMALL
             is_held = self.is_saturated and self.peak >= self.SHRINKING * self.earlier
@@ -151,25 +163,29 @@ class DivergenceDetector:
 
     @property
     def runs_away(self) -> bool:
-        """Whether the loop is unstable."""
+        """True if the loop is unstable."""
         return self.grown >= self.GROWING or self.held >= self.SATURATED
 
 
 def declare_pid(
     plugin: Plugin, first: Pid, find: Callable[[], Pid], prefix: str = "", elements: Mapping[str, str] | None = None
 ) -> Pid:
-    """Makes the numbers of a controller live parameters of its plugin: `p_gain`, `i_gain`, …, `cmd_offset`.
+    """Declare the numbers of a controller as live parameters of its plugin: `p_gain`, `i_gain`, …, `cmd_offset`.
 
     Args:
-        plugin: whose parameters they are.
-        first: the controller with its default or first numbers; given back with those of the file.
-        find: gives the controller as it is at the moment of a change (a restored one is another object).
-        prefix: before each name.
-        elements: parameter -> element that holds its first value; of the same name unless given.
+        plugin: Plugin that owns the parameters.
+        first: Controller with the default numbers.
+        find: Callback that returns the current controller when a parameter changes; a restored snapshot has a new
+            object.
+        prefix: Prefix of each parameter name.
+        elements: Element that holds the first value, by parameter name; the parameter's own name if omitted.
+
+    Returns:
+        The controller `first`, with the numbers of the file.
     """
     for name, attribute in FIELDS.items():
 
-        def take(value: float, attribute: str = attribute) -> None:
+        def set_number(value: float, attribute: str = attribute) -> None:
             setattr(find(), attribute, value)
 
         parameter = plugin.declare(
@@ -177,7 +193,7 @@ def declare_pid(
             float(getattr(first, attribute)),
             description=PidOptions.fields()[name].description,
             element=(elements or {}).get(name, prefix + name),
-            on_change=take,
+            on_change=set_number,
         )
         setattr(first, attribute, parameter.value)
     return first

@@ -1,4 +1,4 @@
-"""The arithmetic of the drives, without physics: parameters, ramps, limits, dead reckoning."""
+"""Arithmetic of the drives without physics: parameters, ramps, limits, dead reckoning."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def options(**values: Any) -> Any:
     return read_options(Params.from_dict({**WHEELS, **values}))
 
 
-def test_what_a_ros_2_file_leaves_out_is_gazebos_default() -> None:
+def test_missing_elements_of_a_ros_2_file_get_gazebos_defaults() -> None:
     found = options()
     (pair,) = found.pairs
     assert (pair.left, pair.right, pair.separation, pair.radius) == ("l", "r", 0.34, 0.075)
@@ -32,14 +32,14 @@ def test_what_a_ros_2_file_leaves_out_is_gazebos_default() -> None:
     assert (found.covariance_x, found.covariance_y, found.covariance_yaw) == (1e-5, 1e-5, 1e-3)
 
 
-def test_what_a_ros_1_file_leaves_out_is_gazebos_default() -> None:
+def test_missing_elements_of_a_ros_1_file_get_gazebos_defaults() -> None:
     found = read_options(Params.from_dict({"leftJoint": "a", "rightJoint": "b"}))
     (pair,) = found.pairs
     assert (pair.left, pair.right, pair.separation, pair.radius) == ("a", "b", 0.34, 0.075)
     assert found.publish_odom and found.tells_odom_tf and not found.from_encoders
 
 
-def test_ros_1_without_transforms_has_no_odometry_and_older_files_name_the_wheels_the_other_way_round() -> None:
+def test_ros_1_without_transforms_has_no_odometry_and_older_files_swap_the_wheels() -> None:
     found = read_options(Params.from_dict({"leftJoint": "a", "rightJoint": "b", "publishTf": False}))
     assert not (found.publish_odom or found.tells_odom_tf)
     params = Params.from_dict({"leftJoint": "a", "rightJoint": "b", "legacyMode": True, "rosDebugLevel": "na"})
@@ -62,13 +62,13 @@ def test_ros_1_names_topics_and_source() -> None:
     )
 
 
-def test_a_topic_element_that_only_repeats_the_name_is_no_loss_and_another_is_reported() -> None:
+def test_an_unused_topic_element_is_reported_unless_it_repeats_the_name() -> None:
     params = Params.from_dict({**WHEELS, "command_topic": "cmd_vel", "odometry_topic": "position"})
     assert read_options(params).odometry_topic == "odom"
     assert [element.name for element, _ in params.unread()] == ["odometry_topic"]
 
 
-def test_each_pair_of_wheels_has_its_own_geometry_and_the_default_stands_for_the_rest() -> None:
+def test_each_pair_of_wheels_has_its_own_geometry_or_the_default() -> None:
     found = options(
         num_wheel_pairs=2,
         left_joint=["a", "c"],
@@ -98,7 +98,7 @@ def test_a_wrong_number_of_wheels_is_an_error() -> None:
 
 
 def driven(rate: float = 50.0, **values: Any) -> tuple[GazeboRosDiffDrive, dict[int, float], SimpleNamespace]:
-    """A drive without a simulation, its wheel commands, and the clock."""
+    """Return a drive without a simulation, its wheel commands, and the clock."""
     plugin = GazeboRosDiffDrive()
     controls: dict[int, float] = {}
     plugin.sim = sim = SimpleNamespace(time_ns=0, engine=SimpleNamespace(set_control=controls.__setitem__))  # type: ignore[assignment]
@@ -108,7 +108,7 @@ def driven(rate: float = 50.0, **values: Any) -> tuple[GazeboRosDiffDrive, dict[
     return plugin, controls, sim
 
 
-def test_without_a_limit_wheels_get_their_speed_at_once() -> None:
+def test_without_a_limit_wheels_reach_their_speed_at_once() -> None:
     plugin, controls, sim = driven()
     plugin._command = (0.3, 0.4)
     sim.time_ns = 20_000_000
@@ -116,7 +116,7 @@ def test_without_a_limit_wheels_get_their_speed_at_once() -> None:
     assert controls == pytest.approx({0: (0.3 - 0.4 * 0.25) / 0.1, 1: (0.3 + 0.4 * 0.25) / 0.1})
 
 
-def test_the_rim_speed_climbs_by_the_acceleration_limit() -> None:
+def test_the_rim_speed_grows_by_the_acceleration_limit() -> None:
     plugin, controls, sim = driven(max_wheel_acceleration=1.0)
     plugin._command = (0.1, 0.0)
     speeds = []
@@ -127,7 +127,7 @@ def test_the_rim_speed_climbs_by_the_acceleration_limit() -> None:
     np.testing.assert_allclose(speeds, [0.02, 0.04, 0.06, 0.08, 0.1, 0.1, 0.1], atol=1e-12)
 
 
-def test_a_target_nearer_than_a_centimetre_a_second_is_taken_at_once() -> None:
+def test_a_change_below_a_centimetre_a_second_is_applied_at_once() -> None:
     plugin, controls, sim = driven(max_wheel_acceleration=0.1)
     plugin._command = (-0.009, 0.0)
     sim.time_ns = 20_000_000
@@ -135,7 +135,7 @@ def test_a_target_nearer_than_a_centimetre_a_second_is_taken_at_once() -> None:
     assert controls[0] == pytest.approx(-0.09)
 
 
-def test_the_limit_holds_when_braking_too() -> None:
+def test_the_acceleration_limit_applies_to_braking_too() -> None:
     plugin, controls, sim = driven(max_wheel_acceleration=1.0)
     plugin._rims = [0.5, 0.5]
     sim.time_ns = 100_000_000
@@ -146,11 +146,11 @@ def test_the_limit_holds_when_braking_too() -> None:
 # ------------------------------------------------------------------ gz's limiter
 
 
-def test_without_bounds_the_target_is_taken() -> None:
+def test_without_limits_the_target_is_reached_at_once() -> None:
     assert SpeedLimiter().limit(3.7, 0.0, 0.0, 0.001) == 3.7
 
 
-def test_acceleration_and_speed_are_bounded() -> None:
+def test_acceleration_and_speed_are_limited() -> None:
     limiter = SpeedLimiter(velocity=(-0.5, 0.5), acceleration=(-1.0, 1.0))
     speed, last = 0.0, 0.0
     track = []
@@ -161,7 +161,7 @@ def test_acceleration_and_speed_are_bounded() -> None:
     assert track[-1] == 0.5
 
 
-def test_jerk_bounds_how_fast_acceleration_grows() -> None:
+def test_the_jerk_limit_bounds_the_change_of_acceleration() -> None:
     limiter = SpeedLimiter(jerk=(-10.0, 10.0))
     speed, last = 0.0, 0.0
     for _ in range(100):
@@ -170,14 +170,14 @@ def test_jerk_bounds_how_fast_acceleration_grows() -> None:
     assert speed == pytest.approx(10.0 * 0.001**2 * 100 * 101 / 2)
 
 
-def test_direction_bounds_win_over_general_ones() -> None:
+def test_specific_limits_override_general_ones() -> None:
     params = Params.from_dict({"max_velocity": 1.0, "max_angular_velocity": 3.0, "min_velocity": -1.0})
     linear, angular = speed_limits(SpeedLimitOptions(params))
     assert (linear.velocity, angular.velocity) == ((-1.0, 1.0), (-1.0, 3.0))
     assert linear.acceleration == angular.jerk == (-math.inf, math.inf)
 
 
-def test_bounds_the_wrong_way_round_are_an_error() -> None:
+def test_limits_with_the_wrong_sign_are_an_error() -> None:
     params = Params.from_dict({"max_acceleration": -1.0, "min_angular_velocity": 1.0, "max_jerk": 0.0})
     speed_limits(SpeedLimitOptions(params))
     assert [(d.code, d.message.split(",")[0]) for d in params.diagnostics] == [
@@ -207,41 +207,48 @@ def test_a_long_way_in_small_strides_ends_where_the_arc_does() -> None:
 
 
 def rolled(speeds: Any, odometry: WheelOdometry, every: int = 20, step: float = 0.001) -> list[tuple[float, ...]]:
-    """x, y, yaw, speed and turning rate every so many steps, with rim speeds (left, right) at each step [m/s]."""
+    """Return rows of x, y, yaw, speed and turning rate.
+
+    Args:
+        speeds: Rim speeds (left, right) of each step [m/s].
+        odometry: Odometry to update.
+        every: Number of steps between two rows.
+        step: Time of a step [s].
+    """
     turned = np.cumsum(np.asarray(speeds) * step / 0.1, axis=0)
     angles = np.vstack((np.zeros(2), turned)) + np.array((0.3, -0.2))
-    told = []
+    rows = []
     for k in range(1, len(angles)):
         odometry.note((float(angles[k - 1][0]), float(angles[k - 1][1])))
         if k % every == 0:
             odometry.reckon((float(angles[k][0]), float(angles[k][1])))
             base, twist = odometry.reckoning, odometry.twist
-            told.append((base.x, base.y, base.yaw, twist.linear[0], twist.angular[2]))
-    return told
+            rows.append((base.x, base.y, base.yaw, twist.linear[0], twist.angular[2]))
+    return rows
 
 
 def test_wheel_odometry_of_a_constant_curve_is_the_arc() -> None:
-    """Rims at 0.3 and 0.5 m/s, 0.4 m apart: 0.4 m/s and 0.5 rad/s, a circle of radius 0.8 m."""
+    """Rim speeds of 0.3 and 0.5 m/s, 0.4 m apart, give 0.4 m/s and 0.5 rad/s: a circle of radius 0.8 m."""
     for every in (1, 7, 20, 1500):
-        told = rolled([(0.3, 0.5)] * 3000, WheelOdometry(0.1, 0.4, 0.001), every)[-1]
+        rows = rolled([(0.3, 0.5)] * 3000, WheelOdometry(0.1, 0.4, 0.001), every)[-1]
         turn = 0.5 * (3000 // every * every) * 0.001
         expected = (0.8 * math.sin(turn), 0.8 * (1 - math.cos(turn)), turn, 0.4, 0.5)
-        assert told == pytest.approx(expected, abs=1e-9)
+        assert rows == pytest.approx(expected, abs=1e-9)
 
 
 def test_the_twist_of_wheel_odometry_is_the_mean_over_ten_steps() -> None:
-    """While the speed grows by 1 mm/s a step it is 4.5 steps late, and at first the mean over the steps there were."""
+    """The twist of a growing speed (1 mm/s per step) is 4.5 steps late; at first it is the mean over fewer steps."""
     ramp = 0.001 * np.arange(1, 101)
-    told = rolled(np.stack((ramp, ramp), axis=1), WheelOdometry(0.1, 0.4, 0.001), every=1)
-    speeds = [row[3] for row in told]
+    rows = rolled(np.stack((ramp, ramp), axis=1), WheelOdometry(0.1, 0.4, 0.001), every=1)
+    speeds = [row[3] for row in rows]
     expected = [ramp[max(0, k - 9) : k + 1].mean() for k in range(100)]
     np.testing.assert_allclose(speeds, expected, atol=1e-12)
-    told = rolled(np.stack((-ramp, ramp), axis=1), WheelOdometry(0.1, 0.4, 0.001), every=20)
-    np.testing.assert_allclose([row[4] for row in told], 2 * ramp[19::20] / 0.4 - 4.5 * 0.001 / 0.2, atol=1e-12)
+    rows = rolled(np.stack((-ramp, ramp), axis=1), WheelOdometry(0.1, 0.4, 0.001), every=20)
+    np.testing.assert_allclose([row[4] for row in rows], 2 * ramp[19::20] / 0.4 - 4.5 * 0.001 / 0.2, atol=1e-12)
 
 
-def test_wheel_odometry_that_is_told_seldom_goes_the_same_way() -> None:
-    """First straight, then on the spot, then straight: not the one arc that the wheels' turns from end to end say."""
+def test_wheel_odometry_at_a_low_rate_has_the_same_path() -> None:
+    """The path is straight, then a spin, then straight; one arc over all wheel angles would be wrong."""
     legs = [(0.5, 0.5)] * 1000 + [(-0.2, 0.2)] * 1000 + [(0.5, 0.5)] * 1000
     seldom = rolled(legs, WheelOdometry(0.1, 0.4, 0.001), every=3000)[-1]
     often = rolled(legs, WheelOdometry(0.1, 0.4, 0.001), every=1)[-1]
@@ -249,14 +256,14 @@ def test_wheel_odometry_that_is_told_seldom_goes_the_same_way() -> None:
     assert seldom[:3] == pytest.approx((0.5 + 0.5 * math.cos(1.0), 0.5 * math.sin(1.0), 1.0), abs=1e-9)
 
 
-def test_both_kinds_of_command_are_understood() -> None:
+def test_twist_and_twist_stamped_are_accepted() -> None:
     twist = {"linear": {"x": 0.2}, "angular": {"z": 0.3}}
     assert command_of(msgs.make("geometry_msgs/msg/Twist", **twist)) == (0.2, 0.3)
     assert command_of(msgs.make("geometry_msgs/msg/TwistStamped", twist=twist)) == (0.2, 0.3)
     assert command_of(msgs.make("geometry_msgs/msg/Twist", linear={"x": math.nan})) is None
 
 
-def test_a_planar_base_does_not_vouch_for_height_roll_and_pitch() -> None:
+def test_the_covariance_of_height_roll_and_pitch_is_huge() -> None:
     np.testing.assert_array_equal(
         np.diag(planar_covariance(1.0, 2.0, 3.0).reshape(6, 6)), [1.0, 2.0, 1e12, 1e12, 1e12, 3.0]
     )

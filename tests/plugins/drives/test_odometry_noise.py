@@ -1,4 +1,4 @@
-"""Odometry that errs: as far as it says, as wheels do, and the same for whoever listens."""
+"""Noisy odometry: errors that agree with its covariance, independent of subscribers."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ RADIUS, SEPARATION = 0.1, 0.4
 
 
 def drive(noise: OdometryNoise, seed: int = 0, steps: int = 50, left: float = 0.032, right: float = 0.048) -> Any:
-    """An arc of 2 m that turns left by 2 rad, in steps; ways of each wheel and step in m."""
+    """Drive an arc of 2 m with a left turn of 2 rad in steps, and return the travel of each wheel and step [m]."""
     odometry = NoisyOdometry(noise, RADIUS, SEPARATION, RandomStreams(seed).stream("m", "odometry_noise", 2))
     for k in range(1, steps + 1):
         odometry.advance(k * left / RADIUS, k * right / RADIUS, 0.02)
@@ -35,12 +35,12 @@ def error_of(odometry: Any, exact: DeadReckoning) -> Any:
     return np.array((found.x - exact.x, found.y - exact.y, found.yaw - exact.yaw))
 
 
-# ------------------------------------------------------------------ by arithmetic
+# ------------------------------------------------------------------ without physics
 
 
 @pytest.mark.parametrize(("left", "right"), [(0.04, 0.04), (0.032, 0.048), (-0.04, 0.04), (-0.048, -0.032)])
-def test_the_covariance_is_that_of_two_hundred_runs(left: float, right: float) -> None:
-    """Straight, on an arc, on the spot and backwards."""
+def test_the_covariance_agrees_with_two_hundred_runs(left: float, right: float) -> None:
+    """The motions are straight, an arc, a spin and backwards."""
     noise = OdometryNoise(wheel_variance=1e-4)
     exact = drive(OdometryNoise(), left=left, right=right).reckoning
     runs = [drive(noise, seed, left=left, right=right) for seed in range(200)]
@@ -53,8 +53,8 @@ def test_the_covariance_is_that_of_two_hundred_runs(left: float, right: float) -
     np.testing.assert_allclose(np.diag(np.cov(errors.T)), predicted, rtol=0.45, atol=1e-7)
 
 
-def test_on_a_straight_the_covariance_is_that_of_the_book() -> None:
-    """σ² of yaw is 2ks/b², of the way ks/2, and y grows by the integral of yaw: 2ks³/(3b²)."""
+def test_on_a_straight_line_the_covariance_is_that_of_the_book() -> None:
+    """The variance of yaw is 2ks/b², that of the distance ks/2, and that of y, the integral of yaw, 2ks³/(3b²)."""
     noise = OdometryNoise(wheel_variance=1e-4)
     covariance = np.mean([drive(noise, s, 1000, 0.002, 0.002).covariance for s in range(5)], axis=0)
     way, k = 2.0, 1e-4
@@ -69,14 +69,14 @@ def test_the_noise_does_not_depend_on_the_rate_of_the_odometry() -> None:
     np.testing.assert_allclose(np.diag(coarse.covariance), np.diag(fine.covariance), rtol=0.15)
 
 
-def test_a_robot_that_stands_does_not_drift() -> None:
+def test_a_stopped_robot_does_not_drift() -> None:
     odometry = drive(OdometryNoise(wheel_variance=1e-2), left=0.0, right=0.0)
     assert (odometry.reckoning.x, odometry.reckoning.yaw) == (0, 0)
     assert not odometry.covariance.any()
 
 
-def test_unequal_wheels_turn_a_straight_into_an_arc() -> None:
-    """The right wheel is taken for 1 % larger: 2 m straight are told as a turn of 0.02 / 0.4 rad."""
+def test_unequal_wheels_turn_a_straight_line_into_an_arc() -> None:
+    """The assumed right radius is 1 % too large: 2 m straight become a turn of 0.02 / 0.4 rad."""
     odometry = drive(OdometryNoise(right_radius_error=0.01), left=0.04, right=0.04)
     assert odometry.reckoning.yaw == pytest.approx(2.0 * 0.01 / SEPARATION)
     wide = drive(OdometryNoise(separation_error=0.25), left=-0.04, right=0.04)
@@ -84,7 +84,7 @@ def test_unequal_wheels_turn_a_straight_into_an_arc() -> None:
     assert not odometry.covariance.any()
 
 
-def test_counted_wheels_are_never_more_than_half_a_count_off() -> None:
+def test_the_error_of_encoder_counts_is_at_most_half_a_count() -> None:
     step = 2 * math.pi / 64
     odometry = NoisyOdometry(OdometryNoise(resolution=step), RADIUS, SEPARATION, None)
     for k in range(1, 500):
@@ -94,7 +94,7 @@ def test_counted_wheels_are_never_more_than_half_a_count_off() -> None:
     assert counts == pytest.approx(round(counts), abs=1e-9)
 
 
-def test_a_twist_is_as_far_off_as_it_says() -> None:
+def test_the_error_of_a_twist_agrees_with_its_covariance() -> None:
     noise = OdometryNoise(wheel_variance=1e-4)
     runs = [drive(noise, seed, 1) for seed in range(400)]
     twists = np.array([(r.twist.linear[0], r.twist.angular[2]) for r in runs])
@@ -102,8 +102,8 @@ def test_a_twist_is_as_far_off_as_it_says() -> None:
     assert twists.mean(axis=0) == pytest.approx((2.0, 2.0), abs=0.1)
 
 
-def test_a_true_motion_is_told_as_the_turns_of_wheels_and_comes_out_again() -> None:
-    """Along any curve, also sideways and past half a turn."""
+def test_equivalent_wheel_angles_reproduce_the_true_motion() -> None:
+    """The curves include sideways motion and rotations beyond half a turn."""
     followed = EquivalentWheelAngles(Pose.from_rpy(1, 2, 0, 0, 0, 3.0), RADIUS, SEPARATION)
     odometry = NoisyOdometry(OdometryNoise(), RADIUS, SEPARATION, None, followed.angles, followed.start)
     for k in range(1, 400):
@@ -163,8 +163,8 @@ def classic(noise: str, source: int) -> str:
 WORLDS = {"gz": gz, "encoders": lambda n: classic(n, 0), "world": lambda n: classic(n, 1)}
 
 
-def told(text: str, seed: int = 0, listen_late: bool = False) -> tuple[Any, Any]:
-    """The last odometry of two seconds' drive, and the true planar pose of the point between the wheels."""
+def last_odometry(text: str, seed: int = 0, listen_late: bool = False) -> tuple[Any, Any]:
+    """Return the last odometry of a drive of two seconds, and the true planar pose of the point between the wheels."""
     with simkit.load(text, seed=seed) as sim:
         sub = None if listen_late else sim.subscribe("/odom")
         sim.publish("/cmd_vel", {"linear": {"x": 0.5}, "angular": {"z": 0.5}})
@@ -181,10 +181,10 @@ def planar(message: Any) -> Any:
 
 
 @pytest.mark.parametrize("kind", WORLDS)
-def test_each_drive_errs_where_it_is_told_to_and_its_covariance_is_in_the_message(kind: str) -> None:
-    exact, place = told(WORLDS[kind](""))
-    message, true = told(WORLDS[kind](NOISE.format("")), seed=5)
-    np.testing.assert_allclose(true, place, atol=1e-9)  # the robot itself goes where it went
+def test_a_drive_with_noise_has_errors_and_publishes_its_covariance(kind: str) -> None:
+    exact, place = last_odometry(WORLDS[kind](""))
+    message, true = last_odometry(WORLDS[kind](NOISE.format("")), seed=5)
+    np.testing.assert_allclose(true, place, atol=1e-9)  # the robot's true path is unchanged
     covariance = np.array(message.pose.covariance).reshape(6, 6)[np.ix_((0, 1, 5), (0, 1, 5))]
     error = planar(message) - planar(exact)
     assert 0.01 < np.abs(error).max() < 0.5
@@ -197,9 +197,14 @@ def test_each_drive_errs_where_it_is_told_to_and_its_covariance_is_in_the_messag
 
 
 @pytest.mark.parametrize("kind", WORLDS)
-def test_a_seed_repeats_and_who_listens_late_hears_the_same(kind: str) -> None:
+def test_the_same_seed_repeats_the_noise_also_for_late_subscribers(kind: str) -> None:
     text = WORLDS[kind](NOISE.format("<counts_per_revolution>2048</counts_per_revolution>"))
-    first, again, late, other = told(text), told(text), told(text, listen_late=True), told(text, seed=1)
+    first, again, late, other = (
+        last_odometry(text),
+        last_odometry(text),
+        last_odometry(text, listen_late=True),
+        last_odometry(text, seed=1),
+    )
     np.testing.assert_array_equal(planar(first[0]), planar(again[0]))
     np.testing.assert_array_equal(planar(first[0]), planar(late[0]))
     assert np.abs(planar(first[0]) - planar(other[0])).max() > 1e-3
@@ -207,14 +212,14 @@ def test_a_seed_repeats_and_who_listens_late_hears_the_same(kind: str) -> None:
 
 def test_without_random_errors_the_classic_covariance_is_the_file_s() -> None:
     block = "<odometry_noise><left_radius_error>0.02</left_radius_error></odometry_noise>"
-    message, _ = told(classic(block, 0))
-    exact, _ = told(classic("", 0))
+    message, _ = last_odometry(classic(block, 0))
+    exact, _ = last_odometry(classic("", 0))
     assert message.pose.covariance[35] == pytest.approx(1e-3)
     # 0.02 of the left wheel's 0.8 m is missing between the wheels
     assert planar(message)[2] - planar(exact)[2] == pytest.approx(-0.02 * 0.8 / 0.4, rel=0.1)
 
 
-def test_a_reset_starts_it_anew() -> None:
+def test_a_reset_restarts_the_noise() -> None:
     with simkit.load(gz(NOISE.format(""))) as sim:
         sub = sim.subscribe("/odom")
         ends = []

@@ -1,4 +1,4 @@
-"""`/tf` of what joints move."""
+"""Transforms of moving joints on `/tf`."""
 
 from __future__ import annotations
 
@@ -28,24 +28,24 @@ def load(content: str) -> simkit.Simulation:
     return simkit.load(f'<sdf version="1.9"><world name="w"><gravity>0 0 0</gravity>{content}</world></sdf>')
 
 
-def test_a_link_that_a_joint_moves_is_told_in_its_parent() -> None:
+def test_a_link_that_a_joint_moves_is_published_in_its_parent() -> None:
     with load(arm(element="<publish_frequency>10</publish_frequency>")) as sim:
-        heard: Any = sim.subscribe("/tf", keep=100)
+        transforms: Any = sim.subscribe("/tf", keep=100)
         sim.joint("arm::turn").set_position(0.8)
         sim.run(1.0)
-        assert len(heard.messages) == 10
-        (one,) = heard.latest.transforms  # the fixed ones are on /tf_static
-        assert (one.header.frame_id, one.child_frame_id) == ("foot", "rod")
-        t, r = one.transform.translation, one.transform.rotation
+        assert len(transforms.messages) == 10
+        (transform,) = transforms.latest.transforms  # the fixed ones are on /tf_static
+        assert (transform.header.frame_id, transform.child_frame_id) == ("foot", "rod")
+        t, r = transform.transform.translation, transform.transform.rotation
         assert (t.x, t.y, t.z) == pytest.approx((0.5, 0, 0))
         assert 2 * np.arctan2(r.z, r.w) == pytest.approx(0.8)
 
 
-def test_frames_have_the_names_of_tf_static_and_a_second_robot_that_comes_keeps_them_apart() -> None:
+def test_frames_have_the_names_of_tf_static_also_with_a_second_robot() -> None:
     with load(arm()) as sim:
-        heard: Any = sim.subscribe("/tf", keep=10)
+        transforms: Any = sim.subscribe("/tf", keep=10)
         sim.run(0.1)
         sim.spawn(f'<sdf version="1.9">{arm("other")}</sdf>')
         sim.run(0.1)
-        children = [m.transforms[0].child_frame_id for m in heard.messages[-2:]]
+        children = [m.transforms[0].child_frame_id for m in transforms.messages[-2:]]
         assert sorted(children) == ["other/rod", "rod"]

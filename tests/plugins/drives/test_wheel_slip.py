@@ -1,4 +1,4 @@
-"""Wheels that slip: gz's WheelSlip, its service, and Classic's plugins."""
+"""Wheel slip: Gazebo's WheelSlip, its service, and the plugins of Gazebo Classic."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def slip(content, filename="gz-sim-wheel-slip-system", name="gz::sim::systems::W
 
 
 def driven(plugin, pull=(0.0, 0.0), speed=0.5, duration=2.0, step=0.002):
-    """The car drives ahead while a force per mass pulls it backwards or sideways [m/s²]."""
+    """Return a car that drives forwards while a force per mass [m/s²] pulls it backwards or sideways."""
     gravity = f"{pull[0]} {pull[1]} -9.8"
     sim = simkit.load(world(car(DRIVE + plugin), gravity=gravity, step=step))
     sim.publish("/model/car/cmd_vel", {"linear": {"x": speed}})
@@ -43,27 +43,27 @@ def driven(plugin, pull=(0.0, 0.0), speed=0.5, duration=2.0, step=0.002):
 
 
 def velocity(sim):
-    """Ahead and to the left, in the car's axes."""
+    """Return the velocity forwards and to the left, in the car's axes."""
     base = sim.link("car::base")
     return base.pose.inverse().matrix @ base.linear_velocity
 
 
-def test_driven_wheels_lose_speed_to_the_force_on_them():
-    """Two wheels push with half of the force each: v = rω (1 - s F / 2N)."""
+def test_driven_wheels_slip_in_proportion_to_the_force_on_them():
+    """Each of two wheels pushes with half of the force: v = rω (1 - s F / 2N)."""
     sim = driven(slip(wheels(0, 1, ("rl", "rr"))), pull=(-1.0, 0.0))
     rim = sim.joint("car::rl_joint").velocity * RADIUS
     lost = rim * 1.0 * (MASS * 1.0 / 2) / FORCE
     assert rim - velocity(sim)[0] == pytest.approx(lost, rel=0.03)
 
 
-def test_without_a_compliance_nothing_is_lost():
+def test_without_compliance_wheels_do_not_slip():
     sim = driven(slip(wheels(0, 0)), pull=(-1.0, 0.0))
     rim = sim.joint("car::rl_joint").velocity * RADIUS
     assert velocity(sim)[0] == pytest.approx(rim, abs=2e-3)
 
 
-def test_all_wheels_give_way_sideways():
-    """Each carries a part of the sideways force, and together they drift at rω s F / 4N."""
+def test_all_wheels_slip_sideways_together():
+    """Each wheel carries a part of the sideways force, and the car drifts at rω s F / 4N."""
     sim = driven(slip(wheels(0.5, 0.5)), pull=(0.0, 0.5), duration=2.0)
     ahead, left = velocity(sim)[:2]
     turned = sim.model("car").pose.rpy[2]
@@ -101,7 +101,7 @@ def _request(name, kind, lateral, longitudinal):
     return {"entity": entity, "slip_compliance_lateral": lateral, "slip_compliance_longitudinal": longitudinal}
 
 
-def test_a_restore_and_a_reset_bring_the_compliances_back():
+def test_a_restore_and_a_reset_include_the_compliances():
     sim = driven(slip(wheels(0, 0)), duration=0.2)
     node = next(
         name for name, own in sim.communication.parameters.items() if "slip_compliance_unitless_lateral/rl" in own
@@ -119,30 +119,30 @@ def test_a_restore_and_a_reset_bring_the_compliances_back():
         sim.set_parameter(node, "slip_compliance_unitless_lateral/rl", -1.0)
 
 
-def test_classic_tells_by_how_much_wheels_slip():
+def test_the_classic_plugin_publishes_the_slip():
     sim = simkit.load(
         world(
             car(DRIVE + slip(wheels(0, 1, ("rl", "rr")), "libgazebo_ros_wheel_slip.so", "slip")),
             gravity="-1 0 -9.8",
         )
     )
-    told = sim.subscribe("/wheel_slip")
+    slips = sim.subscribe("/wheel_slip")
     sim.publish("/model/car/cmd_vel", {"linear": {"x": 0.5}})
     sim.run(2.0)
-    message = told.messages[-1]
+    message = slips.messages[-1]
     assert list(message.name) == ["rl", "rr"]
     assert list(message.longitudinal_slip) == pytest.approx([MASS / 2 / FORCE] * 2, rel=0.03)
     assert list(message.lateral_slip) == pytest.approx([0.0, 0.0], abs=0.02)
     sim.set_parameter("/slip", "slip_compliance_unitless_longitudinal", 0.5)
     sim.run(1.0)
-    assert list(told.messages[-1].longitudinal_slip) == pytest.approx([MASS / 4 / FORCE] * 2, rel=0.06)
+    assert list(slips.messages[-1].longitudinal_slip) == pytest.approx([MASS / 4 / FORCE] * 2, rel=0.06)
 
 
-def test_a_compliance_that_is_changed_in_the_run_comes_out_by_the_formula():
-    """The pull is a force here: gravity that is tilted tilts what Classic takes for ahead, and the slip it tells."""
+def test_a_compliance_that_is_changed_during_the_run_follows_the_formula():
+    """The pull is a force, because tilted gravity would also tilt Classic's forward direction and its slip."""
     content = slip(wheels(0, 1, ("rl", "rr")), "libgazebo_ros_wheel_slip.so", "slip")
     sim = simkit.load(world(car(DRIVE + content)))
-    told = sim.subscribe("/wheel_slip")
+    slips = sim.subscribe("/wheel_slip")
     sim.publish("/model/car/cmd_vel", {"linear": {"x": 0.5}})
     for compliance in (1.0, 0.5, 2.0):
         sim.set_parameter("/slip", "slip_compliance_unitless_longitudinal", compliance)
@@ -150,11 +150,11 @@ def test_a_compliance_that_is_changed_in_the_run_comes_out_by_the_formula():
             sim.link("car::base").apply_wrench((-MASS, 0.0, 0.0))
             sim.step()
         expected = [compliance * MASS / 2 / FORCE] * 2
-        assert list(told.messages[-1].longitudinal_slip) == pytest.approx(expected, rel=5e-3)
+        assert list(slips.messages[-1].longitudinal_slip) == pytest.approx(expected, rel=5e-3)
 
 
-def test_a_held_tick_is_read_with_the_slips_of_that_tick():
-    """Whoever reads a measurement late finds what was there, whatever was set since."""
+def test_a_reading_of_an_earlier_tick_uses_the_slips_of_that_tick():
+    """A late reading shows the state of its tick, independent of later changes."""
 
     def accelerations(sets):
         sim = driven(slip(wheels(0, 1)), pull=(-1.0, 0.0), duration=0.3)
@@ -170,18 +170,18 @@ def test_a_held_tick_is_read_with_the_slips_of_that_tick():
 def test_classics_own_plugin_takes_the_radius_of_the_wheel_and_numbers_by_topic():
     content = wheels(0, 1, ("rl", "rr")).replace(f"<wheel_radius>{RADIUS}</wheel_radius>", "")
     sim = simkit.load(world(car(DRIVE + slip(content, "libWheelSlipPlugin.so", "slip")), gravity="-1 0 -9.8"))
-    told = sim.subscribe("/car/wheel_slip/rl")
+    slips = sim.subscribe("/car/wheel_slip/rl")
     sim.publish("/model/car/cmd_vel", {"linear": {"x": 0.5}})
     sim.run(2.0)
-    message = told.messages[-1]
+    message = slips.messages[-1]
     assert message.z == pytest.approx(0.5, abs=0.03)
     assert message.x == pytest.approx(-message.z * MASS / 2 / FORCE, rel=0.03)
     sim.publish("/car/wheel_slip/longitudinal_compliance", {"data": 0.0})
     sim.run(1.0)
-    assert told.messages[-1].x == pytest.approx(0.0, abs=3e-3)
+    assert slips.messages[-1].x == pytest.approx(0.0, abs=3e-3)
 
 
-def test_what_is_wrong_is_told_at_once():
+def test_all_errors_are_reported_together():
     content = (
         wheels(-1, 0, ("rl",))
         + wheels(0, 0, ("nowhere",))

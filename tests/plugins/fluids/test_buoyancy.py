@@ -61,7 +61,7 @@ def test_the_force_is_the_weight_of_the_fluid_that_a_shape_displaces(shape: str)
     assert com[2] / 0.001 == pytest.approx(G * (VOLUMES[shape] * 1000 / 700 - 1), rel=1e-9)
 
 
-def test_what_is_as_heavy_as_water_hangs_in_it_and_what_stands_costs_nothing() -> None:
+def test_a_neutral_body_floats_in_place_and_constant_forces_need_no_callback() -> None:
     sim = simkit.load(
         world(
             body("heavy", BOX, 2000) + body("even", BOX, 1000, "3 0 0 0.3 1 0") + body("light", BOX, 500, "6 0 0 0 0 0")
@@ -77,7 +77,7 @@ def test_what_is_as_heavy_as_water_hangs_in_it_and_what_stands_costs_nothing() -
 
 
 def test_the_force_acts_at_the_centre_of_volume() -> None:
-    """A body with its mass low rights itself: a pendulum of length 0.4 m, of the period of one."""
+    """A body with a low centre of mass swings like a pendulum of length 0.4 m."""
     sim = simkit.load(world(body("buoy", BOX, 1000, "0 0 0 0.05 0 0", com="0 0 -0.4")))
     moment = 0.2 * 1000
     period = 2 * math.pi * math.sqrt(moment / (1000 * G * 0.4))
@@ -98,16 +98,16 @@ def test_several_collisions_add_up() -> None:
     assert sim.link("twin::hull").linear_velocity[2] / 0.001 == pytest.approx(G * (math.pi / 3 - 1), rel=1e-9)
 
 
-def test_a_box_floats_as_deep_as_it_weighs() -> None:
-    """It bobs about the draught at which it displaces its mass: 0.6 m of 1 m, for 600 kg."""
+def test_the_draught_of_a_box_matches_its_mass() -> None:
+    """A box of 600 kg oscillates around the draught at which it displaces its mass: 0.6 m of 1 m."""
     sim = simkit.load(world(body("raft", BOX, 600, "0 0 -0.15 0 0 0"), SEA))
     heights = []
     for _ in range(2500):
         sim.step()
         heights.append(height(sim, "raft"))
-    middle = -0.1 + 0.001 * 0.4  # the air bears a little of it, too
+    middle = -0.1 + 0.001 * 0.4  # the air carries a small part of the weight
     assert (max(heights) + min(heights)) / 2 == pytest.approx(middle, abs=2e-3)
-    # undamped: it comes back as high as it dived, with the period of ρ g A / m
+    # undamped oscillation of constant amplitude, with the period of ρ g A / m
     assert max(heights) - middle == pytest.approx(0.05, rel=0.03)
     rises = [i for i, (a, b) in enumerate(itertools.pairwise(heights)) if a < middle <= b]
     period = (rises[-1] - rises[0]) / (len(rises) - 1) * 0.001
@@ -126,7 +126,7 @@ def test_bobbing_conserves_energy(shape: str) -> None:
 
 
 def test_a_tilted_raft_rights_itself() -> None:
-    """A flat box is stable: the water takes its low side further in. Metacentric height is width²/12/draught − …"""
+    """A flat box is stable, because its lower side displaces more water. Metacentric height: width²/12/draught − …"""
     flat = "<box><size>2 2 0.4</size></box>"
     sim = simkit.load(world(body("raft", flat, 800, "0 0 0 0.05 0 0"), SEA))
     sim.step()
@@ -140,7 +140,7 @@ def test_a_tilted_raft_rights_itself() -> None:
 
 
 def test_layers_of_several_fluids() -> None:
-    """Oil of 800 on brine of 1200: a ball of 1000 kg/m³ rests at the bound, half in each."""
+    """A ball of 1000 kg/m³ rests half in oil of 800 kg/m³ and half in brine of 1200 kg/m³."""
     fluid = """<graded_buoyancy><default_density>1200</default_density>
     <density_change><above_depth>2</above_depth><density>1</density></density_change>
     <density_change><above_depth>-1</above_depth><density>800</density></density_change></graded_buoyancy>"""
@@ -153,7 +153,7 @@ def test_layers_of_several_fluids() -> None:
     assert sim.link("ball::hull").linear_velocity[2] / 0.001 == pytest.approx(-G * 0.2, rel=1e-9)
 
 
-def test_only_what_is_enabled_floats() -> None:
+def test_only_enabled_models_and_links_float() -> None:
     nested = body("ship", BOX, 1000).replace("</model>", body("boat", BOX, 1000, "0 0 5 0 0 0") + "</model>")
     fluid = "<uniform_fluid_density>1000</uniform_fluid_density><enable>{}</enable>"
     for name, floats in (("ship", (1, 1)), ("ship::boat", (0, 1)), ("ship::hull", (1, 0))):
@@ -162,8 +162,8 @@ def test_only_what_is_enabled_floats() -> None:
         falls = [sim.link(n).linear_velocity[2] for n in ("ship::hull", "ship::boat::hull")]
         assert [int(abs(v) < 1e-9) for v in falls] == list(floats)
     sim = simkit.load(world(nested, fluid.format("shop")))
-    (said,) = (d for d in sim.diagnostics if d.code == "SK-PLUGIN-113")
-    assert "shop" in said.message and "ship" in said.hint
+    (warning,) = (d for d in sim.diagnostics if d.code == "SK-PLUGIN-113")
+    assert "shop" in warning.message and "ship" in warning.hint
 
 
 def test_static_models_and_planes_do_not_float() -> None:
@@ -173,7 +173,7 @@ def test_static_models_and_planes_do_not_float() -> None:
     assert not [d for d in sim.diagnostics if d.code.startswith("SK-PLUGIN")]
 
 
-def test_another_gravity_is_another_force() -> None:
+def test_a_change_of_gravity_changes_the_force() -> None:
     sim = simkit.load(world(body("b", BOX, 500)))
     sim.step(10)
     sim.gravity = (1.0, 0, -3.0)
@@ -205,7 +205,7 @@ TETRAHEDRON = "o x\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 
 MESH = "<mesh><uri>{}</uri><scale>2 2 2</scale></mesh>"
 
 
-def test_meshes_by_what_they_enclose_scaled_and_open_ones_by_their_hull(tmp_path: Path) -> None:
+def test_closed_meshes_use_their_scaled_volume_and_open_ones_their_convex_hull(tmp_path: Path) -> None:
     closed, opened = tmp_path / "closed.obj", tmp_path / "open.obj"
     closed.write_text(TETRAHEDRON.format("f 3 1 4\n"))
     opened.write_text(TETRAHEDRON.format(""))
@@ -218,7 +218,7 @@ def test_meshes_by_what_they_enclose_scaled_and_open_ones_by_their_hull(tmp_path
         assert sim.link("m::hull").linear_velocity[2] / 0.001 == pytest.approx(G * (8 / 6 - 1), rel=1e-6)
 
 
-def test_water_where_nothing_is_said() -> None:
+def test_the_default_fluid_is_water() -> None:
     sim = simkit.load(world(body("b", BOX, 1000), ""))
     assert "SK-PLUGIN-114" in [d.code for d in sim.diagnostics]
     sim.step(100)
@@ -234,7 +234,7 @@ def test_water_where_nothing_is_said() -> None:
         "<graded_buoyancy><default_density>nan</default_density></graded_buoyancy>",
     ],
 )
-def test_what_cannot_be_is_an_error(bad: str) -> None:
+def test_invalid_values_are_errors(bad: str) -> None:
     with pytest.raises(simkit.LoadError, match="SK-PARAM-00"):
         simkit.load(world(body("b", BOX, 1), bad))
 
@@ -255,7 +255,7 @@ def test_classic_floats_one_model_in_water_of_15_degrees() -> None:
     assert sim.link("sub::hull").linear_velocity[2] == pytest.approx(-G / 2 * 0.1, rel=1e-9)
 
 
-def test_classic_takes_volume_and_centre_of_a_link_from_the_file() -> None:
+def test_classic_reads_volume_and_centre_of_a_link_from_the_file() -> None:
     given = """<link name="hull"><center_of_volume>0 0.1 0</center_of_volume><volume>2</volume></link>
     <fluid_density>1000</fluid_density>"""
     sim = simkit.load(classic(given, mass=1000))
@@ -273,12 +273,12 @@ def test_classic_takes_volume_and_centre_of_a_link_from_the_file() -> None:
         '<link name="hull"><center_of_volume>0 0 0</center_of_volume><volume>0</volume></link>',
     ],
 )
-def test_classic_reports_what_cannot_be(bad: str) -> None:
+def test_classic_reports_invalid_values(bad: str) -> None:
     with pytest.raises(simkit.LoadError):
         simkit.load(classic(bad))
 
 
-def test_many_hulls_get_what_each_alone_would() -> None:
+def test_many_hulls_get_the_same_forces_as_each_alone() -> None:
     tops = [-0.7, -0.3, 0.0, 0.2, 0.6]
     shapes = [BOX, BALL, "<cylinder><radius>0.5</radius><length>1</length></cylinder>", BOX, BALL]
     alone = []
@@ -299,8 +299,8 @@ def test_many_hulls_get_what_each_alone_would() -> None:
 @pytest.mark.parametrize(
     "shape", ["<box><size>1 1 1</size></box>", "<capsule><radius>.3</radius><length>1</length></capsule>"]
 )
-def test_a_fleet_floats_as_each_ship_alone_does(shape: str) -> None:
-    """Few hulls are reckoned one by one and many together: in two layers, across a bound, and turned in the link."""
+def test_a_fleet_floats_like_each_ship_alone(shape: str) -> None:
+    """Few hulls are computed one by one and many with arrays: in two layers, between layers, and rotated."""
     layers = """<graded_buoyancy><default_density>1000</default_density><density_change><above_depth>-0.3</above_depth>
     <density>600</density></density_change><density_change><above_depth>0</above_depth><density>1</density>
     </density_change></graded_buoyancy>"""

@@ -35,14 +35,14 @@ def line(slope: float, beyond: float, alpha: float) -> float:
     return slope * alpha if abs(alpha) <= 0.3 else slope * stall + beyond * (alpha - stall)
 
 
-def kept(slope: float, beyond: float, alpha: float) -> float:
-    """The same, which does not change its sign beyond the stall."""
+def line_of_one_sign(slope: float, beyond: float, alpha: float) -> float:
+    """Return the same line, which keeps its sign beyond the stall."""
     found = line(slope, beyond, alpha)
     return found if abs(alpha) <= 0.3 or found * alpha > 0 else 0.0
 
 
 def wrench(sim: simkit.Simulation, com: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
-    """Force and torque of the next step, by what it makes of a body at rest with its centre of mass at x = com."""
+    """Return force and torque of the next step, from their effect on a resting body with its mass at x = com."""
     link = sim.link("plane::wing")
     before = link.linear_velocity.copy(), link.angular_velocity.copy()
     sim.step()
@@ -53,7 +53,7 @@ def wrench(sim: simkit.Simulation, com: float = 0.0) -> tuple[np.ndarray, np.nda
 
 @pytest.mark.parametrize("degrees", [-80, -45, -20, -18, -10, -3, -2.865, 0, 1, 10, 14, 15, 30, 60, 89])
 def test_forces_at_every_angle_of_attack_with_stall(degrees: float) -> None:
-    """A body at rest in a wind: that is the same stream."""
+    """A resting body in a wind has the same stream as a moving body."""
     angle, speed = math.radians(degrees), 12.0
     # it moves through the air ahead and, for a positive angle, downwards
     through = speed * np.array((math.cos(angle), 0, -math.sin(angle)))
@@ -64,14 +64,14 @@ def test_forces_at_every_angle_of_attack_with_stall(degrees: float) -> None:
         alpha -= math.pi
     drag_way = -through / speed
     lift_way = np.array((math.sin(angle), 0, math.cos(angle)))
-    lift, drag = kept(4, -2, alpha) * pressed, abs(line(0.3, 1.5, alpha)) * pressed
+    lift, drag = line_of_one_sign(4, -2, alpha) * pressed, abs(line(0.3, 1.5, alpha)) * pressed
     assert force == pytest.approx(lift * lift_way + drag * drag_way, rel=1e-9, abs=1e-9 * pressed)
     # span is forward × upward = −y
-    assert torque == pytest.approx((0, -kept(0.2, -0.5, alpha) * pressed, 0), rel=1e-9, abs=1e-9 * pressed)
+    assert torque == pytest.approx((0, -line_of_one_sign(0.2, -0.5, alpha) * pressed, 0), rel=1e-9, abs=1e-9 * pressed)
 
 
 @pytest.mark.parametrize("sweep", [0.0, 0.3, 1.0])
-def test_a_stream_along_the_span_counts_for_nothing_and_sweep_lessens_the_rest(sweep: float) -> None:
+def test_a_stream_along_the_span_has_no_effect_and_sweep_reduces_the_forces(sweep: float) -> None:
     speed, angle = 10.0, 0.1
     ahead = speed * math.cos(sweep)
     through = np.array((ahead * math.cos(angle), speed * math.sin(sweep), -ahead * math.sin(angle)))
@@ -81,7 +81,7 @@ def test_a_stream_along_the_span_counts_for_nothing_and_sweep_lessens_the_rest(s
     assert force == pytest.approx(lift * np.array((math.sin(angle), 0, math.cos(angle))), rel=1e-9, abs=1e-9)
 
 
-def test_a_moving_wing_feels_the_motion_of_its_centre_of_pressure() -> None:
+def test_the_forces_depend_on_the_motion_of_the_centre_of_pressure() -> None:
     sim = simkit.load(world("<cda>0</cda><a0>0.1</a0><cla>3</cla><cp>0 2 0</cp>"))
     sim.link("plane::wing").set_velocity((5, 0, 0), (0, 0, -1.5))  # the tip at y = 2 is 3 m/s faster
     _, torque = wrench(sim)
@@ -99,7 +99,7 @@ def test_a_stream_from_behind_does_nothing_unless_the_wing_is_reversible() -> No
     assert not np.any(wrench(slow)[0])
 
 
-def test_a_body_of_revolution_lifts_to_the_side_that_it_leans_to() -> None:
+def test_a_body_of_revolution_lifts_towards_its_tilt() -> None:
     parameters = "<cla>2</cla><cda>0</cda><radial_symmetry>true</radial_symmetry>"
     for turn in (0.0, 1.0, 2.5):
         angle, speed = 0.2, 10.0
@@ -134,14 +134,14 @@ def test_classic_acts_at_the_centre_of_pressure_from_the_centre_of_mass_and_make
     force, torque = wrench(sim, 0.3)
     assert torque[1] == pytest.approx(0.5 * force[2], rel=1e-9)
     assert force[2] > 0  # the wind comes from below; pushed up behind its centre, the nose goes down
-    # in gz the same centre of pressure is seen from the link's origin
+    # in Gazebo the centre of pressure is relative to the link's origin
     sim = simkit.load(world("<cla>4</cla><cda>0</cda><cp>-0.5 0 0</cp>", wind="-10 0 1", com="0.3 0 0"))
     force, torque = wrench(sim, 0.3)
     assert torque[1] == pytest.approx(0.8 * force[2], rel=1e-9)
 
 
 def test_it_glides_at_the_ratio_of_lift_to_drag() -> None:
-    """A wing held level under gravity: the path goes down by drag over lift once both balance the weight."""
+    """A level wing descends at the ratio of drag to lift once both balance its weight."""
     text = world("<area>1</area><a0>0.1</a0><cla>5</cla><cda>0.5</cda>").replace("<gravity>0 0 0", "<gravity>0 0 -9.8")
     sim = simkit.load(text)
     sim.link("plane::wing").set_velocity((8, 0, 0))
@@ -164,19 +164,19 @@ def test_it_glides_at_the_ratio_of_lift_to_drag() -> None:
         "<alpha_stall>-0.1</alpha_stall>",
     ],
 )
-def test_what_cannot_be_is_an_error(bad: str) -> None:
+def test_invalid_values_are_errors(bad: str) -> None:
     with pytest.raises(simkit.LoadError):
         simkit.load(world(bad))
 
 
-def test_a_link_must_be_named_and_there() -> None:
+def test_a_missing_or_unknown_link_is_an_error() -> None:
     with pytest.raises(simkit.LoadError, match="did you mean 'wing'"):
         simkit.load(world().replace("<link_name>wing", "<link_name>wimg"))
     with pytest.raises(simkit.LoadError, match="SK-PARAM-001"):
         simkit.load(world().replace("<link_name>wing</link_name>", ""))
 
 
-def test_the_same_bits_after_a_restore_and_beside_a_reader() -> None:
+def test_runs_after_a_restore_and_with_a_reader_have_the_same_bits() -> None:
     def flight(reads: bool) -> list[float]:
         sim = simkit.load(world(WING, wind="-8 1 1"))
         sim.step(50)

@@ -1,4 +1,4 @@
-"""What of a solid lies below a plane, against formulas, against another way to it, and against itself."""
+"""Volume of solids below a plane, against formulas and an independent computation."""
 
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ WAYS = [
 ]
 
 
-def made(shape: Geometry) -> Solid:
+def make_solid(shape: Geometry) -> Solid:
     found = solid_of(shape, lambda _: None)
     assert found is not None
     return found
 
 
 def below(solid: Solid, normal: np.ndarray, height: float) -> tuple[float, np.ndarray]:
-    """The part with normal · x <= height: its volume, and that times its centre."""
+    """Return the volume with normal · x <= height, and that volume times its centre."""
     volume, *moment = solid.cut(*normal.tolist(), float(height))
     return volume, np.array(moment)
 
@@ -50,8 +50,8 @@ def unit(way: tuple[float, ...]) -> np.ndarray:
 
 @pytest.mark.parametrize("shape", SHAPES, ids=str)
 @pytest.mark.parametrize("way", WAYS)
-def test_both_sides_of_a_plane_are_the_whole(shape: Geometry, way: tuple[float, ...]) -> None:
-    solid, normal = made(shape), unit(way)
+def test_the_parts_on_both_sides_of_a_plane_add_up(shape: Geometry, way: tuple[float, ...]) -> None:
+    solid, normal = make_solid(shape), unit(way)
     for part in np.linspace(-1.05, 1.05, 12):
         height = normal @ solid.centre + part * solid.reach
         wet, moment = below(solid, normal, height)
@@ -62,9 +62,9 @@ def test_both_sides_of_a_plane_are_the_whole(shape: Geometry, way: tuple[float, 
 
 
 @pytest.mark.parametrize("shape", SHAPES, ids=str)
-def test_the_depth_of_the_middle_is_the_derivative_of_the_volume(shape: Geometry) -> None:
-    """dV/dh is the area A(h) of the cut, and the moment along the normal is the integral of h A(h)."""
-    solid, normal = made(shape), unit((0.3, -0.5, 0.7))
+def test_the_moment_is_the_integral_of_the_height_over_the_volume(shape: Geometry) -> None:
+    """The derivative dV/dh is the area A(h) of the cut; the moment along the normal is the integral of h A(h)."""
+    solid, normal = make_solid(shape), unit((0.3, -0.5, 0.7))
     heights = np.linspace(-solid.reach, solid.reach, 4001) + normal @ solid.centre
     volumes = np.array([below(solid, normal, h)[0] for h in heights[::10]])
     along = np.interp(heights, heights[::10], volumes)
@@ -76,22 +76,22 @@ def test_the_depth_of_the_middle_is_the_derivative_of_the_volume(shape: Geometry
 
 def test_known_volumes_and_centres() -> None:
     up = np.array((0, 0, 1.0))
-    assert made(Box((1, 2, 3))).volume == pytest.approx(6)
-    assert below(made(Sphere(0.5)), up, 0.2)[0] == pytest.approx(math.pi * 0.7**2 * (1.5 - 0.7) / 3)
-    assert below(made(Sphere(0.5)), up, 0.0)[1][2] == pytest.approx(-math.pi * 0.5**4 / 4)
-    assert made(Cone(0.6, 2)).volume == pytest.approx(math.pi * 0.36 * 2 / 3, rel=1e-9)
-    assert made(Cone(0.6, 2)).centre == pytest.approx((0, 0, -0.5), abs=1e-9)
-    assert made(Capsule(0.5, 1)).volume == pytest.approx(math.pi * (0.25 + 4 / 3 * 0.125), rel=1e-9)
-    lying = below(made(Cylinder(0.5, 2)), np.array((1.0, 0, 0)), 0.2)
+    assert make_solid(Box((1, 2, 3))).volume == pytest.approx(6)
+    assert below(make_solid(Sphere(0.5)), up, 0.2)[0] == pytest.approx(math.pi * 0.7**2 * (1.5 - 0.7) / 3)
+    assert below(make_solid(Sphere(0.5)), up, 0.0)[1][2] == pytest.approx(-math.pi * 0.5**4 / 4)
+    assert make_solid(Cone(0.6, 2)).volume == pytest.approx(math.pi * 0.36 * 2 / 3, rel=1e-9)
+    assert make_solid(Cone(0.6, 2)).centre == pytest.approx((0, 0, -0.5), abs=1e-9)
+    assert make_solid(Capsule(0.5, 1)).volume == pytest.approx(math.pi * (0.25 + 4 / 3 * 0.125), rel=1e-9)
+    lying = below(make_solid(Cylinder(0.5, 2)), np.array((1.0, 0, 0)), 0.2)
     segment = 0.25 * math.acos(-0.4) + 0.2 * math.sqrt(0.25 - 0.04)
     assert lying[0] == pytest.approx(2 * segment, rel=1e-9)
     assert lying[1][0] == pytest.approx(-2 * 2 / 3 * (0.25 - 0.04) ** 1.5, rel=1e-8)
 
 
-def test_one_shape_in_two_ways() -> None:
-    """A ball is an ellipsoid, a capsule without a middle, and nearly a polyhedron of many faces."""
+def test_equal_shapes_of_different_types_have_equal_volumes() -> None:
+    """A ball is an ellipsoid, a capsule of length zero, and approximately a polyhedron with many faces."""
     normal = unit((0.2, 0.4, 0.7))
-    ball, bean = made(Sphere(0.5)), made(Capsule(0.5, 1e-9))
+    ball, bean = make_solid(Sphere(0.5)), make_solid(Capsule(0.5, 1e-9))
     assert below(bean, normal, 0.13)[0] == pytest.approx(below(ball, normal, 0.13)[0], rel=1e-7)
     assert below(bean, normal, 0.13)[1] == pytest.approx(below(ball, normal, 0.13)[1], rel=1e-6)
 
@@ -106,13 +106,13 @@ def test_a_polyhedron_turned_inside_out_is_the_same() -> None:
     assert below(right, np.array((0, 0, 1.0)), 0.4)[0] == pytest.approx((1 - 0.6**3) / 6)
 
 
-def test_what_has_no_inside_is_no_solid() -> None:
+def test_a_shape_without_a_volume_is_no_solid() -> None:
     assert solid_of(Plane(), lambda _: None) is None
 
 
 @pytest.mark.parametrize("way", WAYS)
-def test_few_triangles_are_cut_as_many_are(way: tuple[float, ...]) -> None:
-    box, normal = made(Box((1.0, 2.0, 3.0))), unit(way)
+def test_the_scalar_and_the_array_computation_agree(way: tuple[float, ...]) -> None:
+    box, normal = make_solid(Box((1.0, 2.0, 3.0))), unit(way)
     assert isinstance(box, Polyhedron)
     for height in np.linspace(-2.0, 2.0, 21).tolist():
         few, many = box._cut_few(*normal.tolist(), height), box._cut_many(*normal.tolist(), height)

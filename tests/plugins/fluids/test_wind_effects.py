@@ -1,4 +1,4 @@
-"""Wind: how it rises, turns, swells and flutters, and how it pushes."""
+"""Wind over time, and its forces on links."""
 
 from __future__ import annotations
 
@@ -37,8 +37,8 @@ def speed(sim: simkit.Simulation, name: str = "leaf") -> np.ndarray:
 
 
 @pytest.mark.parametrize("plugin", ["gz", "classic"])
-def test_it_takes_links_along_as_a_force_on_their_mass(plugin: str) -> None:
-    """F = m (wind − v), once a step: v after n steps is wind · (1 − (1 − dt)ⁿ), at the centre of mass."""
+def test_the_wind_accelerates_links_in_proportion_to_the_velocity_difference(plugin: str) -> None:
+    """With F = m (wind − v) at each step, v after n steps is wind · (1 − (1 − dt)ⁿ), at the centre of mass."""
     sim = simkit.load(world(plugin=plugin))
     sim.step(500)
     assert speed(sim) == pytest.approx(np.array((3, 4, 1)) * (1 - 0.999**500), rel=1e-9)
@@ -66,7 +66,7 @@ FIELD = """<force_approximation_scaling_factor><when xlt="-1">0.25</when>
 
 @pytest.mark.parametrize(("x", "factor"), [(-2, 0.25), (-1, 4.0), (3, 12.0), (4, 0.0)])
 def test_a_field_of_factors(x: float, factor: float) -> None:
-    """2 (x + 3 + z²) between −1 and 4, a quarter before, nothing beyond."""
+    """The factor is 2 (x + 3 + z²) between −1 and 4, 0.25 below and 0 above."""
     sim = simkit.load(world(AT_ONCE + FIELD, more=BODY.format(name="kite", x=x, windy="true")))
     sim.step()
     assert speed(sim, "kite") == pytest.approx(np.array((3, 4, 1)) * factor * 1e-3, rel=1e-9, abs=1e-15)
@@ -96,7 +96,7 @@ def test_strength_and_heading_swing() -> None:
         assert math.degrees(math.atan2(y, x)) == pytest.approx(turned, abs=1e-9)
 
 
-def test_noise_has_its_deviation_and_is_the_same_for_everybody() -> None:
+def test_noise_has_its_deviation_and_is_the_same_for_all_readers() -> None:
     noise = """<horizontal><magnitude><time_for_rise>1e-6</time_for_rise><noise type="gaussian"><mean>0.5</mean>
     <stddev>0.2</stddev></noise></magnitude></horizontal><vertical><noise type="gaussian"><stddev>0.3</stddev></noise>
     <time_for_rise>1e-6</time_for_rise></vertical>"""
@@ -111,7 +111,7 @@ def test_noise_has_its_deviation_and_is_the_same_for_everybody() -> None:
     assert simkit.load(world(noise), seed=5).engine.wind.at(17) != tuple(blown[17])
 
 
-def test_commands_change_what_is_asked_for() -> None:
+def test_commands_change_the_target() -> None:
     rise = "<horizontal><magnitude><time_for_rise>1</time_for_rise></magnitude></horizontal>"
     sim = simkit.load(world(rise, wind="2 0 0"))
     sim.step(1000)
@@ -127,10 +127,12 @@ def test_commands_change_what_is_asked_for() -> None:
     assert answer.velocity.x == pytest.approx(x, rel=1e-2)
 
 
-def test_off_it_neither_pushes_nor_brakes() -> None:
+def test_a_wind_that_is_off_neither_pushes_nor_brakes() -> None:
     sim = simkit.load(world())
     sim.step(100)
-    sim.publish("/world/w/wind", {"linear_velocity": {"x": 3.0, "y": 4.0, "z": 1.0}})  # as in gz: not enabled is off
+    sim.publish(
+        "/world/w/wind", {"linear_velocity": {"x": 3.0, "y": 4.0, "z": 1.0}}
+    )  # a message without enable_wind switches the wind off, as in Gazebo
     sim.step(1)
     still = speed(sim)
     sim.step(100)
@@ -140,7 +142,7 @@ def test_off_it_neither_pushes_nor_brakes() -> None:
     assert speed(sim)[0] == pytest.approx(still[0] + (1 - still[0]) * 0.001, rel=1e-9)
 
 
-def test_the_heading_turns_the_short_way() -> None:
+def test_the_heading_turns_in_the_shorter_direction() -> None:
     turn = "<horizontal><direction><time_for_rise>1</time_for_rise></direction></horizontal>"
     sim = simkit.load(world(turn, wind="-1 0.1 0"))
     sim.step(10)
@@ -150,7 +152,7 @@ def test_the_heading_turns_the_short_way() -> None:
     assert abs(math.degrees(math.atan2(y, -x))) < 6
 
 
-def test_a_command_without_numbers_is_left_out() -> None:
+def test_a_nan_command_is_ignored() -> None:
     sim = simkit.load(world())
     sim.publish("/world/w/wind", {"linear_velocity": {"x": math.nan, "y": 0.0, "z": 0.0}, "enable_wind": True})
     sim.step(10)
@@ -158,7 +160,7 @@ def test_a_command_without_numbers_is_left_out() -> None:
     assert sim.engine.wind.at(sim.tick)[0] == pytest.approx(3)
 
 
-def test_what_is_spawned_later_is_pushed_too_and_nothing_is_done_before() -> None:
+def test_spawned_links_are_pushed_and_without_links_there_is_no_callback() -> None:
     text = world().replace("<enable_wind>true", "<enable_wind>false")
     sim = simkit.load(text)
     assert [
@@ -172,7 +174,7 @@ def test_what_is_spawned_later_is_pushed_too_and_nothing_is_done_before() -> Non
     sim.step(10)
 
 
-def test_reset_and_restore_know_the_wind() -> None:
+def test_reset_and_restore_include_the_wind() -> None:
     rise = """<horizontal><magnitude><time_for_rise>1</time_for_rise><noise type="gaussian"><stddev>0.5</stddev></noise>
     </magnitude></horizontal>"""
     sim = simkit.load(world(rise))
@@ -190,15 +192,15 @@ def test_reset_and_restore_know_the_wind() -> None:
     assert (speed(sim) == calm).all()
 
 
-def test_an_air_speed_sensor_feels_the_gusts() -> None:
+def test_an_air_speed_sensor_measures_the_gusts() -> None:
     sensor = """<model name="mast"><static>true</static><link name="top"><sensor name="pitot" type="air_speed">
     <update_rate>100</update_rate><air_speed/></sensor></link></model>"""
     rise = "<horizontal><magnitude><time_for_rise>1</time_for_rise></magnitude></horizontal>"
     sim = simkit.load(world(rise, wind="-10 0 0", more=sensor))
-    heard = sim.subscribe("/world/w/model/mast/link/top/sensor/pitot/air_speed", keep=1)
+    readings = sim.subscribe("/world/w/model/mast/link/top/sensor/pitot/air_speed", keep=1)
     sim.step(500)
     blown = 10 * (1 - 0.999**500)
-    assert heard.messages[-1].diff_pressure == pytest.approx(0.5 * 1.225 * blown**2, rel=1e-3)
+    assert readings.messages[-1].diff_pressure == pytest.approx(0.5 * 1.225 * blown**2, rel=1e-3)
 
 
 @pytest.mark.parametrize(
@@ -215,19 +217,19 @@ def test_an_air_speed_sensor_feels_the_gusts() -> None:
         '<vertical><noise type="pink"/></vertical>',
     ],
 )
-def test_what_cannot_be_is_an_error(bad: str) -> None:
+def test_invalid_values_are_errors(bad: str) -> None:
     with pytest.raises(simkit.LoadError, match="SK-PARAM-002"):
         simkit.load(world(bad))
 
 
-def test_noise_that_drifts_has_no_effect_and_that_is_said() -> None:
+def test_dynamic_bias_has_no_effect_and_is_reported() -> None:
     drift = """<vertical><noise type="gaussian"><stddev>0.1</stddev><dynamic_bias_stddev>1</dynamic_bias_stddev>
     <dynamic_bias_correlation_time>5</dynamic_bias_correlation_time></noise></vertical>"""
     assert [d.code for d in simkit.load(world(drift)).diagnostics] == ["SK-PLUGIN-111"] * 2
 
 
 @pytest.mark.parametrize("first", ["gz", "classic"])
-def test_of_two_winds_the_first_blows(first: str) -> None:
+def test_the_first_of_two_wind_plugins_counts(first: str) -> None:
     other = '<plugin filename="gz-sim-wind-effects-system" name="gz::sim::systems::WindEffects"/>'
     text = world(plugin=first)
     both = text.replace("</plugin></world>", f"</plugin>{other}</world>")
@@ -240,8 +242,8 @@ def test_of_two_winds_the_first_blows(first: str) -> None:
     assert two.call("/world/w/wind_info").velocity.x == one.call("/world/w/wind_info").velocity.x
 
 
-def test_many_links_are_pushed_as_each_alone_is() -> None:
-    """Few links are reckoned one by one, many together."""
+def test_many_links_get_the_same_forces_as_each_alone() -> None:
+    """Few links are computed one by one, many with arrays."""
     field = """<force_approximation_scaling_factor><when xlt="0"><k>2</k><px>0 0 0 0.3</px><qy>0 1e-3 0 1</qy></when>
     <when xge="0" xle="400"><px>0 0 0 1</px><rz>0 0.01 0 1</rz></when></force_approximation_scaling_factor>"""
     more = "".join(BODY.format(name=f"l{n}", x=3 * n + 20, windy="true") for n in range(12))

@@ -1,4 +1,4 @@
-"""gz's Ackermann steering."""
+"""Ackermann steering of Gazebo."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def drive(sim, forward, turn, duration):
     sim.run(duration)
 
 
-def test_it_drives_a_circle_whose_wheels_turn_round_one_point():
+def test_all_wheels_turn_around_the_centre_of_the_circle():
     sim = simkit.load(world(car(plugin())))
     drive(sim, 0.5, 0.25, 2.0)
     assert angles(sim) == pytest.approx(ackermann(2.0), abs=2e-3)
@@ -52,7 +52,7 @@ def test_it_drives_a_circle_whose_wheels_turn_round_one_point():
 
 
 @pytest.mark.parametrize("turn", [3.0, -3.0])
-def test_the_steering_goes_no_further_than_its_limit(turn):
+def test_the_steering_angle_does_not_exceed_its_limit(turn):
     """The tightest circle has a radius of wheel base / sin(limit)."""
     sim = simkit.load(world(car(plugin())))
     drive(sim, 0.3, turn, 1.5)
@@ -60,14 +60,14 @@ def test_the_steering_goes_no_further_than_its_limit(turn):
     assert angles(sim) == pytest.approx(ackermann(radius), abs=5e-3)
 
 
-def test_backwards_it_steers_the_other_way_and_turns_as_told():
+def test_backwards_it_steers_the_other_way_and_turns_as_commanded():
     sim = simkit.load(world(car(plugin())))
     drive(sim, -0.4, 0.2, 2.0)
     assert angles(sim) == pytest.approx(ackermann(-2.0), abs=5e-3)
     assert sim.link("car::base").angular_velocity[2] == pytest.approx(0.2, rel=0.03)
 
 
-def test_standing_it_turns_the_steering_and_less_than_a_thousandth_is_straight_on():
+def test_at_zero_speed_it_steers_and_a_turning_rate_below_a_thousandth_is_straight():
     sim = simkit.load(world(car(plugin())))
     drive(sim, 0.0, 0.5, 1.5)
     assert angles(sim) == pytest.approx(ackermann(BASE / math.sin(0.5)), abs=0.01)
@@ -83,15 +83,15 @@ def test_odometry_is_of_the_middle_of_the_rear_axle():
     x, y, yaw = *base.position[:2], base.rpy[2]
     # from the middle of the car to that of its rear axle, which began at -BASE/2
     axle = (x - BASE / 2 * math.cos(yaw) + BASE / 2, y - BASE / 2 * math.sin(yaw))
-    told = message.pose.pose.position
-    assert (told.x, told.y) == pytest.approx(axle, abs=0.03)
+    estimated = message.pose.pose.position
+    assert (estimated.x, estimated.y) == pytest.approx(axle, abs=0.03)
     assert message.twist.twist.linear.x == pytest.approx(0.5, rel=0.02)
     assert message.twist.twist.angular.z == pytest.approx(0.25, rel=0.02)
     assert message.header.frame_id == "car/odom" and message.child_frame_id == "car/base"
     assert len(odometry.messages) == len(tf.messages) == 100
 
 
-def test_limits_hold_speed_and_acceleration():
+def test_speed_and_acceleration_stay_within_their_limits():
     limits = "<max_acceleration>0.5</max_acceleration><max_velocity>0.3</max_velocity>"
     sim = simkit.load(world(car(plugin(limits))))
     drive(sim, 1.0, 0.0, 0.4)
@@ -100,11 +100,11 @@ def test_limits_hold_speed_and_acceleration():
     assert sim.joint("car::rl_joint").velocity * 0.1 == pytest.approx(0.3, abs=0.005)
 
 
-def test_steering_only_takes_an_angle():
+def test_steering_only_follows_an_angle():
     """Left and right follow from the angle of a wheel in the middle; the limit is 0.5 rad."""
     sim = simkit.load(world(car(only())))
-    for asked, angle in ((0.25, 0.25), (1.5, 0.5), (-0.3, -0.3)):
-        sim.publish("/model/car/steer_angle", {"data": asked})
+    for command, angle in ((0.25, 0.25), (1.5, 0.5), (-0.3, -0.3)):
+        sim.publish("/model/car/steer_angle", {"data": command})
         sim.run(1.0)
         assert angles(sim) == pytest.approx(ackermann(BASE / math.tan(angle)), abs=2e-3)
     assert "/model/car/odometry" not in sim.topics()
@@ -117,7 +117,7 @@ def test_steering_only_by_a_message_of_actuators(caplog):
     assert angles(sim) == pytest.approx(ackermann(BASE / math.tan(0.2)), abs=2e-3)
     sim.publish("/actuators", {"position": [9.0]})
     sim.run(0.1)
-    assert "none of number 1" in caplog.text
+    assert "it has no number 1" in caplog.text
 
 
 def test_sub_topics_and_topics():
@@ -137,7 +137,7 @@ def test_the_gain_is_a_live_parameter():
     assert angles(sim)[0] == pytest.approx(ackermann(BASE / math.tan(0.3))[0] * (1 - math.exp(-1)), rel=0.02)
 
 
-def test_what_is_wrong_is_told_at_once():
+def test_all_errors_are_reported_together():
     wrong = (
         plugin("<steering_limit>3</steering_limit>")
         .replace("fl_steering", "fl_stering")
@@ -150,7 +150,7 @@ def test_what_is_wrong_is_told_at_once():
         assert part in str(caught.value)
 
 
-def test_a_reset_brings_it_back():
+def test_a_reset_restores_the_initial_state():
     sim = simkit.load(world(car(plugin())))
     drive(sim, 0.5, 0.25, 0.5)
     here = sim.mj_data.qpos.tobytes()

@@ -13,7 +13,7 @@ A = "<joint_name>j_a</joint_name>"
 CMD = "/model/m/joint/j_a/cmd_force"
 
 
-def test_an_effort_holds_until_the_next_one() -> None:
+def test_an_effort_lasts_until_the_next_command() -> None:
     sim = load(rotor("a"), force(A))
     sim.step(100)
     assert sim.joint("m::j_a").velocity == 0.0
@@ -26,7 +26,7 @@ def test_an_effort_holds_until_the_next_one() -> None:
     assert sim.joint("m::j_a").velocity == pytest.approx(0.5 / INERTIA * 0.2, rel=1e-9)
 
 
-def test_the_effort_limit_bounds_it() -> None:
+def test_the_effort_is_limited() -> None:
     sim = load(rotor("a", limit="<limit><effort>0.2</effort></limit>"), force(A))
     sim.publish(CMD, {"data": -5.0})
     sim.step(100)
@@ -40,7 +40,7 @@ def test_a_slider_is_pushed_in_newtons() -> None:
     assert sim.joint("m::j_a").velocity == pytest.approx(0.3, rel=1e-9)
 
 
-def test_it_adds_to_what_came_before_it_and_gives_way_to_what_comes_after() -> None:
+def test_the_effort_adds_to_earlier_plugins_and_later_plugins_replace_it() -> None:
     hold = "<p_gain>0</p_gain><i_gain>0</i_gain><d_gain>0</d_gain><cmd_offset>0.3</cmd_offset>"
     ends = []
     for plugins in ((position(A + hold), force(A)), (force(A), position(A + hold)), (force(A), force(A))):
@@ -62,7 +62,7 @@ def test_only_the_first_axis_is_pushed() -> None:
     assert sim.joint("m::j_a").velocity == pytest.approx([0.25, 0.0], abs=1e-9)
 
 
-def test_what_cannot_be_used_is_told() -> None:
+def test_unusable_parameters_are_reported() -> None:
     sim = load(rotor("a"), rotor("b"), force(f"{A}<joint_name>j_b</joint_name>"))
     assert "'j_b' is not used" in codes(sim.diagnostics, "SK-PLUGIN-044")[0]
     sim.publish(CMD, {"data": math.inf})

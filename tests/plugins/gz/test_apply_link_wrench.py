@@ -42,7 +42,7 @@ def test_a_wrench_of_the_file_pushes_at_every_step_at_the_centre_of_mass(name: s
     assert np.linalg.norm(sim.link("two::body").linear_velocity) == 0.0
 
 
-def test_the_acceleration_read_includes_it() -> None:
+def test_the_measured_acceleration_includes_the_wrench() -> None:
     sim = simkit.load(world(PERSISTENT.format(name="one", kind="model", force="0 0 6", torque="0 0 0")))
     assert sim.link("one::body").linear_acceleration == pytest.approx((0, 0, 3))
     sim.run(0.2)
@@ -66,16 +66,16 @@ def test_persistent_messages_add_up_until_they_are_cleared() -> None:
     assert sim.link("one::body").linear_velocity[0] == pytest.approx(4 / 2 * 0.1, rel=1e-9)
 
 
-def test_other_pushes_last_their_one_step_beside_it() -> None:
+def test_other_wrenches_still_last_one_step() -> None:
     sim = simkit.load(world(PERSISTENT.format(name="one", kind="model", force="1 0 0", torque="0 0 0")))
     sim.link("one::body").apply_wrench((2.0, 0, 0))
     sim.step(10)
     assert sim.link("one::body").linear_velocity[0] == pytest.approx((10 * 1 + 2) / 2 * 0.001)
 
 
-def test_an_entity_that_comes_later_is_pushed_then() -> None:
-    wanted = PERSISTENT.format(name="late", kind="model", force="2 0 0", torque="0 0 0")
-    sim = simkit.load(world(wanted))
+def test_an_entity_that_is_spawned_later_is_pushed_from_then_on() -> None:
+    persistent = PERSISTENT.format(name="late", kind="model", force="2 0 0", torque="0 0 0")
+    sim = simkit.load(world(persistent))
     assert "SK-JOINT-013" in [d.code for d in sim.diagnostics]
     sim.run(0.1)
     sim.spawn(f'<sdf version="1.9">{BODY.format(name="late", x=5, link="body")}</sdf>')
@@ -88,7 +88,7 @@ def test_an_entity_that_comes_later_is_pushed_then() -> None:
     assert sim.link("late::body").linear_velocity[0] == pytest.approx(0.1, abs=0.002)
 
 
-def test_snapshots_and_reset_know_what_pushes() -> None:
+def test_snapshots_and_resets_restore_the_wrenches() -> None:
     sim = simkit.load(world())
     snapshot = sim.snapshot()
     sim.publish("/world/w/wrench/persistent", command("one", 2, force=(3, 0, 0)))
@@ -125,7 +125,7 @@ def test_topics_can_be_named() -> None:
     assert {"/push", "/lean", "/stop"} <= set(sim.topics())
 
 
-def test_an_entity_can_be_meant_by_its_id() -> None:
+def test_an_entity_can_be_given_by_its_id() -> None:
     sim = simkit.load(world())
     scene = sim.call("/world/w/scene/info")
     numbers = {e.entity.name: e.entity.id for e in scene.entities}
@@ -136,7 +136,7 @@ def test_an_entity_can_be_meant_by_its_id() -> None:
     assert sim.link("two::body").linear_velocity[0] == pytest.approx(10 / 2 * 0.001)
 
 
-def test_what_cannot_be_pushed_is_left_alone() -> None:
+def test_requests_for_missing_entities_are_ignored() -> None:
     sim = simkit.load(world())
     sim.publish("/world/w/wrench", command("two::body", 3, force=(float("nan"), 0, 0)))
     sim.publish("/world/w/wrench/persistent", command("two::body", 3, torque=(float("inf"), 0, 0)))
@@ -147,7 +147,7 @@ def test_what_cannot_be_pushed_is_left_alone() -> None:
     assert [d.code for d in sim.diagnostics] == ["SK-PLUGIN-041"]
 
 
-def test_a_name_may_begin_with_the_worlds() -> None:
+def test_a_name_may_begin_with_the_name_of_the_world() -> None:
     sim = simkit.load(world())
     sim.publish("/world/w/wrench", command("w::two", 2, force=(10, 0, 0)))
     sim.step()

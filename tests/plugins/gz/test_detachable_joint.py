@@ -1,4 +1,4 @@
-"""A joint that lets go and takes hold again."""
+"""Detachable joint of Gazebo: detach and attach."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def crane(parameters: str = "", with_load: bool = True) -> str:
     return f'<sdf version="1.9"><world name="w">{tower}{load}</world></sdf>'
 
 
-def test_the_load_hangs_still_until_it_is_let_go() -> None:
+def test_the_load_hangs_until_it_is_detached() -> None:
     sim = simkit.load(crane())
     load = sim.model("load")
     before = load.pose
@@ -44,7 +44,7 @@ def test_the_load_hangs_still_until_it_is_let_go() -> None:
     assert before.position[2] - load.pose.position[2] == pytest.approx(G / 8, rel=5e-3)
 
 
-def test_taken_hold_of_again_it_stays_where_it_is_then() -> None:
+def test_a_reattached_load_keeps_its_pose_of_that_moment() -> None:
     sim = simkit.load(crane())
     sim.run(0.01)
     sim.publish("/model/crane/detachable_joint/detach", {})
@@ -59,19 +59,19 @@ def test_taken_hold_of_again_it_stays_where_it_is_then() -> None:
     assert float(held.position[2]) < 3.6
 
 
-def test_each_change_is_told() -> None:
+def test_each_change_is_published() -> None:
     sim = simkit.load(crane("<output_topic>/crane/state</output_topic>"))
-    said = sim.subscribe("/crane/state")
+    states = sim.subscribe("/crane/state")
     sim.run(0.1)
     sim.publish("/model/crane/detachable_joint/detach", {})
     sim.publish("/model/crane/detachable_joint/detach", {})
     sim.run(0.1)
     sim.publish("/model/crane/detachable_joint/attach", {})
     sim.run(0.1)
-    assert [m.data for m in said.messages] == ["attached", "detached", "attached"]
+    assert [m.data for m in states.messages] == ["attached", "detached", "attached"]
 
 
-def test_it_can_begin_detached_and_have_its_own_topics() -> None:
+def test_it_can_start_detached_and_use_other_topics() -> None:
     names = "<attach_topic>/grab</attach_topic><detach_topic>/drop</detach_topic>"
     sim = simkit.load(crane(f"<initial_attach>false</initial_attach>{names}"))
     load = sim.model("load")
@@ -88,7 +88,7 @@ def test_it_can_begin_detached_and_have_its_own_topics() -> None:
     assert "/model/load/detachable_joint/state" in sim.topics()
 
 
-def test_a_child_that_is_not_there_is_waited_for() -> None:
+def test_a_missing_child_is_attached_when_it_is_spawned() -> None:
     sim = simkit.load(crane(with_load=False))
     assert "SK-JOINT-013" in [d.code for d in sim.diagnostics]
     quiet = simkit.load(crane("<suppress_child_warning>true</suppress_child_warning>", with_load=False))
@@ -102,7 +102,7 @@ def test_a_child_that_is_not_there_is_waited_for() -> None:
     assert load.pose.position[2] < 3.7
 
 
-def test_a_child_that_is_removed_is_taken_hold_of_when_it_comes_back_and_is_asked_for() -> None:
+def test_a_removed_child_can_be_attached_again_after_it_is_spawned_again() -> None:
     sim = simkit.load(crane())
     sim.run(0.1)
     sim.remove("load")
@@ -115,7 +115,7 @@ def test_a_child_that_is_removed_is_taken_hold_of_when_it_comes_back_and_is_aske
     assert load.pose.position[2] == pytest.approx(held, abs=2e-3)
 
 
-def test_reset_and_restore_know_what_is_held() -> None:
+def test_reset_and_restore_include_the_attachment() -> None:
     sim = simkit.load(crane())
     load = sim.model("load")
     sim.run(0.1)
@@ -147,13 +147,13 @@ def test_a_link_of_the_same_model_can_be_the_child() -> None:
     assert sim.link("crane::tool").pose.position[2] < 4.0
 
 
-def test_a_parent_link_that_is_not_there_is_an_error() -> None:
+def test_a_missing_parent_link_is_an_error() -> None:
     with pytest.raises(simkit.LoadError, match="SK-PLUGIN-003"):
         simkit.load(crane().replace("<parent_link>body", "<parent_link>boddy"))
 
 
 @pytest.mark.parametrize("element", ["parent_link", "child_model", "child_link"])
-def test_names_with_nothing_in_them_are_errors(element: str) -> None:
+def test_empty_names_are_errors(element: str) -> None:
     text = re.sub(f"<{element}>.*?</{element}>", f"<{element}></{element}>", crane())
     with pytest.raises(LoadError):
         simkit.load(text)

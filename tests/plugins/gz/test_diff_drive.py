@@ -1,4 +1,4 @@
-"""gz's differential drive, driven on the ground."""
+"""Differential drive of Gazebo on the ground."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from plugin_worlds import GROUND, gz_drive, rover, stamps, world, xyz, yaw
 import simkit
 
 
-def opened(step: float = 0.001, **values: object) -> simkit.Simulation:
+def load(step: float = 0.001, **values: object) -> simkit.Simulation:
     return simkit.load(world(GROUND, rover(gz_drive(**values)), step=step))
 
 
-def test_its_topics_are_gazebos() -> None:
-    with opened() as sim:
+def test_the_default_topics_are_those_of_gazebo() -> None:
+    with load() as sim:
         topics = sim.topics()
     assert topics["/model/rover/cmd_vel"] == "geometry_msgs/msg/Twist"
     assert topics["/model/rover/enable"] == "std_msgs/msg/Bool"
@@ -26,39 +26,39 @@ def test_its_topics_are_gazebos() -> None:
 
 
 def test_topics_and_frames_can_be_named() -> None:
-    with opened(topic="cmd_vel", odom_topic="odom", tf_topic="/tf", frame_id="odom", child_frame_id="base") as sim:
+    with load(topic="cmd_vel", odom_topic="odom", tf_topic="/tf", frame_id="odom", child_frame_id="base") as sim:
         assert {"/cmd_vel", "/odom", "/tf"} <= set(sim.topics())
         odometry = sim.subscribe("/odom")
         sim.run(0.1)
     assert (odometry.latest.header.frame_id, odometry.latest.child_frame_id) == ("odom", "base")
 
 
-def test_frames_are_the_models_and_its_first_links_by_default() -> None:
-    with opened() as sim:
+def test_the_default_frames_are_those_of_the_model_and_its_first_link() -> None:
+    with load() as sim:
         odometry = sim.subscribe("/model/rover/odometry")
         sim.run(0.1)
     assert (odometry.latest.header.frame_id, odometry.latest.child_frame_id) == ("rover/odom", "rover/base")
 
 
-def test_odometry_comes_at_fifty_hertz_from_the_first_twenty_milliseconds_on() -> None:
-    with opened() as sim:
+def test_odometry_is_published_at_fifty_hertz_after_the_first_twenty_milliseconds() -> None:
+    with load() as sim:
         odometry = sim.subscribe("/model/rover/odometry")
         sim.run(0.2)
     np.testing.assert_array_equal(stamps(odometry.messages), np.arange(1, 11) * 20_000_000)
 
 
 def test_a_frequency_of_zero_is_every_step_and_a_negative_one_an_error() -> None:
-    with opened(odom_publish_frequency=0) as sim:
+    with load(odom_publish_frequency=0) as sim:
         odometry = sim.subscribe("/model/rover/odometry")
         sim.run(0.05)
     np.testing.assert_array_equal(stamps(odometry.messages), np.arange(1, 51) * 1_000_000)
     with pytest.raises(simkit.LoadError, match="SK-PARAM-002.*odom_publish_frequency"):
-        opened(odom_publish_frequency=-1)
+        load(odom_publish_frequency=-1)
 
 
 def test_the_twist_is_the_mean_over_the_last_ten_steps() -> None:
-    """Under 1 m/s² the wheels' speed 4.5 steps ago."""
-    with opened(max_acceleration=1, min_acceleration=-1) as sim:
+    """At 1 m/s² the twist is the wheel speed of 4.5 steps before."""
+    with load(max_acceleration=1, min_acceleration=-1) as sim:
         odometry = sim.subscribe("/model/rover/odometry")
         sim.run(0.2)
         sim.publish("/model/rover/cmd_vel", {"linear": {"x": 2.0}, "angular": {"z": 0.5}})
@@ -72,11 +72,11 @@ def test_the_twist_is_the_mean_over_the_last_ten_steps() -> None:
     assert twist.angular.z == pytest.approx((right - left) / 0.4, abs=1e-9)
 
 
-def test_odometry_told_once_a_second_has_gone_round_every_bend() -> None:
-    """Straight on for 0.5 s, then a turn: not one arc."""
+def test_odometry_at_one_hertz_integrates_every_step() -> None:
+    """The path is straight for 0.5 s and then a turn; one arc would be wrong."""
     ends = []
     for frequency in (1, 50):
-        with opened(odom_publish_frequency=frequency) as sim:
+        with load(odom_publish_frequency=frequency) as sim:
             odometry = sim.subscribe("/model/rover/odometry")
             sim.publish("/model/rover/cmd_vel", {"linear": {"x": 0.4}})
             sim.run(0.5)
@@ -88,10 +88,10 @@ def test_odometry_told_once_a_second_has_gone_round_every_bend() -> None:
 
 
 @pytest.mark.parametrize("quantity", ["velocity", "acceleration", "jerk"])
-def test_each_limit_bounds_both_directions_or_one(quantity: str) -> None:
-    """The wheels' speeds are those of the limited command, forwards and round, backwards too."""
+def test_limits_apply_to_one_speed_or_to_both(quantity: str) -> None:
+    """The wheel speeds match the limited command, forwards, backwards and turning."""
     bounds = {f"max_{quantity}": 0.4, f"min_{quantity}": -0.4, f"max_angular_{quantity}": 0.8}
-    with opened(**bounds, **{f"min_angular_{quantity}": -0.8}) as sim:
+    with load(**bounds, **{f"min_angular_{quantity}": -0.8}) as sim:
         sim.publish("/model/rover/cmd_vel", {"linear": {"x": -9.0}, "angular": {"z": -9.0}})
         sim.run(1.0)
         left, right = (0.1 * float(sim.joint(f"rover::{side}_wheel").velocity) for side in ("left", "right"))
@@ -101,9 +101,9 @@ def test_each_limit_bounds_both_directions_or_one(quantity: str) -> None:
     assert (right - left) / 0.4 == pytest.approx(-0.8 * reached, abs=0.02)
 
 
-def test_limits_on_speed_and_acceleration_hold() -> None:
-    """0.4 m/s at 1 m/s² for 2 s is 0.72 m."""
-    with opened(max_linear_acceleration=1, max_linear_velocity=0.4) as sim:
+def test_limits_of_speed_and_acceleration_are_kept() -> None:
+    """A run of 2 s at 0.4 m/s with 1 m/s² covers 0.72 m."""
+    with load(max_linear_acceleration=1, max_linear_velocity=0.4) as sim:
         sim.run(0.5)
         start = sim.model("rover").pose.position
         sim.publish("/model/rover/cmd_vel", {"linear": {"x": 9.0}})
@@ -113,7 +113,7 @@ def test_limits_on_speed_and_acceleration_hold() -> None:
 
 
 def test_odometry_follows_the_wheels_along_an_arc() -> None:
-    with opened(max_acceleration=2, min_acceleration=-2) as sim:
+    with load(max_acceleration=2, min_acceleration=-2) as sim:
         odometry = sim.subscribe("/model/rover/odometry")
         sim.run(0.5)
         start = sim.model("rover").pose
@@ -126,8 +126,8 @@ def test_odometry_follows_the_wheels_along_an_arc() -> None:
     assert message.twist.twist.linear.x == pytest.approx(0.3, abs=5e-3)
 
 
-def test_disabled_it_stops_and_takes_no_command_until_enabled() -> None:
-    with opened() as sim:
+def test_a_disabled_drive_stops_and_ignores_commands() -> None:
+    with load() as sim:
 
         def speed_after(topic: str, message: dict[str, object]) -> float:
             sim.publish(f"/model/rover/{topic}", message)
@@ -141,8 +141,8 @@ def test_disabled_it_stops_and_takes_no_command_until_enabled() -> None:
         assert speed_after("cmd_vel", {"linear": {"x": 0.2}}) == pytest.approx(2.0, abs=0.05)
 
 
-def test_ground_truth_goes_out_on_request() -> None:
-    with opened(publish_ground_truth="true") as sim:
+def test_ground_truth_is_published_on_request() -> None:
+    with load(publish_ground_truth="true") as sim:
         truth = sim.subscribe("/model/rover/ground_truth/odom")
         sim.publish("/model/rover/cmd_vel", {"linear": {"x": 0.2}})
         sim.run(1.0)
@@ -151,7 +151,7 @@ def test_ground_truth_goes_out_on_request() -> None:
 
 def test_a_missing_side_is_an_error() -> None:
     with pytest.raises(simkit.LoadError, match="SK-PARAM-001.*right_joint"):
-        opened(right_joint=None)
+        load(right_joint=None)
 
 
 def test_a_drive_on_the_world_is_left_out_with_a_warning() -> None:
@@ -159,7 +159,7 @@ def test_a_drive_on_the_world_is_left_out_with_a_warning() -> None:
         assert "SK-PLUGIN-007" in [d.code for d in sim.diagnostics]
 
 
-def test_a_command_beyond_all_bounds_stops_no_other_robot() -> None:
+def test_an_infinite_command_does_not_stop_other_robots() -> None:
     other = "/model/other/cmd_vel"
     robots = [rover(gz_drive()), rover(gz_drive()).replace("name='rover'", "name='other'")]
     with simkit.load(world(GROUND, robots[0], robots[1])) as sim:

@@ -1,4 +1,4 @@
-"""A robot that is sent to a pose."""
+"""Pose controller of Gazebo for drives."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def target(x: float, y: float, yaw: float) -> Any:
     return simkit.msgs.make("geometry_msgs/msg/PoseArray", poses=[pose])
 
 
-def test_it_turns_drives_turns_and_tells_that_it_is_there() -> None:
+def test_it_turns_drives_turns_and_publishes_the_reached_pose() -> None:
     sim = load()
     reached, speeds = sim.subscribe(REACHED), sim.subscribe(SPEED, keep=20000)
     sim.run(0.1)
@@ -37,11 +37,11 @@ def test_it_turns_drives_turns_and_tells_that_it_is_there() -> None:
     sim.publish(CMD, target(1.0, 1.0, 3.0))
     assert sim.run_until(lambda s: bool(reached.messages), 20.0)
     x, y, _ = sim.model("rover").pose.position.tolist()
-    assert math.hypot(1 - x, 1 - y) < 0.1 + 0.02  # the robot is told where it is at 50 Hz
+    assert math.hypot(1 - x, 1 - y) < 0.1 + 0.02  # the pose is published at 50 Hz
     assert sim.model("rover").pose.rpy[2] == pytest.approx(3.0, abs=0.05 + 0.01)
-    told = reached.messages[0]
-    assert (told.position.x, told.position.y) == pytest.approx((x, y), abs=0.01)
-    # one of the two at a time, at the gains: 2 rad/s a radian and 1 m/s a metre
+    pose = reached.messages[0]
+    assert (pose.position.x, pose.position.y) == pytest.approx((x, y), abs=0.01)
+    # only one speed at a time, by the gains: 2 rad/s per radian and 1 m/s per metre
     first = speeds.messages[0]
     assert (first.linear.x, first.angular.z) == pytest.approx((0, 2 * math.pi / 4), abs=1e-3)
     assert not any(m.linear.x and m.angular.z for m in speeds.messages)
@@ -62,11 +62,11 @@ def test_the_gains_and_tolerances_are_those_of_the_file_and_can_be_changed() -> 
     assert speeds.messages[0].linear.x == pytest.approx(1.0, abs=1e-3)
     reached = sim.subscribe(REACHED)
     assert sim.run_until(lambda s: bool(reached.messages), 20.0)
-    # its yaw is within the tolerance as it is: it stops 0.3 m short
+    # the yaw is within the tolerance already, and the robot stops 0.3 m before the target
     assert reached.messages[0].position.x == pytest.approx(1.7, abs=0.02)
 
 
-def test_a_pose_behind_the_seam_of_angles_is_reached_the_short_way() -> None:
+def test_a_heading_beyond_half_a_turn_is_reached_in_the_shorter_direction() -> None:
     sim = load(pose="0 0 0 0 0 3.0")
     speeds = sim.subscribe(SPEED, keep=20000)
     sim.run(0.1)
@@ -75,7 +75,7 @@ def test_a_pose_behind_the_seam_of_angles_is_reached_the_short_way() -> None:
     assert speeds.messages[0].angular.z == pytest.approx(2 * (2 * math.pi - 6), abs=0.01)
 
 
-def test_other_messages_of_a_pose_are_understood_and_what_holds_none_is_left_out() -> None:
+def test_other_pose_messages_are_accepted_and_empty_ones_ignored() -> None:
     for message in (
         simkit.msgs.make("geometry_msgs/msg/PoseStamped", pose={"position": {"x": 1.0}}),
         simkit.msgs.make("geometry_msgs/msg/Pose", position={"x": 1.0}),
@@ -93,18 +93,18 @@ def test_other_messages_of_a_pose_are_understood_and_what_holds_none_is_left_out
     assert [d.code for d in sim.diagnostics].count("SK-PLUGIN-041") == 2
 
 
-def test_what_is_missing_on_either_side_is_said_once() -> None:
+def test_missing_publishers_and_subscribers_are_reported_once() -> None:
     sim = load(drive=" ", odometry="")
     for _ in range(2):
         sim.publish(CMD, target(1, 0, 0))
         sim.run(0.05)
-    said = [d.message for d in sim.diagnostics if d.code == "SK-PLUGIN-132"]
-    assert len(said) == 2
-    assert "/model/rover/pose" in said[0]
-    assert "/model/rover/cmd_vel" in said[1]
+    warnings = [d.message for d in sim.diagnostics if d.code == "SK-PLUGIN-132"]
+    assert len(warnings) == 2
+    assert "/model/rover/pose" in warnings[0]
+    assert "/model/rover/cmd_vel" in warnings[1]
 
 
-def test_reset_and_restore_know_where_it_goes() -> None:
+def test_reset_and_restore_include_the_target() -> None:
     sim = load()
     sim.run(0.1)
     sim.publish(CMD, target(1.0, 0.5, 0.0))

@@ -1,4 +1,4 @@
-"""gz's elevator: floors, doors, queues and doorways."""
+"""Elevator of Gazebo: floors, doors, queues and doorways."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def load(parameters: str = "", **options: object) -> simkit.Simulation:
 
 
 def stops(sim: simkit.Simulation, seconds: float) -> list[int]:
-    """The floors at which a door opens, in order."""
+    """Return the floors at which a door opens, in order."""
     found: list[int] = []
     joints = [sim.joint(f"lift_1::door_{k}") for k in range(len(HEIGHTS))]
     for _ in range(round(seconds / 0.1)):
@@ -37,11 +37,11 @@ def test_the_cabin_goes_to_the_floor_and_its_door_opens_waits_and_closes() -> No
     sim.run(0.05)
     sim.publish(CMD, {"data": 1})
     sim.run(1.5)
-    assert lift.position == pytest.approx(1.5, abs=0.01)  # at 1 m/s, as its controller is told
+    assert lift.position == pytest.approx(1.5, abs=0.01)  # at 1 m/s, the limit of its controller
     assert door.position == pytest.approx(0, abs=1e-6)
     sim.run(1.7)
     assert lift.position == pytest.approx(3.0, abs=1e-6)
-    # 3.05 s + 0.8 m at 0.5 m/s, then 2 s of waiting, each end seen on a grid of 10 Hz
+    # 3.05 s + 0.8 m at 0.5 m/s, then a wait of 2 s; each end is detected at 10 Hz
     sim.run(1.7)
     assert door.position == pytest.approx(0.8, abs=1e-3)
     sim.run(1.5)
@@ -51,7 +51,7 @@ def test_the_cabin_goes_to_the_floor_and_its_door_opens_waits_and_closes() -> No
     assert lift.position == pytest.approx(3.0, abs=1e-6)
 
 
-def test_told_the_floor_where_it_is_it_opens_the_door_there() -> None:
+def test_a_command_to_the_current_floor_opens_the_door() -> None:
     sim = load()
     sim.publish(CMD, {"data": 0})
     sim.run(2.5)
@@ -59,21 +59,21 @@ def test_told_the_floor_where_it_is_it_opens_the_door_there() -> None:
     assert sim.joint("lift_1::lift").position == pytest.approx(0, abs=1e-6)
 
 
-def test_the_floor_next_to_the_cabin_is_told() -> None:
+def test_the_floor_nearest_to_the_cabin_is_published() -> None:
     sim = load()
-    told = sim.subscribe(STATE)
+    states = sim.subscribe(STATE)
     sim.publish(CMD, {"data": 2})
     sim.run(7.0)
-    said = [m.data for m in told.messages]
-    assert len(said) == pytest.approx(35, abs=1)  # 5 Hz
-    assert said[0] == 0
-    assert said[-1] == 2
-    changes = [(k * 0.2, b) for k, (a, b) in enumerate(pairwise(said), 2) if a != b]
+    floors = [m.data for m in states.messages]
+    assert len(floors) == pytest.approx(35, abs=1)  # 5 Hz
+    assert floors[0] == 0
+    assert floors[-1] == 2
+    changes = [(k * 0.2, b) for k, (a, b) in enumerate(pairwise(floors), 2) if a != b]
     # half way between the floors, at 1 m/s
     assert [(round(t, 1), floor) for t, floor in changes] == [(1.6, 1), (4.2, 2)]
 
 
-def test_floors_on_the_way_are_stopped_at_first() -> None:
+def test_floors_on_the_way_are_served_first() -> None:
     sim = load("<open_door_wait_duration>0.5</open_door_wait_duration>")
     for floor in (0, 2, 1):  # the last two come while the first door is open
         sim.publish(CMD, {"data": floor})
@@ -81,7 +81,7 @@ def test_floors_on_the_way_are_stopped_at_first() -> None:
     assert stops(sim, 25.0) == [0, 1, 2]
 
 
-def test_what_is_told_twice_is_gone_to_once_and_what_is_no_floor_never() -> None:
+def test_repeated_commands_add_one_stop_and_invalid_floors_none() -> None:
     sim = load("<open_door_wait_duration>0.5</open_door_wait_duration>")
     for floor in (1, 2, 2, 3, -1):
         sim.publish(CMD, {"data": floor})
@@ -90,7 +90,7 @@ def test_what_is_told_twice_is_gone_to_once_and_what_is_no_floor_never() -> None
     assert [("floor 3" in m, "0 to 2" in m) for m in left_out] == [(True, True), (False, True)]
 
 
-def test_a_blocked_doorway_keeps_the_door_open_and_the_wait_begins_anew() -> None:
+def test_a_blocked_doorway_keeps_the_door_open_and_restarts_the_wait() -> None:
     text = world(shaft(elevator("<open_door_wait_duration>1</open_door_wait_duration>"), lidar=True), PILLAR)
     sim = simkit.load(text)
     door = sim.joint("lift_1::door_0")
@@ -105,7 +105,7 @@ def test_a_blocked_doorway_keeps_the_door_open_and_the_wait_begins_anew() -> Non
     assert door.position == pytest.approx(0.0, abs=1e-3)
 
 
-def test_it_does_the_same_after_a_reset_and_after_a_restore() -> None:
+def test_runs_after_a_reset_and_a_restore_are_identical() -> None:
     sim = load("<open_door_wait_duration>0.5</open_door_wait_duration>")
 
     def ride() -> list[float]:
@@ -132,14 +132,14 @@ def test_it_does_the_same_after_a_reset_and_after_a_restore() -> None:
     assert sim.joint("lift_1::door_1").position == after
 
 
-def test_at_rest_it_costs_nothing() -> None:
+def test_an_idle_elevator_needs_no_callback() -> None:
     sim = load()
     plugin = next(p for p in sim.engine.structure.all_plugins() if type(p).__name__ == "Elevator")
     sim.run(0.1)
     assert plugin.after_step_rate == pytest.approx(1e-9)
 
 
-def test_two_elevators_that_are_spawned_go_by_themselves() -> None:
+def test_two_spawned_elevators_move_independently() -> None:
     sim = simkit.load(world(step=0.01))
     for name, y in (("lift_a", 0), ("lift_b", 5)):
         sim.spawn(f"<sdf version='1.9'>{shaft(elevator(), name=name, pose=f'0 {y} 1 0 0 0.5')}</sdf>")
@@ -149,7 +149,7 @@ def test_two_elevators_that_are_spawned_go_by_themselves() -> None:
     assert sim.joint("lift_b::lift").position == pytest.approx(3, abs=1e-6)
 
 
-def test_what_is_missing_is_said_in_one_pass() -> None:
+def test_all_missing_parts_are_reported_together() -> None:
     wrong = "<floor_link_prefix>storey_</floor_link_prefix><cabin_joint>lfit</cabin_joint><update_rate>-1</update_rate>"
     with pytest.raises(simkit.InputError) as caught:
         load(wrong)
@@ -159,12 +159,14 @@ def test_what_is_missing_is_said_in_one_pass() -> None:
     assert "update_rate" in text
 
 
-def test_a_joint_that_nobody_moves_is_told() -> None:
+def test_a_joint_without_a_controller_is_reported() -> None:
     model = shaft(elevator()).replace("JointPositionController", "X").replace("joint-position-controller", "x")
     sim = simkit.load(world(model, step=0.01))
     sim.publish(CMD, {"data": 1})
     sim.run(0.1)
-    assert any("nobody takes positions" in d.message for d in sim.diagnostics if d.code == "SK-PLUGIN-132")
+    assert any(
+        "no plugin subscribes to the positions" in d.message for d in sim.diagnostics if d.code == "SK-PLUGIN-132"
+    )
 
 
 def test_a_nested_model_with_floors_of_the_same_names_adds_none() -> None:

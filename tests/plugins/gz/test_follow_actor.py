@@ -1,4 +1,4 @@
-"""An actor that walks after something."""
+"""Actor that follows a model."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ def target(pose: str = "3 4 0.5 0 0 0", more: str = "<static>true</static>") -> 
       <collision name="c"><geometry><box><size>0.5 0.5 1</size></box></geometry></collision></link></model>"""
 
 
-def walker(parameters: str = "", inside: str = "", name: str = "anna", wanted: str = "red_box") -> str:
+def walker(parameters: str = "", inside: str = "", name: str = "anna", followed: str = "red_box") -> str:
     return f"""<actor name="{name}"><pose>0 0 0 0 0 0.3</pose>{inside}<plugin filename="gz-sim-follow-actor-system"
-      name="gz::sim::systems::FollowActor"><target>{wanted}</target><max_distance>8</max_distance>{parameters}</plugin>
+      name="gz::sim::systems::FollowActor"><target>{followed}</target><max_distance>8</max_distance>{parameters}</plugin>
       </actor>"""
 
 
@@ -36,7 +36,7 @@ def at(sim: simkit.Simulation, name: str = "anna") -> tuple[float, float]:
     return x, y
 
 
-def test_it_walks_straight_to_the_least_distance_at_its_speed() -> None:
+def test_it_walks_straight_to_the_minimum_distance_at_its_speed() -> None:
     sim = load(target(), walker("<velocity>1</velocity><min_distance>1</min_distance>"))
     assert sim.model("anna").pose.rpy[2] == pytest.approx(0.3)
     for seconds in (0.5, 0.713, 1.0):
@@ -47,7 +47,7 @@ def test_it_walks_straight_to_the_least_distance_at_its_speed() -> None:
     assert at(sim) == pytest.approx((0.6 * 4, 0.8 * 4), abs=1e-9)  # 5 m less 1 m
 
 
-def test_a_target_that_is_too_far_or_near_enough_is_looked_at_and_not_gone_to() -> None:
+def test_a_target_outside_the_distance_range_is_not_followed() -> None:
     sim = load(target("20 0 0.5 0 0 0"), walker())
     sim.run(1.0)
     assert at(sim) == (0, 0)
@@ -56,14 +56,14 @@ def test_a_target_that_is_too_far_or_near_enough_is_looked_at_and_not_gone_to() 
     assert at(sim) == (0, 0)
 
 
-def test_it_follows_a_target_that_goes_on_and_stops_where_that_is_gone() -> None:
+def test_it_follows_a_moving_target_and_stops_when_the_target_is_removed() -> None:
     sim = load(target("2 0 0.5 0 0 0", ""), walker("<velocity>2</velocity>"))
     box = sim.model("red_box")
     for k in range(40):
         box.set_pose(simkit.Pose((2 + 0.1 * k, 0.05 * k, 0.5)))
         sim.run(0.1)
     x, y, _ = (box.pose.position - sim.model("anna").pose.position).tolist()
-    assert math.hypot(x, y) == pytest.approx(1.2, abs=0.12)  # less a tenth of a second of its way
+    assert math.hypot(x, y) == pytest.approx(1.2, abs=0.12)  # minus the distance of a tenth of a second
     place = at(sim)
     sim.remove("red_box")
     sim.run(1.0)
@@ -73,7 +73,7 @@ def test_it_follows_a_target_that_goes_on_and_stops_where_that_is_gone() -> None
     assert at(sim)[0] < place[0] - 1.0
 
 
-def test_a_person_walks_without_sliding_and_stands_with_both_feet_on_the_ground() -> None:
+def test_a_figure_walks_without_sliding_and_stands_with_both_feet_on_the_ground() -> None:
     sim = load(target("7 0 0.5 0 0 0"), walker("<velocity>1.2</velocity>"))
     rests, before = [], None
     for _ in range(60):
@@ -89,7 +89,7 @@ def test_a_person_walks_without_sliding_and_stands_with_both_feet_on_the_ground(
     assert heights[0] == pytest.approx(heights[1], abs=1e-9)
 
 
-def test_a_skin_goes_on_by_the_way(tmp_path: Path) -> None:
+def test_the_animation_of_a_skin_advances_with_the_distance(tmp_path: Path) -> None:
     (tmp_path / "w.dae").write_text(skinned_dae(hip_height=1.0))
     inside = """<skin><filename>w.dae</filename></skin><animation name="walk"><filename>w.dae</filename></animation>"""
     start = f'<sdf version="1.9"><world name="w">{GROUND}{target("7 0 0.5 0 0 0")}'
@@ -102,10 +102,12 @@ def test_a_skin_goes_on_by_the_way(tmp_path: Path) -> None:
         sim.run(7.0)
         swing = float(sim.model("anna").link("leg").pose.rpy[1])
         sim.run(0.5)
-        assert sim.model("anna").link("leg").pose.rpy[1] == pytest.approx(swing, abs=1e-12)  # it stands in its step
+        assert sim.model("anna").link("leg").pose.rpy[1] == pytest.approx(
+            swing, abs=1e-12
+        )  # the animation stops when the actor stops
 
 
-def test_who_looks_changes_nothing_and_reset_and_restore_bring_it_back() -> None:
+def test_sensors_do_not_change_the_walk_and_reset_and_restore_repeat_it() -> None:
     eye = """<model name="post"><static>true</static><pose>2 -3 1 0 0 1.57</pose><link name="link"><sensor name="eye"
       type="lidar"><update_rate>33</update_rate><topic>scan</topic><lidar><scan><horizontal><samples>5</samples>
       <min_angle>-0.5</min_angle><max_angle>0.5</max_angle></horizontal></scan><range><min>0.1</min><max>10</max></range>
@@ -128,18 +130,18 @@ def test_who_looks_changes_nothing_and_reset_and_restore_bring_it_back() -> None
     assert at(plain) == end
 
 
-def test_its_script_is_not_followed_and_others_walk_by_theirs() -> None:
+def test_its_script_is_ignored_and_other_actors_follow_theirs() -> None:
     way = """<script><trajectory id="0" type="walk"><waypoint><time>0</time><pose>-9 0 0 0 0 0</pose></waypoint>
       <waypoint><time>4</time><pose>9 0 0 0 0 0</pose></waypoint></trajectory></script>"""
-    sim = load(target(), walker(inside=way), f'<actor name="bob">{way}</actor>', walker(name="carl", wanted="bob"))
+    sim = load(target(), walker(inside=way), f'<actor name="bob">{way}</actor>', walker(name="carl", followed="bob"))
     assert at(sim) == (0, 0)
     assert at(sim, "bob")[0] == pytest.approx(-9)
     sim.run(2.0)
     assert at(sim, "bob")[0] == pytest.approx(0, abs=1e-6)
 
 
-def test_what_is_wrong_is_said() -> None:
-    missing = load(walker(wanted="red_bx"), target())
+def test_errors_are_reported() -> None:
+    missing = load(walker(followed="red_bx"), target())
     found = {d.code: d for d in missing.diagnostics}
     assert "red_box" in found["SK-PLUGIN-136"].hint
     assert "SK-PLUGIN-135" in [d.code for d in load(target(), walker("<min_distance>9</min_distance>")).diagnostics]
@@ -150,6 +152,6 @@ def test_what_is_wrong_is_said() -> None:
         load(target(), walker("<velocity>-1</velocity>"))
 
 
-def test_a_target_with_nothing_in_it_is_an_error() -> None:
+def test_an_empty_target_is_an_error() -> None:
     with pytest.raises(LoadError, match="found <target></target>, allowed is a name"):
-        load(walker(wanted=""))
+        load(walker(followed=""))

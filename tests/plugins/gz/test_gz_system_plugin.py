@@ -1,4 +1,4 @@
-"""Systems written the gz-sim way: the order of their hooks, their state, their place beside simkit's own plugins."""
+"""Systems for gz-sim: the order of their hooks, their state, and their order among simkit's plugins."""
 
 from __future__ import annotations
 
@@ -17,22 +17,22 @@ WORLD = """<sdf version="1.9"><world name="w"><gravity>0 0 0</gravity><model nam
   </world></sdf>"""
 
 
-class Diary:
-    """Writes down when it is called."""
+class CallLog:
+    """Log of hook calls."""
 
     def __init__(self, name: str, pages: list[str]) -> None:
         self.name, self.pages = name, pages
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> Diary:
+    def __deepcopy__(self, memo: dict[int, Any]) -> CallLog:
         return self
 
     def write(self, hook: str, info: Any) -> None:
         self.pages.append(f"{self.name} {hook} {info.iterations}")
 
 
-class Teller:
+class LoggingSystem:
     def __init__(self, name: str, pages: list[str]) -> None:
-        self.diary = Diary(name, pages)
+        self.diary = CallLog(name, pages)
 
     def pre_update(self, info: Any, ecm: Any) -> None:
         self.diary.write("pre", info)
@@ -44,9 +44,9 @@ class Teller:
         self.diary.write("post", info)
 
 
-class Native(simkit.WorldPlugin):
+class LoggingPlugin(simkit.WorldPlugin):
     def __init__(self, pages: list[str]) -> None:
-        self.diary = Diary("own", pages)
+        self.diary = CallLog("own", pages)
 
     def load(self, parent: Any, params: Any) -> None: ...
 
@@ -57,9 +57,13 @@ class Native(simkit.WorldPlugin):
         self.diary.pages.append("own after")
 
 
-def test_all_pre_updates_come_first_then_all_updates_then_the_physics_then_all_post_updates() -> None:
+def test_all_pre_updates_then_all_updates_then_the_physics_then_all_post_updates_run() -> None:
     pages: list[str] = []
-    plugins: list[Any] = [GzSystem(Teller("a", pages)), Native(pages), GzSystem(Teller("b", pages))]
+    plugins: list[Any] = [
+        GzSystem(LoggingSystem("a", pages)),
+        LoggingPlugin(pages),
+        GzSystem(LoggingSystem("b", pages)),
+    ]
     with simkit.load(WORLD, plugins=plugins) as sim:
         sim.step()
     assert pages == [
@@ -69,10 +73,10 @@ def test_all_pre_updates_come_first_then_all_updates_then_the_physics_then_all_p
 
 
 class Pusher:
-    """Pushes its body along x, harder each step."""
+    """System that pushes its body along x with a growing force."""
 
     def __init__(self) -> None:
-        self.steps, self.told = 0, [0]
+        self.steps, self.iterations = 0, [0]
 
     def configure(self, entity: int, sdf: Any, ecm: Any, events: Any) -> None:
         self.link = Link(Model(World(entity).model_by_name(ecm, "body")).link_by_name(ecm, "link"))
@@ -80,7 +84,7 @@ class Pusher:
 
     def pre_update(self, info: Any, ecm: Any) -> None:
         self.steps += 1
-        self.told.append(info.iterations)
+        self.iterations.append(info.iterations)
         velocity = self.link.world_linear_velocity(ecm)
         self.link.add_world_force(ecm, Vector3d(self.steps - 100 * velocity.x(), 0, 0))
 
@@ -93,16 +97,16 @@ def test_a_restored_run_repeats_bit_for_bit() -> None:
     pusher = Pusher()
     with simkit.load(WORLD, plugins=[GzSystem(pusher)]) as sim:
         sim.step(20)
-        kept, told = sim.snapshot(), list(pusher.told)
+        saved, iterations = sim.snapshot(), list(pusher.iterations)
         sim.step(30)
         first = state(sim)
-        sim.restore(kept)
-        assert pusher.told == told and pusher.steps == 20
+        sim.restore(saved)
+        assert pusher.iterations == iterations and pusher.steps == 20
         sim.step(30)
         assert state(sim) == first
 
 
-def test_a_reset_brings_back_what_configure_left_and_then_calls_reset() -> None:
+def test_a_reset_restores_the_state_after_configure_and_then_calls_reset() -> None:
     class WithReset(Pusher):
         def reset(self, info: Any, ecm: Any) -> None:
             self.resets = (getattr(self, "resets", 0) + 1, self.steps, info.iterations)
@@ -117,9 +121,9 @@ def test_a_reset_brings_back_what_configure_left_and_then_calls_reset() -> None:
         assert state(sim) == first
 
 
-def test_commands_that_wait_are_part_of_a_snapshot() -> None:
+def test_pending_commands_are_part_of_a_snapshot() -> None:
     class Late:
-        """Asks for a velocity after the physics, so that it waits for the next step."""
+        """System that sets a velocity after the physics, so that the command waits for the next step."""
 
         def post_update(self, info: Any, ecm: Any) -> None:
             if info.iterations == 5:
@@ -128,20 +132,20 @@ def test_commands_that_wait_are_part_of_a_snapshot() -> None:
 
     with simkit.load(WORLD, plugins=[GzSystem(Late())]) as sim:
         sim.step(5)
-        kept = sim.snapshot()
+        saved = sim.snapshot()
         sim.step()
         assert sim.link("body::link").linear_velocity[0] == pytest.approx(2)
-        sim.restore(kept)
+        sim.restore(saved)
         sim.step()
         assert sim.link("body::link").linear_velocity[0] == pytest.approx(2)
 
 
-def test_an_attribute_that_cannot_be_copied_is_told_once_and_the_others_are_kept() -> None:
+def test_an_attribute_that_cannot_be_copied_is_reported_once_and_the_others_are_saved() -> None:
     class Drawing(Pusher):
         def __init__(self) -> None:
             super().__init__()
             self.numbers = iter(x for x in range(10))
-            self.lock = threading.Lock()  # has nothing to bring back, and is not told of
+            self.lock = threading.Lock()  # has no state to restore, so no warning
 
     pusher = Drawing()
     with simkit.load(WORLD, plugins=[GzSystem(pusher)]) as sim:
@@ -152,7 +156,7 @@ def test_an_attribute_that_cannot_be_copied_is_told_once_and_the_others_are_kept
         assert "'numbers'" in found.message
 
 
-def test_entities_keep_their_numbers_while_models_come_and_go() -> None:
+def test_entities_keep_their_numbers_while_models_are_spawned_and_removed() -> None:
     numbers: list[dict[str, int]] = []
 
     class Counter:
@@ -175,7 +179,7 @@ def test_entities_keep_their_numbers_while_models_come_and_go() -> None:
     before, both, again, third = numbers
     assert before["body"] == both["body"] == again["body"] == 4
     assert both["second"] == again["second"] and both["first"] != again["first"]
-    assert third["third"] == both["first"]  # as if the others had never been
+    assert third["third"] == both["first"]  # the removed models leave no trace
 
 
 def test_a_system_in_a_spawned_model_is_called_from_then_on(tmp_path: Any) -> None:
@@ -200,7 +204,7 @@ def test_a_system_in_a_spawned_model_is_called_from_then_on(tmp_path: Any) -> No
         sim.step(5)
 
 
-def test_who_watches_changes_no_bit() -> None:
+def test_a_system_that_only_reads_changes_no_bit() -> None:
     class Watcher:
         def post_update(self, info: Any, ecm: Any) -> None:
             Link(5).enable_velocity_checks(ecm)

@@ -29,7 +29,7 @@ def two(content: str, **a: Any) -> simkit.Simulation:
 def test_a_velocity_is_reached_within_one_step_and_held() -> None:
     sim = two(f"{A}<initial_velocity>5</initial_velocity>")
     sim.step()
-    assert sim.joint("m::j_a").velocity == 0.0  # gz asks for the joint's state first
+    assert sim.joint("m::j_a").velocity == 0.0  # Gazebo creates the joint's state in the first step
     sim.step()
     assert sim.joint("m::j_a").velocity == pytest.approx(5.0, abs=1e-4)
     sim.publish(CMD, {"data": -2.0})
@@ -37,7 +37,7 @@ def test_a_velocity_is_reached_within_one_step_and_held() -> None:
     assert sim.joint("m::j_a").velocity == pytest.approx(-2.0, abs=1e-4)
 
 
-def test_an_effort_limit_makes_it_take_its_time() -> None:
+def test_with_an_effort_limit_the_velocity_is_reached_later() -> None:
     sim = two(f"{A}<initial_velocity>5</initial_velocity>", limit="<limit><effort>0.4</effort></limit>")
     sim.run(0.5)
     # I v' = τ - d v from rest
@@ -46,7 +46,7 @@ def test_an_effort_limit_makes_it_take_its_time() -> None:
     assert sim.joint("m::j_a").effort == pytest.approx(0.4)
 
 
-def test_a_velocity_limit_bounds_it() -> None:
+def test_the_velocity_is_limited() -> None:
     sim = two(f"{A}<initial_velocity>5</initial_velocity>", limit="<limit><velocity>3</velocity></limit>")
     sim.step(10)
     assert sim.joint("m::j_a").velocity == pytest.approx(3.0, abs=1e-4)
@@ -89,13 +89,13 @@ def test_an_actuator_message_commands_by_number() -> None:
     assert "has none for actuator 1" in codes(sim.diagnostics, "SK-PLUGIN-041")[0]
 
 
-def test_without_its_number_single_numbers_command_and_it_is_said() -> None:
+def test_without_an_actuator_number_float_messages_are_used_with_a_warning() -> None:
     sim = two(f"{A}<use_actuator_msg>true</use_actuator_msg>")
     assert len(codes(sim.diagnostics, "SK-PLUGIN-042")) == 1
     assert CMD in sim.topics()
 
 
-def test_a_command_that_is_no_number_is_left_out_and_said_once() -> None:
+def test_a_nan_command_is_ignored_and_reported_once() -> None:
     sim = two(f"{A}<initial_velocity>1</initial_velocity>")
     for _ in range(2):
         sim.publish(CMD, {"data": math.nan})
@@ -104,7 +104,7 @@ def test_a_command_that_is_no_number_is_left_out_and_said_once() -> None:
     assert len(codes(sim.diagnostics, "SK-PLUGIN-041")) == 1
 
 
-def test_by_force_a_pid_brings_it_there() -> None:
+def test_with_force_commands_a_pid_reaches_the_velocity() -> None:
     sim = two(f"{A}{FORCE}<p_gain>2</p_gain>")
     sim.publish(CMD, {"data": 4.0})
     sim.run(1.0)
@@ -148,7 +148,7 @@ def test_gains_are_live() -> None:
     assert sim.joint("m::j_a").velocity == pytest.approx(4.0 * 2.0 / 2.05, abs=1e-4)
 
 
-def test_wrong_names_are_told_all_at_once_with_the_closest() -> None:
+def test_wrong_names_are_reported_together_with_the_closest_ones() -> None:
     with pytest.raises(LoadError) as caught:
         two("<joint_name>j_aa</joint_name><joint_name>jb</joint_name><joint_name/>")
     found = [(d.message, d.hint) for d in caught.value.diagnostics if d.severity == "error"]
@@ -158,11 +158,11 @@ def test_wrong_names_are_told_all_at_once_with_the_closest() -> None:
     assert "empty <joint_name>" in found[2][0]
 
 
-# ---------------------------------------------------------------------- what holds a joint back
+# ---------------------------------------------------------------------- loads and obstacles
 
 
 def cart(slope: float, more: str = "", *, by_velocity: bool = True) -> simkit.Simulation:
-    """A cart of 10.4 kg on four round wheels of 0.1 m, whose own inertia is 1e-4 kg m², on a slope [rad]."""
+    """Return a cart of 10.4 kg on four wheels of radius 0.1 m and inertia 1e-4 kg m², on a slope [rad]."""
     parts = [
         "<link name='base'><pose>0 0 0.1 0 0 0</pose><inertial><mass>10</mass><inertia><ixx>1</ixx><iyy>1</iyy>"
         "<izz>1</izz></inertia></inertial></link>"
@@ -219,7 +219,7 @@ def test_joints_of_a_chain_under_controllers_of_their_own_do_not_disturb_each_ot
     assert [sim.joint(f"m::j_{n}").velocity for n in "ab"] == pytest.approx([2.0, 0.0], abs=1e-4)
 
 
-def test_a_reset_and_a_restore_repeat_it_bit_for_bit() -> None:
+def test_runs_after_a_reset_and_a_restore_are_equal_bit_for_bit() -> None:
     sim = cart(0.1)
 
     def drive() -> np.ndarray:
@@ -241,7 +241,7 @@ def spinner(name: str, speed: float) -> str:
     return f'<sdf version="1.9"><model name="{name}">{rotor("a")}{plugin}</model></sdf>'
 
 
-def test_models_come_and_go_and_the_others_keep_turning() -> None:
+def test_other_joints_keep_turning_while_models_are_spawned_and_removed() -> None:
     sim = two(f"{A}<initial_velocity>1</initial_velocity>")
     sim.step(5)
     for name, speed in (("n", 2.0), ("o", 3.0)):
@@ -265,7 +265,7 @@ def test_of_two_commands_to_one_joint_the_later_in_the_file_counts() -> None:
     assert sim.joint("m::j_a").velocity == pytest.approx(4.0, abs=1e-4)
 
 
-def test_it_is_the_same_in_another_process() -> None:
+def test_a_run_in_another_process_is_identical() -> None:
     script = (
         "import sys; sys.path[:0] = sys.argv[1:]\n"
         "from test_joint_controller import cart\n"
@@ -285,36 +285,36 @@ def test_it_is_the_same_in_another_process() -> None:
     assert len(seen) == 1
 
 
-# ---------------------------------------------------------------------- what it costs, and what it stands
+# ---------------------------------------------------------------------- cost and robustness
 
 
-def forwards(sim: simkit.Simulation, steps: int, monkeypatch: pytest.MonkeyPatch) -> float:
-    """How often a step asks the engine for a forward pass."""
-    asked = 0
+def forward_passes_per_step(sim: simkit.Simulation, steps: int, monkeypatch: pytest.MonkeyPatch) -> float:
+    """Return the number of forward passes per step."""
+    passes = 0
     fresh = Physics.fresh
 
     def counted(physics: Any) -> Any:
-        nonlocal asked
-        asked += physics.stage != FRESH
+        nonlocal passes
+        passes += physics.stage != FRESH
         return fresh(physics)
 
     with monkeypatch.context() as patched:
         patched.setattr(Physics, "fresh", counted)
         sim.step(steps)
-    return asked / steps
+    return passes / steps
 
 
-def test_in_steady_motion_a_step_asks_the_engine_once(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_in_steady_motion_a_step_needs_one_forward_pass(monkeypatch: pytest.MonkeyPatch) -> None:
     sim = two(f"{A}{B}<initial_velocity>2</initial_velocity>")
     sim.step(5)
-    assert forwards(sim, 50, monkeypatch) == 1.0
+    assert forward_passes_per_step(sim, 50, monkeypatch) == 1.0
     rolling = cart(0.1)
     rolling.publish("/wheels", {"data": 3.0})
     rolling.step(300)
-    assert forwards(rolling, 100, monkeypatch) < 2.0
+    assert forward_passes_per_step(rolling, 100, monkeypatch) < 2.0
 
 
-def test_joints_of_many_models_find_their_efforts_together(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_efforts_of_many_models_are_found_in_common_forward_passes(monkeypatch: pytest.MonkeyPatch) -> None:
     models = "".join(
         f"<model name='m{i}'>{rotor('a', damping=0.01 * (i % 3), inertia=0.1 + 0.01 * i)}{rotor('b', parent='a')}"
         f"{velocity(f'{A}<initial_velocity>{i}</initial_velocity>')}</model>"
@@ -324,11 +324,11 @@ def test_joints_of_many_models_find_their_efforts_together(monkeypatch: pytest.M
     sim.step(5)
     assert [sim.joint(f"m{i}::j_a").velocity for i in range(40)] == pytest.approx(range(40), abs=1e-4)
     assert sim.joint("m::j_a").velocity == pytest.approx(-1.0, abs=1e-4)
-    assert forwards(sim, 5, monkeypatch) <= 2.0
+    assert forward_passes_per_step(sim, 5, monkeypatch) <= 2.0
 
 
 @pytest.mark.parametrize("inertias", [(1e-12, 1.0), (1.0, 1e-12), (1e9, 1e-9), (1e-30, 1e-30)])
-def test_inertias_that_are_nothing_to_each_other_do_not_matter(inertias: tuple[float, float]) -> None:
+def test_very_different_inertias_do_not_matter(inertias: tuple[float, float]) -> None:
     arm = rotor("a", inertia=inertias[0]) + rotor("b", parent="a", inertia=inertias[1])
     sim = load(arm, velocity(f"{A}{B}<initial_velocity>2</initial_velocity>"))
     sim.step(20)
@@ -342,7 +342,7 @@ def test_a_joint_that_is_held_fast_stays_where_it_is() -> None:
     assert abs(sim.joint("m::j_a").position) < 1e-4
 
 
-def test_damping_that_is_set_while_it_runs_is_made_up_for() -> None:
+def test_damping_that_is_set_during_the_run_is_compensated() -> None:
     sim = load(rotor("a"), velocity(f"{A}<initial_velocity>2</initial_velocity>"), step=0.02)
     sim.step(5)
     sim.engine.touch("dof_damping")[:] = 5.0
@@ -353,13 +353,13 @@ def test_damping_that_is_set_while_it_runs_is_made_up_for() -> None:
 
 @pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize("speed", ["1e12", "1e300"])
-def test_a_velocity_beyond_all_bounds_diverges_and_the_plugin_is_named(speed: str) -> None:
+def test_a_huge_velocity_diverges_and_the_message_names_the_plugin(speed: str) -> None:
     sim = load(rotor("a"), velocity(f"{A}<initial_velocity>{speed}</initial_velocity>"))
-    with pytest.raises(simkit.SimulationDiverged, match="JointController.*has joint 'm::j_a' move at 1e"):
+    with pytest.raises(simkit.SimulationDiverged, match="JointController.*moves joint 'm::j_a' at 1e"):
         sim.step(5)
 
 
-def test_gains_set_while_it_runs_are_the_files_again_after_a_reset() -> None:
+def test_a_reset_restores_the_gains_of_the_file() -> None:
     sim = two(f"{A}{FORCE}<p_gain>2</p_gain><initial_velocity>4</initial_velocity>")
     sim.run(0.5)
     first = sim.joint("m::j_a").velocity

@@ -16,8 +16,10 @@ CMD = "/model/m/joint/j_a/0/cmd_pos"
 FAST = "<use_velocity_commands>true</use_velocity_commands>"
 
 
-def by_hand(steps: int, target: float, p: float, i: float, d: float, most: float, held: float) -> list[float]:
-    """Positions under gz-math's PID, integrated as the engine does; no command in the first step."""
+def expected_positions(
+    steps: int, target: float, p: float, i: float, d: float, most: float, held: float
+) -> list[float]:
+    """Return the positions under gz-math's PID, integrated as the engine does; the first step has no command."""
     dt, q, v, last, integral, found = 0.001, 0.0, 0.0, 0.0, 0.0, []
     for k in range(steps):
         if k:
@@ -39,16 +41,16 @@ def by_hand(steps: int, target: float, p: float, i: float, d: float, most: float
          "<i_min>-0.2</i_min><cmd_max>3</cmd_max><cmd_min>-3</cmd_min>"),
     ],
 )  # fmt: skip
-def test_the_joint_goes_the_way_that_gzs_pid_says(numbers: tuple[float, ...], elements: str) -> None:
+def test_the_joint_follows_the_formula_of_gazebos_pid(numbers: tuple[float, ...], elements: str) -> None:
     sim = load(rotor("a"), position(f"{A}{elements}<initial_position>0.8</initial_position>"))
     found = []
     for _ in range(1500):
         sim.step()
         found.append(sim.joint("m::j_a").position)
-    np.testing.assert_allclose(found, by_hand(1500, 0.8, *numbers), atol=1e-9)
+    np.testing.assert_allclose(found, expected_positions(1500, 0.8, *numbers), atol=1e-9)
 
 
-def test_an_offset_carries_what_hangs_on_it() -> None:
+def test_an_offset_carries_a_hanging_load() -> None:
     # a pendulum of 1 kg at 0.5 m, held level
     arm = """<link name="a"><pose>0.5 0 0 0 0 0</pose><inertial><mass>1</mass><inertia><ixx>0.01</ixx><iyy>0.01</iyy>
     <izz>0.01</izz></inertia></inertial></link><joint name="j_a" type="revolute"><pose>-0.5 0 0 0 0 0</pose>
@@ -69,7 +71,7 @@ def test_the_first_joints_error_pushes_all() -> None:
     assert a.position == pytest.approx(2.0 * b.position, rel=1e-9)
 
 
-def test_by_velocity_it_is_there_within_one_step() -> None:
+def test_with_velocity_commands_the_position_is_reached_within_one_step() -> None:
     sim = load(rotor("a"), position(f"{A}{FAST}<initial_position>-2</initial_position>"))
     sim.step(2)
     assert sim.joint("m::j_a").position == pytest.approx(-2.0, abs=1e-4)
@@ -79,7 +81,7 @@ def test_by_velocity_it_is_there_within_one_step() -> None:
     assert sim.joint("m::j_a").velocity == pytest.approx(0.0, abs=1e-2)
 
 
-def test_by_velocity_it_is_no_faster_than_it_may() -> None:
+def test_with_velocity_commands_the_speed_is_limited() -> None:
     sim = load(rotor("a"), position(f"{A}{FAST}<cmd_max>4</cmd_max>"))
     sim.step()
     sim.publish(CMD, {"data": 1.0})
@@ -94,7 +96,7 @@ def test_by_velocity_it_is_no_faster_than_it_may() -> None:
     assert sim.joint("m::j_a").position == pytest.approx(0.5, abs=1e-3)
 
 
-def test_a_slider_is_at_a_length() -> None:
+def test_a_slider_reaches_a_length() -> None:
     sim = load(rotor("a", kind="prismatic"), position(f"{A}<p_gain>100</p_gain><d_gain>20</d_gain>"), gravity="0 0 -2")
     sim.publish(CMD, {"data": 0.3})
     sim.run(3.0)
@@ -103,7 +105,7 @@ def test_a_slider_is_at_a_length() -> None:
 
 
 def sim_integral(seconds: float) -> float:
-    """About what an integral gain of 0.1 gathers of an error of 0.02 m."""
+    """Return the approximate integral term for a gain of 0.1 and an error of 0.02 m."""
     return 0.1 * 0.02 * seconds
 
 
@@ -119,7 +121,7 @@ def test_joint_index_is_the_axis_of_a_joint_with_two() -> None:
     assert sim.joint("m::j_a").position == pytest.approx([0.0, 0.4], abs=2e-3)
     node = "/model/m/joint/j_a/position_controller"
     assert list(sim.communication.parameters) == [node, f"{node}_1"]
-    with pytest.raises(LoadError, match="universal and has 2 axes; one with axis number 2 is needed"):
+    with pytest.raises(LoadError, match="universal and has 2 axes; the plugin needs a joint with axis number 2"):
         load(joint, position(f"{A}<joint_index>2</joint_index>"))
 
 
@@ -140,7 +142,7 @@ def test_an_actuator_message_commands_by_number() -> None:
     assert sim.joint("m::j_a").position == pytest.approx(0.7, abs=1e-4)
 
 
-def test_numbers_of_a_pid_beside_velocity_commands_are_reported() -> None:
+def test_gains_without_effect_under_velocity_commands_are_reported() -> None:
     sim = load(rotor("a"), position(f"{A}{FAST}<p_gain>2</p_gain><cmd_max>3</cmd_max>"))
     (message,) = codes(sim.diagnostics, "SK-PLUGIN-043")
     assert message.endswith("<p_gain> has no effect with <use_velocity_commands>")
@@ -160,7 +162,7 @@ def test_each_controller_of_a_model_has_its_parameters() -> None:
     }  # fmt: skip
 
 
-def test_a_gain_that_is_turned_up_on_line_makes_it_quicker() -> None:
+def test_a_larger_live_gain_makes_the_joint_faster() -> None:
     def rise(gain: float | None) -> float:
         sim = load(rotor("a", damping=0.5), position(f"{A}<i_gain>0</i_gain><d_gain>0</d_gain>", name="pid"))
         if gain is not None:
@@ -179,10 +181,10 @@ def test_a_gain_that_is_turned_up_on_line_makes_it_quicker() -> None:
     assert rise(8.0) == pytest.approx(answer(8.0), abs=6e-3)
 
 
-# ---------------------------------------------------------------------- a PID that runs away
+# ---------------------------------------------------------------------- unstable PID
 
 
-def test_a_pid_that_is_not_stable_is_reported_by_plugin_and_joint_once() -> None:
+def test_an_unstable_pid_is_reported_once_with_plugin_and_joint() -> None:
     sim = load(rotor("a"), position(f"{A}<p_gain>1e6</p_gain><initial_position>1</initial_position>", name="elbow"))
     sim.run(1.0)
     (message,) = codes(sim.diagnostics, "SK-PLUGIN-040")
@@ -193,13 +195,13 @@ def test_a_pid_that_is_not_stable_is_reported_by_plugin_and_joint_once() -> None
 
 
 @pytest.mark.parametrize("gains", ["<p_gain>20</p_gain>", "<p_gain>5</p_gain><d_gain>1</d_gain>"])
-def test_a_pid_that_swings_and_settles_is_not(gains: str) -> None:
+def test_a_pid_that_oscillates_and_settles_is_not_reported(gains: str) -> None:
     sim = load(rotor("a", damping=0.05), position(f"{A}{gains}<initial_position>1</initial_position>"))
     sim.run(8.0)
     assert not codes(sim.diagnostics, "SK-PLUGIN-040")
 
 
-def test_where_the_physics_diverges_the_plugin_that_drives_the_joint_is_named() -> None:
+def test_a_divergence_message_names_the_plugin_of_the_joint() -> None:
     wild = "<p_gain>1e9</p_gain><cmd_max>1e30</cmd_max><cmd_min>-1e30</cmd_min><initial_position>1</initial_position>"
     sim = load(rotor("a"), rotor("b"), position(f"{A}{wild}", name="elbow"), position(B, name="wrist"))
     with pytest.raises(SimulationDiverged, match="plugin 'elbow' .* drives joint 'm::j_a' by a PID") as caught:
@@ -217,7 +219,7 @@ def test_gz_worlds_of_the_ignition_time_load_unchanged() -> None:
     assert CMD in sim.topics()
 
 
-def test_a_wrong_joint_hides_no_wrong_number_and_no_fault_of_another_plugin_hides_an_unread_element() -> None:
+def test_errors_do_not_hide_each_other() -> None:
     text = """<sdf version="1.9"><world name="w"><model name="m"><link name="l"/><link name="k"/>
       <joint name="j" type="revolute"><parent>l</parent><child>k</child><axis/></joint>
       <plugin filename="gz-sim-joint-position-controller-system" name="gz::sim::systems::JointPositionController">

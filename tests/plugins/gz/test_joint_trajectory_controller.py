@@ -24,7 +24,7 @@ def send(sim: Any, names: list[str], *points: dict[str, Any], **header: int) -> 
 
 
 def servo(kind: str, count: int = 1) -> str:
-    """Gains that follow a position within milliseconds."""
+    """Return gains that reach a position within milliseconds."""
     return (f"<{kind}_p_gain>2000</{kind}_p_gain><{kind}_d_gain>40</{kind}_d_gain>") * count
 
 
@@ -36,11 +36,11 @@ def test_efforts_change_on_the_step_after_the_time_of_a_point() -> None:
     assert sim.joint("m::j_a").velocity == pytest.approx(0.4 / INERTIA * 0.101, rel=1e-9)
     sim.step(100)
     assert sim.joint("m::j_a").velocity == pytest.approx((0.4 * 0.101 - 0.2 * 0.1) / INERTIA, rel=1e-9)
-    sim.step(500)  # the last one holds
+    sim.step(500)  # the last point is held
     assert sim.joint("m::j_a").velocity == pytest.approx((0.4 * 0.101 - 0.2 * 0.6) / INERTIA, rel=1e-9)
 
 
-def test_the_progress_goes_out_when_the_target_changes() -> None:
+def test_the_progress_is_published_when_the_target_changes() -> None:
     sim = load(rotor("a"), trajectory(A))
     progress = sim.subscribe(f"{TOPIC}_progress")
     assert sim.topics()[f"{TOPIC}_progress"] == "std_msgs/msg/Float32"
@@ -53,15 +53,15 @@ def test_the_progress_goes_out_when_the_target_changes() -> None:
     assert when == [0, 101, 201, 301]
 
 
-def test_positions_velocities_and_efforts_add_up_and_what_a_point_leaves_out_stays() -> None:
+def test_positions_velocities_and_efforts_add_up_and_missing_fields_keep_their_targets() -> None:
     gains = "<position_p_gain>3</position_p_gain><velocity_p_gain>0.5</velocity_p_gain>"
     sim = load(rotor("a"), trajectory(A + gains))
     sim.step()
     send(sim, ["j_a"], at(0.0, positions=[1.0]), at(0.001, velocities=[2.0], effort=[0.1]), at(9.0))
     q = v = 0.0
     for k in range(200):
-        wanted = 2.0 if k else 0.0
-        v += 0.001 * (3.0 * (1.0 - q) + 0.5 * (wanted - v) + (0.1 if k else 0.0)) / INERTIA
+        target = 2.0 if k else 0.0
+        v += 0.001 * (3.0 * (1.0 - q) + 0.5 * (target - v) + (0.1 if k else 0.0)) / INERTIA
         q += 0.001 * v
     sim.step(200)
     assert sim.joint("m::j_a").position == pytest.approx(q, abs=1e-9)
@@ -85,7 +85,7 @@ def test_without_names_all_joints_with_one_axis_are_controlled() -> None:
     assert [sim.joint(f"m::j_{n}").position for n in "ab"] == pytest.approx([-0.1, 0.2], abs=1e-4)
 
 
-def test_a_new_trajectory_takes_the_place_of_the_one_that_runs() -> None:
+def test_a_new_trajectory_replaces_the_active_one() -> None:
     sim = load(rotor("a"), trajectory(A + servo("position")))
     send(sim, ["j_a"], at(1.0, positions=[1.0]), at(2.0, positions=[2.0]))
     sim.run(0.5)
@@ -95,7 +95,7 @@ def test_a_new_trajectory_takes_the_place_of_the_one_that_runs() -> None:
 
 
 @pytest.mark.parametrize("spelling", ["<use_header_start_time>true</use_header_start_time>", "attribute"])
-def test_the_header_may_say_when_it_starts(spelling: str) -> None:
+def test_the_header_can_define_the_start_time(spelling: str) -> None:
     element = trajectory(A + servo("position"))
     if spelling == "attribute":
         element = element.replace("<plugin ", '<plugin use_header_start_time="true" ')
@@ -110,12 +110,12 @@ def test_the_header_may_say_when_it_starts(spelling: str) -> None:
     sim.run(0.5)
     assert sim.joint("m::j_a").position == pytest.approx(2.0, abs=1e-3)
     send(sim, ["j_a"], at(0.1, positions=[5.0]), at(9.0, positions=[3.0]), sec=1, nanosec=0)
-    sim.run(0.5)  # what is over by now is passed over
+    sim.run(0.5)  # points in the past are skipped
     assert sim.joint("m::j_a").position == pytest.approx(3.0, abs=0.02)
 
 
 @pytest.mark.parametrize("rule", ["linear", "cubic", "quintic"])
-def test_between_two_points_the_joint_may_go_smoothly(rule: str) -> None:
+def test_interpolation_moves_the_joint_smoothly_between_two_points(rule: str) -> None:
     smooth = f"<simkit:interpolation>{rule}</simkit:interpolation><velocity_p_gain>40</velocity_p_gain>"
     element = trajectory(A + "<position_p_gain>2000</position_p_gain>" + smooth)
     sim = load(rotor("a"), element)
@@ -126,12 +126,12 @@ def test_between_two_points_the_joint_may_go_smoothly(rule: str) -> None:
         sim.step()
         found.append(sim.joint("m::j_a").position)
     s = np.arange(1, 1001) / 1000.0
-    wanted = {"linear": s, "cubic": 3 * s**2 - 2 * s**3, "quintic": 10 * s**3 - 15 * s**4 + 6 * s**5}[rule]
-    # what lags is the effort that the acceleration takes: I a / p, at most 0.2 · 6 / 2000, and the kick of linear
-    assert np.abs(np.array(found) - wanted).max() < (0.02 if rule == "linear" else 2.5e-3)
+    target = {"linear": s, "cubic": 3 * s**2 - 2 * s**3, "quintic": 10 * s**3 - 15 * s**4 + 6 * s**5}[rule]
+    # the error is that of the acceleration, I a / p, at most 0.2 · 6 / 2000, and the jump of the linear rule
+    assert np.abs(np.array(found) - target).max() < (0.02 if rule == "linear" else 2.5e-3)
 
 
-def test_what_cannot_be_used_is_left_out_and_said() -> None:
+def test_unusable_trajectories_are_ignored_and_reported() -> None:
     sim = load(rotor("a"), trajectory(A + servo("position")))
     send(sim, ["j_a", "j_aa"], at(0.0, positions=[0.3, 1.0]))
     sim.run(0.5)
@@ -143,7 +143,7 @@ def test_what_cannot_be_used_is_left_out_and_said() -> None:
     sim.run(0.5)
     assert sim.joint("m::j_a").position == pytest.approx(0.3, abs=1e-4)
     found = codes(sim.diagnostics, "SK-PLUGIN-041")
-    assert [any(word in m for m in found) for word in ("'j_aa'", "at 0.5 s", "not finite", "names no joints")] == [
+    assert [any(word in m for m in found) for word in ("'j_aa'", "at 0.5 s", "NaN or infinite", "names no joints")] == [
         True
     ] * 4
     (unknown,) = [d for d in sim.diagnostics if "'j_aa'" in d.message]
@@ -153,7 +153,7 @@ def test_what_cannot_be_used_is_left_out_and_said() -> None:
     assert len(codes(sim.diagnostics, "SK-PLUGIN-045")) == 1
 
 
-def test_wrong_elements_are_told_all_at_once() -> None:
+def test_wrong_elements_are_reported_together() -> None:
     with pytest.raises(LoadError) as caught:
         load(rotor("a"), rotor("c", kind="ball"), trajectory(
             "<joint_name>j_aa</joint_name><joint_name>j_c</joint_name><position_p_gain>much</position_p_gain>"
@@ -183,7 +183,7 @@ def test_gains_are_live() -> None:
     assert sim.joint("m::j_a").position == 0.0
 
 
-def test_a_snapshot_in_the_middle_goes_on_bit_for_bit() -> None:
+def test_a_snapshot_during_a_trajectory_continues_bit_for_bit() -> None:
     smooth = "<simkit:interpolation>cubic</simkit:interpolation>"
     sim = load(rotor("a"), trajectory(A + servo("position") + smooth))
     send(sim, ["j_a"], at(0.3, positions=[1.0]), at(0.6, positions=[-1.0]))

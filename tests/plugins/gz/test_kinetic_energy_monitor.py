@@ -1,4 +1,4 @@
-"""gz's KineticEnergyMonitor against ½mv² + ½ω·Iω."""
+"""Kinetic energy monitor of Gazebo against ½mv² + ½ω·Iω."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def losses(sim: Any, topic: str = "/model/m/kinetic_energy") -> list[tuple[int, 
 
 
 @pytest.mark.parametrize("pose", ["0 0 1 0 0 0", "0 0 1 0.3 -0.7 1.1"])
-def test_what_a_link_loses_in_a_step_is_told(pose: str) -> None:
+def test_the_energy_that_a_link_loses_in_a_step_is_published(pose: str) -> None:
     with simkit.load(world(pose=pose)) as sim:
         found = losses(sim)
         turn = simkit.Pose.from_rpy(*map(float, pose.split()))
@@ -42,7 +42,7 @@ def test_what_a_link_loses_in_a_step_is_told(pose: str) -> None:
         assert found == [(21, pytest.approx(0.5 * 2 * 9 + 0.5 * 0.1 * 16, rel=1e-6))]
 
 
-def test_the_velocity_that_counts_is_that_of_the_centre_of_mass() -> None:
+def test_the_energy_uses_the_velocity_of_the_centre_of_mass() -> None:
     with simkit.load(world("<kinetic_energy_threshold>0.1</kinetic_energy_threshold>")) as sim:
         found = losses(sim)
         sim.link("m::l").set_velocity((0, 0, 0), (0, 0, 5))  # about the origin: the centre moves at 0.5 m/s
@@ -52,7 +52,7 @@ def test_the_velocity_that_counts_is_that_of_the_centre_of_mass() -> None:
         assert found == [(2, pytest.approx(0.5 * 2 * 0.25 + 0.5 * 0.3 * 25, rel=1e-4))]
 
 
-def test_less_than_the_threshold_and_what_is_gained_is_not_told() -> None:
+def test_losses_below_the_threshold_and_gains_are_not_published() -> None:
     with simkit.load(world("<kinetic_energy_threshold>9.1</kinetic_energy_threshold>")) as sim:
         found = losses(sim)
         for speed in (3, 0, 3.1, 0):
@@ -61,7 +61,7 @@ def test_less_than_the_threshold_and_what_is_gained_is_not_told() -> None:
         assert [tick for tick, _ in found] == [4]
 
 
-def test_who_listens_from_when_on_changes_no_event() -> None:
+def test_the_time_of_subscription_changes_no_event() -> None:
     with simkit.load(world()) as sim:
         sim.link("m::l").set_velocity((3, 0, 0))
         sim.run(0.01)
@@ -78,7 +78,7 @@ def test_who_listens_from_when_on_changes_no_event() -> None:
         assert late == [(11, pytest.approx(9.0))]
 
 
-def test_a_restored_run_tells_the_same() -> None:
+def test_a_restored_run_publishes_the_same() -> None:
     with simkit.load(world()) as sim:
         sim.link("m::l").set_velocity((3, 0, 0))
         sim.run(0.01)
@@ -104,7 +104,7 @@ def test_topic_nested_links_and_missing_ones() -> None:
         simkit.load(world(link="lnk"))
 
 
-def test_a_link_name_with_nothing_in_it_is_an_error_and_so_is_a_topic_without_a_letter() -> None:
+def test_an_empty_link_name_and_a_topic_without_a_letter_are_errors() -> None:
     with pytest.raises(LoadError, match="has no link ''"):
         simkit.load(world(link=""))
     with pytest.raises(LoadError, match="found <topic>ü</topic>, allowed is a name with a letter or a digit"):

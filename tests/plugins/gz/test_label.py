@@ -1,4 +1,4 @@
-"""gz's Label plugin: who wears which number, and for how long."""
+"""Label plugin of Gazebo: the labels of visuals, and their lifetime."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def model(name: str = "m", more: str = "", on_visual: str = "", on_link: str = "
     )
 
 
-def worn(*parts: str, quirks: bool = False) -> dict[str, int]:
+def labels_of(*parts: str, quirks: bool = False) -> dict[str, int]:
     top = "<gazebo_quirks>true</gazebo_quirks>" if quirks else ""
     with simkit.load(world(top, *parts)) as sim:
         return sim.contents.labels.by_visual(nested=not quirks)
@@ -43,30 +43,30 @@ def codes(*parts: str) -> list[tuple[str, str]]:
         ("mine.so", "gz::sim::systems::Label"),
     ],
 )
-def test_it_is_known_by_all_its_names(filename: str, name: str) -> None:
-    assert worn(model(more=label(7, filename, name))) == {"m::l::a": 7, "m::l::b": 7}
+def test_all_aliases_load_the_plugin(filename: str, name: str) -> None:
+    assert labels_of(model(more=label(7, filename, name))) == {"m::l::a": 7, "m::l::b": 7}
 
 
-def test_a_visuals_own_label_counts_more_than_its_models() -> None:
-    assert worn(model(more=label(7), on_visual=label(8))) == {"m::l::a": 8, "m::l::b": 7}
-    assert worn(model(on_visual=label(0))) == {"m::l::a": 0}
+def test_the_label_of_a_visual_overrides_that_of_its_model() -> None:
+    assert labels_of(model(more=label(7), on_visual=label(8))) == {"m::l::a": 8, "m::l::b": 7}
+    assert labels_of(model(on_visual=label(0))) == {"m::l::a": 0}
 
 
-def test_of_two_on_one_model_the_later_counts() -> None:
-    assert worn(model(more=label(7) + label(9))) == {"m::l::a": 9, "m::l::b": 9}
+def test_the_later_of_two_labels_on_one_model_counts() -> None:
+    assert labels_of(model(more=label(7) + label(9))) == {"m::l::a": 9, "m::l::b": 9}
 
 
-def test_a_models_label_covers_the_models_in_it_unless_they_have_their_own() -> None:
+def test_a_model_label_applies_to_nested_models_without_a_label() -> None:
     inner = model("bare") + model("own", label(3))
     outer = f'<model name="o"><static>true</static><link name="k"/>{inner}{label(5)}</model>'
-    assert set(worn(outer).values()) == {3, 5}
-    assert worn(outer)["o::bare::l::a"] == 5
-    assert worn(outer)["o::own::l::a"] == 3
-    assert "o::bare::l::a" not in worn(outer, quirks=True), "gz labels only the links of the model itself"
-    assert worn(outer, quirks=True)["o::own::l::a"] == 3
+    assert set(labels_of(outer).values()) == {3, 5}
+    assert labels_of(outer)["o::bare::l::a"] == 5
+    assert labels_of(outer)["o::own::l::a"] == 3
+    assert "o::bare::l::a" not in labels_of(outer, quirks=True), "gz labels only the links of the model itself"
+    assert labels_of(outer, quirks=True)["o::own::l::a"] == 3
 
 
-def test_an_include_labels_what_it_brings(tmp_path: Path) -> None:
+def test_a_label_in_an_include_applies_to_the_included_model(tmp_path: Path) -> None:
     (tmp_path / "thing.sdf").write_text(f'<sdf version="1.9">{model("thing", label(1))}</sdf>')
     include = f"<include><uri>thing.sdf</uri><name>t</name>{label(66)}</include>"
     (tmp_path / "world.sdf").write_text(world(include))
@@ -86,7 +86,7 @@ def test_a_robot_in_urdf_has_labels_too() -> None:
 
 
 @pytest.mark.parametrize("number", ["256", "-1", "red", "nan", ""])
-def test_a_label_that_is_none_is_an_error_that_says_what_is_allowed(number: str) -> None:
+def test_an_invalid_label_is_an_error_with_the_allowed_range(number: str) -> None:
     with pytest.raises(LoadError, match=r"SK-PARAM-002.*a whole number from 0 to 255"):
         simkit.load(world(model(more=label(number))))
 
@@ -101,10 +101,10 @@ def test_a_plugin_without_a_label_is_an_error() -> None:
 def test_on_a_link_or_a_world_it_is_left_out_with_a_warning() -> None:
     assert ("SK-PLUGIN-007", "warning") in codes(model(on_link=label(7)))
     assert ("SK-PLUGIN-007", "warning") in codes(label(7))
-    assert worn(model(on_link=label(7))) == {}
+    assert labels_of(model(on_link=label(7))) == {}
 
 
-def test_labels_come_and_go_with_their_models() -> None:
+def test_labels_are_added_and_removed_with_their_models() -> None:
     with simkit.load(world(model("a", label(1)))) as sim:
         before = sim.snapshot()
         sim.spawn(f'<sdf version="1.9">{model("b", label(2), label(3))}</sdf>')
@@ -120,7 +120,7 @@ def test_labels_come_and_go_with_their_models() -> None:
         assert dict(sim.contents.labels) == {"a": 1}
 
 
-def test_a_program_may_change_them_and_a_reset_brings_the_files_back() -> None:
+def test_a_program_can_change_labels_and_a_reset_restores_those_of_the_file() -> None:
     with simkit.load(world(model("a", label(1)))) as sim:
         sim.contents.labels["a::l::b"] = 9
         sim.contents.labels["a"] = 2
@@ -146,7 +146,7 @@ def test_a_wrong_name_or_number_is_refused() -> None:
         assert not sim.contents.labels
 
 
-def test_a_labelled_thing_may_sleep() -> None:
+def test_a_labelled_model_can_sleep() -> None:
     box = f'<collision name="c">{BOX}</collision><visual name="v">{BOX}</visual>'
     thing = f'<model name="m"><pose>0 0 0.5 0 0 0</pose><link name="l">{box}</link>{{}}</model>'
 

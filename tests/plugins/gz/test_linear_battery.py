@@ -1,4 +1,4 @@
-"""gz's LinearBatteryPlugin against its formula and against what charge, voltage and power must be; and Classic's."""
+"""Battery of Gazebo against its formula and the conservation of charge, and the battery of Gazebo Classic."""
 
 from __future__ import annotations
 
@@ -63,16 +63,16 @@ def test_the_example_of_gazebo_drains_by_its_formula() -> None:
     assert math.isnan(found.temperature)
 
 
-def test_what_is_drawn_is_the_charge_that_is_gone() -> None:
-    """At 10 V without losses, 90 W are 9 A: 0.0025 A·h in a second."""
+def test_the_lost_charge_is_the_integral_of_the_current() -> None:
+    """A load of 90 W at 10 V without losses draws 9 A: 0.0025 A·h in a second."""
     with simkit.load(world(**PLAIN, power_load=90, start_draining=1)) as sim:
         found = state(sim, 1.0)
         assert found.charge == pytest.approx(0.01 - 9 / 3600, rel=1e-5)
-        assert found.percentage == pytest.approx(0.75, rel=1e-5), "a share, where gz's fix is not asked for"
+        assert found.percentage == pytest.approx(0.75, rel=1e-5), "a fraction without <fix_issue_225>"
         assert state(sim, 0.5).header.stamp.nanosec == 500_000_000
 
 
-def test_the_state_comes_fifty_times_a_second() -> None:
+def test_the_state_is_published_fifty_times_a_second() -> None:
     with simkit.load(world(**REAL)) as sim:
         subscription = sim.subscribe(STATE)
         sim.run(1.0)
@@ -101,7 +101,7 @@ def test_topics_start_and_stop_the_draining() -> None:
         assert state(sim, 1.0).charge == pytest.approx(0.0075, rel=1e-4)
 
 
-def test_an_empty_battery_lets_go_of_the_joints_until_it_is_charged() -> None:
+def test_an_empty_battery_disables_the_joints_until_it_is_charged() -> None:
     recharge = {"enable_recharge": "true", "charging_time": 0.0005}
     with simkit.load(world(**PLAIN, **recharge, power_load=72)) as sim:
         sim.publish("/model/r/joint/j/cmd_vel", {"data": 2.0})
@@ -127,7 +127,7 @@ def test_an_empty_battery_lets_go_of_the_joints_until_it_is_charged() -> None:
         assert sim.joint("r::j").velocity == pytest.approx(1.0, rel=1e-3)
 
 
-def test_a_charger_fills_up_to_nine_tenths() -> None:
+def test_a_charger_charges_up_to_nine_tenths() -> None:
     values = {**PLAIN, "initial_charge": 0.005, "enable_recharge": "true", "charging_time": 0.001, "power_load": 0}
     with simkit.load(world("<recharge_by_topic/>", **values)) as sim:
         sim.publish("/model/r/battery/main/recharge/start", {"data": True})
@@ -140,7 +140,7 @@ def test_a_charger_fills_up_to_nine_tenths() -> None:
         assert state(sim, 0.1).power_supply_status == 4, "full, as gz has it"
 
 
-def test_the_sign_of_the_current_can_be_turned() -> None:
+def test_the_sign_of_the_current_can_be_inverted() -> None:
     with simkit.load(world(**PLAIN, power_load=90, start_draining=1, invert_current_sign="true")) as sim:
         assert state(sim, 0.5).current == pytest.approx(-9.0)
 
@@ -153,8 +153,8 @@ def test_the_load_is_a_live_parameter() -> None:
         assert state(sim, 1.0).charge == pytest.approx(0.0075, rel=1e-4)
 
 
-def test_gazebos_old_count_of_the_charge_is_a_quirk() -> None:
-    """Without its fix gz takes the last hundred currents off at every step: a hundred times too much."""
+def test_the_old_charge_calculation_of_gazebo_is_a_quirk() -> None:
+    """Without the fix, Gazebo subtracts the last hundred currents at every step: a hundred times too much."""
     values = {**PLAIN, "power_load": 0.36, "start_draining": 1}
     with simkit.load(world(**values)) as sim:
         assert state(sim, 1.0).percentage == pytest.approx(1 - 0.001, rel=1e-6)
@@ -162,12 +162,12 @@ def test_gazebos_old_count_of_the_charge_is_a_quirk() -> None:
         assert state(sim, 1.0).percentage == pytest.approx(1 - 0.001 * 95.05, rel=1e-3)
 
 
-def test_wrong_numbers_are_said() -> None:
+def test_wrong_numbers_are_reported() -> None:
     values = {**REAL, "initial_charge": 9, "smooth_current_tau": 0}
     del values["power_load"]
     with simkit.load(world(**values)) as sim:
-        told = [d.message for d in sim.diagnostics if d.code == "SK-PLUGIN-123"]
-        assert len(told) == 3
+        messages = [d.message for d in sim.diagnostics if d.code == "SK-PLUGIN-123"]
+        assert len(messages) == 3
         assert state(sim, 0.1).charge == pytest.approx(1.2009)
     with pytest.raises(LoadError) as raised:
         simkit.load(world(enable_recharge="true", power_load="much"))
@@ -192,14 +192,14 @@ def test_classics_battery_is_drained_by_its_consumers() -> None:
         assert state(sim, 0.1).charge == pytest.approx(0.01 - 1.1 * 9 / 3600, rel=2e-2), "and so is gz's"
 
 
-def test_a_consumer_without_its_battery_is_warned_of() -> None:
+def test_a_consumer_without_a_battery_is_a_warning() -> None:
     with simkit.load(world(**REAL, other=consumer("mian", 1))) as sim:
-        (told,) = [d for d in sim.diagnostics if d.code == "SK-PLUGIN-123"]
-        assert "main" in told.hint
+        (warning,) = [d for d in sim.diagnostics if d.code == "SK-PLUGIN-123"]
+        assert "main" in warning.hint
 
 
 @pytest.mark.parametrize(("is_asked_for", "scans"), [("true", 6), ("false", 11)])
-def test_gpu_lidars_rest_while_the_battery_is_empty_where_the_world_says_so(is_asked_for: str, scans: int) -> None:
+def test_gpu_lidars_stop_while_the_battery_is_empty_if_the_world_enables_this(is_asked_for: str, scans: int) -> None:
     lidar = """<sensor name="eye" type="gpu_lidar"><update_rate>10</update_rate><lidar><scan><horizontal>
     <samples>4</samples><min_angle>-1</min_angle><max_angle>1</max_angle></horizontal></scan><range><min>0.1</min>
     <max>9</max></range></lidar></sensor><sensor name="imu" type="imu"><update_rate>10</update_rate></sensor>"""
@@ -215,7 +215,7 @@ def test_gpu_lidars_rest_while_the_battery_is_empty_where_the_world_says_so(is_a
         assert len(imu.messages) == 11, "of another system"
 
 
-def test_a_name_that_a_battery_of_the_model_has_already_is_an_error() -> None:
+def test_a_duplicate_battery_name_is_an_error() -> None:
     again = f"<plugin {GZ}><battery_name>main</battery_name><voltage>9</voltage><capacity>1</capacity></plugin>"
     recharge = {"enable_recharge": "true", "charging_time": 1}
     with pytest.raises(LoadError, match="the model has a battery 'main' already"):

@@ -1,4 +1,4 @@
-"""gz's LogRecord as a bag: where it is written, what is in it, and that nothing else is."""
+"""LogRecord of Gazebo as a bag: its path and its contents."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def codes(text: str) -> list[str]:
         return [d.code for d in sim.diagnostics if d.code.startswith("SK-PLUGIN")]
 
 
-def test_world_and_state_are_recorded_from_the_first_step_on() -> None:
+def test_world_and_state_are_recorded_from_the_first_step() -> None:
     with simkit.load(world("<record_path>log</record_path><record_period>0.1</record_period>")) as sim:
         assert not Path("log").exists(), "a world that is only loaded writes nothing"
         sim.run(1.0)
@@ -79,7 +79,7 @@ def test_topics_by_name_and_by_regular_expression() -> None:
         simkit.load(world("<record_path>log</record_path><record_topic>/a(</record_topic>"))
 
 
-def test_a_log_is_written_over_and_survives_a_reset() -> None:
+def test_a_log_replaces_an_older_one_and_continues_after_a_reset() -> None:
     for _ in range(2):
         with simkit.load(world("<record_path>log</record_path><record_period>0.1</record_period>")) as sim:
             sim.run(0.2)
@@ -111,14 +111,14 @@ def test_it_writes_only_where_the_user_allows(tmp_path: Path, monkeypatch: pytes
     assert (place / "state.mcap").exists()
 
 
-def test_a_file_in_its_way_and_what_it_does_without_are_said() -> None:
+def test_a_blocked_path_and_ignored_options_are_reported() -> None:
     Path("log").write_text("not a folder")
     assert codes(world()) == ["SK-PLUGIN-127"]
     unused = "<record_resources>1</record_resources><compress>1</compress><compress_path>x.zip</compress_path>"
     assert codes(world(f"<record_path>other</record_path>{unused}")) == ["SK-PLUGIN-128"]
 
 
-def test_two_of_them_are_one_and_a_playback_is_none() -> None:
+def test_a_second_recorder_and_a_playback_have_no_effect() -> None:
     more = f"<plugin {FILE.format('LogRecord')}><record_path>two</record_path></plugin>"
     assert codes(world(more=more)) == ["SK-PLUGIN-127"]
     assert not Path("two").exists()

@@ -1,4 +1,4 @@
-"""gz's mecanum drive: ahead, sideways, round, on slopes and against a wall."""
+"""Mecanum drive of Gazebo: forwards, sideways, turning, on slopes and against a wall."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def twist(x=0.0, y=0.0, turn=0.0):
 
 
 def drive(text, command, duration):
-    """The simulation, how far the base has gone in its own axes, and its odometry."""
+    """Return the simulation, the displacement of the base in its own axes, and its odometry."""
     sim = simkit.load(text)
     sim.run(0.2)
     start, odometry = sim.model("robot").pose, sim.subscribe("/model/robot/odometry")
@@ -31,7 +31,7 @@ def drive(text, command, duration):
 
 
 def arc(x, y, turn, duration):
-    """Where a constant twist leads, and the heading there."""
+    """Return the position and heading after a constant twist."""
     angle = turn * duration
     if not angle:
         return np.array([x, y]) * duration, 0.0
@@ -41,8 +41,8 @@ def arc(x, y, turn, duration):
 
 @pytest.mark.parametrize("command", [(0.4, 0.0), (0.0, -0.4), (0.3, -0.2)])
 @pytest.mark.parametrize("step", [0.002, 0.004])
-def test_it_goes_where_it_is_told(command, step):
-    """An acceleration limit of 1 m/s² in each direction costs v²/2 of the way."""
+def test_it_moves_in_the_commanded_direction(command, step):
+    """An acceleration limit of 1 m/s² in each direction shortens the distance by v²/2."""
     _, moved, _ = drive(world(mecanum(settings=LIMITS), step=step), twist(*command), 2.0)
     expected = [v * 2.0 - math.copysign(v * v / 2, v) for v in command]
     assert moved.position[:2] == pytest.approx(expected, abs=0.012)
@@ -60,16 +60,16 @@ def test_it_turns_on_the_spot_and_along_an_arc():
     assert moved.rpy[2] == pytest.approx(angle, abs=0.015)
 
 
-def test_its_own_axes_count_wherever_it_looks():
+def test_commands_refer_to_the_axes_of_the_base():
     _, moved, _ = drive(world(mecanum("1 2 0.1 0 0 2.1", LIMITS)), twist(0.0, 0.4), 2.0)
     assert moved.position[:2] == pytest.approx((0.0, 0.72), abs=0.012)
 
 
-def test_odometry_is_the_wheels_and_agrees_with_the_truth():
+def test_odometry_comes_from_the_wheels_and_agrees_with_the_ground_truth():
     _, moved, odometry = drive(world(mecanum(settings=LIMITS)), twist(0.3, 0.2, 0.4), 3.0)
     message = odometry.messages[-1]
-    told, turned = message.pose.pose.position, message.pose.pose.orientation
-    assert (told.x, told.y) == pytest.approx(moved.position[:2], abs=0.015)
+    estimated, turned = message.pose.pose.position, message.pose.pose.orientation
+    assert (estimated.x, estimated.y) == pytest.approx(moved.position[:2], abs=0.015)
     assert 2 * math.atan2(turned.z, turned.w) == pytest.approx(moved.rpy[2], abs=0.01)
     speed = message.twist.twist
     assert (speed.linear.x, speed.linear.y, speed.angular.z) == pytest.approx((0.3, 0.2, 0.4), abs=2e-3)
@@ -79,8 +79,8 @@ def test_odometry_is_the_wheels_and_agrees_with_the_truth():
 
 
 @pytest.mark.parametrize(("slope", "across"), [(0.15, 0.0), (0.1, 0.1)])
-def test_it_stands_and_drives_on_a_slope(slope, across):
-    """What holds a wheel gives way by up to 1.5 cm/s under this load, as under any wheel with a velocity servo."""
+def test_it_holds_and_drives_on_a_slope(slope, across):
+    """Contacts creep by up to 1.5 cm/s under this load, as with every wheel on a velocity servo."""
     gravity = f"{-9.8 * math.sin(slope)} {-9.8 * math.sin(across)} {-9.8 * math.cos(math.hypot(slope, across))}"
     _, moved, _ = drive(world(mecanum(settings=LIMITS), gravity=gravity), twist(), 2.0)
     assert np.linalg.norm(moved.position[:2]) < 0.035
@@ -98,7 +98,7 @@ def test_against_a_wall_its_wheels_slip_and_it_slides_along():
     assert moved.position[1] > 0.4
 
 
-def test_a_base_whose_wheels_have_no_rollers_is_told_of():
+def test_wheels_without_rollers_are_reported():
     rubber = "<mu>1</mu><mu2>1</mu2>"
     sim, moved, _ = drive(world(mecanum(friction=rubber)), twist(0.0, 0.4), 1.0)
     found = [d for d in sim.diagnostics if d.code == "SK-PLUGIN-090"]
@@ -107,7 +107,7 @@ def test_a_base_whose_wheels_have_no_rollers_is_told_of():
     assert np.linalg.norm(moved.position[:2]) < 0.05
 
 
-def test_a_stamped_command_and_one_that_is_no_number():
+def test_stamped_commands_work_and_nan_commands_are_ignored():
     sim = simkit.load(world(mecanum()))
     sim.publish("/model/robot/cmd_vel", {"twist": twist(0.0, 0.3)})
     sim.run(1.0)
@@ -117,7 +117,7 @@ def test_a_stamped_command_and_one_that_is_no_number():
     assert sim.model("robot").pose.position[1] > 0.35
 
 
-def test_bad_parameters_are_told_all_at_once():
+def test_invalid_parameters_are_reported_together():
     settings = "<wheel_radius>-1</wheel_radius><max_velocity>-2</max_velocity>"
     settings += "<odom_publish_frequency>x</odom_publish_frequency>"
     broken = (
@@ -130,7 +130,7 @@ def test_bad_parameters_are_told_all_at_once():
         assert part in text
 
 
-def test_a_spawned_one_drives_and_a_removed_one_is_forgotten():
+def test_a_spawned_robot_drives_and_a_removed_one_leaves_no_trace():
     sim = simkit.load(world())
     assert sim.engine.physics.shaper is None
     sim.spawn(f'<sdf version="1.9">{mecanum()}</sdf>', "robot")
@@ -142,7 +142,7 @@ def test_a_spawned_one_drives_and_a_removed_one_is_forgotten():
     assert sim.engine.physics.shaper is None
 
 
-def test_the_same_bits_again_after_a_reset_and_a_restore():
+def test_runs_after_a_reset_and_a_restore_have_the_same_bits():
     sim, _, _ = drive(world(mecanum(settings=LIMITS)), twist(0.3, 0.2, 0.4), 0.5)
     here, kept = sim.mj_data.qpos.tobytes(), sim.snapshot()
     sim.run(0.5)
@@ -157,8 +157,8 @@ def test_the_same_bits_again_after_a_reset_and_a_restore():
     assert sim.mj_data.qpos.tobytes() == here
 
 
-def test_on_a_running_belt_its_rollers_are_what_they_are():
-    """It is carried along by the belt and drives sideways on it; the belt does not turn its rollers' direction."""
+def test_on_a_moving_belt_the_directions_of_the_rollers_stay():
+    """The belt carries the base, which drives sideways; the belt does not turn the rollers' direction."""
     belt = """<model name="conveyor"><static>true</static><pose>0 0 0.05 0 0 0</pose><link name="belt">
     <collision name="c"><geometry><box><size>40 4 0.1</size></box></geometry></collision></link>
     <plugin filename="gz-sim-track-controller-system" name="gz::sim::systems::TrackController">

@@ -36,7 +36,7 @@ def test_in_the_plane_pose_and_twist_are_those_of_the_world_and_of_the_body() ->
     assert tf.latest.transforms[0].transform.translation.x == pytest.approx(1.3, abs=1e-9)
 
 
-def test_in_space_with_an_offset_the_base_moves_on_its_arm() -> None:
+def test_in_three_dimensions_the_offset_of_the_base_frame_counts() -> None:
     offset = "<dimensions>3</dimensions><xyz_offset>0.5 0 0</xyz_offset><rpy_offset>0 0 1.5707963267948966</rpy_offset>"
     sim = load(offset + "<robot_base_frame>tool</robot_base_frame><odom_frame>map</odom_frame>")
     odometry = sim.subscribe("/model/m/odometry")
@@ -50,7 +50,7 @@ def test_in_space_with_an_offset_the_base_moves_on_its_arm() -> None:
 
 
 def test_the_twist_is_the_mean_over_the_last_ten_steps() -> None:
-    """Under 2 m/s² it is 4.5 steps late; at the start it is the mean over the steps there were."""
+    """At 2 m/s² the twist is 4.5 steps late; at the start it is the mean over fewer steps."""
     sim = load("<odom_publish_frequency>0</odom_publish_frequency>")
     odometry = sim.subscribe("/model/m/odometry")
     ahead = np.array((math.cos(0.5), math.sin(0.5), 0.0)) * 2.0
@@ -64,17 +64,17 @@ def test_the_twist_is_the_mean_over_the_last_ten_steps() -> None:
     np.testing.assert_allclose(speeds, expected, atol=1e-9)
 
 
-def test_who_listens_late_hears_the_same() -> None:
+def test_a_late_subscriber_gets_the_same_messages() -> None:
     parameters = "<gaussian_noise>0.1</gaussian_noise>"
     early, late = load(parameters), load(parameters)
-    heard = early.subscribe("/model/m/odometry")
+    early_messages = early.subscribe("/model/m/odometry")
     for sim in (early, late):
         sim.model("m").set_velocity((0.3, 0.4, 0.2), (0, 0, 0.6))
     early.run(1.0)
     late.run(0.99)
     last = late.subscribe("/model/m/odometry")
     late.run(0.01)
-    assert last.latest.twist.twist == heard.latest.twist.twist
+    assert last.latest.twist.twist == early_messages.latest.twist.twist
 
 
 def test_noise_is_on_the_twist_and_its_variance_in_the_covariance() -> None:
@@ -92,6 +92,6 @@ def test_dimensions_other_than_two_or_three_are_an_error() -> None:
         load("<dimensions>4</dimensions>")
 
 
-def test_a_noise_whose_square_is_no_number_is_an_error() -> None:
+def test_a_noise_with_an_infinite_square_is_an_error() -> None:
     with pytest.raises(simkit.LoadError, match="SK-PARAM-002.*gaussian_noise"):
         load("<gaussian_noise>1e300</gaussian_noise>")

@@ -1,4 +1,4 @@
-"""gz's PerformerDetector: boxes along the world's axes, told once in and once out."""
+"""Performer detector of Gazebo: boxes along the world's axes, one message per entry and exit."""
 
 from __future__ import annotations
 
@@ -29,25 +29,25 @@ def world(more: str = "", gate: str = "0 0 0 0 0 0", names: tuple[str, ...] = ("
     {"".join(robot(n, "-3 0 0 0 0 0") for n in names)}{extra}</world></sdf>"""
 
 
-def told(sim: Any, topic: str = TOPIC) -> list[tuple[int, str, bool, int]]:
+def events(sim: Any, topic: str = TOPIC) -> list[tuple[int, str, bool, int]]:
     found: list[tuple[int, str, bool, int]] = []
     sim.subscribe(f"{topic}/details", lambda m: found.append((sim.tick, m.name, m.state, m.count)))
     return found
 
 
-def test_a_performer_is_told_when_its_box_comes_and_goes() -> None:
+def test_a_performer_is_published_when_its_box_enters_and_leaves() -> None:
     with simkit.load(world()) as sim:
-        found = told(sim)
+        found = events(sim)
         sim.model("a").set_velocity((1, 0, 0), (0, 0, 0))
         sim.run(6.0)
         # from -3 m at 1 m/s: the boxes meet at -1.1 m and part beyond 1.1 m
         assert found == [(pytest.approx(1900, abs=1), "a", True, 1), (pytest.approx(4101, abs=1), "a", False, 0)]
 
 
-def test_the_message_has_the_pose_in_the_detector_and_what_the_file_adds() -> None:
+def test_the_message_has_the_pose_in_the_detector_frame_and_the_header_data() -> None:
     data = "<header_data><key>team</key><value>red</value></header_data>"
     with simkit.load(world(data, gate="5 0 0 0 0 1.5707963267948966")) as sim:
-        told(sim)
+        events(sim)
         plain, full = sim.subscribe(TOPIC), sim.subscribe(f"{TOPIC}/details")
         sim.model("a").set_pose(simkit.Pose((5, 0.5, 0)))
         sim.run(0.01)
@@ -62,27 +62,27 @@ def test_the_message_has_the_pose_in_the_detector_and_what_the_file_adds() -> No
 @pytest.mark.parametrize(("y", "is_inside"), [(1.9, True), (2.2, False)])
 def test_the_box_does_not_turn_with_its_model(y: float, is_inside: bool) -> None:
     with simkit.load(world(gate="0 0 0 0 0 1.5707963267948966")) as sim:
-        found = told(sim)
+        found = events(sim)
         sim.model("a").set_pose(simkit.Pose((0, y, 0)))
         sim.run(0.01)
         assert bool(found) == is_inside
 
 
-def test_its_place_turns_with_its_model() -> None:
+def test_the_position_of_the_box_turns_with_its_model() -> None:
     with simkit.load(world("<pose>10 0 0 0 0 0</pose>", gate="0 0 0 0 0 1.5707963267948966")) as sim:
-        found = told(sim)
+        found = events(sim)
         sim.model("a").set_pose(simkit.Pose((0, 10, 0)))
         sim.run(0.01)
         assert [state for _, _, state, _ in found] == [True]
 
 
-def test_who_is_inside_at_the_start_is_told_and_counted() -> None:
+def test_a_performer_that_is_inside_at_the_start_is_published_and_counted() -> None:
     text = world(names=("a", "b")).replace("-3 0 0", "0 0.5 0")
     with simkit.load(text) as sim:
-        found = told(sim)
+        found = events(sim)
         sim.run(0.01)
         assert found == [(1, "a", True, 1), (1, "b", True, 2)]
-        late = told(sim)
+        late = events(sim)
         sim.run(0.01)
         assert late == [], "who is inside already is no news to one who begins to listen"
 
@@ -90,7 +90,7 @@ def test_who_is_inside_at_the_start_is_told_and_counted() -> None:
 def test_a_performer_may_be_spawned_removed_and_reset() -> None:
     with simkit.load(world().replace("<ref>a</ref>", "<ref>later</ref>")) as sim:
         assert "SK-PLUGIN-125" in [d.code for d in sim.diagnostics]
-        found = told(sim)
+        found = events(sim)
         sim.run(0.01)
         sim.spawn(f'<sdf version="1.9">{robot("later", "0 0 0 0 0 0")}</sdf>')
         sim.run(0.01)
@@ -107,20 +107,20 @@ def test_two_detectors_may_share_a_topic() -> None:
     other = f'<model name="gate2"><static>true</static><pose>-3 0 0 0 0 0</pose><link name="l"/><plugin {DETECTOR}>'
     other += f"{BOX.format('1 1 1')}<topic>gates</topic></plugin></model>"
     with simkit.load(world("<topic>gates</topic>", extra=other)) as sim:
-        found = told(sim, "/gates")
+        found = events(sim, "/gates")
         sim.run(0.01)
         sim.model("a").set_pose(simkit.Pose((0, 0, 0)))
         sim.run(0.01)
-        # first it is in the other one's box; then it comes into the gate's, and is told to have left the other's
+        # first inside the box of the other detector; then inside the gate's, with an exit event of the other
         assert found == [(1, "a", True, 1), (11, "a", True, 1), (11, "a", False, 0)]
 
 
-def test_levels_are_noted_and_a_detector_without_performers_is_warned_of() -> None:
+def test_levels_are_a_note_and_a_detector_without_performers_is_a_warning() -> None:
     text = world(names=()).replace('filename="dummy">', 'filename="dummy"><level name="l"><ref>x</ref></level>')
     with simkit.load(text) as sim:
         assert {"SK-PLUGIN-125", "SK-PLUGIN-126"} <= {d.code for d in sim.diagnostics}
 
 
-def test_a_performer_that_refers_to_nothing_is_an_error() -> None:
+def test_a_performer_without_a_model_is_an_error() -> None:
     with pytest.raises(LoadError, match="found <ref></ref>, allowed is a name"):
         simkit.load(world(names=("",)))

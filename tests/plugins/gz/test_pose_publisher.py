@@ -1,4 +1,4 @@
-"""gz's pose publisher: which parts, in which frames, on which topics, how often."""
+"""Pose publisher of Gazebo: entities, frames, topics and rates."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ VECTOR = "<use_pose_vector_msg>true</use_pose_vector_msg>"
 LIMBS = ["rover::base", "rover::left", "rover::right", "rover::front", "rover::rear"]
 
 
-def opened(inner: str, pose: str = "0 0 0 0 0 0", extra: str = "") -> simkit.Simulation:
+def load(inner: str, pose: str = "0 0 0 0 0 0", extra: str = "") -> simkit.Simulation:
     return simkit.load(world(GROUND, rover(PLUGIN.format(inner), pose=pose, extra=extra)))
 
 
@@ -32,7 +32,7 @@ def warnings(sim: simkit.Simulation) -> list[Diagnostic]:
 
 
 def expected(sim: simkit.Simulation, link: str) -> Pose:
-    """Where a link is in its model."""
+    """Return the pose of a link in its model."""
     return sim.model("rover").pose.inverse() @ sim.link(f"rover::{link}").pose
 
 
@@ -42,8 +42,8 @@ def assert_is(transform: Any, pose: Pose) -> None:
     np.testing.assert_allclose((turn.w, turn.x, turn.y, turn.z), pose.quaternion, atol=1e-12)
 
 
-def test_each_link_is_told_at_every_step_in_its_models_frame() -> None:
-    with opened("", pose="1 2 0 0 0 0.5") as sim:
+def test_each_link_is_published_at_every_step_in_the_frame_of_its_model() -> None:
+    with load("", pose="1 2 0 0 0 0.5") as sim:
         assert sim.topics()["/model/rover/pose"] == "geometry_msgs/msg/TransformStamped"
         assert "/model/rover/pose_static" not in sim.topics()
         sim.joint("rover::left_wheel").set_velocity(3.0)
@@ -57,8 +57,8 @@ def test_each_link_is_told_at_every_step_in_its_models_frame() -> None:
         assert not warnings(sim)
 
 
-def test_the_vector_holds_all_at_the_wanted_rate() -> None:
-    with opened(VECTOR + "<update_frequency>20</update_frequency>") as sim:
+def test_the_vector_contains_all_poses_at_the_given_rate() -> None:
+    with load(VECTOR + "<update_frequency>20</update_frequency>") as sim:
         assert sim.topics()["/model/rover/pose"] == "tf2_msgs/msg/TFMessage"
         messages = received(sim, "/model/rover/pose", 1.0)
         assert len(messages) == 20
@@ -66,16 +66,16 @@ def test_the_vector_holds_all_at_the_wanted_rate() -> None:
         assert stamps([m.transforms[0] for m in messages]).tolist() == [k * 50_000_000 for k in range(1, 21)]
 
 
-def test_the_models_own_pose_is_in_the_worlds_frame() -> None:
+def test_the_pose_of_the_model_is_in_the_frame_of_the_world() -> None:
     inner = VECTOR + "<publish_link_pose>false</publish_link_pose><publish_model_pose>true</publish_model_pose>"
-    with opened(inner, pose="1 -2 0 0 0 0.5") as sim:
+    with load(inner, pose="1 -2 0 0 0 0.5") as sim:
         (transform,) = received(sim, "/model/rover/pose", 0.001)[0].transforms
         assert (transform.header.frame_id, transform.child_frame_id) == ("lab", "rover")
         np.testing.assert_allclose(xyz(transform.transform.translation), (1, -2, 0), atol=1e-3)
         assert yaw(transform.transform.rotation) == pytest.approx(0.5, abs=1e-3)
 
 
-def test_the_model_goes_with_the_nested_ones_unless_it_is_told_not_to() -> None:
+def test_publish_model_pose_defaults_to_publish_nested_model_pose() -> None:
     nested = "<model name='tray'><pose>0 0 0.3 0 0 0</pose><link name='plate'/></model>"
     nested += "<joint name='screw' type='fixed'><parent>base</parent><child>tray::plate</child></joint>"
     only = VECTOR + "<publish_link_pose>0</publish_link_pose>"
@@ -86,14 +86,14 @@ def test_the_model_goes_with_the_nested_ones_unless_it_is_told_not_to() -> None:
         (both, [("lab", "rover"), ("rover", "rover::tray")]),
         (one, [("rover", "rover::tray")]),
     ):
-        with opened(inner, extra=nested) as sim:
+        with load(inner, extra=nested) as sim:
             transforms = received(sim, "/model/rover/pose", 0.001)[0].transforms
             assert [(t.header.frame_id, t.child_frame_id) for t in transforms] == frames
             if frames:
                 np.testing.assert_allclose(xyz(transforms[-1].transform.translation), (0, 0, 0.3), atol=1e-9)
 
 
-def test_parts_of_links_are_told_in_their_links_frames() -> None:
+def test_visuals_collisions_and_sensors_are_in_the_frame_of_their_link() -> None:
     eye = (
         "<link name='mast'><pose>0 0 0.4 0 0 0</pose><visual name='pole'><pose>0 0 0.1 0 0 1</pose><geometry><sphere>"
         "<radius>0.1</radius></sphere></geometry></visual><sensor name='imu' type='imu'><pose>0 0 0.2 0 0 0</pose>"
@@ -102,24 +102,24 @@ def test_parts_of_links_are_told_in_their_links_frames() -> None:
     )
     inner = VECTOR + "<publish_link_pose>false</publish_link_pose>"
     inner += "".join(f"<publish_{kind}_pose>true</publish_{kind}_pose>" for kind in ("visual", "collision", "sensor"))
-    with opened(inner, extra=eye) as sim:
+    with load(inner, extra=eye) as sim:
         transforms = received(sim, "/model/rover/pose", 0.001)[0].transforms
-        told = {
+        poses = {
             t.child_frame_id: (t.header.frame_id, xyz(t.transform.translation).round(9).tolist()) for t in transforms
         }
-        assert told["rover::mast::pole"] == ("rover::mast", [0, 0, 0.1])
-        assert told["rover::mast::imu"] == ("rover::mast", [0, 0, 0.2])
-        assert told["rover::foot::scale"] == ("rover::foot", [0, 0, 0])
-        assert told["rover::base::shape"] == ("rover::base", [0, 0, 0])
-        assert len(told) == 5 + 3
+        assert poses["rover::mast::pole"] == ("rover::mast", [0, 0, 0.1])
+        assert poses["rover::mast::imu"] == ("rover::mast", [0, 0, 0.2])
+        assert poses["rover::foot::scale"] == ("rover::foot", [0, 0, 0])
+        assert poses["rover::base::shape"] == ("rover::base", [0, 0, 0])
+        assert len(poses) == 5 + 3
 
 
-def test_what_rests_has_a_topic_and_a_rate_of_its_own() -> None:
+def test_static_poses_have_their_own_topic_and_rate() -> None:
     inner = VECTOR + (
         "<static_publisher>true</static_publisher><publish_model_pose>true</publish_model_pose>"
         "<update_frequency>50</update_frequency><static_update_frequency>5</static_update_frequency>"
     )
-    with opened(inner) as sim:
+    with load(inner) as sim:
         resting = sim.subscribe("/model/rover/pose_static")
         moving = received(sim, "/model/rover/pose", 1.0)
         assert (len(moving), len(resting.messages)) == (50, 5)
@@ -137,25 +137,25 @@ def test_two_rates_keep_their_own_grids(moving: float, resting: float) -> None:
     )
 
     def grid(rate: float) -> list[int]:
-        """Ticks of 1 ms at or after k / rate, within half a second."""
+        """Return the ticks of 1 ms at or after k / rate, within half a second."""
         return [-(-k * 1000 // int(rate)) for k in range(1, int(rate) // 2 + 1)] if rate > 0 else list(range(1, 501))
 
-    with opened(inner) as sim:
+    with load(inner) as sim:
         still = sim.subscribe("/model/rover/pose_static")
         messages = received(sim, "/model/rover/pose", 0.5)
         for found, rate in ((messages, moving), (still.messages, resting)):
             assert (stamps([m.transforms[0] for m in found]) // 1_000_000).tolist() == grid(rate)
 
 
-def test_the_rate_of_what_rests_is_that_of_what_moves_unless_given() -> None:
-    with opened(VECTOR + "<static_publisher>1</static_publisher><update_frequency>10</update_frequency>") as sim:
+def test_the_static_rate_defaults_to_the_other_rate() -> None:
+    with load(VECTOR + "<static_publisher>1</static_publisher><update_frequency>10</update_frequency>") as sim:
         assert len(received(sim, "/model/rover/pose_static", 1.0)) == 10
 
 
-def test_a_topic_of_its_own_and_another_type_can_be_asked_for() -> None:
+def test_topic_and_message_type_can_be_set() -> None:
     inner = "<topic>where is it</topic><static_publisher>true</static_publisher>"
     inner += "<simkit:pose_type>geometry_msgs/msg/PoseStamped</simkit:pose_type>"
-    with opened(inner) as sim:
+    with load(inner) as sim:
         assert sim.topics()["/where_is_it_static"] == "geometry_msgs/msg/PoseStamped"
         message = received(sim, "/where_is_it", 0.001)[0]
         assert message.header.frame_id == "rover"
@@ -165,7 +165,7 @@ def test_a_topic_of_its_own_and_another_type_can_be_asked_for() -> None:
 
 @pytest.mark.parametrize("kind", ["Pose", "Transform"])
 def test_a_type_without_frames_gives_the_same_numbers(kind: str) -> None:
-    with opened(f"<simkit:pose_type>geometry_msgs/msg/{kind}</simkit:pose_type>") as sim:
+    with load(f"<simkit:pose_type>geometry_msgs/msg/{kind}</simkit:pose_type>") as sim:
         first = received(sim, "/model/rover/pose", 0.001)[0]
         place = first.position if kind == "Pose" else first.translation
         np.testing.assert_allclose(xyz(place), (0, 0, 0.13), atol=1e-9)
@@ -179,8 +179,8 @@ def test_on_a_nested_model_the_topic_names_both() -> None:
         assert (message.header.frame_id, message.child_frame_id) == ("rover::tray", "rover::tray::plate")
 
 
-def test_a_moved_model_is_told_where_it_is_after_a_reset_and_a_restore() -> None:
-    with opened(VECTOR + "<publish_model_pose>true</publish_model_pose>") as sim:
+def test_a_moved_model_has_the_right_pose_after_a_reset_and_a_restore() -> None:
+    with load(VECTOR + "<publish_model_pose>true</publish_model_pose>") as sim:
         start = sim.snapshot()
         first = received(sim, "/model/rover/pose", 0.02)
         sim.model("rover").set_pose(Pose((5, 0, 0)))
@@ -192,20 +192,20 @@ def test_a_moved_model_is_told_where_it_is_after_a_reset_and_a_restore() -> None
         assert repr(first) == repr(again) == repr(third)
 
 
-def test_values_that_are_none_are_errors() -> None:
+def test_invalid_values_are_errors() -> None:
     inner = "<publish_link_pose>maybe</publish_link_pose><update_frequency>often</update_frequency>"
     with pytest.raises(simkit.LoadError) as caught:
-        opened(inner)
+        load(inner)
     assert [d.code for d in caught.value.diagnostics if d.severity == "error"] == ["SK-PARAM-002"] * 2
 
 
-def told(sim: simkit.Simulation, topic: str) -> dict[str, Any]:
-    """What the vector of the next step says, by child."""
+def next_poses(sim: simkit.Simulation, topic: str) -> dict[str, Any]:
+    """Return the transforms of the next step's vector, by child frame."""
     (message,) = received(sim, topic, 0.001)
     return {t.child_frame_id: t for t in message.transforms}
 
 
-def test_poses_stay_right_when_models_come_and_go_and_are_moved() -> None:
+def test_poses_stay_right_when_models_are_spawned_removed_and_moved() -> None:
     arm = (
         "<model name='arm'>{}<pose>{}</pose><link name='foot'/><link name='hand'><pose>0 0 1 0.2 0 0</pose></link>"
         "<joint name='weld' type='fixed'><parent>world</parent><child>foot</child></joint>"
@@ -220,7 +220,7 @@ def test_poses_stay_right_when_models_come_and_go_and_are_moved() -> None:
 
         def check() -> None:
             for model in ("arm", "shelf"):
-                found, pose = told(sim, f"/model/{model}/pose"), sim.model(model).pose
+                found, pose = next_poses(sim, f"/model/{model}/pose"), sim.model(model).pose
                 assert_is(found.pop(model), pose)
                 for name, transform in found.items():
                     assert_is(transform, pose.inverse() @ sim.link(name).pose)
@@ -235,5 +235,5 @@ def test_poses_stay_right_when_models_come_and_go_and_are_moved() -> None:
         sim.remove("ball")
         check()
         np.testing.assert_allclose(
-            xyz(told(sim, "/model/shelf/pose")["shelf"].transform.translation), (0, 5, 0), atol=1e-12
+            xyz(next_poses(sim, "/model/shelf/pose")["shelf"].transform.translation), (0, 5, 0), atol=1e-12
         )

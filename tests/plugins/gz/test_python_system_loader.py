@@ -82,7 +82,7 @@ def test_every_spelling_of_the_library_is_known(tmp_path: Path, filename: str) -
 
 
 @pytest.mark.parametrize("variable", ["GZ_SIM_SYSTEM_PLUGIN_PATH", "PYTHONPATH"])
-def test_folders_of_the_environment_are_searched(
+def test_folders_in_the_environment_variables_are_searched(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, variable: str
 ) -> None:
     write(tmp_path, "pusher.py", PUSHER.format(math="gz.math", sim="gz.sim"))
@@ -92,7 +92,7 @@ def test_folders_of_the_environment_are_searched(
         assert run.link("body::link").linear_velocity[2] == pytest.approx(0.5)
 
 
-def test_a_module_beside_the_world_is_not_run_unless_allowed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_module_next_to_the_world_is_not_run_unless_allowed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("PYTHONPATH", raising=False)
     write(tmp_path, "pusher.py", "raise SystemExit('it was run')\n\ndef get_system(): ...\n")
@@ -105,7 +105,7 @@ def test_a_module_beside_the_world_is_not_run_unless_allowed(tmp_path: Path, mon
 
 def test_a_file_without_get_system_is_not_run(tmp_path: Path) -> None:
     write(tmp_path, "tool.py", "raise SystemExit('it was run')\n")
-    with pytest.raises(simkit.LoadError, match="SK-PLUGIN-081.*has no get_system"):
+    with pytest.raises(simkit.LoadError, match="SK-PLUGIN-081.*has no function get_system"):
         simkit.load(world("tool"), plugin_paths=[tmp_path])
 
 
@@ -118,38 +118,38 @@ def test_a_link_out_of_the_allowed_folder_is_not_followed(tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize("name", ["../evil", "pusher.py/x", "a..b", "os;x"])
-def test_a_name_that_is_none_is_an_error(tmp_path: Path, name: str) -> None:
-    with pytest.raises(simkit.LoadError, match="SK-PLUGIN-080.*is no name of a Python module"):
+def test_an_invalid_module_name_is_an_error(tmp_path: Path, name: str) -> None:
+    with pytest.raises(simkit.LoadError, match="SK-PLUGIN-080.*is not the name of a Python module"):
         simkit.load(world(name), plugin_paths=[tmp_path])
 
 
-def test_without_a_module_name_the_load_says_what_is_missing() -> None:
+def test_a_missing_module_name_is_an_error() -> None:
     text = world("x").replace("<module_name>x</module_name>", "")
     with pytest.raises(simkit.LoadError, match="SK-PARAM-001.*<module_name>"):
         simkit.load(text)
 
 
-def test_a_module_that_fails_says_where(tmp_path: Path) -> None:
+def test_the_error_of_a_failing_module_has_its_line(tmp_path: Path) -> None:
     write(tmp_path, "broken.py", "import math\nx = 1 / 0\n\ndef get_system(): ...\n")
     with pytest.raises(simkit.LoadError, match=r"SK-PLUGIN-082.*broken\.py:2 failed: ZeroDivisionError"):
         simkit.load(world("broken"), plugin_paths=[tmp_path])
 
 
-def test_a_module_that_is_no_python_says_so(tmp_path: Path) -> None:
+def test_a_module_with_a_syntax_error_is_reported(tmp_path: Path) -> None:
     write(tmp_path, "broken.py", "def get_system(:\n")
     with pytest.raises(simkit.LoadError, match=r"SK-PLUGIN-082.*SyntaxError"):
         simkit.load(world("broken"), plugin_paths=[tmp_path])
 
 
-def test_what_gazebo_has_and_simkit_has_not_is_told_by_name(tmp_path: Path) -> None:
+def test_an_unsupported_gazebo_module_is_reported_by_name(tmp_path: Path) -> None:
     write(tmp_path, "picture.py", "from gz.rendering8 import Scene\n\ndef get_system(): ...\n")
     with pytest.raises(simkit.LoadError, match=r"simkit has no gz\.rendering8; of Gazebo's Python it has common, math"):
         simkit.load(world("picture"), plugin_paths=[tmp_path])
 
 
-def test_get_system_must_give_something_with_a_hook(tmp_path: Path) -> None:
+def test_get_system_must_return_an_object_with_a_hook(tmp_path: Path) -> None:
     write(tmp_path, "nothing.py", "def get_system():\n    return None\n")
-    with pytest.raises(simkit.LoadError, match=r"SK-PLUGIN-084.*gives NoneType, which has no hook"):
+    with pytest.raises(simkit.LoadError, match=r"SK-PLUGIN-084.*returns NoneType, which has no hook"):
         simkit.load(world("nothing"), plugin_paths=[tmp_path])
 
 
@@ -167,8 +167,8 @@ def get_system():
 def test_a_hook_that_raises_stops_the_run_with_its_line(tmp_path: Path, hook: str) -> None:
     write(tmp_path, "faulty.py", FAULTY.format(hook=hook))
     with simkit.load(world("faulty"), plugin_paths=[tmp_path]) as run:
-        said = rf"in {hook} at .*faulty\.py:4 at t=.*the wheel fell off"
-        with pytest.raises(simkit.PluginError, match=said) as raised:
+        pattern = rf"in {hook} at .*faulty\.py:4 at t=.*the wheel fell off"
+        with pytest.raises(simkit.PluginError, match=pattern) as raised:
             run.run(0.1)
         assert raised.value.exit_code == 4
 
@@ -179,7 +179,7 @@ def test_a_configure_that_raises_stops_the_load(tmp_path: Path) -> None:
         simkit.load(world("faulty"), plugin_paths=[tmp_path])
 
 
-def test_a_system_that_raises_can_be_left_out(tmp_path: Path) -> None:
+def test_a_system_that_raises_can_be_disabled(tmp_path: Path) -> None:
     write(tmp_path, "faulty.py", FAULTY.format(hook="update"))
     text = world("faulty", "<simkit:on_error>disable</simkit:on_error>")
     with simkit.load(text, plugin_paths=[tmp_path]) as run:
@@ -187,7 +187,7 @@ def test_a_system_that_raises_can_be_left_out(tmp_path: Path) -> None:
         assert codes(run) == ["SK-PLUGIN-020"]
 
 
-def test_a_package_and_what_lies_beside_it_are_found(tmp_path: Path) -> None:
+def test_a_package_and_its_neighbours_can_be_imported(tmp_path: Path) -> None:
     write(tmp_path, "robots/__init__.py", "")
     write(tmp_path, "robots/strength.py", "FORCE = 250.0\n")
     write(tmp_path, "beside_it.py", "TWICE = 2.0\n")
@@ -200,7 +200,7 @@ def test_a_package_and_what_lies_beside_it_are_found(tmp_path: Path) -> None:
     assert str(tmp_path) not in sys.path
 
 
-def test_nothing_of_gazebos_names_is_left_behind(tmp_path: Path) -> None:
+def test_no_gazebo_module_stays_in_sys_modules(tmp_path: Path) -> None:
     before = list(sys.meta_path)
     write(tmp_path, "pusher.py", PUSHER.format(math="gz.math", sim="gz.sim"))
     with simkit.load(world("pusher", "<force>5</force>"), plugin_paths=[tmp_path]) as run:
@@ -250,20 +250,20 @@ def test_a_module_without_a_class_is_a_system_by_itself(tmp_path: Path) -> None:
         assert loader.system.steps == 0
 
 
-def test_a_misspelt_element_is_reported_with_the_closest_that_was_asked_for(tmp_path: Path) -> None:
+def test_a_misspelt_element_is_reported_with_the_closest_element_that_was_read(tmp_path: Path) -> None:
     write(tmp_path, "pusher.py", PUSHER.format(math="gz.math", sim="gz.sim"))
     with simkit.load(world("pusher", "<forze>5</forze>"), plugin_paths=[tmp_path]) as run:
         (found,) = [d for d in run.diagnostics if d.code == "SK-PARAM-003"]
         assert "force" in found.hint
 
 
-def test_a_number_that_is_none_in_the_file_is_an_error_of_the_file(tmp_path: Path) -> None:
+def test_an_invalid_number_in_the_file_is_an_error_of_the_file(tmp_path: Path) -> None:
     write(tmp_path, "pusher.py", PUSHER.format(math="gz.math", sim="gz.sim"))
     with pytest.raises(simkit.LoadError, match="SK-PARAM-002.*<force>strong</force>"):
         simkit.load(world("pusher", "<force>strong</force>"), plugin_paths=[tmp_path])
 
 
-def test_a_system_may_hang_on_the_world_and_on_a_sensor(tmp_path: Path) -> None:
+def test_a_system_can_belong_to_the_world_or_to_a_sensor(tmp_path: Path) -> None:
     teller = """
 class Teller:
     def configure(self, entity, sdf, ecm, event_mgr):

@@ -1,4 +1,4 @@
-"""gz's Sensors system: the colours that it gives cameras, and what is said of its other parameters."""
+"""Sensors system of Gazebo: the colours of camera images, and the reports about its other parameters."""
 
 from __future__ import annotations
 
@@ -27,57 +27,57 @@ def robot(plugin: str) -> str:
 COLOURS = "<background_color>0.25 0.5 0.75</background_color><ambient_light>0.5 0.4 0.3 1</ambient_light>"
 
 
-def seen(text: str, *overrides: str) -> tuple[Any, Any, list[tuple[str, str]]]:
-    """Background, ambient light, and what is said of the plugin."""
+def colours_and_reports(text: str, *overrides: str) -> tuple[Any, Any, list[tuple[str, str]]]:
+    """Return background, ambient light, and the diagnostics about the plugin."""
     with simkit.load(text, overrides=overrides) as sim:
         around = sim.world.surroundings
         assert tuple(sim.mj_model.vis.headlight.ambient) == pytest.approx(around.ambient[:3])
-        said = [(d.code, d.message) for d in sim.diagnostics if "Sensors" in d.message]
-        return around.background[:3], around.ambient[:3], said
+        reports = [(d.code, d.message) for d in sim.diagnostics if "Sensors" in d.message]
+        return around.background[:3], around.ambient[:3], reports
 
 
 @pytest.mark.parametrize("text", [world(SCENE, sensors(COLOURS)), world(SCENE, robot(sensors(COLOURS)))])
 def test_its_colours_override_those_of_the_scene(text: str) -> None:
-    background, ambient, said = seen(text)
+    background, ambient, reports = colours_and_reports(text)
     assert background == (0.25, 0.5, 0.75)
     assert ambient == (0.5, 0.4, 0.3)
-    ((code, message),) = said
+    ((code, message),) = reports
     assert code == "SK-PLUGIN-005"
     assert message.endswith("used instead of the scene's colours: <background_color>, <ambient_light>")
 
 
-def test_of_a_bare_robot_too() -> None:
-    assert seen(f"<sdf version='1.9'>{robot(sensors(COLOURS))}</sdf>")[0] == (0.25, 0.5, 0.75)
+def test_the_colours_of_a_robot_file_count_too() -> None:
+    assert colours_and_reports(f"<sdf version='1.9'>{robot(sensors(COLOURS))}</sdf>")[0] == (0.25, 0.5, 0.75)
 
 
 def test_older_spellings_are_the_same_plugin() -> None:
     old = sensors(COLOURS, "libignition-gazebo6-sensors-system.so", "ignition::gazebo::systems::Sensors")
-    assert seen(world(SCENE, old))[0] == (0.25, 0.5, 0.75)
+    assert colours_and_reports(world(SCENE, old))[0] == (0.25, 0.5, 0.75)
 
 
-def test_what_it_does_not_say_stays_as_the_scene_has_it() -> None:
-    background, ambient, said = seen(world(SCENE, sensors("<render_engine>ogre2</render_engine>")))
+def test_missing_colours_stay_those_of_the_scene() -> None:
+    background, ambient, reports = colours_and_reports(world(SCENE, sensors("<render_engine>ogre2</render_engine>")))
     assert (background, ambient) == ((0.2, 0.2, 0.2), (0.1, 0.1, 0.1))
-    assert [code for code, _ in said] == ["SK-PLUGIN-005"]
-    assert said[0][1].endswith("not used: <render_engine>")
+    assert [code for code, _ in reports] == ["SK-PLUGIN-005"]
+    assert reports[0][1].endswith("not used: <render_engine>")
 
 
-def test_the_command_line_comes_before_it_and_may_change_it() -> None:
+def test_the_command_line_overrides_the_plugin() -> None:
     text = world(SCENE, sensors(COLOURS))
-    background, ambient, said = seen(text, "scene.background=0 0 1")
+    background, ambient, reports = colours_and_reports(text, "scene.background=0 0 1")
     assert (background, ambient) == ((0.0, 0.0, 1.0), (0.5, 0.4, 0.3))
-    assert [code for code, _ in said] == ["SK-PLUGIN-005", "SK-PLUGIN-011"]
-    assert seen(text, "gz::sim::systems::Sensors.ambient_light=1 0 0")[1] == (1.0, 0.0, 0.0)
+    assert [code for code, _ in reports] == ["SK-PLUGIN-005", "SK-PLUGIN-011"]
+    assert colours_and_reports(text, "gz::sim::systems::Sensors.ambient_light=1 0 0")[1] == (1.0, 0.0, 0.0)
 
 
-def test_of_two_the_first_counts_and_the_other_is_a_warning() -> None:
+def test_the_first_of_two_plugins_counts_and_the_second_is_a_warning() -> None:
     other = sensors("<background_color>1 1 1</background_color>")
-    background, _, said = seen(world(SCENE, sensors(COLOURS), other))
+    background, _, reports = colours_and_reports(world(SCENE, sensors(COLOURS), other))
     assert background == (0.25, 0.5, 0.75)
-    assert [code for code, _ in said] == ["SK-PLUGIN-005", "SK-PLUGIN-005", "SK-PLUGIN-011"]
+    assert [code for code, _ in reports] == ["SK-PLUGIN-005", "SK-PLUGIN-005", "SK-PLUGIN-011"]
 
 
-def test_what_is_no_colour_is_an_error() -> None:
+def test_an_invalid_colour_is_an_error() -> None:
     with pytest.raises(simkit.LoadError) as caught:
         simkit.load(world(SCENE, sensors("<background_color>blue</background_color>")))
     assert [d.code for d in caught.value.diagnostics if d.severity == "error"] == ["SK-PARAM-002"]

@@ -1,4 +1,4 @@
-"""gz's Thermal and ThermalSensor: what they give temperatures to, and what is said of those that have no effect."""
+"""Thermal and ThermalSensor of Gazebo: temperatures of visuals, and reports about plugins without effect."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def warnings(sim: Any) -> list[str]:
     return [d.code for d in sim.diagnostics if d.severity != "note"]
 
 
-def test_a_visual_gets_the_temperature_that_hangs_on_it() -> None:
+def test_a_visual_gets_the_temperature_of_its_plugin() -> None:
     with simkit.load(world(thermal(KELVIN.format(310.5)))) as sim:
         assert dict(sim.contents.temperatures) == {"m::l::v": 310.5}
         assert sim.contents.temperatures.by_visual() == {"m::l::v": 310.5}
@@ -46,12 +46,12 @@ def test_a_visual_gets_the_temperature_that_hangs_on_it() -> None:
         ("libgz-sim8-thermal-system.so", "gz::sim::v8::systems::Thermal"),
     ],
 )
-def test_older_names_stand_for_the_same(filename: str, name: str) -> None:
+def test_older_names_load_the_same_plugin(filename: str, name: str) -> None:
     with simkit.load(world(thermal(KELVIN.format(300), name, filename))) as sim:
         assert dict(sim.contents.temperatures) == {"m::l::v": 300.0}
 
 
-def test_a_link_and_a_model_warm_what_has_no_temperature_of_its_own() -> None:
+def test_the_temperature_of_a_link_or_model_applies_to_visuals_without_one() -> None:
     def parts(link: str, model: str, nested: str) -> str:
         return world(thermal(KELVIN.format(1)), link=link, model=model, nested=nested)
 
@@ -62,14 +62,14 @@ def test_a_link_and_a_model_warm_what_has_no_temperature_of_its_own() -> None:
         assert sim.contents.temperatures.by_visual() == {"m::l::v": 1, "m::l::w": 3, "m::n::k::v": 3}
 
 
-def test_with_gazebos_quirks_only_visuals_are_warm() -> None:
+def test_with_gazebo_quirks_only_plugins_on_visuals_count() -> None:
     text = world(model=thermal(KELVIN.format(300)), top="<simkit:gazebo_quirks>true</simkit:gazebo_quirks>")
     with simkit.load(text) as sim:
         assert not sim.contents.temperatures
         assert warnings(sim) == ["SK-SENSOR-141"]
 
 
-def test_nothing_is_colder_than_absolute_zero() -> None:
+def test_temperatures_below_absolute_zero_are_clamped() -> None:
     with simkit.load(world(thermal(KELVIN.format(-10)))) as sim:
         assert sim.contents.temperatures["m::l::v"] == 0
         assert warnings(sim) == ["SK-SENSOR-141"]
@@ -79,7 +79,7 @@ def test_nothing_is_colder_than_absolute_zero() -> None:
     ("content", "code"),
     [("", "SK-PARAM-001"), (KELVIN.format("hot"), "SK-PARAM-002"), (KELVIN.format("inf"), "SK-PARAM-002")],
 )
-def test_a_temperature_that_is_none_is_an_error(content: str, code: str) -> None:
+def test_an_invalid_temperature_is_an_error(content: str, code: str) -> None:
     with pytest.raises(simkit.LoadError) as caught:
         simkit.load(world(thermal(content)))
     assert code in [d.code for d in caught.value.diagnostics]
@@ -100,7 +100,7 @@ def folder(tmp_path: Path) -> Path:
 RANGE = "<min_temp>290</min_temp><max_temp>310</max_temp>"
 
 
-def test_a_signature_is_found_beside_its_models_file(folder: Path) -> None:
+def test_a_heat_signature_next_to_the_model_file_is_found(folder: Path) -> None:
     plugin = thermal(f"<heat_signature>textures/warm.png</heat_signature>{RANGE}")
     model = f"""<sdf version="1.9"><model name="randy"><link name="l"><visual name="v">{BALL}{plugin}</visual></link>
       </model></sdf>"""
@@ -113,14 +113,14 @@ def test_a_signature_is_found_beside_its_models_file(folder: Path) -> None:
         assert sim.contents.temperatures["second::l::v"] == sim.contents.temperatures["randy::l::v"]
 
 
-def test_a_signature_may_be_named_by_a_uri(folder: Path) -> None:
+def test_a_heat_signature_can_be_given_by_a_uri(folder: Path) -> None:
     plugin = thermal(f"<heat_signature>model://randy/textures/warm.png</heat_signature>{RANGE}")
     with simkit.load(world(plugin), resource_paths=[folder / "models"]) as sim:
         assert isinstance(sim.contents.temperatures["m::l::v"], HeatSignature)
         assert not warnings(sim)
 
 
-def test_a_signature_that_is_not_there_or_no_picture_leaves_the_surface_as_warm_as_the_air(folder: Path) -> None:
+def test_without_a_readable_heat_signature_the_surface_has_the_temperature_of_the_air(folder: Path) -> None:
     (folder / "text.png").write_text("warm")
     for name in ("no.png", "text.png", "model://nobody/warm.png"):
         (folder / "w.sdf").write_text(world(thermal(f"<heat_signature>{name}</heat_signature>")))
@@ -129,7 +129,7 @@ def test_a_signature_that_is_not_there_or_no_picture_leaves_the_surface_as_warm_
             assert warnings(sim) == ["SK-SENSOR-142"]
 
 
-def test_of_a_temperature_and_a_signature_the_signature_counts(folder: Path) -> None:
+def test_a_heat_signature_overrides_a_temperature(folder: Path) -> None:
     both = "<temperature>400</temperature><heat_signature>models/randy/textures/warm.png</heat_signature>"
     (folder / "w.sdf").write_text(world(thermal(f"{both}<min_temp>310</min_temp><max_temp>290</max_temp>")))
     with simkit.load(folder / "w.sdf") as sim:
@@ -142,7 +142,7 @@ def test_of_a_temperature_and_a_signature_the_signature_counts(folder: Path) -> 
 # ---------------------------------------------------------------------- the table
 
 
-def test_temperatures_follow_spawn_remove_reset_and_snapshots() -> None:
+def test_temperatures_survive_spawn_remove_reset_and_snapshots() -> None:
     with simkit.load(world(thermal(KELVIN.format(310)))) as sim:
         kept = sim.snapshot()
         sim.spawn(f"""<sdf version="1.9"><model name="x"><static>true</static><link name="l"><visual name="v">{BALL}
@@ -163,7 +163,7 @@ def test_temperatures_follow_spawn_remove_reset_and_snapshots() -> None:
         assert dict(sim.contents.temperatures) == {"m::l::v": 310}
 
 
-def test_a_wrong_name_or_temperature_is_said() -> None:
+def test_a_wrong_name_or_temperature_is_reported() -> None:
     with simkit.load(world()) as sim:
         with pytest.raises(KeyError, match="m::l::v"):
             sim.contents.temperatures["m::l::vv"] = 300

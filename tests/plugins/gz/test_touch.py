@@ -1,4 +1,4 @@
-"""gz's TouchPlugin: once, after a while of touching its target."""
+"""TouchPlugin of Gazebo: one message after a time of uninterrupted contact with its target."""
 
 from __future__ import annotations
 
@@ -35,8 +35,8 @@ def probe(*, pose: str = "0 0 0.3 0 0 0", sensor: str = SENSOR, name: str = "pro
     return body(name, pose, plugin(**settings), sensor)
 
 
-def told(sim: Any, duration: float = 0.3) -> list[int]:
-    """Ticks at which it says that it has touched."""
+def touch_ticks(sim: Any, duration: float = 0.3) -> list[int]:
+    """Return the ticks at which a touch is published."""
     ticks: list[int] = []
     sub = sim.subscribe("/probe/touched", lambda message: ticks.append(sim.tick) if message.data else None)
     sim.run(duration)
@@ -44,91 +44,91 @@ def told(sim: Any, duration: float = 0.3) -> list[int]:
     return ticks
 
 
-def test_it_is_told_once_after_its_time() -> None:
+def test_a_touch_is_published_once_after_the_given_time() -> None:
     with simkit.load(world(PAD, probe())) as sim:
         assert sim.topics()["/probe/touched"] == sim.topics()["/probe/enable"] == "std_msgs/msg/Bool"
         # touches at the first step; more than 0.1 s later it is enough
-        assert told(sim, 0.5) == [102]
+        assert touch_ticks(sim, 0.5) == [102]
 
 
-def test_enabled_again_it_begins_anew() -> None:
+def test_a_detector_that_is_enabled_again_starts_from_zero() -> None:
     with simkit.load(world(PAD, probe(enabled="false"))) as sim:
-        assert told(sim) == []
+        assert touch_ticks(sim) == []
         sim.publish("/probe/enable", {"data": True})
-        assert told(sim) == [pytest.approx(300 + 102, abs=2)]
+        assert touch_ticks(sim) == [pytest.approx(300 + 102, abs=2)]
         sim.publish("/probe/enable", {"data": True})
         sim.run(0.05)
         sim.publish("/probe/enable", {"data": False})
-        assert told(sim) == []
+        assert touch_ticks(sim) == []
 
 
-def test_a_break_starts_the_time_anew() -> None:
+def test_an_interruption_restarts_the_time() -> None:
     with simkit.load(world(PAD, probe(time=0.1))) as sim:
         sim.run(0.08)
         sim.model("probe").set_pose(simkit.Pose((0, 0, 0.305)))
-        (tick,) = told(sim)
-        assert 80 + 32 + 100 < tick < 80 + 32 + 110  # it falls 5 mm
+        (tick,) = touch_ticks(sim)
+        assert 80 + 32 + 100 < tick < 80 + 32 + 110  # the target falls 5 mm
 
 
 @pytest.mark.parametrize("target", ["pad", "pad::l::c", "/pad/l/c", "model/pad/link/l", "world/w/model/pad"])
 def test_the_target_is_a_part_of_a_scoped_name_in_any_spelling(target: str) -> None:
     with simkit.load(world(PAD, probe(target=target))) as sim:
-        assert told(sim) == [102]
+        assert touch_ticks(sim) == [102]
         assert not [d for d in sim.diagnostics if d.severity != "note"]
 
 
-def test_others_may_be_touched_meanwhile_but_do_not_count() -> None:
+def test_contact_with_other_objects_does_not_interrupt_the_time() -> None:
     other = body("other", "0.15 0 0.1 0 0 0", sensor="", static=True)
     with simkit.load(world(PAD, other, probe(pose="0.1 0 0.3 0 0 0"))) as sim:
-        assert told(sim) == [102]
+        assert touch_ticks(sim) == [102]
     with simkit.load(world(PAD, probe(pose="3 0 0.3 0 0 0"), body("other", "3 0 0.1 0 0 0", static=True))) as sim:
-        assert told(sim) == []
+        assert touch_ticks(sim) == []
 
 
-def test_only_collisions_with_a_sensor_count_or_those_that_are_named() -> None:
+def test_only_named_collisions_or_those_with_a_sensor_count() -> None:
     make = "<create_contact_sensor_for_collision>true</create_contact_sensor_for_collision>"
     with simkit.load(world(PAD, probe(sensor=""))) as sim:
         assert [d.severity for d in sim.diagnostics if d.code == "SK-SENSOR-043"] == ["warning"]
-        assert told(sim) == []
+        assert touch_ticks(sim) == []
     with simkit.load(world(PAD, probe(sensor="", more="<collision>c</collision>"))) as sim:
-        assert told(sim) == []
+        assert touch_ticks(sim) == []
     with simkit.load(world(PAD, probe(sensor="", more=f"<collision>c</collision>{make}"))) as sim:
-        assert told(sim) == [102]
+        assert touch_ticks(sim) == [102]
         assert not [d for d in sim.diagnostics if d.severity != "note"]
     with pytest.raises(LoadError, match="no collision 'd'"):
         simkit.load(world(PAD, probe(more="<collision>d</collision>")))
 
 
-def test_a_target_may_come_later() -> None:
+def test_a_target_can_be_spawned_later() -> None:
     with simkit.load(world(body("probe", "0 0 5 0 0 0", plugin(), static=True))) as sim:
         assert "SK-SENSOR-044" in {d.code for d in sim.diagnostics}
-        assert told(sim, 0.1) == []
+        assert touch_ticks(sim, 0.1) == []
         sim.spawn(f'<sdf version="1.9">{body("pad", "0 0 5.21 0 0 0", sensor="")}</sdf>')
-        (tick,) = told(sim, 3.0)
+        (tick,) = touch_ticks(sim, 3.0)
         assert 100 + 45 + 100 < tick < 100 + 45 + 110
         assert (sim.mj_data.tree_asleep < 0).all()
 
 
 @pytest.mark.parametrize("held", ["sensor", "created"])
-def test_what_rests_on_a_static_probe_stays_in_touch(held: str) -> None:
-    """It would fall asleep, and the contacts of a sleeper are not there."""
+def test_a_target_that_rests_on_a_static_probe_stays_in_contact(held: str) -> None:
+    """A sleeping target would have no contacts, so the detector keeps it awake."""
     make = "<create_contact_sensor_for_collision>true</create_contact_sensor_for_collision><collision>c</collision>"
     more = plugin(target="top", time=4.0, more="" if held == "sensor" else make)
     base = body("base", "0 0 0.1 0 0 0", more, SENSOR if held == "sensor" else "", static=True)
     with simkit.load(world(base, body("top", "0 0 0.3 0 0 0", sensor=""))) as sim:
-        assert told(sim, 4.5) == [4002]
+        assert touch_ticks(sim, 4.5) == [4002]
 
 
-def test_reset_and_restore_bring_its_state_back() -> None:
+def test_reset_and_restore_include_the_state() -> None:
     with simkit.load(world(PAD, probe())) as sim:
         sim.run(0.06)
         snapshot = sim.snapshot()
-        assert told(sim) == [102]
-        assert told(sim) == []
+        assert touch_ticks(sim) == [102]
+        assert touch_ticks(sim) == []
         sim.restore(snapshot)
-        assert told(sim) == [102]
+        assert touch_ticks(sim) == [102]
         sim.reset()
-        assert told(sim) == [102]
+        assert touch_ticks(sim) == [102]
 
 
 @pytest.mark.parametrize(
@@ -141,7 +141,7 @@ def test_reset_and_restore_bring_its_state_back() -> None:
         ("<namespace>probe</namespace>", "<namespace>???</namespace>", "a topic's name"),
     ],
 )
-def test_what_it_cannot_work_without_is_an_error(old: str, new: str, says: str) -> None:
+def test_missing_required_elements_are_errors(old: str, new: str, says: str) -> None:
     with pytest.raises(LoadError, match=says):
         simkit.load(world(PAD, probe().replace(old, new)))
 
@@ -151,27 +151,27 @@ def test_two_on_one_model_keep_their_own_targets() -> None:
     both = body("probe", "0 0 0.3 0 0 0", plugin() + second)
     with simkit.load(world(PAD, both)) as sim:
         other = sim.subscribe("/second/touched")
-        assert told(sim) == [102]
+        assert touch_ticks(sim) == [102]
         assert other.messages == []
 
 
-def test_it_is_enabled_by_a_service_as_in_gz_too() -> None:
+def test_it_can_be_enabled_by_a_service_as_in_gazebo() -> None:
     with simkit.load(world(PAD, probe(enabled="false"))) as sim:
-        assert not told(sim)
+        assert not touch_ticks(sim)
         assert sim.call("/probe/enable", {"data": True}).success
-        assert len(told(sim)) == 1
+        assert len(touch_ticks(sim)) == 1
         sim.call("/probe/enable", {"data": True})
         sim.call("/probe/enable", {"data": False})
-        assert not told(sim)
+        assert not touch_ticks(sim)
 
 
 def test_the_service_enables_all_detectors_of_a_namespace() -> None:
     twice = body("probe", "0 0 0.3 0 0 0", plugin(enabled="false") + plugin(enabled="false", time=0.2))
     with simkit.load(world(PAD, twice)) as sim:
         sim.call("/probe/enable", {"data": True})
-        assert len(told(sim)) == 2
+        assert len(touch_ticks(sim)) == 2
 
 
-def test_a_target_with_nothing_in_it_is_an_error() -> None:
+def test_an_empty_target_is_an_error() -> None:
     with pytest.raises(LoadError, match="found <target></target>, allowed is a name"):
         simkit.load(world(PAD, probe(target="")))

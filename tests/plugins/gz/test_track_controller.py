@@ -1,4 +1,4 @@
-"""gz's track controller: what lies on a belt goes with it, as far as friction takes it."""
+"""Track controller of Gazebo: a belt moves its load as far as friction allows."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ def place(sim: simkit.Simulation, name: str = "crate") -> np.ndarray:
 
 @pytest.mark.parametrize("step", [0.001, 0.002, 0.004])
 @pytest.mark.parametrize("speed", [0.5, -2.0])
-def test_a_crate_is_speeded_up_by_friction_and_then_goes_with_the_belt(step: float, speed: float) -> None:
-    """mu·g until it has the belt's speed: it lags by v²/(2 mu g); and nothing lifts it meanwhile."""
+def test_friction_accelerates_a_crate_to_the_speed_of_the_belt(step: float, speed: float) -> None:
+    """The crate accelerates at mu·g up to the belt's speed, lags by v²/(2 mu g), and is not lifted."""
     with opened(conveyor(mu=0.7), crate(), step=step) as sim:
         sim.run(0.2)
         sim.publish(BELT, {"data": speed})
@@ -39,8 +39,8 @@ def test_a_crate_is_speeded_up_by_friction_and_then_goes_with_the_belt(step: flo
         assert highest < 0.055
 
 
-def test_what_rolls_is_carried_as_a_rolling_ball_is() -> None:
-    """A solid ball on a belt gets 2/7 of the belt's speed: friction turns it while it pushes."""
+def test_a_ball_on_a_belt_gets_two_sevenths_of_its_speed() -> None:
+    """A solid ball on a belt gets 2/7 of the belt's speed, because friction also turns the ball."""
     ball = crate(shape="<sphere><radius>0.05</radius></sphere>")
     with opened(conveyor(mu=1.0), ball.replace(str(0.01 / 6), str(0.4 * 0.0025))) as sim:
         sim.run(0.1)
@@ -49,7 +49,7 @@ def test_what_rolls_is_carried_as_a_rolling_ball_is() -> None:
         assert sim.link("crate::link").linear_velocity[0] == pytest.approx(0.2, rel=0.02)
 
 
-def test_a_crate_that_is_held_fast_presses_with_friction_at_any_speed() -> None:
+def test_a_held_crate_gets_the_friction_force_at_any_speed() -> None:
     for speed, step in ((0.2, 0.001), (10.0, 0.001), (10.0, 0.004)):
         with opened(conveyor(mu=0.5), crate(mass=2.0), wall(0.051), step=step) as sim:
             sim.publish(BELT, {"data": speed})
@@ -65,26 +65,26 @@ def test_a_crate_that_is_held_fast_presses_with_friction_at_any_speed() -> None:
             assert np.mean(pushes) == pytest.approx(0.5 * 2.0 * G, rel=0.035)
 
 
-def test_gazebos_own_test_of_a_conveyor() -> None:
-    """At most 0.5 m/s and 0.25 m/s², for 2 s: 0.125 m after a second, 0.5 after two, 0.875 after three."""
+def test_the_result_of_gazebos_conveyor_test_is_reproduced() -> None:
+    """A belt with 0.5 m/s and 0.25 m/s² for 2 s moves 0.125 m in one second, 0.5 m in two, 0.875 m in three."""
     inner = (
         "<max_command_age>2.0</max_command_age><max_velocity>0.5</max_velocity>"
         "<max_acceleration>0.25</max_acceleration><min_acceleration>-0.25</min_acceleration>"
     )
     with opened(conveyor(inner), crate()) as sim:
-        heard = sim.subscribe("/model/conveyor/link/belt/odometry", keep=1)
+        odometry = sim.subscribe("/model/conveyor/link/belt/odometry", keep=1)
         sim.run(1.0)
         sim.publish(BELT, {"data": 1.0})
         for way in (0.125, 0.5, 0.875):
             sim.run(1.0)
             assert place(sim)[0] == pytest.approx(way, abs=1e-3)
-            assert heard.messages[-1].pose.pose.position.x == pytest.approx(way, abs=1e-3)
+            assert odometry.messages[-1].pose.pose.position.x == pytest.approx(way, abs=1e-3)
         sim.run(2.0)
         assert place(sim)[0] == pytest.approx(1.0, abs=1e-3)
-        assert heard.messages[-1].twist.twist.linear.x == 0.0
+        assert odometry.messages[-1].twist.twist.linear.x == 0.0
 
 
-def test_a_belt_that_stands_costs_no_hook_and_holds() -> None:
+def test_a_stopped_belt_needs_no_callback_and_holds() -> None:
     with opened(conveyor(), crate(pose="0 0 0.05 0 0 0")) as sim:
         sim.run(0.1)
         assert not sim.engine.scheduler.before.every
@@ -107,8 +107,8 @@ def test_a_sleeping_crate_wakes_when_the_belt_starts() -> None:
         assert place(sim)[0] == pytest.approx(0.3, abs=0.01)
 
 
-def test_it_carries_along_a_circle_round_a_centre() -> None:
-    """At 0.4 m/s round a point 1 m to the left: 0.4 rad a second, the crate turns with its way."""
+def test_a_centre_of_rotation_makes_the_crate_move_on_a_circle() -> None:
+    """At 0.4 m/s around a point 1 m to the left, the crate turns by 0.4 rad per second along its path."""
     with opened(conveyor(mu=1.0), crate()) as sim:
         sim.publish(CENTRE, {"x": 0.0, "y": 1.0, "z": 0.0})
         sim.publish(BELT, {"data": 0.4})
@@ -121,8 +121,8 @@ def test_it_carries_along_a_circle_round_a_centre() -> None:
         np.testing.assert_allclose((place(sim) - before)[:2], (0.4, 0.0), atol=0.01)
 
 
-def test_the_belt_runs_the_way_it_is_turned_and_comes_back_below() -> None:
-    """Turned by 90° it carries along y; on a belt hung over the crate, its lower side carries the other way."""
+def test_the_track_orientation_turns_the_belt_and_its_lower_side_moves_back() -> None:
+    """A belt turned by 90° moves loads along y; the lower side of a belt above the crate moves it backwards."""
     with opened(conveyor("<track_orientation>0 0 1.5707963267948966</track_orientation>"), crate()) as sim:
         sim.publish(BELT, {"data": 0.5})
         sim.run(1.0)
@@ -135,8 +135,8 @@ def test_the_belt_runs_the_way_it_is_turned_and_comes_back_below() -> None:
         assert place(sim)[0] < -0.05
 
 
-def test_a_slope_carries_up_to_the_angle_of_friction() -> None:
-    """Along x it goes up 15° at the belt's speed; with mu below the slope's tangent it slides down in spite of it."""
+def test_a_belt_carries_a_crate_up_to_the_friction_angle() -> None:
+    """The belt carries a crate up 15°; with mu below the slope's tangent the crate slides down."""
     pitch = math.radians(15)
     tilted = f"0 0 {-0.05 / math.cos(pitch)} 0 {-pitch} 0"
     for mu, climbs in ((0.6, True), (0.15, False)):
@@ -151,8 +151,8 @@ def test_a_slope_carries_up_to_the_angle_of_friction() -> None:
                 assert along == pytest.approx(-0.5 * down * 4, rel=0.03)
 
 
-def test_on_two_belts_that_run_against_each_other_a_crate_turns() -> None:
-    """It lies half on each, and stays where it is."""
+def test_a_crate_on_two_opposite_belts_turns() -> None:
+    """The crate lies half on each belt, turns, and does not move."""
     left = conveyor(size="40 2 0.1", pose="0 1 -0.05 0 0 0", mu=1.0)
     right = conveyor(size="40 2 0.1", pose="0 -1 -0.05 0 0 0", mu=1.0).replace('"conveyor"', '"other"')
     with opened(left, right, crate()) as sim:
@@ -163,7 +163,7 @@ def test_on_two_belts_that_run_against_each_other_a_crate_turns() -> None:
         assert np.abs(place(sim)[:2]).max() < 0.01
 
 
-def test_same_bits_after_a_reset_a_restore_and_with_a_reader() -> None:
+def test_runs_after_a_reset_or_restore_and_with_a_subscriber_have_the_same_bits() -> None:
     def trace(sim: simkit.Simulation, reads: bool = False) -> list[bytes]:
         found = []
         for tick in range(400):
@@ -191,7 +191,7 @@ def test_same_bits_after_a_reset_a_restore_and_with_a_reader() -> None:
         assert trace(sim, reads=True) == first
 
 
-def test_it_works_on_a_spawned_and_on_a_nested_model_and_goes_with_it() -> None:
+def test_it_works_on_spawned_and_nested_models() -> None:
     with opened(crate()) as sim:
         nested = (
             conveyor().replace('<model name="conveyor">', '<model name="line"><model name="conveyor">') + "</model>"
@@ -217,18 +217,18 @@ def test_it_works_on_a_spawned_and_on_a_nested_model_and_goes_with_it() -> None:
         ("<track_orientation>a b c</track_orientation>", "SK-PARAM-002"),
     ],
 )
-def test_bad_parameters_are_reported(inner: str, code: str) -> None:
+def test_invalid_parameters_are_reported(inner: str, code: str) -> None:
     with pytest.raises(simkit.LoadError) as error:
         opened(conveyor(inner))
     assert code in str(error.value)
 
 
-def test_a_link_that_is_not_there_is_reported_with_the_closest() -> None:
+def test_a_missing_link_is_reported_with_the_closest_name() -> None:
     with pytest.raises(simkit.LoadError, match="belt"):
         opened(conveyor().replace("<link>belt</link>", "<link>bel</link>"))
 
 
-def test_a_command_that_is_no_number_is_left_out() -> None:
+def test_a_nan_command_is_ignored() -> None:
     with opened(conveyor(), crate()) as sim:
         sim.publish(BELT, {"data": math.nan})
         sim.run(0.2)
@@ -238,8 +238,8 @@ def test_a_command_that_is_no_number_is_left_out() -> None:
 
 @pytest.mark.parametrize("friction", [rubs(0.7), rubs(0.7, 0.2, "1 1 0")], ids=["even", "directed"])
 @pytest.mark.parametrize("step", [0.001, 0.004])
-def test_many_contacts_have_the_bits_that_few_have(step: float, friction: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Many are worked out on arrays, few as plain numbers: where the one begins changes nothing."""
+def test_array_and_scalar_code_have_the_same_bits(step: float, friction: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Many contacts are computed with arrays, few with plain numbers; the limit between them changes no bit."""
 
     def run(many: int) -> bytes:
         for module in (contact_law, friction_contacts):

@@ -31,8 +31,8 @@ def planar(sim: simkit.Simulation) -> tuple[float, float, float]:
     return float(pose.position[0]), float(pose.position[1]), float(pose.rpy[2])
 
 
-def test_it_drives_straight_at_the_speed_it_is_told_as_friction_lets_it() -> None:
-    """1 m/s: it lags by v²/(2 mu g), for the tracks slip until it is that fast."""
+def test_it_accelerates_to_the_commanded_speed_within_friction() -> None:
+    """At 1 m/s the vehicle lags by v²/(2 mu g), because the tracks slip until it has reached this speed."""
     with opened(gz_tank()) as sim:
         sim.run(0.3)
         drive(sim, 1.0)
@@ -66,7 +66,7 @@ def test_it_turns_on_the_spot_and_along_a_circle() -> None:
         assert math.hypot(after[0] - x, after[1] - y) == pytest.approx(0.48, abs=0.1)
 
 
-def test_it_climbs_a_step_that_its_front_rolls_up() -> None:
+def test_it_climbs_a_step() -> None:
     step = (
         '<model name="step"><static>true</static><pose>2 0 0.02 0 0 0</pose><link name="link"><collision name="c">'
         f"<geometry><box><size>2 2 0.04</size></box></geometry>{rubs(1.0)}</collision></link></model>"
@@ -80,32 +80,32 @@ def test_it_climbs_a_step_that_its_front_rolls_up() -> None:
         assert pose.position[2] == pytest.approx(0.04, abs=5e-3)
 
 
-def test_its_tracks_are_told_on_their_topics_and_a_turn_has_a_centre() -> None:
-    heard: dict[str, list[Any]] = {}
+def test_speeds_and_the_centre_of_rotation_are_published_to_the_tracks() -> None:
+    received: dict[str, list[Any]] = {}
     with opened(gz_tank("<steering_efficiency>0.5</steering_efficiency>")) as sim:
         for side in ("left", "right"):
             for name in ("track_cmd_vel", "track_cmd_center_of_rotation"):
-                messages = heard.setdefault(f"{side} {name}", [])
+                messages = received.setdefault(f"{side} {name}", [])
                 sim.subscribe(f"/model/tank/link/{side}_track/{name}", messages.append)
         drive(sim, 0.4, 0.2)
         sim.run(0.01)
-        assert heard["left track_cmd_vel"][-1].data == pytest.approx(0.4 - 0.2 * 0.4)
-        assert heard["right track_cmd_vel"][-1].data == pytest.approx(0.4 + 0.2 * 0.4)
-        assert heard["left track_cmd_center_of_rotation"][-1].y == pytest.approx(2.0, abs=1e-3)
-        count = len(heard["left track_cmd_vel"])
+        assert received["left track_cmd_vel"][-1].data == pytest.approx(0.4 - 0.2 * 0.4)
+        assert received["right track_cmd_vel"][-1].data == pytest.approx(0.4 + 0.2 * 0.4)
+        assert received["left track_cmd_center_of_rotation"][-1].y == pytest.approx(2.0, abs=1e-3)
+        count = len(received["left track_cmd_vel"])
         sim.run(0.2)
-        assert len(heard["left track_cmd_vel"]) == count
+        assert len(received["left track_cmd_vel"]) == count
         sim.publish("/model/tank/steering_efficiency", {"data": 1.0})
         sim.run(0.01)
-        assert heard["right track_cmd_vel"][-1].data == pytest.approx(0.4 + 0.2 * 0.2)
+        assert received["right track_cmd_vel"][-1].data == pytest.approx(0.4 + 0.2 * 0.2)
         drive(sim, 0.4)
         sim.run(0.01)
-        assert math.isinf(heard["left track_cmd_center_of_rotation"][-1].y)
+        assert math.isinf(received["left track_cmd_center_of_rotation"][-1].y)
         assert not sim.engine.scheduler.after.every
 
 
 def test_its_odometry_is_that_of_wheels_at_the_speeds_of_the_tracks() -> None:
-    """Without skidding: the rate of turning over the steering efficiency; on /odometry and /tf at 50 Hz."""
+    """Odometry without skidding: the turning rate is divided by the steering efficiency; published at 50 Hz."""
     with opened(gz_tank("<frame_id>map</frame_id>")) as sim:
         odometry, tf = (sim.subscribe(f"/model/tank/{name}") for name in ("odometry", "tf"))
         drive(sim, 0.5, 0.1)
@@ -120,7 +120,7 @@ def test_its_odometry_is_that_of_wheels_at_the_speeds_of_the_tracks() -> None:
         assert last.pose.pose.position.y == pytest.approx(2.5 * (1 - math.cos(angle)), abs=1e-3)
 
 
-def test_its_limits_are_of_the_speed_ahead_and_of_turning() -> None:
+def test_the_limits_apply_to_forward_speed_and_turning_rate() -> None:
     inner = "<linear_velocity><max_velocity>0.3</max_velocity><max_acceleration>1</max_acceleration></linear_velocity>"
     with opened(gz_tank(inner)) as sim:
         speeds: list[Any] = []
@@ -131,7 +131,7 @@ def test_its_limits_are_of_the_speed_ahead_and_of_turning() -> None:
         assert speeds[-1].data == pytest.approx(0.3)
 
 
-def test_what_the_files_lack_is_an_error_with_its_line() -> None:
+def test_missing_elements_are_errors_with_their_line() -> None:
     with pytest.raises(simkit.LoadError, match="right_track"):
         opened(gz_tank().replace("<right_track><link>right_track</link></right_track>", ""))
     with pytest.raises(simkit.LoadError, match="left_track"):
@@ -141,10 +141,10 @@ def test_what_the_files_lack_is_an_error_with_its_line() -> None:
 
 
 @pytest.mark.parametrize("friction", ["", "<track_mu>1.5</track_mu><track_mu2>0.5</track_mu2>"])
-def test_classic_tracks_drive_and_turn_left_for_ros_and_right_for_gazebo(friction: str) -> None:
+def test_classic_tracks_turn_left_for_ros_commands_and_right_for_gazebo_commands(friction: str) -> None:
     with opened(tank(SIMPLE.format(inner=friction))) as sim:
-        told: list[Any] = []
-        sim.subscribe("/tank/tracks_speed", told.append)
+        speeds: list[Any] = []
+        sim.subscribe("/tank/tracks_speed", speeds.append)
         sim.run(0.3)
         drive(sim, 0.8, topic="/tank/cmd_vel")
         sim.run(1.0)
@@ -156,14 +156,14 @@ def test_classic_tracks_drive_and_turn_left_for_ros_and_right_for_gazebo(frictio
             drive(sim, 0.0, 0.25, topic)
             sim.run(1.0)
             assert planar(sim)[2] - yaw == pytest.approx(0.25 * sense, abs=0.1)
-        assert (told[-1].x, told[-1].y) == pytest.approx((0.1, -0.1))
+        assert (speeds[-1].x, speeds[-1].y) == pytest.approx((0.1, -0.1))
         drive(sim, 5.0, topic="/tank/cmd_vel")
         sim.run(0.01)
-        assert told[-1].x == 1.0
+        assert speeds[-1].x == 1.0
 
 
-def test_classic_friction_of_the_plugin_goes_over_the_files() -> None:
-    """On a slope of 30° with mu 0.3 in the file it slides; with 1.5 of the plugin it climbs."""
+def test_classic_friction_of_the_plugin_overrides_that_of_the_file() -> None:
+    """On a slope of 30° the vehicle slides with mu 0.3 of the file, and climbs with 1.5 of the plugin."""
     slope = math.radians(30)
     ground = (
         f'<model name="slope"><static>true</static><pose>0 0 0 0 {-slope} 0</pose><link name="link">'

@@ -1,4 +1,4 @@
-"""gz's TriggeredPublisher: messages that answer messages, by matches, after delays, and by services."""
+"""TriggeredPublisher of Gazebo: outputs after matching messages, with delays, and service calls."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def answers(sim: Any, topic: str = "/out") -> list[int]:
 
 
 def count(kind: str, message: dict[str, Any], *matches: str) -> int:
-    """How many answers one message gets."""
+    """Return the number of outputs after one message."""
     with simkit.load(world(listening(kind, *matches))) as sim:
         found = answers(sim)
         sim.publish("/in", message)
@@ -43,7 +43,7 @@ def count(kind: str, message: dict[str, Any], *matches: str) -> int:
         return len(found)
 
 
-def test_without_a_match_every_message_is_answered() -> None:
+def test_without_a_match_every_message_triggers() -> None:
     with simkit.load(world(listening("Boolean"))) as sim:
         assert sim.topics()["/in"] == "std_msgs/msg/Bool"
         assert sim.topics()["/out"] == "std_msgs/msg/Empty"
@@ -71,7 +71,7 @@ def test_without_a_match_every_message_is_answered() -> None:
         ("StringMsg", {"data": "go"}, ["<match>data: 'go'</match>"], 1),
     ],
 )
-def test_matches_are_met_as_in_gazebo(kind: str, message: dict[str, Any], matches: list[str], answered: int) -> None:
+def test_matches_work_as_in_gazebo(kind: str, message: dict[str, Any], matches: list[str], answered: int) -> None:
     assert count(kind, message, *matches) == answered
 
 
@@ -87,7 +87,7 @@ def test_several_outputs_with_their_contents() -> None:
         assert words.latest.data == "hello"
 
 
-def test_a_delay_is_one_of_simulated_time() -> None:
+def test_a_delay_counts_in_simulated_time() -> None:
     with simkit.load(world(listening("Empty") + "<delay_ms>250</delay_ms>")) as sim:
         found = answers(sim)
         sim.run(0.1)
@@ -98,7 +98,7 @@ def test_a_delay_is_one_of_simulated_time() -> None:
         assert found == [350, 400]
 
 
-def test_what_waits_survives_a_restore_and_not_a_reset() -> None:
+def test_delayed_outputs_survive_a_restore_but_not_a_reset() -> None:
     with simkit.load(world(listening("Empty") + "<delay_ms>250</delay_ms>")) as sim:
         found = answers(sim)
         sim.publish("/in", {})
@@ -114,8 +114,8 @@ def test_what_waits_survives_a_restore_and_not_a_reset() -> None:
         assert found == [250, 250]
 
 
-def test_an_answer_is_heard_in_the_next_step_of_the_same_run() -> None:
-    """Though nothing else is due in between."""
+def test_an_output_triggers_another_publisher_in_the_next_step_of_the_same_run() -> None:
+    """No other callback is due between the two steps."""
     chain = f'<plugin {KIND}><input type="gz.msgs.Empty" topic="/out"/><output type="gz.msgs.Empty" topic="/end"/>'
     with simkit.load(world(listening("Empty"), f"{chain}</plugin>")) as sim:
         found = answers(sim, "/end")
@@ -134,15 +134,15 @@ def test_services_are_called() -> None:
         assert "SK-PLUGIN-122" not in [d.code for d in sim.diagnostics]
 
 
-def test_a_service_that_is_not_there_is_said_once() -> None:
+def test_a_missing_service_is_reported_once() -> None:
     inner = """<input type="gz.msgs.Empty" topic="/in"/><service name="/world/w/set_pos" reqType="gz.msgs.Pose"
     repType="gz.msgs.Boolean" timeout="3000" reqMsg="name: 'robot'"/>"""
     with simkit.load(world(inner)) as sim:
         for _ in range(2):
             sim.publish("/in", {})
             sim.run(0.01)
-        (told,) = [d for d in sim.diagnostics if d.code == "SK-PLUGIN-122"]
-        assert "set_pose" in told.hint
+        (warning,) = [d for d in sim.diagnostics if d.code == "SK-PLUGIN-122"]
+        assert "set_pose" in warning.hint
 
 
 def test_the_header_of_a_performer_detector_is_matched() -> None:
@@ -160,7 +160,7 @@ def test_the_header_of_a_performer_detector_is_matched() -> None:
 
 
 @pytest.mark.parametrize(
-    ("inner", "said"),
+    ("inner", "pattern"),
     [
         (OUT, "needs <input>"),
         ('<input type="gz.msgs.Empty" topic="/in"/>', "needs an <output> or a <service>"),
@@ -173,20 +173,20 @@ def test_the_header_of_a_performer_detector_is_matched() -> None:
         ('<input type="gz.msgs.Empty" topic="/a"/><output type="gz.msgs.Twist" topic="/b">x: 1</output>', "no field"),
     ],
 )
-def test_what_cannot_work_is_an_error_with_its_line(inner: str, said: str) -> None:
-    with pytest.raises(LoadError, match=said) as raised:
+def test_invalid_elements_are_errors_with_their_line(inner: str, pattern: str) -> None:
+    with pytest.raises(LoadError, match=pattern) as raised:
         simkit.load(world(inner))
     assert all(d.line for d in raised.value.diagnostics if d.severity == "error")
 
 
-def test_all_problems_come_in_one_pass() -> None:
+def test_all_problems_are_reported_in_one_load() -> None:
     inner = '<input type="gz.msgs.A" topic="/a"/><output type="gz.msgs.B" topic="/b"/><delay_ms>x</delay_ms>'
     with pytest.raises(LoadError) as raised:
         simkit.load(world(inner))
     assert len([d for d in raised.value.diagnostics if d.severity == "error"]) == 3
 
 
-def test_idle_it_costs_no_step() -> None:
+def test_an_idle_publisher_needs_no_callback() -> None:
     with simkit.load(world(listening("Empty") + "<delay_ms>5</delay_ms>")) as sim:
         sim.run(0.01)
         (plugin,) = [p for p in sim.engine.structure.all_plugins() if type(p).__name__ == "TriggeredPublisher"]

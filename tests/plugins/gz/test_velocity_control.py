@@ -1,4 +1,4 @@
-"""gz's velocity control: models and links that go where they are told."""
+"""Velocity control of Gazebo: models and links that follow twist commands."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def planar(sim: simkit.Simulation) -> np.ndarray:
     return np.array((pose.position[0], pose.position[1], pose.rpy[2]))
 
 
-def test_its_topic_is_gazebos_or_the_files() -> None:
+def test_the_topic_is_that_of_gazebo_or_of_the_file() -> None:
     with opened() as sim:
         assert sim.topics()[TOPIC] == "geometry_msgs/msg/Twist"
     with opened("<topic>go</topic>") as sim:
@@ -32,7 +32,7 @@ def test_its_topic_is_gazebos_or_the_files() -> None:
         assert TOPIC not in sim.topics()
 
 
-def test_without_a_command_it_holds_still_in_the_air() -> None:
+def test_without_a_command_the_model_rests_in_the_air() -> None:
     with opened(pose="0 0 2 0 0.3 0") as sim:
         sim.run(0.5)
         np.testing.assert_allclose(sim.model("box").pose.position, (0, 0, 2), atol=1e-12)
@@ -41,7 +41,7 @@ def test_without_a_command_it_holds_still_in_the_air() -> None:
 
 @pytest.mark.parametrize("step", [0.001, 0.004, 0.01])
 def test_it_drives_the_exact_arc_at_any_step(step: float) -> None:
-    """0.5 m/s and 0.7 rad/s for 1.5 s: a circle of radius 5/7 m; a box on the ground, so that nothing may rub."""
+    """A box on the ground at 0.5 m/s and 0.7 rad/s for 1.5 s moves on a circle of radius 5/7 m, without friction."""
     with opened(step=step) as sim:
         sim.publish(TOPIC, {"linear": {"x": 0.5, "y": 0.1}, "angular": {"z": 0.7}})
         sim.run(1.5)
@@ -50,7 +50,7 @@ def test_it_drives_the_exact_arc_at_any_step(step: float) -> None:
 
 
 def test_the_twist_is_in_the_models_own_axes_in_space() -> None:
-    """Ahead along an axis that points up by 0.5 rad, turning about it: a straight line."""
+    """Motion along an axis that points up by 0.5 rad, with rotation around it, is a straight line."""
     with opened(pose="0 0 1 0 -0.5 0") as sim:
         sim.publish(TOPIC, {"linear": {"x": 0.4}, "angular": {"x": 1.0}})
         sim.run(2.0)
@@ -69,7 +69,7 @@ def test_a_screw_ends_where_its_twist_leads() -> None:
         assert sim.model("box").pose.rpy[2] == pytest.approx(math.remainder(yaw, 2 * math.pi), abs=1e-9)
 
 
-def test_initial_velocities_are_those_of_the_file_until_a_command_comes() -> None:
+def test_initial_velocities_last_until_the_first_command() -> None:
     inner = "<initial_linear>0.3 0 0</initial_linear><initial_angular>0 0 -0.1</initial_angular>"
     with opened(inner) as sim:
         sim.run(1.0)
@@ -81,17 +81,19 @@ def test_initial_velocities_are_those_of_the_file_until_a_command_comes() -> Non
         np.testing.assert_allclose(planar(sim), at, atol=1e-9)
 
 
-def test_a_wall_stops_it_upright() -> None:
+def test_a_wall_stops_the_model_without_tilting_it() -> None:
     with opened("", WALL) as sim:
         sim.publish(TOPIC, {"linear": {"x": 1.0}})
         sim.run(1.2)
         pose = sim.model("box").pose
-        assert 0.69 < pose.position[0] < 0.72  # the wall begins at 0.9 m, the box ends 0.2 m ahead; it gives a little
+        assert (
+            0.69 < pose.position[0] < 0.72
+        )  # the wall begins at 0.9 m, the box ends 0.2 m ahead of its origin; contacts are soft
         np.testing.assert_allclose(pose.rpy, 0, atol=1e-3)
 
 
-def test_what_lies_on_it_is_carried_along() -> None:
-    """Friction holds a load of a fifth of its weight; the carrier sinks under that with g·dt of it, as in Gazebo."""
+def test_a_load_on_the_model_is_carried_along() -> None:
+    """Friction holds a load of a fifth of the carrier's weight; the carrier sinks by g·dt of it, as in Gazebo."""
     load = box("", name="load", pose="0 0 0.301 0 0 0", mass=1.0)
     with opened("", load) as sim:
         sim.run(0.3)
@@ -102,8 +104,8 @@ def test_what_lies_on_it_is_carried_along() -> None:
     np.testing.assert_allclose(load_at[:2], arc(0.3, 0.2, 1.5)[:2], atol=0.02)
 
 
-def test_an_arm_on_it_swings_as_on_a_fixed_base() -> None:
-    """Amplitude 1 rad, inertia 0.28 kg·m² about the hinge, 5.886 N·m at the side: back after a whole period."""
+def test_an_arm_on_the_model_swings_as_on_a_fixed_base() -> None:
+    """An arm with 0.28 kg·m² about the hinge and 5.886 N·m at 1 rad is back after a whole period."""
     with simkit.load(world(box(velocity_control(), pose="0 0 2 0 0 0", extra=ARM))) as sim:
         sim.joint("box::hinge").set_position(1.0)
         angles = []
@@ -118,7 +120,7 @@ def test_an_arm_on_it_swings_as_on_a_fixed_base() -> None:
     assert (np.argmin(angles) + 1) * 0.001 == pytest.approx(period / 2, abs=0.01)
 
 
-def test_an_imu_on_it_feels_what_holds_it() -> None:
+def test_an_imu_on_the_model_measures_gravity() -> None:
     imu = "<sensor name='imu' type='imu'><update_rate>100</update_rate></sensor>"
     model = box(velocity_control(), pose="0 0 2 0 0 0").replace("</link>", f"{imu}</link>")
     with simkit.load(world(model)) as sim:
@@ -127,7 +129,7 @@ def test_an_imu_on_it_feels_what_holds_it() -> None:
         assert (acceleration.x, acceleration.y, acceleration.z) == pytest.approx((0, 0, 9.8), abs=1e-9)
 
 
-def test_a_links_command_moves_what_hangs_together_with_it_and_leaves_the_rest() -> None:
+def test_a_link_command_moves_its_connected_links_only() -> None:
     loose = f"<link name='drone'><pose>0 1 0.9 0 0 1.5707963</pose><inertial><mass>1</mass>{INERTIA}</inertial></link>"
     with opened("<link_name>drone</link_name>", extra=loose) as sim:
         topic = "/model/box/link/drone/cmd_vel"
@@ -144,14 +146,14 @@ def test_a_links_command_moves_what_hangs_together_with_it_and_leaves_the_rest()
         np.testing.assert_allclose(planar(sim), (0.4, 0, 0), atol=1e-9)
 
 
-def test_a_links_command_takes_along_what_joints_tie_to_it() -> None:
+def test_a_link_command_moves_all_links_that_joints_connect_to_it() -> None:
     with opened("<link_name>arm</link_name>", extra=ARM, pose="0 0 2 0 0 0") as sim:
         sim.publish("/model/box/link/arm/cmd_vel", {"linear": {"x": 0.5}})
         sim.run(1.0)
         np.testing.assert_allclose(sim.model("box").pose.position, (0.5, 0, 2), atol=1e-6)
 
 
-def test_a_command_that_is_not_finite_is_left_out() -> None:
+def test_a_nan_or_infinite_command_is_ignored() -> None:
     with opened() as sim:
         sim.publish(TOPIC, {"linear": {"x": 0.5}})
         for _ in range(2):
@@ -162,21 +164,21 @@ def test_a_command_that_is_not_finite_is_left_out() -> None:
 
 
 @pytest.mark.parametrize("part", ["linear", "angular"])
-def test_a_command_beyond_all_bounds_diverges_and_says_so(part: str) -> None:
+def test_a_huge_command_is_reported_as_divergence(part: str) -> None:
     with opened() as sim:
         sim.publish(TOPIC, {part: {"z": 1e300}})
         with pytest.raises(simkit.SimulationDiverged):
             sim.step(5)
 
 
-def test_a_stamped_command_does_the_same() -> None:
+def test_a_stamped_command_has_the_same_effect() -> None:
     with opened() as sim:
         sim.publish(TOPIC, {"twist": {"linear": {"x": 0.5}}})
         sim.run(1.0)
         np.testing.assert_allclose(planar(sim), (0.5, 0, 0), atol=1e-6)
 
 
-def test_an_unknown_link_is_an_error_with_the_closest() -> None:
+def test_an_unknown_link_is_an_error_with_the_closest_name() -> None:
     with pytest.raises(simkit.LoadError) as caught:
         opened("<link_name>bass</link_name>")
     (found,) = (d for d in caught.value.diagnostics if d.severity == "error")
@@ -185,7 +187,7 @@ def test_an_unknown_link_is_an_error_with_the_closest() -> None:
     assert found.line is not None
 
 
-def test_a_model_that_is_joined_to_the_world_stays_and_that_is_said() -> None:
+def test_a_model_with_a_joint_to_the_world_is_reported_and_does_not_move() -> None:
     anchor = "<joint name='anchor' type='fixed'><parent>world</parent><child>base</child></joint>"
     with opened(extra=anchor) as sim:
         assert "SK-PLUGIN-053" in [d.code for d in sim.diagnostics]
@@ -213,7 +215,7 @@ def test_reset_and_restore_repeat_bit_for_bit() -> None:
         assert run() == first
 
 
-def test_models_that_come_and_go_change_nothing_of_its_way() -> None:
+def test_spawned_and_removed_models_do_not_change_the_motion() -> None:
     with opened() as sim:
         sim.publish(TOPIC, {"linear": {"x": 0.5}, "angular": {"z": 0.7}})
         sim.run(0.4)
@@ -224,7 +226,7 @@ def test_models_that_come_and_go_change_nothing_of_its_way() -> None:
         np.testing.assert_allclose(planar(sim), arc(0.5, 0.7, 1.2), atol=1e-6)
 
 
-def test_two_models_are_moved_each_by_its_own() -> None:
+def test_two_models_follow_their_own_commands() -> None:
     other = box(velocity_control(), name="other", pose="0 3 0.1 0 0 0", extra=ARM)
     with opened("", other) as sim:
         sim.publish(TOPIC, {"linear": {"x": 0.5}, "angular": {"z": 0.7}})
@@ -237,8 +239,8 @@ def test_two_models_are_moved_each_by_its_own() -> None:
 
 
 @pytest.mark.parametrize("step", [0.002, 0.004])
-def test_many_are_moved_to_the_same_bits_as_one_by_one(step: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Six boxes that touch the ground, two of which meet; an elliptic and a pyramidal friction cone."""
+def test_models_moved_together_have_the_same_bits_as_one_by_one(step: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Six boxes touch the ground and two touch each other, with elliptic and pyramidal friction cones."""
     models = [box(velocity_control(), name=f"b{k}", pose=f"{k} 0 0.1 0 0 0", extra=ARM) for k in range(6)]
     ends = []
     for least in (2, 100):

@@ -1,4 +1,4 @@
-"""What lies between two points of a trajectory."""
+"""Interpolation between the points of a trajectory."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from simkit.plugins.joints.joint_trajectory import (
 
 
 def point(seconds: float, position: float, *rest: float) -> TrajectoryPoint:
-    """With a velocity and an acceleration where they are given."""
+    """Create a point, with a velocity and an acceleration if given."""
     return TrajectoryPoint(round(seconds * SECOND), (position,), rest[:1], rest[1:2])
 
 
@@ -27,7 +27,7 @@ def sampled(path: JointPath | None, until: float, count: int = 101) -> tuple[np.
     return times, np.array([(s.position, s.velocity, s.acceleration) for s in states])
 
 
-def test_gz_takes_the_first_point_whose_time_is_not_over() -> None:
+def test_the_active_point_is_the_first_one_whose_time_has_not_passed() -> None:
     times = [100, 200, 300]
     assert [active_point(times, t) for t in (-5, 0, 100, 101, 200, 201, 300, 301)] == [0, 0, 0, 1, 1, 2, 2, 2]
 
@@ -79,12 +79,12 @@ def test_a_joint_that_no_point_has_a_position_for_has_no_path() -> None:
 @pytest.mark.parametrize(
     ("points", "fault"),
     [
-        ([point(1, 0.0), point(0.5, 1.0)], "point 1 is at 0.5 s, the one before it at 1 s"),
-        ([point(1, float("nan"))], "not finite"),
+        ([point(1, 0.0), point(0.5, 1.0)], "point 1 is at 0.5 s, but the point before it is at 1 s"),
+        ([point(1, float("nan"))], "NaN or infinite"),
         ([TrajectoryPoint(0, (1.0, 2.0))], "2 numbers for 1 joint names"),
         ([point(1, 0.0), point(1, 0.0)], ""),
         ([], ""),
     ],
 )
-def test_what_makes_a_trajectory_unusable_is_said(points: list[TrajectoryPoint], fault: str) -> None:
+def test_the_fault_of_an_unusable_trajectory_is_described(points: list[TrajectoryPoint], fault: str) -> None:
     assert fault in trajectory_faults(["a"], points) if fault else not trajectory_faults(["a"], points)

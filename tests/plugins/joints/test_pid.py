@@ -1,4 +1,4 @@
-"""The controller that gz's joint systems share."""
+"""PID controller of Gazebo's joint systems."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import pytest
 from simkit.plugins.joints.pid import Pid
 
 
-def test_the_first_call_differentiates_from_zero_and_the_integral_is_bounded_in_the_output() -> None:
+def test_the_first_derivative_starts_at_zero_and_the_integral_term_is_limited() -> None:
     pid = Pid(2.0, 10.0, 0.1, 0.5, -0.5, 100.0, -100.0)
     # p = 2, i = 10 · 0.01, d = 0.1 · 1 / 0.01
     assert pid.update(1.0, 0.01) == pytest.approx(-(2.0 + 0.1 + 10.0))
@@ -18,7 +18,7 @@ def test_the_first_call_differentiates_from_zero_and_the_integral_is_bounded_in_
     assert pid.update(1.0, 0.01) == pytest.approx(-2.5)
 
 
-def test_an_error_that_is_no_number_and_a_step_of_no_length_change_nothing() -> None:
+def test_a_nan_error_or_a_zero_step_changes_nothing() -> None:
     pid = Pid(2.0, 10.0, 0.1, 0.5, -0.5, 100.0, -100.0)
     pid.update(1.0, 0.01)
     before = pid.integral, pid.last
@@ -28,7 +28,7 @@ def test_an_error_that_is_no_number_and_a_step_of_no_length_change_nothing() -> 
     assert (pid.integral, pid.last) == before
 
 
-def test_bounds_that_cross_are_none() -> None:
+def test_crossed_limits_have_no_effect() -> None:
     free = Pid(1e6, 1e6, 0.0, -1.0, 0.0, -1.0, 0.0)
     assert free.update(1.0, 0.5) == pytest.approx(-1.5e6)
     bounded = Pid(1e6, 0.0, 0.0, 1.0, -1.0, 7.0, -3.0, offset=2.0)
@@ -38,14 +38,14 @@ def test_bounds_that_cross_are_none() -> None:
 
 
 @pytest.mark.parametrize(("growth", "runs_away"), [(0.9, False), (1.0, False), (1.1, True)])
-def test_a_loop_runs_away_when_its_error_swings_wider_and_wider(growth: float, runs_away: bool) -> None:
+def test_a_loop_with_growing_oscillations_is_unstable(growth: float, runs_away: bool) -> None:
     pid = Pid(1.0, 0.0, 0.0, 1.0, -1.0, 1000.0, -1000.0)
     for k in range(40):
         pid.update((-growth) ** k, 0.001)
     assert pid.swings.runs_away is runs_away
 
 
-def test_a_loop_that_goes_from_bound_to_bound_runs_away() -> None:
+def test_a_loop_that_oscillates_between_its_limits_is_unstable() -> None:
     pid = Pid(1e5, 0.0, 0.0, 1.0, -1.0, 10.0, -10.0)
     for k in range(40):
         pid.update((-1.0) ** k, 0.001)

@@ -1,4 +1,4 @@
-"""Velocity servos keep the commanded speed under load: skid steering, slopes, towing, a torque on a wheel."""
+"""Velocity servos under load: skid steering, slopes, towing, a torque on a wheel."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ SHAPES = {
 
 @pytest.fixture(scope="session")
 def meshes(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with the mesh of a wheel: a prism of 48 sides."""
+    """Return a folder with the mesh of a wheel: a prism with 48 sides."""
     folder = tmp_path_factory.mktemp("meshes")
     trimesh.creation.cylinder(RADIUS, 0.05, sections=48).export(folder / "wheel.obj")
     return folder
@@ -47,7 +47,7 @@ def vehicle(
     effort: float | None = None,
     extra: str = "",
 ) -> str:
-    """A chassis on four wheels of a twentieth of its mass each, which gz's DiffDrive drives."""
+    """Return a chassis with a DiffDrive on four wheels, each with a twentieth of its mass."""
     limit = "" if effort is None else f"<limit><effort>{effort}</effort></limit>"
     parts = [f"<link name='base'><pose>0 0 0.15 0 0 0</pose>{inertial(mass, 0.03)}</link>"]
     for name in WHEELS:
@@ -69,7 +69,7 @@ def vehicle(
 def opened(
     step: float = 0.001, slope: float = 0.0, held: bool = False, folder: Path | None = None, **values: object
 ) -> simkit.Simulation:
-    """The vehicle on a plane inclined by `slope` [rad] (gravity has a part along +x), or with its chassis held.
+    """Load the vehicle on a plane inclined by `slope` [rad] (gravity points partly along +x), or with a fixed chassis.
 
     Args:
         folder: holds the meshes.
@@ -92,7 +92,7 @@ def wheel(sim: simkit.Simulation, name: str = "front_left") -> simkit.Joint:
 
 
 def speeds(sim: simkit.Simulation, seconds: float, torque: float = 0.0) -> np.ndarray:
-    """Velocities of one wheel [rad/s] after each step, while a torque [N·m] acts on it."""
+    """Return the velocities of one wheel [rad/s] after each step, while a torque [N·m] acts on the wheel."""
     found = []
     for _ in range(round(seconds / sim.timestep)):
         if torque:
@@ -116,7 +116,7 @@ def speeds(sim: simkit.Simulation, seconds: float, torque: float = 0.0) -> np.nd
         ({"mass": 50.0, "mu": 1.0, "width": 0.4, "length": 0.5}, 0.001),
     ],
 )
-def test_skid_steering_on_the_spot_turns_at_the_coulomb_balance_of_what_was_asked(
+def test_skid_steering_on_the_spot_turns_at_the_rate_of_the_coulomb_balance(
     values: dict[str, object], step: float, meshes: Path
 ) -> None:
     """Each wheel slips against its friction; without a net torque the yaw rate is W²/(W²+L²) of the wheels'."""
@@ -134,7 +134,7 @@ def test_skid_steering_on_the_spot_turns_at_the_coulomb_balance_of_what_was_aske
 
 
 @pytest.mark.parametrize("step", [0.0005, 0.001, 0.002, 0.004])
-def test_a_constant_torque_on_a_wheel_is_made_up_for_within_a_quarter_of_a_second(step: float) -> None:
+def test_a_constant_torque_on_a_wheel_is_compensated_within_a_quarter_of_a_second(step: float) -> None:
     with opened(step, held=True) as sim:
         drive(sim, linear=0.1)
         start = speeds(sim, 0.5)
@@ -150,7 +150,7 @@ def test_a_constant_torque_on_a_wheel_is_made_up_for_within_a_quarter_of_a_secon
 
 @pytest.mark.parametrize("step", [0.001, 0.002])
 def test_a_servo_at_its_effort_limit_does_not_wind_up(step: float) -> None:
-    """2 N·m against 3 N·m: the wheel is turned backwards, and comes back without running ahead."""
+    """With 2 N·m against 3 N·m, the wheel turns backwards, and recovers without overshoot."""
     with opened(step, held=True, effort=2.0) as sim:
         drive(sim, linear=0.5)
         speeds(sim, 0.3)
@@ -169,7 +169,7 @@ def test_a_servo_at_its_effort_limit_does_not_wind_up(step: float) -> None:
 
 @pytest.mark.parametrize("effort", [None, 5.0])
 @pytest.mark.parametrize("mass", [10.0, 50.0])
-def test_an_abrupt_start_and_stop_on_the_level_are_followed_by_no_swing(mass: float, effort: float | None) -> None:
+def test_an_abrupt_start_and_stop_on_level_ground_cause_no_oscillation(mass: float, effort: float | None) -> None:
     with opened(mass=mass, effort=effort) as sim:
         sim.run(0.5)
         drive(sim, linear=0.3)
@@ -183,7 +183,7 @@ def test_an_abrupt_start_and_stop_on_the_level_are_followed_by_no_swing(mass: fl
 
 
 @pytest.mark.parametrize("mass", [10.0, 50.0])
-def test_on_a_slope_it_holds_and_climbs_at_the_speed_that_was_asked_for(mass: float) -> None:
+def test_on_a_slope_it_holds_and_climbs_at_the_commanded_speed(mass: float) -> None:
     with opened(slope=math.radians(10), mass=mass) as sim:
         sim.run(1.0)
         before = sim.model("cart").pose.position[0]
@@ -199,7 +199,7 @@ def test_on_a_slope_it_holds_and_climbs_at_the_speed_that_was_asked_for(mass: fl
         assert abs(sim.model("cart").pose.position[0] - before) < 2e-5
 
 
-def test_what_it_tows_does_not_slow_it_down() -> None:
+def test_a_towed_load_does_not_slow_it_down() -> None:
     sledge = (
         f"<link name='sledge'><pose>-1 0 0.1 0 0 0</pose>{inertial(30.0, 0.01)}<collision name='box'><geometry><box>"
         f"<size>0.3 0.3 0.2</size></box></geometry>{surface(0.5)}</collision></link>"
@@ -215,8 +215,8 @@ def test_what_it_tows_does_not_slow_it_down() -> None:
         assert sim.model("cart").pose.position[0] - before == pytest.approx(0.6, rel=0.01)
 
 
-def test_wheels_that_scrubbed_do_not_strain_the_stopped_robot() -> None:
-    """The loads of a turn are gone when it has stopped: nothing pushes it on."""
+def test_the_loads_of_a_turn_are_gone_when_the_robot_has_stopped() -> None:
+    """The loads of a turn vanish when the robot has stopped, so nothing moves it."""
     with opened(mass=50.0) as sim:
         sim.run(0.5)
         drive(sim, angular=0.5)
@@ -230,7 +230,7 @@ def test_wheels_that_scrubbed_do_not_strain_the_stopped_robot() -> None:
     assert np.linalg.norm(moved.rpy) < 1e-6
 
 
-def test_a_wheel_that_is_put_elsewhere_goes_on_at_its_speed() -> None:
+def test_a_wheel_whose_position_is_set_keeps_its_speed() -> None:
     with opened(held=True) as sim:
         drive(sim, linear=0.1)
         sim.run(0.5)
@@ -238,7 +238,7 @@ def test_a_wheel_that_is_put_elsewhere_goes_on_at_its_speed() -> None:
         assert speeds(sim, 0.2) == pytest.approx(1.0, abs=1e-3)
 
 
-def test_the_correction_outlives_a_spawn() -> None:
+def test_the_correction_is_kept_after_a_spawn() -> None:
     with opened(held=True) as sim:
         drive(sim, linear=0.1)
         speeds(sim, 0.5, torque=-0.6)
@@ -260,7 +260,7 @@ def run_in(sim: simkit.Simulation, chunk: int, *, reads: bool) -> bytes:
     return state(sim)
 
 
-def test_neither_readers_nor_chunks_nor_snapshots_change_a_bit() -> None:
+def test_reading_chunked_runs_and_snapshots_change_no_bit() -> None:
     with opened(mass=50.0) as sim:
         whole = run_in(sim, 600, reads=False)
         for chunk, reads in ((1, True), (1, False), (6, True), (50, False)):
