@@ -47,7 +47,11 @@ __all__ = [
 _NS = 1_000_000_000
 
 if not TYPE_CHECKING:  # hidden from type checkers, so that they report unknown classes
-    __getattr__ = message_class
+
+    def __getattr__(class_name: str) -> type[Message]:
+        # kept as a global of the module: each lookup through this function would take 2 µs
+        found = globals()[class_name] = message_class(class_name)
+        return found
 
 
 @cache
