@@ -1,8 +1,9 @@
-"""Sensors: what samples the simulation and publishes readings; one file for each kind, in a subfolder of its field.
+"""Sensors: classes that sample the simulation and publish readings; one file per kind, in a subfolder of its field.
 
-A `<sensor>` of the scene and the running simulation enter; samples at the sensor's rate, with noise and latency, leave
-as messages on topics. A sensor never changes the physics, and one that nobody reads costs nothing. This folder holds
-what all kinds share; the kinds are discovered in the subfolders and in the entry points `simkit.sensors` at first use.
+Inputs are a `<sensor>` of the scene and the running simulation. Outputs are messages on topics, at the sensor's rate
+and with noise and latency. A sensor never changes the physics. A sensor without a reader costs nothing. This folder
+holds the code that all kinds share. The kinds are discovered at first use, in the subfolders and in the entry points
+`simkit.sensors`.
 """
 
 from __future__ import annotations
@@ -23,10 +24,10 @@ GROUP = "simkit.sensors"
 
 @functools.cache
 def sensor_kinds() -> Mapping[str, type[Sensor]]:
-    """Every known sensor class by the `<sensor type>` it answers to; read-only.
+    """Return every known sensor class by its `<sensor type>`, as a read-only mapping.
 
     Raises:
-        RuntimeError: two classes claim one kind.
+        RuntimeError: two classes claim the same kind.
     """
     from simkit.sensors.base import Sensor
 

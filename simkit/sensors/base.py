@@ -1,4 +1,4 @@
-"""Base class of all sensors: it samples, keeps and publishes readings; a kind says what it measures."""
+"""Base class of all sensors: it samples, keeps and publishes readings; each kind defines its measurement."""
 
 from __future__ import annotations
 
@@ -39,23 +39,24 @@ AnyNoiseProcess = TypeVar("AnyNoiseProcess", bound=NoiseProcess)
 
 
 class Sensor(Sampler):
-    """A sensor of a model. Derive, name `kinds`, read options in `read_options`, and implement `measure`.
+    """Sensor of a model. To add a kind: derive, set `kinds`, override `read_options` and implement `measure`.
 
     Attributes:
         kinds: `<sensor type>` names in files.
-        example: the smallest content that a `<sensor>` of the kind needs besides what all sensors have.
-        belongs_to: where it may stand in a file: `link`, `joint` or both.
-        is_deferred: whether noise and message of a captured sample may wait until somebody looks.
-        gathers: whether what `capture` takes is so little that it may be taken of many samples before anything is made
-            of them, where nobody is called back.
-        needs_acceleration: whether `measure` reads body accelerations or forces between bodies.
-        reads_contacts: whether `measure` reads contacts; what rests on a static link with such a sensor never sleeps.
-        has_dynamic_bias: whether Gazebo tells the noise of the kind the time between samples, so that its bias wanders.
-        name, scoped, kind: as in the file.
-        update_rate: [Hz]; 0 is every step. Change it with `set_rate`.
-        frame_id: of the messages.
-        options: the kind's own parameters.
-        noise: of its channels, where a kind sets it in `prepare`; the base then evolves, restarts and remembers it.
+        example: smallest content that a `<sensor>` of the kind needs besides the elements common to all sensors.
+        belongs_to: parent elements in a file: `link`, `joint` or both.
+        is_deferred: True if noise and message of a captured sample may be computed later, when they are read.
+        gathers: True if a capture is so small that many samples may be captured before their messages are made, where
+            no callback waits for them.
+        needs_acceleration: True if `measure` reads body accelerations or forces between bodies.
+        reads_contacts: True if `measure` reads contacts. Bodies that rest on a static link with such a sensor never
+            sleep.
+        has_dynamic_bias: True if Gazebo passes the time between samples to the kind's noise, so that its bias drifts.
+        name, scoped, kind: names as in the file.
+        update_rate: rate [Hz]; 0 is every step. Change it with `set_rate`.
+        frame_id: frame of the messages.
+        options: parameters of the kind.
+        noise: noise of the channels, where a kind sets it in `prepare`. The base class evolves, restarts and saves it.
     """
 
     kinds: ClassVar[tuple[str, ...]] = ()
@@ -87,7 +88,7 @@ class Sensor(Sampler):
         self.timing = read_timing(params, scene.rate)
         check_topic(self.timing.set_rate_topic, params, "set_rate_topic")
 
-    # ------------------------------------------------------------------ what a kind says
+    # ------------------------------------------------------------------ methods that a kind overrides
 
     def read_options(self, params: Params) -> object:
         """Read the kind's own options from its `<sensor>`; called once, at the end of `__init__`."""
@@ -117,14 +118,14 @@ class Sensor(Sampler):
 
     @property
     def latest(self) -> Message:
-        """The newest message that has arrived, or None before the first."""
+        """Newest message that has arrived, or None before the first."""
         if self._sample is None:
             return None
         return self._message(self._sample, next(iter(self._topics)))
 
     @property
     def truth(self) -> Message:
-        """The newest message as it would be without noise, or None before the first."""
+        """Newest message without noise, or None before the first."""
         sample = self._finished_sample()
         if sample is None:
             return None
@@ -133,20 +134,20 @@ class Sensor(Sampler):
         return sample.truth_message
 
     def _finished_sample(self) -> Sample | None:
-        """The newest sample, with its readings, or None before the first."""
+        """Return the newest sample with its readings, or None before the first."""
         sample = self._sample
         if sample is not None:
             self._finish_sample(sample)
         return sample
 
     def _true_reading(self) -> Reading | None:
-        """The newest reading, without noise, or None before the first."""
+        """Return the newest reading without noise, or None before the first."""
         sample = self._finished_sample()
         return None if sample is None else sample.truth
 
     @property
     def pose(self) -> Pose:
-        """Pose of the sensor in the world, now."""
+        """Current pose of the sensor in the world."""
         data = self.sim.engine.physics.fresh()
         return Pose(data.xpos[self._body], data.xquat[self._body]) @ self._offset
 
@@ -154,13 +155,13 @@ class Sensor(Sampler):
         """Sample at `rate` [Hz] from now on, still on the grid of t = 0; 0 is every step.
 
         Raises:
-            ValueError: it is no number of at least 0.
+            ValueError: the rate is negative, NaN or infinite.
         """
         if not (math.isfinite(rate) and rate >= 0):
-            raise ValueError(f"a rate is a number of at least 0 [Hz], got {rate}")
+            raise ValueError(f"the rate must be a finite number of at least 0 [Hz], got {rate}")
         self.sim.communication.bus.settle()
         if self._noises and self._sample is not None:
-            self.latest  # noqa: B018 - its message may tell the rate that it was measured at
+            self.latest  # noqa: B018 - its message may contain the rate that it was measured at
         self._apply_rate(float(rate))
         self.sim.engine.reschedule()
 
@@ -169,12 +170,12 @@ class Sensor(Sampler):
         return {}
 
     def publish_on(self, topics: Mapping[str, str]) -> None:
-        """Publish these products on these topics instead of the default ones (what a sensor plugin does).
+        """Publish these products on these topics instead of the default ones, as a sensor plugin does.
 
         A second plugin on the same sensor adds its topics to those of the first.
 
         Args:
-            topics: product -> absolute topic; the first is what `latest` shows.
+            topics: absolute topic by product; `latest` shows the first product.
         """
         if not self._has_plugin_topics:
             for _, publisher, _ in self._publishers:
@@ -187,15 +188,15 @@ class Sensor(Sampler):
         self._revision = -1
         for product, topic in topics.items():
             self._topics.setdefault(product, topic)
-            of = self._products[product]
-            publisher = self.sim.communication.bus.advertise(topic, of.type_name)
+            spec = self._products[product]
+            publisher = self.sim.communication.bus.advertise(topic, spec.type_name)
             publisher.pending = self._process_pending
-            self._publishers.append((product, publisher, of.needs_reading))
+            self._publishers.append((product, publisher, spec.needs_reading))
 
-    # ------------------------------------------------------------------ what the simulation calls
+    # ------------------------------------------------------------------ methods that the simulation calls
 
     def prepare(self) -> None:
-        """Make the noise and whatever else the kind keeps; called once, when `sim` is known."""
+        """Make the noise and any other state of the kind; called once, when `sim` is known."""
 
     def attach(self, sim: Simulation) -> None:
         """Open topics and random streams; called once."""
@@ -209,13 +210,13 @@ class Sensor(Sampler):
             sim.communication.bus.listen(valid_topic(options.set_rate_topic), (_RATE_TYPE,), self._on_rate)
         self.prepare()
         if self.noise is not None:
-            self._register_noise(self.noise)  # of a kind that made its own
+            self._register_noise(self.noise)  # the kind made this noise itself
         self._products = self.products()
         self._open(self.default_topics())
         self.restart()
 
     def _report_timing(self, sim: Simulation) -> None:
-        """Report options that the length of a step makes impossible."""
+        """Report options that are impossible with the length of a step."""
         rate, jitter, step = self.update_rate, self.timing.jitter, sim.timestep
         if self._times.is_too_fast(rate):
             message = f"sensor {self.scoped!r}: {rate:g} Hz is more than the {1 / step:g} steps a second"
@@ -228,9 +229,9 @@ class Sensor(Sampler):
         """Find the sensor in a compiled model; called again after every change of structure."""
         self._process_pending()
         for sample in self._kept_samples():
-            self._finish_sample(sample)  # what is held belongs to the model before
+            self._finish_sample(sample)  # the held state belongs to the previous model
         for _, publisher, _ in self._publishers:
-            self.sim.communication.bus.settle_topic(publisher.topic)  # and so does what waits to be looked at
+            self.sim.communication.bus.settle_topic(publisher.topic)  # and so do the messages that wait for a reader
         self._link_name = self._find_link(compiled.names)
         link = compiled.names.link(self._link_name)
         self._body = int(link.body)
@@ -239,7 +240,7 @@ class Sensor(Sampler):
         self._offset_rotation: Vector = self._offset.matrix
 
     def close(self) -> None:
-        """Release what the kind holds; called when the simulation closes."""
+        """Release the resources of the kind; called when the simulation closes."""
 
     def __deepcopy__(self, memo: dict[int, object]) -> Sensor:
         return self
@@ -247,20 +248,21 @@ class Sensor(Sampler):
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.scoped!r}>"
 
-    # ------------------------------------------------------------------ within
+    # ------------------------------------------------------------------ helpers
 
     def _make_noise(self, models: Sequence[NoiseModel], group: str) -> Noise:
-        """Make the noise of a few channels, one model each; for `self.noise`."""
+        """Make the noise of a few channels with one model each, for `self.noise`."""
         quirks, names = self.sim.world.gazebo_quirks, self._noise_stream_names(group)
         models = [self._effective_noise(m) for m in models]
         return self._register_noise(Noise(models, *names, interval=self._noise_interval(), random_sign=quirks))
 
     def _make_uniform_noise(self, model: NoiseModel, width: int, group: str) -> UniformNoise:
-        """Make noise with the same model on each of many channels; for `self.noise`."""
+        """Make noise with the same model on each of many channels, for `self.noise`."""
         quirks = self.sim.world.gazebo_quirks
-        model = (
-            NO_NOISE if quirks and model.is_quantized else self._effective_noise(model)
-        )  # Gazebo has none of it on rays
+        if quirks and model.is_quantized:
+            model = NO_NOISE  # Gazebo adds no quantised noise to rays
+        else:
+            model = self._effective_noise(model)
         names, interval = self._noise_stream_names(group), self._noise_interval()
         return self._register_noise(UniformNoise(model, width, *names, interval=interval, random_sign=quirks))
 
@@ -283,23 +285,23 @@ class Sensor(Sampler):
         return noise
 
     def _on_rate(self, message: msgs.Float64) -> None:
-        """Take a rate from a topic; with Gazebo's quirks it is at most the file's."""
-        rate, most = float(message.data), self.scene.rate
+        """Apply a rate received on a topic; with `<gazebo_quirks>` it is at most the file's."""
+        rate, file_rate = float(message.data), self.scene.rate
         refused = ""
         if not (math.isfinite(rate) and rate >= 0):
-            refused = "allowed is a number of at least 0"
-        elif self.sim.world.gazebo_quirks and most > 0 and not 0 < rate <= most:
-            refused = f"Gazebo allows at most the file's {most:g} Hz"
+            refused = "allowed is a finite number of at least 0"
+        elif self.sim.world.gazebo_quirks and file_rate > 0 and not 0 < rate <= file_rate:
+            refused = f"Gazebo allows at most the file's {file_rate:g} Hz"
         if not refused:
             self.set_rate(rate)
             return
-        problem = f"sensor {self.scoped!r}: a rate of {rate:g} Hz came in on {self.timing.set_rate_topic!r}: {refused}"
+        problem = f"sensor {self.scoped!r}: ignored {rate:g} Hz from {self.timing.set_rate_topic!r}: {refused}"
         self.sim.engine.reports.warning("SK-SENSOR-026", problem, self.scene.where)
 
     def _default_topic(self, suffix: str) -> str:
-        """Return `<topic>` where the file gives it, else Gazebo's default."""
-        given = self.scene.topic
-        return valid_topic(given) if given else entity_topic(self.sim.world.name, self.scene, suffix)
+        """Return the file's `<topic>`, or Gazebo's default where the file has none."""
+        file_topic = self.scene.topic
+        return valid_topic(file_topic) if file_topic else entity_topic(self.sim.world.name, self.scene, suffix)
 
     def _frame_in_world(self, data: mujoco.MjData) -> tuple[Vector, Vector]:
         """Return the position (3,) [m] and the rotation matrix (3, 3) of the sensor in the world."""
@@ -315,13 +317,13 @@ class Sensor(Sampler):
         return np.array((vx + wy * z - wz * y, vy + wz * x - wx * z, vz + wx * y - wy * x))
 
     def _find_link(self, names: NameMap) -> str:
-        """Return the link that the sensor is on; for a joint's sensor the joint's child link."""
+        """Return the name of the sensor's link; for a joint's sensor, that is the joint's child link."""
         parent = self.scene.parent
         return str(names.joint(parent).scene.child_link) if self.scene.on_joint else parent
 
 
 def report_once(sensor: Sensor, severity: Severity, code: str, message: str, where: Where, hint: str = "") -> None:
-    """Add a diagnostic unless the same was reported for that place already."""
+    """Add a diagnostic unless the same code was already reported for the same place."""
     known = chain(sensor.diagnostics, sensor.sim.engine.reports)
     if not any(d.code == code and (d.file, d.line) == (where.file, where.line) for d in known):
         sensor.diagnostics.add(severity, code, message, where, hint)

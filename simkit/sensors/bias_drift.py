@@ -1,8 +1,8 @@
-"""Biases that wander: first-order Gauss-Markov processes and random walks, exact for any interval between samples.
+"""Biases that drift: first-order Gauss-Markov processes and random walks, exact for any interval between samples.
 
 A Gauss-Markov process `db = -b/T dt + K dW` goes from one sample to the next by `b = φ·b + s·n` with
-`φ = exp(-dt/T)`, `s² = K²·T/2·(1 - exp(-2·dt/T))` and a standard normal n; without end of T it is a random walk,
-`φ = 1`, `s² = K²·dt`.
+`φ = exp(-dt/T)`, `s² = K²·T/2·(1 - exp(-2·dt/T))` and a standard normal n. With an infinite T the process is a random
+walk, `φ = 1`, `s² = K²·dt`.
 """
 
 from __future__ import annotations
@@ -25,26 +25,26 @@ ALLAN_FLOOR: Final = math.sqrt(2.0 * math.log(2.0) / math.pi)
 ALLAN_PEAK: Final = 0.6174
 """Greatest Allan deviation of a Gauss-Markov process over its standard deviation, at 1.89 times its correlation time.
 
-The Allan variance at x = (averaging time)/T is 2σ²/x·(1 - (3 - 4·e^-x + e^-2x)/(2x)) (same annex, where the peak is
-0.437·K·√T with σ² = K²·T/2).
+The Allan variance at x = (averaging time)/T is 2σ²/x·(1 - (3 - 4·e^-x + e^-2x)/(2x)). The same annex gives the peak as
+0.437·K·√T with σ² = K²·T/2.
 """
 
 FLICKER_TIMES: Final = tuple(10.0**k for k in range(-1, 5))
-"""Correlation times [s] of the processes that make a flat floor from 1 s to 1000 s, within 2.5 %."""
+"""Correlation times [s] of the processes that give a flat floor from 1 s to 1000 s, within 2.5 %."""
 
-_MIN_TIME: Final = 1e-100  # [s] of a correlation time; below any step it is white noise all the same
+_MIN_TIME: Final = 1e-100  # [s] shortest correlation time; below any time step the process is white noise
 
 
 @dataclass(frozen=True, slots=True)
 class BiasDrift:
-    """One kind of wandering bias on several channels, as one or more Gauss-Markov processes per channel.
+    """Drifting bias of one kind on several channels, as one or more Gauss-Markov processes per channel.
 
     Attributes:
         driving: K [unit/√s], shape (processes · channels,), process by process; 0 where a channel has none.
-        time: T [s], the same shape; infinite for a random walk.
-        begins: where from, as its standard deviation, the same shape; 0 begins at zero.
-        name: of its random stream within the group.
-        processes: how many.
+        time: T [s], same shape; infinite for a random walk.
+        begins: standard deviation of the initial value, same shape; 0 starts at zero.
+        name: name of the random stream within the group.
+        processes: number of processes per channel.
     """
 
     driving: Vector
@@ -54,54 +54,65 @@ class BiasDrift:
     processes: int = 1
 
     def factors(self, dt: float) -> tuple[Vector, Vector]:
-        """φ and s of a step of `dt` [s]."""
-        # a long correlation time is nearly a walk, and T·(1 - exp(-2dt/T)) then loses no digits
+        """Return φ and s of a step of `dt` [s]."""
+        # T·(1 - exp(-2dt/T)) would lose digits for a long correlation time, expm1 does not
         with np.errstate(invalid="ignore", over="ignore"):
-            aged = -dt / self.time
-            spent = np.where(np.isfinite(self.time), -0.5 * self.time * np.expm1(2.0 * aged), dt)
-        return np.exp(aged), self.driving * np.sqrt(spent)
+            exponent = -dt / self.time
+            variance_time = np.where(np.isfinite(self.time), -0.5 * self.time * np.expm1(2.0 * exponent), dt)
+        return np.exp(exponent), self.driving * np.sqrt(variance_time)
 
     @property
     def is_idle(self) -> bool:
-        """Whether no channel has any of it."""
+        """True if no channel has this bias."""
         return not self.driving.any()
 
 
 def gauss_markov_drift(driving: Sequence[float], times: Sequence[float], name: str) -> BiasDrift:
-    """From zero, with K [unit/√s] and T [s] of each channel; a T of 0 is a random walk."""
+    """Return a bias that starts at zero.
+
+    Args:
+        driving: K of each channel [unit/√s].
+        times: T of each channel [s]; 0 is a random walk.
+        name: name of the random stream.
+    """
     time = np.array(times, dtype=np.float64)
     time[time <= 0] = np.inf
     return BiasDrift(np.array(driving, dtype=np.float64), time, np.zeros(len(driving)), name)
 
 
 def instability_drift(coefficients: Sequence[float], times: Sequence[float], name: str) -> BiasDrift:
-    """Bias instability B [unit] of each channel, in its steady state from the start.
+    """Return the bias instability B [unit] of each channel, in its steady state from the start.
 
-    With a correlation time T [s] it is one Gauss-Markov process whose Allan deviation has its peak, at 1.89·T, at
-    0.664·B. Without one it is flicker noise, 0.664·B from 1 s to 1000 s: one process a decade of correlation times,
-    each of variance B²·ln(10)/π. (Their densities, 2σ²T/(1 + (ωT)²), add up to B²/(2πf), which IEEE Std 952-1997
-    takes for bias instability.)
+    With a correlation time T [s], one Gauss-Markov process represents the instability. Its Allan deviation has
+    its peak, 0.664·B, at 1.89·T. Without T, the bias is flicker noise with 0.664·B from 1 s to 1000 s. Flicker
+    noise is the sum of one process per decade of correlation times, each of variance B²·ln(10)/π. Their
+    densities, 2σ²T/(1 + (ωT)²), add up to B²/(2πf), which IEEE Std 952-1997 defines as bias instability.
+
+    Args:
+        coefficients: B of each channel [unit].
+        times: T of each channel [s]; 0 is flicker noise.
+        name: name of the random stream.
     """
-    wanted = np.array(coefficients, dtype=np.float64)
+    amplitude = np.array(coefficients, dtype=np.float64)
     single = np.array(times, dtype=np.float64) > 0
-    rows = len(FLICKER_TIMES) if bool(((wanted > 0) & ~single).any()) else 1
-    time = np.tile(np.array(FLICKER_TIMES[:rows])[:, None], (1, len(wanted)))
-    spread = np.tile(wanted * math.sqrt(math.log(10.0) / math.pi), (rows, 1))
+    rows = len(FLICKER_TIMES) if bool(((amplitude > 0) & ~single).any()) else 1
+    time = np.tile(np.array(FLICKER_TIMES[:rows])[:, None], (1, len(amplitude)))
+    spread = np.tile(amplitude * math.sqrt(math.log(10.0) / math.pi), (rows, 1))
     for channel in np.flatnonzero(single).tolist():
         time[:, channel] = max(times[channel], _MIN_TIME)
         spread[:, channel] = 0.0
-        spread[0, channel] = wanted[channel] * ALLAN_FLOOR / ALLAN_PEAK
+        spread[0, channel] = amplitude[channel] * ALLAN_FLOOR / ALLAN_PEAK
     return BiasDrift((spread * np.sqrt(2.0 / time)).ravel(), time.ravel(), spread.ravel(), name, rows)
 
 
 @dataclass(slots=True)
 class NoiseInterval:
-    """What noise needs of one interval between two samples; made once for each that occurs.
+    """Constants of the noise for one interval between two samples, computed once per interval.
 
     Attributes:
-        stddev: of the white noise, shape (channels,).
-        factors: φ and s of each wandering bias.
-        covariances: made so far, by first channel.
+        stddev: standard deviation of the white noise, shape (channels,).
+        factors: φ and s of each drifting bias.
+        covariances: covariances computed so far, by first channel.
     """
 
     stddev: Vector
@@ -110,12 +121,12 @@ class NoiseInterval:
 
 
 class NoiseState:
-    """The state of a sensor's noise at one sample; never written to, only replaced.
+    """State of a sensor's noise at one sample; replaced and never modified.
 
     Attributes:
-        interval: since the sample before.
-        parts: where each wandering bias is.
-        constant: all that is added besides white noise, shape (channels,).
+        interval: constants for the time since the previous sample.
+        parts: current values of each drifting bias.
+        constant: sum of all noise except white noise, shape (channels,).
     """
 
     __slots__ = ("_numbers", "constant", "interval", "parts")
@@ -126,7 +137,7 @@ class NoiseState:
 
     @property
     def numbers(self) -> tuple[list[float], list[float]]:
-        """`constant` and the standard deviation of the white noise as lists."""
+        """Lists of `constant` and of the standard deviation of the white noise."""
         if self._numbers is None:
             self._numbers = self.constant.tolist(), self.interval.stddev.tolist()
         return self._numbers
@@ -136,12 +147,12 @@ class NoiseState:
 
 
 class BiasDriftGenerator:
-    """Draws the steps of some wandering biases.
+    """Generator of the steps of drifting biases.
 
     Args:
-        wanders: those that any channel has.
-        streams: the simulation's.
-        scoped, group: name the streams.
+        wanders: drifting biases; those that no channel has are dropped.
+        streams: random streams of the simulation.
+        scoped, group: names of the sensor and the group, which name the streams.
     """
 
     def __init__(self, wanders: Sequence[BiasDrift], streams: RandomStreams, scoped: str, group: str) -> None:
@@ -149,7 +160,7 @@ class BiasDriftGenerator:
         self._streams = [streams.stream(scoped, f"{group}/{w.name}", w.driving.size) for w in self.wanders]
 
     def begin(self) -> tuple[Vector, ...]:
-        """Where they are before the first step."""
+        """Return the values before the first step."""
         return tuple(
             w.begins * s.normal(0) if w.begins.any() else w.begins
             for w, s in zip(self.wanders, self._streams, strict=True)
@@ -161,7 +172,7 @@ class BiasDriftGenerator:
     def step(
         self, parts: tuple[Vector, ...], factors: tuple[tuple[Vector, Vector], ...], index: int
     ) -> tuple[Vector, ...]:
-        """Where they are at sample `index`, one interval on."""
+        """Return the values at sample `index`, one interval later."""
         moved = []
         for i, stream in enumerate(self._streams):
             decay, spread = factors[i]
@@ -171,8 +182,8 @@ class BiasDriftGenerator:
         return tuple(moved)
 
     def sums(self, parts: tuple[Vector, ...]) -> list[Vector]:
-        """Each added up over its processes, shape (channels,)."""
+        """Return each bias summed over its processes, shape (channels,)."""
         return [
             part if w.processes == 1 else np.add.reduce(part.reshape(w.processes, -1))
-            for w, part in zip(self.wanders, parts)  # noqa: B905 - at every sample, and strict costs
+            for w, part in zip(self.wanders, parts)  # noqa: B905 - runs at every sample, and strict costs time
         ]

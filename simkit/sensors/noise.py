@@ -1,8 +1,8 @@
-"""Gaussian noise of the file: white noise, a bias drawn once, biases that wander, quantisation.
+"""Gaussian noise of sensors: white noise, a bias drawn once, biases that drift, and quantisation.
 
-Differs from Gazebo on purpose, unless the world asks for its quirks: the bias keeps the sign the file gives it, and a
-wandering bias uses the true time between samples everywhere. What a data sheet says of white noise and of biases can be
-written as it stands there (see `NoiseModel`).
+Two properties differ from Gazebo unless the world sets `<gazebo_quirks>`: the bias keeps the sign of the file, and a
+drifting bias always uses the true time between samples. The numbers of a data sheet for white noise and biases can be
+written without conversion (see `NoiseModel`).
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ if TYPE_CHECKING:
 _TYPES = ("none", "gaussian", "gaussian_quantized")
 _DATA_SHEET_ELEMENTS = ("noise_density", "random_walk", "bias_instability", "correlation_time")
 _DYNAMIC_BIAS_ELEMENTS = ("dynamic_bias_stddev", "dynamic_bias_correlation_time")
-_MIN_PRECISION = 1e-6  # Gazebo takes a smaller one for none
-_MAX_INTERVALS = 64  # kept; a jittered sensor has ever new ones
+_MIN_PRECISION = 1e-6  # Gazebo ignores a smaller precision
+_MAX_INTERVALS = 64  # size of the cache; with jitter, every interval is new
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,17 +40,17 @@ class NoiseModel:
     """Noise of one channel, in the channel's unit.
 
     Attributes:
-        mean, stddev: of the white noise.
-        bias_mean, bias_stddev: of the bias, drawn once.
-        dynamic_bias_stddev: driving noise [unit/√s] of Gazebo's wandering bias, which begins at the drawn one.
-        dynamic_bias_correlation_time: its correlation time [s]; 0 is none of it.
-        precision: step of the quantisation, 0 for none.
+        mean, stddev: mean and standard deviation of the white noise.
+        bias_mean, bias_stddev: mean and standard deviation of the bias, which is drawn once.
+        dynamic_bias_stddev: driving noise [unit/√s] of Gazebo's drifting bias, which starts at the drawn bias.
+        dynamic_bias_correlation_time: correlation time [s] of that bias; 0 disables the drift.
+        precision: step of the quantisation; 0 for none.
         noise_density: N [unit/√Hz] of a data sheet; the white noise of samples dt apart is N/√dt.
         random_walk: K [unit/√s, the same as unit·√Hz] of a bias that starts at zero.
         bias_instability: B [unit]; 0.664·B is the floor of the Allan deviation.
-        correlation_time: T [s] of the bias instability where there is one, else of the random walk, which it bounds; 0
-            is none: an instability is flicker noise then, a walk has no bound.
-        is_quantized: whether the type is `gaussian_quantized`.
+        correlation_time: T [s] of the bias instability if there is one, else of the random walk, which T bounds.
+            With 0, an instability is flicker noise and a random walk has no bound.
+        is_quantized: True for the type `gaussian_quantized`.
     """
 
     mean: float = 0.0
@@ -68,16 +68,16 @@ class NoiseModel:
 
     @property
     def wanders(self) -> bool:
-        """Whether its bias changes from sample to sample."""
+        """True if the bias changes from sample to sample."""
         dynamic = self.dynamic_bias_stddev > 0 and self.dynamic_bias_correlation_time > 0
         return dynamic or self.random_walk > 0 or self.bias_instability > 0
 
     def white(self, interval: float) -> float:
-        """Standard deviation of the white noise of samples `interval` [s] apart."""
+        """Return the standard deviation of the white noise of samples `interval` [s] apart."""
         return self.noise_density / math.sqrt(interval) if self.noise_density > 0 else self.stddev
 
     def as_gazebo(self, has_dynamic_bias: bool) -> NoiseModel:
-        """What Gazebo makes of it, but for the sign of the bias; what is our own stays."""
+        """Return the noise as Gazebo would apply it, except for the sign of the bias; simkit's own elements stay."""
         dynamic = self.dynamic_bias_stddev if has_dynamic_bias else 0.0
         precision = self.precision if self.precision > _MIN_PRECISION else 0.0
         return replace(self, dynamic_bias_stddev=dynamic, precision=precision)
@@ -92,25 +92,26 @@ ThreeAxes = tuple[NoiseModel, NoiseModel, NoiseModel]
 
 
 def read_noise(owner: Params, default: str = "none") -> NoiseModel:
-    """The `<noise>` of a block; its type may be an attribute or an element.
+    """Read the `<noise>` of a block; the type may be an attribute or an element.
 
-    With none of the two it is `default`, unless it is in a data sheet's words, which SDF has not.
+    Without a type, `default` applies, except that elements of a data sheet, which SDF does not define, mean `gaussian`.
 
     Args:
-        default: SDF's for this block: `gaussian` for rays and cameras, `none` for everything else.
+        owner: block that contains the `<noise>`.
+        default: default of SDF for this block: `gaussian` for rays and cameras, `none` for everything else.
     """
     params = owner.child("noise")
     if params is None:
         return NO_NOISE
-    in_our_words = any(params.has(name) for name in _DATA_SHEET_ELEMENTS)
-    given = params.attribute("type") or params.text("type", "")
-    kind = given or ("gaussian" if in_our_words else default)
+    is_data_sheet = any(params.has(name) for name in _DATA_SHEET_ELEMENTS)
+    type_name = params.attribute("type") or params.text("type", "")
+    kind = type_name or ("gaussian" if is_data_sheet else default)
     if kind not in _TYPES:
         params.error("SK-PARAM-002", f"found noise of type {kind!r}, allowed is {', '.join(_TYPES)}")
     if kind == "none":
-        if not given and any(_is_nonzero_or_text(child.value) for child in params.children):
+        if not type_name and any(_is_nonzero_or_text(child.value) for child in params.children):
             hint = 'write <noise type="gaussian">'
-            params.diagnostics.warning("SK-SENSOR-020", "<noise> without a type is none", params.where, hint)
+            params.diagnostics.warning("SK-SENSOR-020", "<noise> without a type adds no noise", params.where, hint)
         params.mark_all_read()
         return NO_NOISE
     values = {}
@@ -118,12 +119,12 @@ def read_noise(owner: Params, default: str = "none") -> NoiseModel:
         lowest = -LARGEST if name in _SIGNED else 0
         values[name] = params.number(name, 0.0, minimum=lowest, maximum=None if name in _UNBOUNDED else LARGEST)
     model = NoiseModel(**values, is_quantized=kind == "gaussian_quantized")
-    return _prefer_data_sheet(model, params) if in_our_words else model
+    return _prefer_data_sheet(model, params) if is_data_sheet else model
 
 
-def read_axes(block: Params, otherwise: NoiseModel = NO_NOISE) -> ThreeAxes:
-    """The `<noise>` of each of `<x>`, `<y>`, `<z>` of a block; `otherwise` for those that have none."""
-    x, y, z = (read_noise(block.block(axis)) if block.block(axis).has("noise") else otherwise for axis in "xyz")
+def read_axes(block: Params, default: NoiseModel = NO_NOISE) -> ThreeAxes:
+    """Read the `<noise>` of `<x>`, `<y>` and `<z>` of a block; an axis without one gets `default`."""
+    x, y, z = (read_noise(block.block(axis)) if block.block(axis).has("noise") else default for axis in "xyz")
     return x, y, z
 
 
@@ -135,7 +136,7 @@ def _is_nonzero_or_text(text: str) -> bool:
 
 
 def _prefer_data_sheet(model: NoiseModel, params: Params) -> NoiseModel:
-    """A data sheet's form in place of Gazebo's where both say the same, which is reported."""
+    """Drop Gazebo's parameters where the data-sheet parameters define the same noise, and report them."""
     if model.noise_density > 0 and model.stddev > 0:
         _report_duplicate(params, "<stddev>", "<noise_density>")
         model = replace(model, stddev=0.0)
@@ -144,31 +145,31 @@ def _prefer_data_sheet(model: NoiseModel, params: Params) -> NoiseModel:
         _report_duplicate(params, f"<{_DYNAMIC_BIAS_ELEMENTS[0]}>", f"<{wandering}>")
         model = replace(model, dynamic_bias_stddev=0.0)
     if model.correlation_time > 0 and not wandering:
-        message = "<correlation_time> is of a <random_walk> or a <bias_instability>, there is none"
+        message = "<correlation_time> has no effect without a <random_walk> or a <bias_instability>"
         params.diagnostics.warning("SK-SENSOR-021", message, params.block("correlation_time").where)
     return model
 
 
-def _report_duplicate(params: Params, gazebos: str, ours: str) -> None:
-    message = f"{gazebos} is not used: {ours} says the same, as a data sheet does"
-    params.diagnostics.warning("SK-SENSOR-021", message, params.where, "leave one of the two out of this <noise>")
+def _report_duplicate(params: Params, unused: str, used: str) -> None:
+    message = f"{unused} is not used: {used} defines the same noise"
+    params.diagnostics.warning("SK-SENSOR-021", message, params.where, "remove one of the two from this <noise>")
 
 
 class Noise:
-    """The noise of a group of channels.
+    """Noise of a group of channels.
 
-    A sample's draw depends on its index; what has no deviation draws nothing.
+    The random numbers of a sample depend on its index only. Noise without a deviation draws no numbers.
 
     Args:
-        models: one per channel.
-        streams: the simulation's.
-        scoped: the sensor's name.
-        group: names the group's streams.
-        interval: nominal time between two samples [s], that of a first sample, which has none before it.
-        random_sign: each channel's bias has either sign, with equal odds (Gazebo's).
+        models: noise models, one per channel.
+        streams: random streams of the simulation.
+        scoped: scoped name of the sensor.
+        group: name of the group, which names its streams.
+        interval: nominal time between two samples [s], used for the first sample.
+        random_sign: True gives each channel's bias either sign with equal odds, as Gazebo does.
 
     Attributes:
-        state: what of it depends on the sample; samples that wait to be finished keep theirs.
+        state: part that depends on the sample; samples that are finished later keep their own.
     """
 
     state: NoiseState
@@ -197,7 +198,7 @@ class Noise:
         times = column("dynamic_bias_correlation_time")
         dynamic = np.where(times > 0, column("dynamic_bias_stddev"), 0.0)
         self._is_dynamic = dynamic > 0
-        # a correlation time is of the instability where there is one
+        # a correlation time belongs to the instability if there is one
         unstable, bound = column("bias_instability"), column("correlation_time")
         walks = gauss_markov_drift(
             column("random_walk").tolist(), np.where(unstable > 0, 0.0, bound).tolist(), "random_walk"
@@ -211,7 +212,7 @@ class Noise:
         self._intervals: dict[float, NoiseInterval] = {}
         self._nominal = interval
         self.restart()
-        # what shows in no digit is left out
+        # noise without any effect is skipped
         self.is_silent = not (
             self._white or self._wanderer.wanders or self._is_quantised or bool(self.state.constant.any())
         )
@@ -221,11 +222,11 @@ class Noise:
         return streams.stream(scoped, group, self.width) if is_white else None
 
     def set_interval(self, interval: float) -> None:
-        """Says that samples are `interval` [s] apart from now on, if nothing else is known of one."""
+        """Set the time [s] between samples that is assumed where the true one is unknown."""
         self._nominal = interval
 
     def restart(self) -> None:
-        """Draws what is drawn once."""
+        """Repeat the draws that are made once."""
         bias = self._bias_mean.copy()
         if self._drawn_bias is not None:
             bias += self._bias_stddev * self._drawn_bias.normal(0)
@@ -238,7 +239,7 @@ class Noise:
         self._replace(self._of(self._nominal), parts)
 
     def evolve(self, index: int, dt: float) -> None:
-        """Moves on by `dt` [s] to sample `index`; 0 where there is no sample before it."""
+        """Advance by `dt` [s] to sample `index`; `dt` is 0 where no sample precedes it."""
         before = self.state
         interval = self._of(dt if dt > 0 else self._nominal)
         if dt > 0 and before.parts:
@@ -262,7 +263,7 @@ class Noise:
         return known
 
     def apply(self, values: Vector, index: int) -> Vector:
-        """The values, shape (width,), of sample `index` with noise; infinite ones stay."""
+        """Return the values of sample `index`, shape (width,), with noise; infinite values stay infinite."""
         state = self.state
         out: Vector = values + state.constant
         if self._white is not None:
@@ -272,7 +273,7 @@ class Noise:
         return out
 
     def apply_to_numbers(self, values: Sequence[float], index: int) -> Sequence[float]:
-        """The same bits as `apply`, for so few numbers that they are sooner added one by one than by NumPy."""
+        """Return the same bits as `apply`; for a few numbers, adding one by one is faster than NumPy."""
         if self._is_quantised:
             rounded: list[float] = self.apply(np.array(values), index).tolist()
             return rounded
@@ -282,31 +283,31 @@ class Noise:
         white = self._white.normal(index).tolist()
         return list(map(add, map(add, values, constant), map(mul, stddev, white)))
 
-    def covariance(self, first: int = 0) -> Vector:
-        """Row-major covariance, shape (9,), of the white noise of three channels from `first` on; not to be written."""
-        made = self.state.interval.covariances
-        found = made.get(first)
-        if found is None:
-            found = made[first] = np.zeros(9)
-            found[[0, 4, 8]] = self.state.interval.stddev[first : first + 3] ** 2
-            found.flags.writeable = False
-        return found
+    def covariance(self, first_channel: int = 0) -> Vector:
+        """Return the read-only row-major covariance, shape (9,), of the white noise of three channels."""
+        covariances = self.state.interval.covariances
+        covariance = covariances.get(first_channel)
+        if covariance is None:
+            covariance = covariances[first_channel] = np.zeros(9)
+            covariance[[0, 4, 8]] = self.state.interval.stddev[first_channel : first_channel + 3] ** 2
+            covariance.flags.writeable = False
+        return covariance
 
     def variance(self, channel: int = 0) -> float:
-        """Variance of the white noise of a channel."""
+        """Return the variance of the white noise of a channel."""
         return float(self.state.interval.stddev[channel]) ** 2
 
     @property
     def offset(self) -> float:
-        """What the first channel has besides white noise."""
+        """Sum of all noise of the first channel except white noise."""
         return float(self.state.constant[0])
 
 
 class UniformNoise(Noise):
-    """The same noise model on every one of many channels (a lidar's rays); one bias for all.
+    """Noise with the same model on each of many channels (the rays of a lidar) and one bias for all of them.
 
     Args:
-        width: channels.
+        width: number of channels.
     """
 
     def __init__(
@@ -330,7 +331,7 @@ class UniformNoise(Noise):
         return streams.stream(scoped, self._rays_group, self._rays) if is_white else None
 
     def apply(self, values: Vector, index: int) -> Vector:
-        """The values, shape (width,), with noise; infinite ones stay infinite."""
+        """Return the values, shape (width,), with noise; infinite values stay infinite."""
         state = self.state
         if self._white is not None:
             out = self._white.normal(index) * state.interval.stddev
@@ -345,10 +346,10 @@ class UniformNoise(Noise):
 
 
 def quantise(values: Vector, precision: Vector) -> Vector:
-    """To multiples of `precision` (where it is not 0), halves away from zero."""
+    """Round values to multiples of `precision`, halves away from zero; a precision of 0 changes nothing."""
     step = np.where(precision > 0, precision, 1.0)
     with np.errstate(invalid="ignore", over="ignore"):
         rounded = np.copysign(np.floor(np.abs(values) / step + 0.5) * step, values)
-    # what has more steps in it than there are numbers is as good as rounded
+    # a value of so many steps that the product overflows stays as it is
     out: Vector = np.where((precision > 0) & np.isfinite(rounded), rounded, values)
     return out

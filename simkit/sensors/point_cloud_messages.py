@@ -1,4 +1,4 @@
-"""`PointCloud2` messages from structured arrays, and the `PointCloud` messages of before."""
+"""Conversion of arrays into `PointCloud2` messages and older `PointCloud` messages."""
 
 from __future__ import annotations
 
@@ -24,12 +24,14 @@ def _fields(dtype: np.dtype[np.void]) -> tuple[msgs.PointField, ...]:
 def point_cloud(
     header: msgs.Header, points: npt.NDArray[np.void], height: int, width: int, is_dense: bool
 ) -> msgs.PointCloud2:
-    """A cloud of `height` rows of `width` points.
+    """Make a cloud of `height` rows of `width` points.
 
     Args:
-        header: of the message.
+        header: header of the message.
         points: structured array, shape (height · width,), contiguous; its fields are the cloud's.
-        is_dense: whether every point is finite.
+        height: rows.
+        width: points in a row.
+        is_dense: True if every point is finite.
     """
     step = points.dtype.itemsize
     data = points.view(np.uint8).reshape(-1) if points.size else np.empty(0, dtype=np.uint8)
@@ -37,14 +39,14 @@ def point_cloud(
     return msgs.PointCloud2(header, height, width, fields, False, step, step * width, data, is_dense)
 
 
-def legacy_point_cloud(header: msgs.Header, places: Vector, intensities: Vector) -> msgs.PointCloud:
-    """A `sensor_msgs/msg/PointCloud`.
+def legacy_point_cloud(header: msgs.Header, positions: Vector, intensities: Vector) -> msgs.PointCloud:
+    """Make a `sensor_msgs/msg/PointCloud`.
 
     Args:
-        header: of the message.
-        places: [m], shape (n, 3).
-        intensities: shape (n,), its only channel.
+        header: header of the message.
+        positions: positions of the points [m], shape (n, 3).
+        intensities: intensities of the points, shape (n,), the only channel.
     """
     point = msgs.Point32
-    points = [point(*place) for place in places.tolist()]
+    points = [point(*position) for position in positions.tolist()]
     return msgs.PointCloud(header, points, [msgs.ChannelFloat32("intensity", intensities.astype(np.float32))])

@@ -1,4 +1,4 @@
-"""A sample of a sensor, the messages made from it, and the noise that continues from sample to sample."""
+"""Sample of a sensor, the messages made from it, and the noise that continues from sample to sample."""
 
 from __future__ import annotations
 
@@ -10,24 +10,24 @@ if TYPE_CHECKING:
     from simkit.runtime.engine.physics_state import HeldState
 
 
-# What a sensor of some kind measures: the kind's own dataclass, or an array.
+# Measurement of a sensor: the dataclass of the sensor's kind, or an array.
 Reading = Any
-# Function of a reading and of its time [ns] or the number of its sample.
+# Function of a reading and of the reading's time [ns], or of the number of the reading's sample.
 ReadingFunction = Callable[[Reading, int], object]
-# State of some noise or sensor that continues from sample to sample: values of its own types, never written to.
+# State of a noise process or sensor that continues from sample to sample: values of its own types, never modified.
 Memory = Any
-# The sampler that is a member of a batch; its own module uses this one.
+# Sampler that is a member of a batch; the batch module uses this type.
 Member = Any
 
 
 @dataclass(frozen=True, slots=True)
 class Product:
-    """One kind of message that a sensor can give.
+    """One kind of message that a sensor can publish.
 
     Attributes:
         type_name: ROS 2 type.
-        make: `make(reading, time_ns)` gives the message.
-        needs_reading: False where the message says nothing of the world; its reading may then be None.
+        make: function `make(reading, time_ns)` that returns the message.
+        needs_reading: False where the message contains no measurement; its reading may then be None.
     """
 
     type_name: str
@@ -36,21 +36,22 @@ class Product:
 
 
 class Sample:
-    """One due time of a sensor: measured, or with the physics state to measure later.
+    """Sample of a sensor at one due time, either measured or with the physics state to measure later.
 
     Attributes:
-        index: 1 for the first sample.
-        held: the state to measure; None once captured.
-        raw: what was captured of the state; None once finished.
-        truth: the reading without noise; `noisy` with it.
-        messages: made so far, by product.
-        drifts: states of the noise at this sample where they change from sample to sample.
-        unpublished: products that are not published of it.
-        surroundings: what holds for it besides the physics, where a kind reads more than that.
-        work: what another thread does with it; whoever looks at the sample waits for that first.
+        index: number of the sample; the first is 1.
+        held: physics state to measure; None once captured.
+        raw: values captured from the state; None once finished.
+        truth: reading without noise.
+        noisy: reading with noise.
+        messages: messages made so far, by product.
+        drifts: states at this sample of the noise processes that change from sample to sample.
+        unpublished: products of this sample that are not published.
+        surroundings: state besides the physics that the kind measures, where it measures more than the physics.
+        work: job of another thread on this sample; a reader of the sample waits for it first.
     """
 
-    # in the class, so that the many samples that nobody looks at are soon made
+    # class attributes, because creating samples without a reader must be fast
     held: HeldState | None = None
     raw: Reading = None
     truth: Reading = None
@@ -67,36 +68,36 @@ class Sample:
 
 
 class NoiseProcess(Protocol):
-    """State that continues from sample to sample beside the physics: noise, and whatever else a kind keeps.
+    """State besides the physics that continues from sample to sample: noise, and any other state that a kind keeps.
 
     Attributes:
-        state: what of it depends on the sample; never written to, only replaced, for samples that wait keep theirs.
+        state: part that depends on the sample. It is replaced and never modified, because waiting samples keep theirs.
     """
 
     state: Memory
 
     @property
     def wanders(self) -> bool:
-        """Whether the state changes from sample to sample."""
+        """True if the state changes from sample to sample."""
 
     def evolve(self, index: int, dt: float) -> None:
-        """Advance by `dt` [s] to sample `index`; 0 where there is no sample before it."""
+        """Advance by `dt` [s] to sample `index`; `dt` is 0 where no sample precedes it."""
 
     def restart(self) -> None:
         """Return to t = 0."""
 
     def set_interval(self, interval: float) -> None:
-        """Set the time between samples [s] that is assumed where nothing else is known."""
+        """Set the time between samples [s] that is assumed where the true one is unknown."""
 
 
 class Batch(Protocol):
-    """What a sampler needs of the batch that it is a member of; see `simkit.sensors.sensor_batch`."""
+    """Interface between a sampler and the batch that it belongs to; see `simkit.sensors.sensor_batch`."""
 
     def is_ready(self, member: Member, tick: int) -> bool:
-        """Capture all members for a tick, once; False where the member has to do it by itself."""
+        """Capture all members once for a tick; return False if the member must capture its own state."""
 
-    def captured(self, place: int) -> object:
-        """Return what `capture` would give of a member."""
+    def captured(self, member_index: int) -> object:
+        """Return the captured values of a member, equal to those that `capture` returns."""
 
     def publish_sample(self, member: Member, tick: int) -> bool:
-        """Make and publish a sample; False where the member has to do it."""
+        """Make and publish a sample; return False if the member must do so."""

@@ -14,20 +14,20 @@ from simkit.runtime.engine.scheduler import Timetable
 from simkit.runtime.engine.simulated_time import Clock, SampleTiming, exact_fraction, exact_rate
 from simkit.sensors.sample import Sample
 
-MAX_LATENCY = 3600.0  # [s]; all readings on their way are kept
+MAX_LATENCY = 3600.0  # [s]; all readings that have not arrived yet are kept
 _MILLISECOND = Fraction(1, 1000)
 
 
 @dataclass(frozen=True, slots=True)
 class TimingOptions:
-    """Timing options that all sensors have; all times in s.
+    """Timing options common to all sensors; all times in s.
 
     Attributes:
         phase: shift of the grid of samples.
-        jitter: greatest deviation of a sample from its grid, early or late.
-        latency: from a sample to its arrival.
-        latency_jitter: greatest deviation from that.
-        set_rate_topic: where a `std_msgs/msg/Float64` changes the rate [Hz]; empty for none.
+        jitter: greatest deviation of a sample from the grid, early or late.
+        latency: time from a sample to its arrival.
+        latency_jitter: greatest deviation from the latency.
+        set_rate_topic: topic of type `std_msgs/msg/Float64` that changes the rate [Hz]; empty for none.
     """
 
     phase: float = 0.0
@@ -44,16 +44,16 @@ def read_timing(params: Params, rate: float) -> TimingOptions:
     latency_jitter = params.number("latency_jitter", 0.0, minimum=0)
     if jitter > 0 and rate <= 0:
         message = "<jitter> has no effect on a sensor that samples at every step"
-        params.diagnostics.warning("SK-SENSOR-023", message, params.block("jitter").where, "give it an <update_rate>")
+        params.diagnostics.warning("SK-SENSOR-023", message, params.block("jitter").where, "add an <update_rate>")
         jitter = 0.0
     elif jitter > 0 and 2 * exact_fraction(jitter) * exact_rate(rate) >= 1:
-        message = f"<jitter>{jitter:g}</jitter>: allowed is less than half a period, {0.5 / rate:g} s at {rate:g} Hz"
+        limit = f"less than half a period, {0.5 / rate:g} s at {rate:g} Hz"
+        message = f"<jitter>{jitter:g}</jitter> is too large: allowed is {limit}"
         params.block("jitter").error("SK-SENSOR-022", message)
         jitter = 0.0
     if latency_jitter > latency:
-        message = (
-            f"<latency_jitter>{latency_jitter:g}</latency_jitter>: allowed is the <latency> at most, {latency:g} s"
-        )
+        found = f"<latency_jitter>{latency_jitter:g}</latency_jitter>"
+        message = f"{found} is too large: allowed is at most the <latency>, {latency:g} s"
         params.block("latency_jitter").error("SK-SENSOR-022", message)
         latency_jitter = latency
     phase = params.number("phase", 0.0, minimum=0)
@@ -64,10 +64,11 @@ class SampleTimes:
     """Sample times of a sensor at any rate.
 
     Args:
-        options: of the file.
-        clock: the simulation's.
-        streams, scoped: for the jitter, which is drawn by the number of the grid instant.
-        in_milliseconds: cuts the period to whole milliseconds, as Gazebo does.
+        options: timing options of the file.
+        clock: the simulation's clock.
+        streams: random streams for the jitter, which is drawn by the number of the grid instant.
+        scoped: scoped name of the sensor, which names the stream.
+        in_milliseconds: True truncates the period to whole milliseconds, as Gazebo does.
     """
 
     def __init__(
@@ -99,10 +100,13 @@ class SampleTimes:
 
 
 class DelayedReadings:
-    """Readings that were measured and are not delivered yet, in the order of their arrival.
+    """Queue of readings that were measured and are not delivered yet, in order of arrival.
 
     Args:
-        options, clock, streams, scoped: as of `SampleTimes`; the jitter is drawn by the sample's index.
+        options: timing options of the file.
+        clock: the simulation's clock.
+        streams: random streams for the jitter, which is drawn by the index of the sample.
+        scoped: scoped name of the sensor, which names the stream.
     """
 
     def __init__(self, options: TimingOptions, clock: Clock, streams: RandomStreams, scoped: str) -> None:
@@ -113,7 +117,7 @@ class DelayedReadings:
         self.samples: deque[tuple[int, Sample]] = deque()
 
     def arrival(self, tick: int, index: int) -> int:
-        """Return the tick at which sample `index`, measured at `tick`, arrives; never before an older one."""
+        """Return the tick at which sample `index`, measured at `tick`, arrives; never before an older sample."""
         steps = self._steps
         if self._stream is not None:
             late = float(self._latency) + self._spread * float(self._stream.uniform(index)[0])
@@ -129,12 +133,12 @@ class DelayedReadings:
 
 
 class LatencyTimetable:
-    """Ticks at which a sensor with latency has a sample due, or one that arrives.
+    """Ticks at which a sensor with latency measures a sample or delivers one.
 
     Args:
-        grid: of the samples; None for every step.
-        delayed: the readings on their way.
-        next_index: gives the index of the sample that is measured next.
+        grid: ticks of the samples; None for every step.
+        delayed: readings that have not arrived yet.
+        next_index: function that returns the index of the next sample to measure.
     """
 
     def __init__(self, grid: Timetable, delayed: DelayedReadings, next_index: Callable[[], int]) -> None:
@@ -152,7 +156,7 @@ class LatencyTimetable:
                 found = min(found, arrival)
                 break
         if tick > 0 and self.is_sample(tick):
-            # about to be measured, so not on its way yet
+            # this sample will be measured at `tick`, so it is not in the queue yet
             arrival = self._delayed.arrival(tick, self._next_index())
             if arrival > tick:
                 found = min(found, arrival)

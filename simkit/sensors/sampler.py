@@ -1,4 +1,4 @@
-"""Samples of a sensor: taken when they are due, kept until a reader asks, published when they arrive."""
+"""Sampling of a sensor: samples are taken when due, kept until they are read, and published when they arrive."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from simkit.runtime.engine.scheduler import Timetable
 from simkit.sensors.sample import Batch, Memory, NoiseProcess, Product, Reading, ReadingFunction, Sample
 from simkit.sensors.sample_times import DelayedReadings, LatencyTimetable, SampleTimes, TimingOptions
 
-_MAX_GATHERED = 64  # gathered before samples are made of them
+_MAX_GATHERED = 64  # captures gathered before samples are made of them
 
 
 def _is_always_on() -> bool:
@@ -25,7 +25,7 @@ def _is_always_on() -> bool:
 
 
 class Sampler(abc.ABC):
-    """Takes, keeps and publishes the samples of a sensor; the rest of a sensor is `simkit.sensors.base.Sensor`."""
+    """Base class of `Sensor` that takes, keeps and publishes the samples."""
 
     needs_acceleration: ClassVar[bool] = False
     reads_contacts: ClassVar[bool] = False
@@ -48,45 +48,45 @@ class Sampler(abc.ABC):
         self._newest: Sample | None = None
         self._gathered: list[tuple[int, Reading]] = []
         self._revision, self._patience = -1, 0.0
-        self._wanted: list[tuple[str, Publisher, bool]] = []
+        self._read_publishers: list[tuple[str, Publisher, bool]] = []
         self._is_read = self._gathers = self._is_served = self._is_unread = False
-        self._skipped = 0  # samples of which nobody has looked at one; only the last can be looked at
-        self._held: tuple[int, HeldState] | None = None  # the tick of that one, and its state
+        self._skipped = 0  # unread samples; only the last of them can still be read
+        self._held: tuple[int, HeldState] | None = None  # tick and physics state of that last sample
         self._index, self._time_ns = 0, -1
         self._delayed: DelayedReadings | None = None
         self._latency_timetable: LatencyTimetable | None = None
-        # what a kind does not override is not called at every sample
+        # a method that a kind does not override is not called at every sample
         self._selects_ticks, self._selects_products_of_sample = self._overrides("accepts"), self._overrides("publishes")
         self._evolves = self._overrides("evolve")
         self._is_on: Callable[[], bool] = _is_always_on
 
     def sample_only_while(self, is_on: Callable[[], bool]) -> None:
-        """Sample at due times only while `is_on()` returns true: a sensor without power has no samples."""
+        """Sample at due times only while `is_on()` returns true; a sensor without power has no samples."""
         self._is_on, self._selects_ticks = is_on, True
 
     def _overrides(self, method: str) -> bool:
         return getattr(type(self), method) is not getattr(Sampler, method)
 
-    # ------------------------------------------------------------------ what a kind says
+    # ------------------------------------------------------------------ methods that a kind overrides
 
     @abc.abstractmethod
     def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> object:
-        """Return the reading without noise, of data with everything computed; its arrays are never written to again."""
+        """Return the reading without noise, from data with everything computed; its arrays are never modified later."""
 
     def capture(self, model: mujoco.MjModel, data: mujoco.MjData) -> object:
-        """Take from the data what `finish` needs to make the reading; by default the reading itself."""
+        """Copy from the data the values that `finish` needs; by default, the reading itself."""
         return self.measure(model, data)
 
     def capture_held(self, model: mujoco.MjModel, data: mujoco.MjData, sample: Sample) -> object:
-        """Capture the physics that was held for a sample; for kinds that read more than the physics."""
+        """Capture the physics state held for a sample; overridden by kinds that measure more than the physics."""
         return self.capture(model, data)
 
     def finish(self, raw: Reading) -> object:
-        """Return the reading without noise, made from what was captured."""
+        """Return the reading without noise, made from the captured values."""
         return raw
 
     def perturb(self, reading: Reading, index: int) -> object:
-        """Return the reading with the noise of a sample; the same object where there is no noise."""
+        """Return the reading with the noise of a sample; the same object if there is no noise."""
         return reading
 
     def evolve(self, index: int, dt: float) -> None:
@@ -96,12 +96,12 @@ class Sampler(abc.ABC):
                 noise.evolve(index, dt)
 
     def restart(self) -> None:
-        """Return to t = 0, and draw what is drawn once."""
+        """Return to t = 0, and repeat the draws that are made once."""
         for noise in self._noises:
             noise.restart()
 
     def memory(self) -> object:
-        """Return the state that continues from sample to sample, as values that nobody writes to."""
+        """Return the state that continues from sample to sample, as values that are never modified."""
         return tuple(noise.state for noise in self._noises)
 
     def remember(self, memory: Memory) -> None:
@@ -110,28 +110,28 @@ class Sampler(abc.ABC):
             noise.state = state
 
     def accepts(self, tick: int) -> bool:
-        """Check whether there is a sample at a due tick."""
+        """Check whether a sample is taken at a due tick."""
         return True
 
     def publishes(self, product: str, raw: Reading) -> bool:
-        """Check whether a capture is published as `product`; `latest` and `truth` show it either way."""
+        """Check whether a capture is published as `product`; `latest` and `truth` show it in both cases."""
         return True
 
     @classmethod
     def make_batches(cls, sensors: Sequence[Self]) -> None:
         """Make batches of the sensors of this kind that can sample together; see `simkit.sensors.sensor_batch`."""
 
-    # ------------------------------------------------------------------ what the simulation calls
+    # ------------------------------------------------------------------ methods that the simulation calls
 
     @property
     def keeps_to_grid(self) -> bool:
-        """Whether it samples and publishes at every tick of its rate and phase, with noise that does not wander."""
+        """True if a message is published at every tick of the rate and phase, with noise that does not drift."""
         is_plain = self._delayed is None and self.timing.jitter == 0 and not self._evolves
         return is_plain and not (self._selects_ticks or self._selects_products_of_sample)
 
     @property
     def is_read_now(self) -> bool:
-        """Whether a subscriber or a recorder reads the measurements."""
+        """True if a subscriber or a recorder reads the measurements."""
         if self._revision != self.sim.communication.bus.revision:
             self._update_readers()
         return self._is_read
@@ -143,7 +143,7 @@ class Sampler(abc.ABC):
         return self._index
 
     def timetable(self) -> Timetable | None:
-        """Return the ticks at which `sample` is to be called, at the present rate; None is every step."""
+        """Return the ticks at which `sample` must be called at the current rate; None is every step."""
         grid = self._times.grid(self.update_rate)
         if self._delayed is None or grid is None:
             self._latency_timetable = None
@@ -152,7 +152,7 @@ class Sampler(abc.ABC):
         return self._latency_timetable
 
     def sample(self, tick: int) -> None:
-        """Sample at a due tick: measure and publish where there is a reader, else keep the physics state."""
+        """Sample at a due tick: measure and publish if the sensor has a reader, else keep the physics state."""
         if self._delayed is not None and not self._deliver_and_check_due(self._delayed, tick):
             return
         if self._selects_ticks and not (self._is_on() and self.accepts(tick)):
@@ -171,7 +171,7 @@ class Sampler(abc.ABC):
             if len(self._gathered) >= _MAX_GATHERED:
                 self._process_pending()
             return
-        sample, wanted = self._begin_sample(tick), self._wanted
+        sample, read_publishers = self._begin_sample(tick), self._read_publishers
         if self._is_read:
             sample.raw = self._capture_now(tick)
             if self._selects_products_of_sample:
@@ -183,16 +183,16 @@ class Sampler(abc.ABC):
             self._deliver(self._delayed, tick)
             return
         self._sample = sample
-        if wanted:
-            self._publish(sample, wanted)
+        if read_publishers:
+            self._publish(sample, read_publishers)
 
     def take_held(self) -> None:
-        """Capture the samples that are kept, before the model that they belong to is written to."""
+        """Capture the kept samples before the model that they belong to is modified."""
         for sample in self._kept_samples():
             self._capture_sample(sample)
 
     def leave(self) -> None:
-        """Finish the samples that are kept; called when the sensor's model is removed."""
+        """Finish the kept samples; called when the sensor's model is removed."""
         self._process_pending()
         for sample in self._kept_samples():
             self._finish_sample(sample)
@@ -206,7 +206,7 @@ class Sampler(abc.ABC):
 
     def get_state(self) -> object:
         self._process_pending()
-        # a sample is only ever completed, never changed, so it may be shared
+        # a sample is completed and never changed afterwards, so snapshots may share it
         flight = tuple(self._delayed.samples) if self._delayed is not None else ()
         return self._index, self._time_ns, self._sample, flight, self.update_rate, self.memory()
 
@@ -219,11 +219,11 @@ class Sampler(abc.ABC):
         self._apply_rate(rate)
         self.remember(memory)
 
-    # ------------------------------------------------------------------ within
+    # ------------------------------------------------------------------ helpers
 
     @property
     def _sample(self) -> Sample | None:
-        """The newest sample that has arrived."""
+        """Newest sample that has arrived."""
         if self._gathered or self._skipped:
             self._process_pending()
         return self._newest
@@ -233,7 +233,7 @@ class Sampler(abc.ABC):
         self._newest = sample
 
     def _begin_sample(self, tick: int) -> Sample:
-        """Begin the next sample, and advance noise that has a state to it."""
+        """Begin the next sample, and advance to it the noise that has a state."""
         time_ns = self.sim.engine.clock.time_ns(tick)
         self._index = index = self._index + 1
         if self._evolves:
@@ -245,7 +245,7 @@ class Sampler(abc.ABC):
         return sample
 
     def _capture_now(self, tick: int) -> object:
-        """Capture the state of this tick; a member of a batch has it from there."""
+        """Capture the state of this tick, from the batch if the sensor belongs to one."""
         batch = self.batch
         if batch is not None:
             if batch.is_ready(self, tick):
@@ -254,27 +254,28 @@ class Sampler(abc.ABC):
         return self.capture(self.sim.mj_model, self._computed_data())
 
     def _computed_data(self) -> mujoco.MjData:
-        """Return MuJoCo's data with what `measure` reads computed."""
+        """Return MuJoCo's data after computing the quantities that `measure` reads."""
         if self.needs_acceleration or self.reads_contacts:
             return self.sim.engine.physics.fresh_accelerations()
         return self.sim.engine.physics.fresh()
 
     def _update_readers(self) -> None:
-        """Find out who reads: which products are wanted, and whether captures may be gathered."""
+        """Update the products that have readers, and decide whether captures may be gathered."""
         self._process_pending()
         self._revision = self.sim.communication.bus.revision
-        self._wanted = [end for end in self._publishers if end[1].wanted]
-        self._is_read = any(needs_reading for _, _, needs_reading in self._wanted)
-        self._is_served = bool(self._wanted) and all(publisher.is_live for _, publisher, _ in self._wanted)
-        patience = [publisher.patience for _, publisher, _ in self._wanted]
+        self._read_publishers = [end for end in self._publishers if end[1].wanted]
+        self._is_read = any(needs_reading for _, _, needs_reading in self._read_publishers)
+        publishers = [publisher for _, publisher, _ in self._read_publishers]
+        self._is_served = bool(publishers) and all(publisher.is_live for publisher in publishers)
+        patience = [publisher.patience for publisher in publishers]
         is_plain = self._delayed is None and not (self._selects_ticks or self._selects_products_of_sample)
         self._gathers = self.gathers and self.is_deferred and is_plain and self._is_read and all(patience)
         changes = self._evolves or self._wandering or self._overrides("_begin_sample")
-        self._is_unread = not (self._wanted or changes or self._delayed)
+        self._is_unread = not (self._read_publishers or changes or self._delayed)
         self._patience = max(patience, default=0.0)
 
     def _process_pending(self) -> None:
-        """Make samples of the captures that were gathered; publish those that a reader keeps."""
+        """Make samples of the gathered captures, and publish those that a reader keeps."""
         if self._held is not None and self._skipped:
             (tick, held), count = self._held, self._skipped
             self._skipped, self._held = 0, None
@@ -289,7 +290,7 @@ class Sampler(abc.ABC):
             sample = self._newest = self._begin_sample(tick)
             sample.raw = raw
             if number >= unseen:
-                self._publish(sample, self._wanted)
+                self._publish(sample, self._read_publishers)
 
     def _apply_rate(self, rate: float) -> None:
         self.update_rate = rate
@@ -310,40 +311,40 @@ class Sampler(abc.ABC):
         if self._delayed is not None:
             self._delayed.samples.clear()
 
-    def _deliver_and_check_due(self, flight: DelayedReadings, tick: int) -> bool:
+    def _deliver_and_check_due(self, delayed: DelayedReadings, tick: int) -> bool:
         """Deliver the samples that have arrived, and check whether a sample is due as well."""
-        self._deliver(flight, tick)
+        self._deliver(delayed, tick)
         return self._latency_timetable is None or self._latency_timetable.is_sample(tick)
 
-    def _deliver(self, flight: DelayedReadings, tick: int) -> None:
-        for sample in flight.arrived(tick):
+    def _deliver(self, delayed: DelayedReadings, tick: int) -> None:
+        for sample in delayed.arrived(tick):
             self._sample = sample
-            wanted = [end for end in self._publishers if end[1].wanted]
-            if any(needs_reading for _, _, needs_reading in wanted):
+            read_publishers = [end for end in self._publishers if end[1].wanted]
+            if any(needs_reading for _, _, needs_reading in read_publishers):
                 self._capture_sample(sample)
-            self._publish(sample, wanted)
+            self._publish(sample, read_publishers)
 
-    def _publish(self, sample: Sample, wanted: list[tuple[str, Publisher, bool]]) -> list[LazyMessage]:
-        """Publish the wanted messages, and return those that are still to be made from the reading."""
-        put_off = []
-        for product, publisher, needs_reading in wanted:
+    def _publish(self, sample: Sample, read_publishers: list[tuple[str, Publisher, bool]]) -> list[LazyMessage]:
+        """Publish the messages that have readers, and return those that are made from the reading later."""
+        deferred = []
+        for product, publisher, needs_reading in read_publishers:
             if product in sample.unpublished:
                 continue
             if self.is_deferred and not publisher.is_live:
                 work = self._pending_job(sample) if needs_reading else None
                 later = publisher.publish_later(partial(self._message_on_demand, sample, product), work)
                 if needs_reading and later is not None:
-                    put_off.append(later)
+                    deferred.append(later)
             else:
                 publisher.publish(self._message(sample, product))
-        return put_off
+        return deferred
 
     def _pending_job(self, sample: Sample) -> PendingWork | None:
         """Return the job of another thread that a sample waits for; None by default."""
         return None
 
     def _message_on_demand(self, sample: Sample, product: str) -> object:
-        """Make a message after its sample was published; `NO_MESSAGE` where that is no longer possible."""
+        """Make a message after its sample was published; return `NO_MESSAGE` if that is no longer possible."""
         return self._message(sample, product)
 
     def _select_products(self, sample: Sample) -> None:
@@ -385,7 +386,7 @@ class Sampler(abc.ABC):
         return make(reading, sample.time_ns)
 
     def _with_noise_of(self, sample: Sample, make: ReadingFunction, reading: Reading, number: int) -> object:
-        """Call `make(reading, number)` with the noise as it was at a sample."""
+        """Call `make(reading, number)` with the state that the noise had at a sample."""
         now = [noise.state for noise in self._wandering]
         for noise, state in zip(self._wandering, sample.drifts, strict=True):
             noise.state = state

@@ -1,7 +1,8 @@
-"""Sensors of one kind that sample together, so that one call of NumPy computes the readings of all.
+"""Batches of sensors of one kind that sample together: one NumPy call computes the readings of all members.
 
-A batch changes no bit, no order and no message. Each member samples in its own turn and takes its part of what was
-computed at the turn of the first; where somebody has written to the physics in between, it is computed anew.
+A batch changes no bit, no order and no message. Each member samples in its own turn. The first member's turn computes
+the readings of all members, and each later member takes its part. If the physics state is modified in between, the
+readings are computed again.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ import mujoco
 from simkit.sensors.sampler import Sampler
 
 MIN_MEMBERS = 4
-"""Fewer members are measured one by one in the same time."""
+"""Smallest size of a batch: measuring fewer members one by one takes no longer."""
 
 Member = TypeVar("Member", bound="Sampler")
 
@@ -24,39 +25,39 @@ class SensorBatch(abc.ABC, Generic[Member]):
     """Members of one kind that are due at the same ticks.
 
     Args:
-        members: bound to the same model.
+        members: sensors bound to the same model.
 
     Attributes:
-        model: that they are bound to.
+        model: model that the members are bound to.
     """
 
     def __init__(self, members: Sequence[Member]) -> None:
         self.members, self.sim = list(members), members[0].sim
         self.model = self.sim.mj_model
         self._tick = self._edition = -1
-        for place, member in enumerate(self.members):
-            member.batch, member.batch_index = self, place
+        for index, member in enumerate(self.members):
+            member.batch, member.batch_index = self, index
 
     @abc.abstractmethod
     def capture_all(self, data: mujoco.MjData) -> None:
-        """Capture all members from the data, which have everything computed."""
+        """Capture all members from data in which everything that they need is computed."""
 
     @abc.abstractmethod
-    def captured(self, place: int) -> object:
-        """Return what `capture` would give of a member."""
+    def captured(self, member_index: int) -> object:
+        """Return the captured values of a member, equal to those that `capture` returns."""
 
     def publish_sample(self, member: Sampler, tick: int) -> bool:
-        """Make and publish a sample of which every message is waited for; False where the member has to do it."""
+        """Make and publish a sample if readers wait for all its messages; return False if the member must do so."""
         return False
 
     def is_ready(self, member: Sampler, tick: int) -> bool:
-        """Capture all members for a tick, once; False where the member has to do it by itself."""
+        """Capture all members once for a tick; return False if the member must capture its own state."""
         physics = self.sim.engine.physics
         if tick != self._tick or physics.edition != self._edition:
-            if physics.model is not self.model:  # another structure, and no new schedule yet
+            if physics.model is not self.model:  # the structure has changed and the batches are not rebuilt yet
                 return False
             self.capture_all(member._computed_data())
-            # what is looked at may have to be computed first, which changes nothing
+            # computing the data may change the edition but no value, so the edition is read afterwards
             self._tick, self._edition = tick, physics.edition
         return True
 
@@ -66,12 +67,12 @@ def form_batches(
     make_batch: Callable[[Sequence[Member]], SensorBatch[Member]],
     key: Callable[[Member], Hashable | None],
 ) -> None:
-    """Make a batch of the sensors that have the same key; one whose key is None samples by itself.
+    """Make a batch of the sensors that have the same key; a sensor whose key is None samples alone.
 
     Args:
-        sensors: of one kind.
-        make_batch: makes the batch, which tells its members of itself.
-        key: what has to be the same for members of one batch.
+        sensors: sensors of one kind.
+        make_batch: function that makes a batch, which sets `batch` of its members.
+        key: function that returns the properties that members of one batch have in common.
     """
     groups: dict[Hashable, list[Member]] = {}
     for sensor in sensors:

@@ -1,4 +1,4 @@
-"""Values of an array that hold for a while."""
+"""Temporary replacement of values in an array."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ import numpy.typing as npt
 
 @contextmanager
 def temporary_values(
-    array: npt.NDArray[np.generic], places: Sequence[int] | npt.NDArray[np.integer], values: Any
+    array: npt.NDArray[np.generic], indices: Sequence[int] | npt.NDArray[np.integer], values: Any
 ) -> Iterator[None]:
-    """While it lasts, an array has these values in these places; then it has its own again."""
-    places = np.asarray(places, dtype=np.intp)
-    kept = array[places]
-    array[places] = values
+    """Set values of an array at these indices while the context lasts; restore the old values at its end."""
+    indices = np.asarray(indices, dtype=np.intp)
+    old_values = array[indices]
+    array[indices] = values
     try:
         yield
     finally:
-        array[places] = kept
+        array[indices] = old_values

@@ -10,7 +10,7 @@ from simkit.pose import Pose
 from simkit.scene import SceneSensor
 
 OPTICAL_POSE = Pose.from_rpy(0.0, 0.0, 0.0, -math.pi / 2, 0.0, -math.pi / 2)
-"""A camera's optical frame (z forward, x right, y down) in its own (x forward, y left, z up); REP 103."""
+"""Pose of the optical frame (z forward, x right, y down) in the camera frame (x forward, y left, z up); REP 103."""
 
 
 def entity_topic(world: str, sensor: SceneSensor, suffix: str = "") -> str:
@@ -24,18 +24,18 @@ def entity_topic(world: str, sensor: SceneSensor, suffix: str = "") -> str:
 
 
 def sibling_topic(topic: str, name: str) -> str:
-    """Return the topic beside another: `/a/image` and `camera_info` give `/a/camera_info`."""
+    """Return a topic in the same namespace as another: `/a/image` and `camera_info` give `/a/camera_info`."""
     return topic.rsplit("/", 1)[0] + "/" + name
 
 
 def read_frame_id(params: Params) -> str:
-    """Read the frame that the sensor's block names, in today's spelling or an older one; empty where it names none."""
+    """Read the frame from the sensor's block, in the current spelling or an older one; return "" if there is none."""
     names = [params.text(element, "") for element in ("frame_id", "gz_frame_id", "ignition_frame_id")]
     return next((name for name in names if name), "")
 
 
 def check_topic(topic: str, block: Params, element: str = "topic") -> None:
-    """Report a `<topic>`, or another element of a block, with characters that a topic's name must not have."""
+    """Report a `<topic>`, or another element of a block, with characters that a topic name must not contain."""
     name, found = valid_topic(topic), f"found <{element}>{topic}</{element}>"
     if topic and name == "/":
         block.block(element).error("SK-PARAM-002", f"{found}, allowed is a name with a letter or a digit")

@@ -1,7 +1,7 @@
-"""Sensor kinds of SDF that are known and not simulated: read in full, checked, and reported.
+"""Sensor kinds of SDF that simkit knows and does not simulate: they are read in full, checked and reported.
 
-Radio (`wireless_transmitter`, `wireless_receiver`), tags (`rfid`, `rfidtag`) and a Doppler velocity log (`dvl`, which
-needs water). Gazebo does not simulate the first four either; Classic did.
+They are radios (`wireless_transmitter`, `wireless_receiver`), tags (`rfid`, `rfidtag`) and the Doppler velocity log
+(`dvl`), which needs water. Gazebo does not simulate the first four either; Gazebo Classic did.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from simkit.sensors.noise import NoiseModel, read_noise
 from simkit.sensors.topics_and_frames import read_frame_id
 
 _COMMON_ELEMENTS = ("always_on", "visualize", "enable_metrics", "pose", "update_rate", "topic")
-_DVL_ELEMENTS = ("gz:dvl", "ignition:dvl")  # elements with a prefix of others are reported by whoever reads them
+_DVL_ELEMENTS = ("gz:dvl", "ignition:dvl")  # each reader reports unknown elements with other prefixes
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,11 +27,11 @@ class Transceiver:
 
     Attributes:
         essid: name of the network that a transmitter offers.
-        frequency: of a transmitter [MHz].
+        frequency: frequency of a transmitter [MHz].
         band: lowest and highest frequency of a receiver [MHz].
-        gain: of the antenna [dBi].
-        power: [dBm].
-        sensitivity: of a receiver [dBm].
+        gain: gain of the antenna [dBi].
+        power: transmitted power [dBm].
+        sensitivity: sensitivity of a receiver [dBm].
     """
 
     essid: str
@@ -54,7 +54,7 @@ class Beam:
 
 @dataclass(frozen=True, slots=True)
 class TrackingMode:
-    """When a velocity against bottom or water is told (`never`, `always`, `best`), and its noise [m/s]."""
+    """Condition (`never`, `always`, `best`) for measuring the velocity against bottom or water, and its noise [m/s]."""
 
     when: str
     noise: NoiseModel
@@ -66,8 +66,8 @@ class DopplerVelocityLog:
 
     Attributes:
         type: `piston` or `phased_array`.
-        modes: by name; empty where the file has none.
-        layer: nearest and farthest water of the water-mass mode, and in how many bins.
+        modes: tracking modes by name; empty where the file has none.
+        layer: nearest and farthest distance of the water-mass mode, and its number of bins.
     """
 
     type: str
@@ -79,7 +79,7 @@ class DopplerVelocityLog:
 
 
 def read_transceiver(params: Params) -> Transceiver:
-    """The radio of a `wireless_transmitter` or `wireless_receiver`."""
+    """Read the radio of a `wireless_transmitter` or `wireless_receiver`."""
     block = params.block("transceiver")
     low = block.number("min_frequency", 2412.0, minimum=0)
     high = block.number("max_frequency", 2484.0, minimum=0)
@@ -97,7 +97,7 @@ def read_transceiver(params: Params) -> Transceiver:
 
 
 def read_dvl(params: Params) -> DopplerVelocityLog:
-    """The `<gz:dvl>` of a Doppler velocity log, with Gazebo's defaults and checks."""
+    """Read the `<gz:dvl>` of a Doppler velocity log, with Gazebo's defaults and checks."""
     block = next((found for name in _DVL_ELEMENTS if (found := params.child(name))), params.block("dvl"))
     reach = (block.number("minimum_range", 0.1, minimum=0), block.number("maximum_range", 100.0, minimum=0))
     if reach[0] >= reach[1]:
@@ -115,8 +115,8 @@ def read_dvl(params: Params) -> DopplerVelocityLog:
 
 
 def _read_beams(arrangement: Params) -> tuple[Beam, ...]:
-    given = arrangement.attribute("degrees") or arrangement.text("degrees", "false")
-    unit = math.pi / 180 if given.strip().lower() in ("1", "true") else 1.0
+    degrees = arrangement.attribute("degrees") or arrangement.text("degrees", "false")
+    unit = math.pi / 180 if degrees.strip().lower() in ("1", "true") else 1.0
     beams: list[Beam] = []
     for element in arrangement.all("beam"):
         number = element.attribute("id")
@@ -157,7 +157,7 @@ def _read_tracking(tracking: Params, far: float) -> tuple[Mapping[str, TrackingM
 
 
 def _read_tag(params: Params) -> None:
-    """`<rfid>` and `<rfidtag>` have no elements in SDF."""
+    """Read the blocks `<rfid>` and `<rfidtag>`, which have no elements in SDF."""
     for name in ("rfid", "rfidtag"):
         params.child(name)
 
@@ -173,14 +173,14 @@ UNSIMULATED_READERS: Final[Mapping[str, Callable[[Params], object]]] = {
 
 
 def report_sensors_without_model(world: SceneWorld, diagnostics: Diagnostics) -> None:
-    """Says which sensors are on joints of the world itself: they have no model to be part of."""
+    """Report the sensors on joints of the world itself; these sensors have no model to belong to."""
     for scene in (sensor for joint in world.joints for sensor in joint.sensors):
         message = f"sensor {scene.scoped!r} is on a joint of the world itself; it is left out"
-        diagnostics.warning("SK-SENSOR-053", message, scene.where, "put the joint into one of the models that it ties")
+        diagnostics.warning("SK-SENSOR-053", message, scene.where, "move the joint into one of its two models")
 
 
 def report_unsimulated(scene: SceneSensor, diagnostics: Diagnostics) -> bool:
-    """Reads a sensor of a kind that is known and not simulated, and says so; False for any other kind."""
+    """Read and report a sensor of a kind that is known and not simulated; return False for any other kind."""
     read = UNSIMULATED_READERS.get(scene.kind)
     if read is None:
         return False
@@ -189,8 +189,8 @@ def report_unsimulated(scene: SceneSensor, diagnostics: Diagnostics) -> bool:
         params.child(element)
     read_frame_id(params)
     read(params)
-    lost = f", nor has its plugin {scene.plugins[0].name!r} anything to hang on" if scene.plugins else ""
-    message = f"sensor {scene.scoped!r}: {scene.kind} is known and read, but not simulated: it gives no readings{lost}"
+    lost = f", and its plugin {scene.plugins[0].name!r} is ignored" if scene.plugins else ""
+    message = f"sensor {scene.scoped!r}: the kind {scene.kind} is not simulated, so the sensor gives no readings{lost}"
     diagnostics.warning("SK-SENSOR-052", message, scene.where)
     for owner in (params, *(found for name in _DVL_ELEMENTS if (found := params.child(name)))):
         owner.report_unread("SK-PARAM-003", f"sensor {scene.scoped!r}")

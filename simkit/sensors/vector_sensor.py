@@ -1,4 +1,4 @@
-"""Base class of sensors that measure a few numbers and tell them in one message."""
+"""Base class of sensors that measure a few numbers and publish them in one message."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from simkit.sensors.noise import Noise
 
 
 class VectorSensor(Sensor):
-    """A sensor whose reading is a vector, with noise on each number, and that publishes one message.
+    """Sensor whose reading is a vector with noise on each number, published as one message.
 
     Attributes:
         product: name of the message and last part of its default topic.

@@ -1,4 +1,4 @@
-"""Which visuals a sensor sees: its `<visibility_mask>` against the `<visibility_flags>` of visuals."""
+"""Visibility of visuals to a sensor: its `<visibility_mask>` against the `<visibility_flags>` of the visuals."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from simkit.compiler.name_map import NameMap
 from simkit.params import Params
 
 ALL_VISIBLE: Final = 0xFFFFFFFF
-"""The mask that hides nothing."""
+"""Mask that hides nothing."""
 
 
 def read_visibility_mask(block: Params) -> int:
@@ -30,7 +30,8 @@ def hidden_geoms(mask: int, names: NameMap) -> list[int]:
     """Return the ids of the geoms of visuals that have no bit in common with a mask.
 
     Args:
-        names: the name map of a compiled model.
+        mask: visibility mask of a sensor.
+        names: name map of a compiled model.
     """
     found: list[int] = []
     for link in names.links.values():

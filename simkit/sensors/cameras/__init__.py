@@ -1,5 +1,5 @@
-"""Cameras: one file for each kind, with their optics, noise and messages; `rendering` draws the pictures.
+"""Cameras: one file per kind, with optics, noise and messages; `rendering` draws the images.
 
-A `<sensor>` with a `<camera>` block and the simulation enter; `Image`, `CameraInfo`, point clouds, labels and boxes
-leave. Only `rendering` touches OpenGL, and no picture is drawn that nobody reads.
+Inputs are a `<sensor>` with a `<camera>` block and the simulation. Outputs are `Image`, `CameraInfo`, point clouds,
+labels and boxes. Only `rendering` uses OpenGL, and images without a reader are not drawn.
 """

@@ -1,4 +1,4 @@
-"""Arrays that are used again once no message holds them."""
+"""Pool of arrays that are reused after their last message is gone."""
 
 from __future__ import annotations
 
@@ -13,38 +13,38 @@ import numpy.typing as npt
 _MAX_ARRAYS = 6
 
 
-# Array of bytes, whole numbers or floats.
+# array of bytes, integers or floats
 AnyArray = npt.NDArray[Any]
 
 
 class ArrayPool:
-    """Arrays of one shape, each used again once nobody holds it or a view of it any more. Several threads may ask.
+    """Arrays of one shape, each reused once no other object refers to it or to a view of it. The class is thread-safe.
 
-    A picture's worth of fresh memory costs as much as what is written into it: the system hands it out page by page.
-    Whoever keeps a picture keeps its array from being used again, for as long as it likes.
+    Fresh memory for an image costs as much time as writing the image, because the system allocates it page by page. An
+    array is not reused while a subscriber keeps its image.
 
     Args:
-        shape, dtype: of the arrays.
-        make: makes one of them; `np.zeros` for arrays that are not written to everywhere.
+        shape, dtype: shape and type of the arrays.
+        make: function that makes an array; use `np.zeros` for arrays that are not written to everywhere.
     """
 
     def __init__(self, shape: tuple[int, ...], dtype: npt.DTypeLike, make: Callable[..., AnyArray] = np.empty) -> None:
         self._shape, self._dtype, self._make = shape, dtype, make
         self._arrays: list[AnyArray] = [make(shape, dtype)]
-        self._turn = threading.Lock()
-        self._idle = self._holders(0)
+        self._lock = threading.Lock()
+        self._idle = self._count_references(0)
 
     def take(self) -> AnyArray:
-        """An array that nobody else uses, with anything in it."""
-        with self._turn:  # until whoever asked holds it
+        """Return an array without other references, with undefined content."""
+        with self._lock:  # held until the caller has a reference to the array
             for i in range(len(self._arrays)):
-                if self._holders(i) <= self._idle:
+                if self._count_references(i) <= self._idle:
                     return self._arrays[i]
         array = self._make(self._shape, self._dtype)
         if len(self._arrays) < _MAX_ARRAYS:
             self._arrays.append(array)
         return array
 
-    def _holders(self, i: int) -> int:
-        # views count: each holds the array that owns its memory
+    def _count_references(self, i: int) -> int:
+        # views count too, because each refers to the array that owns its memory
         return sys.getrefcount(self._arrays[i])

@@ -1,4 +1,4 @@
-"""Boxes as `vision_msgs`, as ros_gz_bridge converts Gazebo's, and drawn into a picture."""
+"""Bounding boxes as `vision_msgs`, as ros_gz_bridge converts Gazebo's, and drawn into an image."""
 
 from __future__ import annotations
 
@@ -21,28 +21,30 @@ TYPE_2D: Final = "vision_msgs/msg/Detection2DArray"
 TYPE_3D: Final = "vision_msgs/msg/Detection3DArray"
 _GREEN: Final = (0, 255, 0)
 _OGRE: Final = np.array(((0.0, -1.0, 0.0), (0.0, 0.0, 1.0), (-1.0, 0.0, 0.0)))
-"""From the sensor's axes (forward, left, up) to those of Ogre's cameras (right, up, backward)."""
+"""Rotation from the sensor's axes (forward, left, up) to those of Ogre's cameras (right, up, backward)."""
 
 
 def detections_2d(header: msgs.Header, boxes: Sequence[Box2D]) -> msgs.Detection2DArray:
-    """A `Detection2DArray`: the label is the class, in digits, with a score of 1; the model's name is the id."""
-    one, corner = msgs.type_of("vision_msgs/msg/Detection2D"), msgs.type_of("vision_msgs/msg/Point2D")
-    centre, box_of = msgs.type_of("vision_msgs/msg/Pose2D"), msgs.type_of("vision_msgs/msg/BoundingBox2D")
+    """Return a `Detection2DArray`; the class is the label in digits with a score of 1, the id is the model's name."""
+    detection, corner = msgs.type_of("vision_msgs/msg/Detection2D"), msgs.type_of("vision_msgs/msg/Point2D")
+    centre, bounding_box = msgs.type_of("vision_msgs/msg/Pose2D"), msgs.type_of("vision_msgs/msg/BoundingBox2D")
     found = []
     for box in boxes:
         middle = centre(corner((box.left + box.right) / 2, (box.top + box.bottom) / 2), 0.0)
-        frame = box_of(middle, box.right - box.left, box.bottom - box.top)
-        found.append(one(header, [_hypothesis(box.item.label)], frame, box.item.model))
+        frame = bounding_box(middle, box.right - box.left, box.bottom - box.top)
+        found.append(detection(header, [_hypothesis(box.item.label)], frame, box.item.model))
     return msgs.Detection2DArray(header, found)
 
 
 def detections_3d(header: msgs.Header, boxes: Sequence[Box3D], *, in_ogre_axes: bool = False) -> msgs.Detection3DArray:
-    """A `Detection3DArray` in the sensor's frame.
+    """Return a `Detection3DArray` in the sensor's frame.
 
     Args:
-        in_ogre_axes: in the axes of Gazebo's renderer instead, x to the right, y up, z backward.
+        header: header of the message.
+        boxes: boxes in the sensor's frame.
+        in_ogre_axes: True uses the axes of Gazebo's renderer, x to the right, y up, z backward.
     """
-    one, box_of = msgs.type_of("vision_msgs/msg/Detection3D"), msgs.type_of("vision_msgs/msg/BoundingBox3D")
+    detection, bounding_box = msgs.type_of("vision_msgs/msg/Detection3D"), msgs.type_of("vision_msgs/msg/BoundingBox3D")
     point, vector = msgs.type_of("geometry_msgs/msg/Point"), msgs.type_of("geometry_msgs/msg/Vector3")
     pose, turn = msgs.type_of("geometry_msgs/msg/Pose"), msgs.type_of("geometry_msgs/msg/Quaternion")
     quaternion = np.empty(4)
@@ -51,25 +53,25 @@ def detections_3d(header: msgs.Header, boxes: Sequence[Box3D], *, in_ogre_axes: 
         centre, rotation = (_OGRE @ box.centre, _OGRE @ box.rotation) if in_ogre_axes else (box.centre, box.rotation)
         mujoco.mju_mat2Quat(quaternion, np.ascontiguousarray(rotation).ravel())
         w, x, y, z = quaternion.tolist()
-        frame = box_of(pose(point(*centre.tolist()), turn(x, y, z, w)), vector(*box.size.tolist()))
-        found.append(one(header, [_hypothesis(box.item.label)], frame, box.item.model))
+        frame = bounding_box(pose(point(*centre.tolist()), turn(x, y, z, w)), vector(*box.size.tolist()))
+        found.append(detection(header, [_hypothesis(box.item.label)], frame, box.item.model))
     return msgs.Detection3DArray(header, found)
 
 
 def boxes_as_csv(message: Message) -> bytes:
-    """The boxes of a message as a table, in Gazebo's columns."""
+    """Return the boxes of a message as a table with Gazebo's columns."""
     is_flat = message.__msgtype__ == TYPE_2D
     rows = ["label,x_center,y_center,width,height" if is_flat else "label,x,y,z,w,h,l,roll,pitch,yaw"]
-    for one in message.detections:
-        box = one.bbox
+    for detection in message.detections:
+        box = detection.bbox
         if is_flat:
-            at = box.center.position
-            values = [at.x, at.y, box.size_x, box.size_y]
+            centre = box.center.position
+            values = [centre.x, centre.y, box.size_x, box.size_y]
         else:
-            at, turn, size = box.center.position, box.center.orientation, box.size
+            centre, turn, size = box.center.position, box.center.orientation, box.size
             angles = rpy_from_quat((turn.w, turn.x, turn.y, turn.z))
-            values = [at.x, at.y, at.z, size.x, size.y, size.z, *angles]
-        rows.append(",".join([one.results[0].hypothesis.class_id, *(f"{value:.6f}" for value in values)]))
+            values = [centre.x, centre.y, centre.z, size.x, size.y, size.z, *angles]
+        rows.append(",".join([detection.results[0].hypothesis.class_id, *(f"{value:.6f}" for value in values)]))
     return ("\n".join(rows) + "\n").encode()
 
 
@@ -81,7 +83,7 @@ def _hypothesis(label: int) -> msgs.ObjectHypothesisWithPose:
 
 
 def draw_boxes(colours: Picture, boxes: Sequence[Box2D | Box3D], projection: Projection) -> Picture:
-    """A copy of a picture with the boxes in green."""
+    """Return a copy of an image with the boxes in green."""
     import cv2
 
     out = colours.copy()
@@ -89,7 +91,7 @@ def draw_boxes(colours: Picture, boxes: Sequence[Box2D | Box3D], projection: Pro
     if corners:
         edges = np.concatenate([CUBE_EDGES + 8 * i for i in range(len(corners))])
         lines = projection.edges(np.concatenate(corners), edges)
-        # beyond some pictures' widths a line's slope is worth more than its end
+        # far outside the image, clipping the end of a line hardly changes its slope inside
         farthest = 8.0 * max(projection.model.width, projection.model.height)
         cv2.polylines(out, list(np.clip(np.floor(lines), -farthest, farthest).astype(np.int32)), False, _GREEN)
     for box in boxes:

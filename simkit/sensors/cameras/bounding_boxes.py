@@ -1,6 +1,4 @@
-"""Boxes around labelled objects: by visible pixels, by projection and in space; with Gazebo's own errors where
-a world asks for them.
-"""
+"""Bounding boxes of labelled objects: by visible pixels, by projection and in space, or with Gazebo's own errors."""
 
 from __future__ import annotations
 
@@ -20,15 +18,15 @@ from simkit.sensors.cameras.labelled_objects import DrawnVisual, LabelledObject,
 from simkit.sensors.cameras.rendering.view import Ids, View
 from simkit.sensors.cameras.shape_corners import CUBE, Corners, geom_corners
 
-_PARTS_OF_EDGE = 16  # that an edge is bent in by a lens
+_EDGE_SEGMENTS = 16  # segments of an edge that a lens bends
 
 
 @dataclass(frozen=True, slots=True)
 class Box2D:
-    """Edges of a box in the picture [px]: a pixel (u, v) covers u to u + 1 and v to v + 1.
+    """Edges of a box in the image [px]; a pixel (u, v) covers u to u + 1 and v to v + 1.
 
     Attributes:
-        item: what it is around.
+        item: object inside the box.
     """
 
     item: LabelledObject
@@ -40,13 +38,13 @@ class Box2D:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Box3D:
-    """A box in the sensor's frame: x forward, y left, z up.
+    """Box in the sensor's frame (x forward, y left, z up).
 
     Attributes:
-        item: what it is around.
-        centre: [m], shape (3,).
-        rotation: of its axes, shape (3, 3).
-        size: along its axes [m], shape (3,).
+        item: object inside the box.
+        centre: centre [m], shape (3,).
+        rotation: rotation matrix of the box's axes, shape (3, 3).
+        size: size along the axes [m], shape (3,).
     """
 
     item: LabelledObject
@@ -55,22 +53,23 @@ class Box3D:
     size: Vector
 
     def corners(self) -> Vector:
-        """Shape (8, 3), in the order of `CUBE`."""
+        """Return the corners [m], shape (8, 3), in the order of `CUBE`."""
         corners: Vector = self.centre + (CUBE * (self.size / 2)) @ self.rotation.T
         return corners
 
 
 class LabelledShapes:
-    """The shapes of labelled things, found out once for each set of labels and compiled model.
+    """Shapes of labelled objects, computed once for each set of labels and compiled model.
 
     Args:
-        items: what wears which label.
-        structure: what is in the world.
+        items: labelled objects.
+        structure: models of the world.
 
     Attributes:
-        place: number of each geom that wears a label.
-        corners: of each of them, by number.
-        alone: of items with one visual, by position: a geom, the visual's frame in it, lowest and highest corner there.
+        place: number of each geom that has a label, by geom id.
+        corners: corners of each of these geoms, by number.
+        alone: boxes of items with one visual, by index in `items`: number of a geom, pose of the visual in that geom's
+            frame, lowest and highest corner in the visual's frame.
     """
 
     def __init__(self, items: LabelledObjects, structure: WorldStructure) -> None:
@@ -90,8 +89,8 @@ class LabelledShapes:
             if len(item.visuals) == 1
         }
 
-    def stand(self, data: mujoco.MjData, position: Vector, rotation: Vector) -> PosedShapes:
-        """Where the things are, seen from a sensor at a position (3,) with a rotation (3, 3) in the world."""
+    def pose_shapes(self, data: mujoco.MjData, position: Vector, rotation: Vector) -> PosedShapes:
+        """Return the shapes at their current poses relative to a sensor, given its world position and rotation."""
         geoms = self._geoms
         positions = (data.geom_xpos[geoms] - position) @ rotation
         rotations = rotation.T @ data.geom_xmat[geoms].reshape(-1, 3, 3)
@@ -101,7 +100,7 @@ class LabelledShapes:
     def _own_box(
         self, visual: DrawnVisual, model: mujoco.MjModel, link: LinkBinding, scenes: Mapping[str, SceneVisual]
     ) -> tuple[int, Pose, Vector, Vector]:
-        """Of a visual: the number of a geom, the visual's frame in that geom's, its lowest and highest corner there."""
+        """Return a visual's box: number of a geom, visual's pose in that geom's frame, lowest and highest corner."""
         in_body = link.offset @ scenes[visual.scoped].pose_link
         low, high = np.full(3, np.inf), np.full(3, -np.inf)
         for geom in visual.geoms:
@@ -114,12 +113,12 @@ class LabelledShapes:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PosedShapes:
-    """Labelled shapes where they stand in the sensor's frame at one time, each by its number.
+    """Labelled shapes at their poses in the sensor's frame at one time, each by its number.
 
     Attributes:
-        shapes: what they are.
-        positions, rotations: of each geom that wears a label, shape (k, 3) and (k, 3, 3).
-        axes: of each item's model, shape (n, 3, 3).
+        shapes: shapes without poses.
+        positions, rotations: poses of the geoms that have a label, shape (k, 3) and (k, 3, 3).
+        axes: axes of each item's model, shape (n, 3, 3).
     """
 
     shapes: LabelledShapes
@@ -128,16 +127,16 @@ class PosedShapes:
     axes: Vector
 
     def points(self, visuals: Sequence[DrawnVisual]) -> tuple[Vector, npt.NDArray[np.int32]]:
-        """Corners in the sensor's frame (n, 3) and their edges (m, 2) of some visuals of an item."""
+        """Return the corners (n, 3) in the sensor's frame and the edges (m, 2) of some visuals of an item."""
         shapes = self.shapes
-        places = [shapes.place[g] for visual in visuals for g in visual.geoms]
-        points = [shapes.corners[i].points @ self.rotations[i].T + self.positions[i] for i in places]
+        numbers = [shapes.place[g] for visual in visuals for g in visual.geoms]
+        points = [shapes.corners[i].points @ self.rotations[i].T + self.positions[i] for i in numbers]
         starts = np.cumsum([0, *(len(p) for p in points)])
-        edges = [shapes.corners[i].edges + start for i, start in zip(places, starts, strict=False)]
+        edges = [shapes.corners[i].edges + start for i, start in zip(numbers, starts, strict=False)]
         return np.concatenate(points), np.concatenate(edges)
 
     def box_3d(self, position: int) -> Box3D:
-        """The box around an item: along the axes of its one visual, or of its model where there are several."""
+        """Return the box of an item along the axes of its only visual, or of its model if it has several visuals."""
         item = self.shapes.items.items[position]
         if position in self.shapes.alone:
             return self._box_alone(item, position)
@@ -145,7 +144,7 @@ class PosedShapes:
         return _box_around(item, points, self.axes[position])
 
     def box_of_cloud(self, position: int, visuals: Sequence[DrawnVisual]) -> Box3D:
-        """The box along the principal axes of the corners of some visuals, as Gazebo has it for several of them."""
+        """Return the box along the principal axes of some visuals' corners, as Gazebo does for several visuals."""
         item = self.shapes.items.items[position]
         if len(visuals) == 1 and position in self.shapes.alone:
             return self._box_alone(item, position)
@@ -156,28 +155,29 @@ class PosedShapes:
         return _box_around(item, points, axes)
 
     def _box_alone(self, item: LabelledObject, position: int) -> Box3D:
-        place, pose, low, high = self.shapes.alone[position]
-        turn = self.rotations[place]
+        number, pose, low, high = self.shapes.alone[position]
+        turn = self.rotations[number]
         rotation = turn @ pose.matrix
-        centre = self.positions[place] + turn @ pose.position + rotation @ ((low + high) / 2)
+        centre = self.positions[number] + turn @ pose.position + rotation @ ((low + high) / 2)
         return Box3D(item, centre, rotation, high - low)
 
 
 @dataclass(frozen=True, slots=True)
 class Projection:
-    """Where points in the sensor's frame are seen [px]: by a camera, through the view that is drawn for it."""
+    """Projection of points in the sensor's frame to pixels, by a camera model and the view that is drawn for it."""
 
     model: CameraModel
     view: View
 
     def shape(self, points: Vector, edges: npt.NDArray[np.int32]) -> Vector | None:
-        """Project what of a shape is in front of the near plane: its corners, and points along edges that a lens bends.
-
-        The result has the shape (n, 2) [px]; it is None where nothing is in front.
+        """Project the part of a shape in front of the near plane: corners, and points along edges that a lens bends.
 
         Args:
-            points: corners in the sensor's frame, shape (n, 3).
-            edges: pairs of them, shape (m, 2).
+            points: corners in the sensor's frame [m], shape (n, 3).
+            edges: pairs of corners, shape (m, 2).
+
+        Returns:
+            Pixels, shape (n, 2), or None if the whole shape is behind the near plane.
         """
         if self.model.distortion or points[:, 0].min() < self.model.near:
             lines = self.edges(points, edges)
@@ -185,35 +185,43 @@ class Projection:
         return self._points(points)
 
     def edges(self, points: Vector, edges: npt.NDArray[np.int32]) -> Vector:
-        """Where the edges are seen that are not behind the near plane [px], shape (m, k, 2): as k points, two but for a
-        lens that bends."""
+        """Project the parts of edges in front of the near plane.
+
+        Args:
+            points: corners in the sensor's frame [m], shape (n, 3).
+            edges: pairs of corners, shape (m, 2).
+
+        Returns:
+            Pixels along each edge, shape (m, k, 2): two points per edge, or more for a lens that bends edges.
+        """
         ends = _clip_to_near_plane(points[edges], self.model.near)
         if self.model.distortion:
-            along = np.linspace(0, 1, _PARTS_OF_EDGE + 1)[:, None]
+            along = np.linspace(0, 1, _EDGE_SEGMENTS + 1)[:, None]
             ends = ends[:, :1] + along * (ends[:, 1:] - ends[:, :1])
         return self._points(ends)
 
     def _points(self, points: Vector) -> Vector:
-        """Where points (..., 3) are seen; beside what is drawn a lens has no say, and they are taken to its edge."""
+        """Project points (..., 3); with a distortion, points outside the drawn view are moved to its edge."""
         x, y = -points[..., 1] / points[..., 0], -points[..., 2] / points[..., 0]
         if self.model.distortion:
             x, y = np.clip(x, self.view.left, self.view.right), np.clip(y, -self.view.top, -self.view.bottom)
-        return np.stack(self.model.seen_at(x, y), axis=-1)
+        return np.stack(self.model.project(x, y), axis=-1)
 
 
 def visible_boxes(position_of: Numbers, items: Sequence[LabelledObject]) -> list[Box2D]:
-    """Around the pixels of each item.
+    """Return the boxes around the visible pixels of each item.
 
     Args:
-        position_of: at each pixel the position of its item in `items`, -1 for none, shape (h, w).
+        position_of: index in `items` at each pixel, -1 for none, shape (h, w).
+        items: labelled objects.
     """
     height, width = position_of.shape
-    # both ends of each run of pixels in a row tell as much as all of it
+    # the two ends of each run of equal pixels in a row determine the box, so the others are skipped
     changes = np.ones((height, width + 1), bool)
     np.not_equal(position_of[:, 1:], position_of[:, :-1], out=changes[:, 1:-1])
-    place = np.flatnonzero((changes[:, 1:] | changes[:, :-1]) & (position_of >= 0))
-    item = position_of.ravel()[place]
-    row, column = np.divmod(place, width)
+    pixel = np.flatnonzero((changes[:, 1:] | changes[:, :-1]) & (position_of >= 0))
+    item = position_of.ravel()[pixel]
+    row, column = np.divmod(pixel, width)
     rows, columns = np.zeros((len(items), height), bool), np.zeros((len(items), width), bool)
     rows[item, row] = columns[item, column] = True
     found = []
@@ -224,20 +232,20 @@ def visible_boxes(position_of: Numbers, items: Sequence[LabelledObject]) -> list
 
 
 def _clip_to_near_plane(ends: Vector, near: float) -> Vector:
-    """The parts of edges, shape (m, 2, 3), in front of the near plane."""
+    """Return the parts of edges, shape (m, 2, 3), in front of the near plane."""
     behind = ends[..., 0] < near
     ends = ends[~behind.all(axis=1)]
     behind = ends[..., 0] < near
-    for this, other in ((0, 1), (1, 0)):
-        cut = behind[:, this]
-        hidden, seen = ends[cut, this], ends[cut, other]
+    for start, end in ((0, 1), (1, 0)):
+        cut = behind[:, start]
+        hidden, seen = ends[cut, start], ends[cut, end]
         part = (near - hidden[:, :1]) / (seen[:, :1] - hidden[:, :1])
-        ends[cut, this] = hidden + part * (seen - hidden)
+        ends[cut, start] = hidden + part * (seen - hidden)
     return ends
 
 
 def full_box(item: LabelledObject, pixels: Vector | None, model: CameraModel) -> Box2D | None:
-    """Around the projection of an item, within the picture; None where it is beside it."""
+    """Return the box around the projection of an item, within the image; None if the item is outside the image."""
     if pixels is None:
         return None
     left, top = np.maximum(pixels.min(axis=0), 0.0)
@@ -262,15 +270,18 @@ def _cached(cache: dict[int, Corners], model: mujoco.MjModel, geom: int) -> Corn
 def gazebo_boxes(
     kind: str, geoms: Ids, items: LabelledObjects, shapes: PosedShapes | None, projection: Projection
 ) -> list[Box2D] | list[Box3D]:
-    """Boxes as Gazebo has them: what is hidden of a model does not count, and its first seen visual says the label.
+    """Return boxes as Gazebo computes them: of visible visuals only, with the label of a model's first visible one.
 
-    A visible box ends at the last pixel's number. A full box ends one pixel before the right edge, and a visual that
-    reaches beyond both sides of the picture has none. Boxes in space around several visuals are along the principal
-    axes of their corners.
+    A visible box ends at the number of the last pixel. A full box ends one pixel before the right edge. A visual that
+    extends beyond opposite sides of the image has no full box. Boxes in space around several visuals are along the
+    principal axes of their corners.
 
     Args:
         kind: visible_2d, full_2d or 3d.
-        geoms: at each pixel, shape (h, w); -1 for none.
+        geoms: geom id at each pixel, -1 for none, shape (h, w).
+        items: labelled objects.
+        shapes: shapes at their poses; None for visible_2d.
+        projection: projection of the camera.
     """
     is_seen = np.bincount(geoms.ravel() + 1, minlength=len(items.item_of))[1:] > 0
     seen: dict[int, list[DrawnVisual]] = {}
@@ -294,16 +305,16 @@ def _gazebo_full_box(
 ) -> Box2D | None:
     model = projection.model
     size = np.array((model.width, model.height), dtype=np.float64)
-    parts: list[tuple[Vector, Vector]] = []
+    bounds: list[tuple[Vector, Vector]] = []
     for visual in visuals:
         pixels = projection.shape(*shapes.points((visual,)))
         if pixels is None:
             continue
         low, high = pixels.min(axis=0), pixels.max(axis=0)
         if not ((low < 0) & (high > size)).any():
-            parts.append((np.maximum(low, 0.0), np.minimum(high, (size[0] - 1, size[1]))))
-    if not parts:
+            bounds.append((np.maximum(low, 0.0), np.minimum(high, (size[0] - 1, size[1]))))
+    if not bounds:
         return None
-    left, top = np.min([low for low, _ in parts], axis=0)
-    right, bottom = np.max([high for _, high in parts], axis=0)
+    left, top = np.min([low for low, _ in bounds], axis=0)
+    right, bottom = np.max([high for _, high in bounds], axis=0)
     return Box2D(item, float(left), float(top), float(right), float(bottom))

@@ -44,7 +44,7 @@ _BOX_TYPES: Final = {
 
 @dataclass(frozen=True, slots=True)
 class BoundingBoxOptions(CameraOptions):
-    """The `<camera>` block; depths, distances of clip planes and noise as of every camera, in m.
+    """The `<camera>` block; depths, clip planes and noise as for every camera, in m.
 
     Attributes:
         type: visible_2d, full_2d or 3d.
@@ -55,11 +55,11 @@ class BoundingBoxOptions(CameraOptions):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Boxes:
-    """What is seen.
+    """Reading of a bounding box camera.
 
     Attributes:
-        boxes: in the order of the instances of their things.
-        colours: the picture that they are drawn into, shape (h, w, 3).
+        boxes: boxes in the order of the objects' instances.
+        colours: image that the boxes are drawn into, shape (h, w, 3).
     """
 
     boxes: Sequence[Box2D | Box3D]
@@ -67,10 +67,11 @@ class Boxes:
 
 
 class BoundingBoxCamera(LabelCamera):
-    """`boundingbox_camera`: a box around each thing that wears a label and of which at least one pixel is seen.
+    """Bounding box camera, `boundingbox_camera`: a box around each labelled object with at least one visible pixel.
 
-    A thing is all that wears one label in a top-level model. Its visible box is around its pixels; its full box around
-    its projection, within the picture, whatever is in front of it; its 3-D box is in the sensor's frame.
+    All visuals with the same label in one top-level model are one object. The visible box surrounds the object's
+    visible pixels. The full box surrounds its projection within the image, even if other objects hide it. The 3-D box
+    is in the sensor's frame.
     """
 
     kinds = ("boundingbox_camera", "boundingbox")
@@ -120,7 +121,7 @@ class BoundingBoxCamera(LabelCamera):
             return items, None
         if self._shapes is None or self._shapes.items is not items:
             self._shapes = LabelledShapes(items, self.structure)
-        return items, self._shapes.stand(data, *self._frame_in_world(data))
+        return items, self._shapes.pose_shapes(data, *self._frame_in_world(data))
 
     def develop(self, films: Iterator[Film], notes: tuple[LabelledObjects, PosedShapes | None]) -> Boxes:
         colours = self._picture(next(films))
@@ -136,7 +137,7 @@ class BoundingBoxCamera(LabelCamera):
         return Projection(self.options.model, self._drawn_view())
 
     def _projected(self, geoms: Ids, items: LabelledObjects, shapes: PosedShapes) -> list[Box2D] | list[Box3D]:
-        """Boxes around all of each item of which a pixel is seen."""
+        """Return the boxes around whole items, for the items with at least one visible pixel."""
         positions = np.flatnonzero(np.bincount(items.item_of.take(geoms, mode="wrap").ravel() + 1)[1:])
         if self.options.type == _SPACE:
             return [shapes.box_3d(int(position)) for position in positions]

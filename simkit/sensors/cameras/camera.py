@@ -9,7 +9,7 @@ from simkit.sensors.cameras.rendered_camera import RenderedCamera
 
 
 class Camera(RenderedCamera):
-    """`camera`: colour or grey images with their `CameraInfo`."""
+    """Camera, `camera`: colour or grey images with their `CameraInfo`."""
 
     kinds: ClassVar[tuple[str, ...]] = ("camera",)
 

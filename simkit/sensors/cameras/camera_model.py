@@ -1,4 +1,4 @@
-"""The pinhole camera of a file: intrinsics, frustum, lens distortion."""
+"""Pinhole camera of a file: intrinsics, frustum and lens distortion."""
 
 from __future__ import annotations
 
@@ -14,26 +14,26 @@ from simkit.sensors.cameras.distortion_model import NO_DISTORTION, Distortion, d
 from simkit.sensors.cameras.rendering.view import View
 
 MAX_PIXELS = 4096
-_MAX_FOCAL_PIXELS = 1e9  # of focal lengths and principal points
-_MAX_DISTORTION = 1e3  # of coefficients of a distortion
-_NARROWEST, _WIDEST = 0.001, 3.1415  # a pinhole sees less than half a turn
-_STEEPEST = 10.0  # a skew, as a multiple of the focal length
-_FARTHEST = 1e30  # [m] of a clip plane; the reciprocal of it is still a number of 32 bits
+_MAX_FOCAL_PIXELS = 1e9  # upper limit of focal lengths and principal points
+_MAX_DISTORTION = 1e3  # upper limit of distortion coefficients
+_NARROWEST, _WIDEST = 0.001, 3.1415  # [rad] a pinhole camera cannot reach half a turn
+_STEEPEST = 10.0  # upper limit of the skew, as a multiple of the focal length
+_FARTHEST = 1e30  # [m] limit of a clip plane; its reciprocal is still a normal 32-bit float
 _MIDDLE = (0.5, 0.5)
 
 
 @dataclass(frozen=True, slots=True)
 class CameraModel:
-    """Image size [px], focal lengths, principal point and skew [px], clip planes [m].
+    """Pinhole camera: image size [px], focal lengths, principal point and skew [px], clip planes [m].
 
-    A pixel (u, v), u to the right and v downwards, covers u to u+1: its middle is at u + 0.5. A point at (x, y, 1), x
-    to the right and y downwards, is seen at u = fx·x + skew·y + cx, v = fy·y + cy.
+    A pixel (u, v), u to the right and v downwards, covers u to u+1, so its middle is at u + 0.5. A point at (x, y, 1),
+    x to the right and y downwards, is projected to u = fx·x + skew·y + cx, v = fy·y + cy.
 
     Attributes:
         hfov: horizontal opening angle [rad].
         tx, ty: last column of the projection matrix [px·m].
-        rectified: focal lengths and principal point [px] of the projection matrix; None has those of the intrinsics.
-        info_model: what `CameraInfo` says, where that is not what is drawn.
+        rectified: focal lengths and principal point [px] of the projection matrix; None uses the intrinsics.
+        info_model: model that `CameraInfo` describes, if it differs from the drawn one.
     """
 
     width: int
@@ -54,43 +54,47 @@ class CameraModel:
 
     @property
     def is_distorted(self) -> bool:
-        """Whether a picture needs more than a rasteriser draws: lens distortion, or skewed pixels."""
+        """True if a rasteriser cannot draw the image alone: lens distortion, or skewed pixels."""
         return bool(self.distortion) or self.skew != 0
 
     def view(self) -> View:
-        """The frustum without distortion and skew."""
+        """Return the frustum without distortion and skew."""
         left, right = -self.cx / self.fx, (self.width - self.cx) / self.fx
         bottom, top = -(self.height - self.cy) / self.fy, self.cy / self.fy
         return View(self.width, self.height, left, right, bottom, top, self.near, self.far)
 
     @property
     def matrix(self) -> Vector:
-        """K, row by row, shape (9,)."""
+        """Matrix K, row by row, shape (9,)."""
         return np.array((self.fx, self.skew, self.cx, 0.0, self.fy, self.cy, 0.0, 0.0, 1.0))
 
     @property
     def projection(self) -> Vector:
-        """P, row by row, shape (12,): of the rectified picture, which has K's skew unless `rectified` is given."""
+        """Matrix P of the rectified image, row by row, shape (12,).
+
+        It has K's skew unless `rectified` is given.
+        """
         fx, fy, cx, cy = self.rectified or (self.fx, self.fy, self.cx, self.cy)
         skew = 0.0 if self.rectified else self.skew
         return np.array((fx, skew, cx, self.tx, 0.0, fy, cy, self.ty, 0.0, 0.0, 1.0, 0.0))
 
     @property
     def distortion_model(self) -> str:
-        """As `CameraInfo` names it."""
+        """Name of the distortion model in `CameraInfo`."""
         return "plumb_bob"
 
     @property
     def coefficients(self) -> Vector:
-        """D."""
+        """Distortion coefficients D."""
         return self.distortion.coefficients
 
     def rays(self) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.float32]]:
-        """y/x and z/x of what each pixel sees, x forward, y left, z up.
+        """Return y/x and z/x of the direction of each pixel, x forward, y left, z up.
 
         Returns:
-            Of each column, shape (width,), and of each row, shape (height,); both of each pixel, shape (height, width),
-            where `is_bent`. NaN where the lens shows nothing.
+            One value per column, shape (width,), and one per row, shape (height,). If `is_distorted`, both have one
+                value
+            per pixel, shape (height, width). Pixels where the lens shows nothing are NaN.
         """
         if self.is_distorted:
             x, y = self.directions()
@@ -100,9 +104,9 @@ class CameraModel:
         return left.astype(np.float32), up.astype(np.float32)
 
     def directions(self) -> tuple[Vector, Vector]:
-        """Where each pixel's middle looks: x to the right and y downwards at distance 1, shape (height, width) both.
+        """Return each pixel's direction: x to the right and y downwards at distance 1, shape (height, width).
 
-        NaN where the lens shows nothing.
+        Pixels where the lens shows nothing are NaN.
         """
         y, x = np.meshgrid(
             (np.arange(self.height) + 0.5 - self.cy) / self.fy,
@@ -117,8 +121,8 @@ class CameraModel:
             x, y = x + off_x, y + off_y
         return x, y
 
-    def seen_at(self, x: Vector, y: Vector) -> tuple[Vector, Vector]:
-        """Where points of the plane at distance 1 are seen [px]: x to the right and y downwards."""
+    def project(self, x: Vector, y: Vector) -> tuple[Vector, Vector]:
+        """Project points of the plane at distance 1, x to the right and y downwards, to pixels."""
         lens = self.distortion
         if lens:
             off_x, off_y = _centre(self)
@@ -127,10 +131,11 @@ class CameraModel:
         return self.fx * x + self.skew * y + self.cx, self.fy * y + self.cy
 
     def as_gazebo(self) -> CameraModel:
-        """What Gazebo draws for the same file, which is not what its `CameraInfo` says.
+        """Return the model that Gazebo draws for the same file, which differs from its `CameraInfo`.
 
-        It draws with `<projection>` in place of `<intrinsics>` where there is one (gz-sensors, CameraSensor.cc), leans
-        skewed pixels the other way and leaves the skew out of K, and bends nothing: Ogre 2 has no such pass.
+        Gazebo draws with `<projection>` instead of `<intrinsics>` if the file has both (gz-sensors, CameraSensor.cc).
+        It skews pixels in the opposite direction and omits the skew from K. It draws no distortion, because Ogre 2 has
+        no such pass.
         """
         info_model = replace(self, skew=0.0)
         fx, fy, cx, cy = self.rectified or (self.fx, self.fy, self.cx, self.cy)
@@ -139,7 +144,7 @@ class CameraModel:
 
 
 def _centre(model: CameraModel) -> tuple[float, float]:
-    """What the distortion is about, on the plane at distance 1."""
+    """Return the centre of the distortion on the plane at distance 1."""
     if model.distortion.centre is None:
         return 0.0, 0.0
     across, down = model.distortion.centre
@@ -148,7 +153,13 @@ def _centre(model: CameraModel) -> tuple[float, float]:
 
 
 def read_camera_model(params: Params, width: int, height: int) -> CameraModel:
-    """The `<camera>` block's optics for an image of `width` by `height` [px]."""
+    """Read the optics of the `<camera>` block.
+
+    Args:
+        params: the `<camera>` block.
+        width: width of the image [px].
+        height: height of the image [px].
+    """
     hfov = _read_field_of_view(params)
     near, far = read_clip(params)
     focal = width / (2 * math.tan(hfov / 2))
@@ -169,7 +180,7 @@ def read_camera_model(params: Params, width: int, height: int) -> CameraModel:
 
 
 def read_clip(params: Params) -> tuple[float, float]:
-    """Near and far clip plane [m]."""
+    """Read the near and far clip plane [m]."""
     clip = params.block("clip")
     near, far = clip.number("near", 0.1, minimum=1e-6), clip.number("far", 100.0, minimum=1e-6, maximum=_FARTHEST)
     if far > near:
@@ -179,36 +190,36 @@ def read_clip(params: Params) -> tuple[float, float]:
 
 
 def _read_field_of_view(params: Params) -> float:
-    """`<horizontal_fov>` [rad] of a pinhole."""
+    """Read `<horizontal_fov>` [rad] of a pinhole camera."""
     hfov = params.number("horizontal_fov", 1.047, minimum=_NARROWEST)
     if hfov <= _WIDEST:
         return hfov
     found = params.block("horizontal_fov")
-    allowed = f"allowed is a number from {_NARROWEST:g} to {_WIDEST:g} rad: a pinhole sees less than half a turn"
-    hint = "degrees are written as radians; a sensor of type wide_angle_camera sees up to 6.28 rad"
+    allowed = f"allowed is a number from {_NARROWEST:g} to {_WIDEST:g} rad for a pinhole camera"
+    hint = "give the angle in radians; the sensor type wide_angle_camera allows up to 6.28 rad"
     found.error("SK-PARAM-002", f"found <horizontal_fov>{hfov:g}</horizontal_fov>, {allowed}", hint)
     return _WIDEST
 
 
 def _read_projection(projection: Params, model: CameraModel) -> CameraModel:
-    """Read P as it is given; the picture is drawn by the intrinsics, which K tells."""
+    """Read P as the file gives it; the image is drawn with the intrinsics, which K contains."""
     intrinsics = model.fx, model.fy, model.cx, model.cy
     names = ("p_fx", "p_fy", "p_cx", "p_cy")
     least = (1e-3, 1e-3, -_MAX_FOCAL_PIXELS, -_MAX_FOCAL_PIXELS)
-    given = [
+    values = [
         projection.number(name, value, minimum=low, maximum=_MAX_FOCAL_PIXELS)
         for name, value, low in zip(names, intrinsics, least, strict=True)
     ]
     tx, ty = (
         projection.number(name, 0.0, minimum=-_MAX_FOCAL_PIXELS, maximum=_MAX_FOCAL_PIXELS) for name in ("tx", "ty")
     )
-    rectified = given[0], given[1], given[2], given[3]
-    for name, value, own in zip(names, given, intrinsics, strict=True):
+    rectified = values[0], values[1], values[2], values[3]
+    for name, value, own in zip(names, values, intrinsics, strict=True):
         if abs(value - own) > 1e-6 * max(1.0, abs(own)):
-            message = f"<{name}>{value:g}</{name}> differs from the intrinsics' {own:g}"
-            says = "it is told in P, the picture is drawn by the intrinsics; Gazebo draws it by <projection>"
+            message = f"<{name}>{value:g}</{name}> differs from {own:g} in <intrinsics>"
+            effect = "P contains it, and the image is drawn with <intrinsics>; Gazebo draws with <projection>"
             where = (projection.child(name) or projection).where
-            projection.diagnostics.note("SK-SENSOR-006", f"{message}: {says}", where)
+            projection.diagnostics.note("SK-SENSOR-006", f"{message}: {effect}", where)
     return replace(model, tx=tx, ty=ty, rectified=rectified if rectified != intrinsics else None)
 
 
@@ -225,15 +236,15 @@ def _read_distortion(params: Params, model: CameraModel) -> Distortion:
         return NO_DISTORTION
     off = math.hypot(*_centre(replace(model, distortion=lens)))
     if off > 1e-6:
-        message = "the distortion's <center> is off the principal point: it is drawn so, and CameraInfo cannot say it"
-        hint = "move the principal point with <intrinsics>; a <center> of 0.5 0.5 is the principal point"
+        message = "the distortion's <center> is not the principal point: CameraInfo cannot describe the image"
+        hint = "use <center>0.5 0.5</center>, and move the principal point with <intrinsics>"
         block.diagnostics.warning("SK-SENSOR-100", message, block.block("center").where, hint)
     _check_fold(block, replace(model, distortion=lens))
     return lens
 
 
 def _check_fold(block: Params, model: CameraModel) -> None:
-    """Says that a lens shows nothing in a part of the picture."""
+    """Report a lens that shows nothing in a part of the image."""
     coarse = max(1, max(model.width, model.height) // 64)
     steps = replace(
         model,
@@ -248,6 +259,6 @@ def _check_fold(block: Params, model: CameraModel) -> None:
     x, _ = steps.directions()
     lost = np.count_nonzero(np.isnan(x)) / x.size
     if lost > 0:
-        message = f"the distortion folds back within the picture: {lost:.0%} of it has no ray and stays black"
-        hint = "Brown's model holds up to the radius where 1 + 3·k1·r² + 5·k2·r⁴ + 7·k3·r⁶ is 0"
+        message = f"the distortion folds back within the image: {lost:.0%} of the pixels stay black"
+        hint = "reduce k1, k2, k3: Brown's model is valid up to the radius where 1 + 3·k1·r² + 5·k2·r⁴ + 7·k3·r⁶ is 0"
         block.diagnostics.warning("SK-SENSOR-101", message, block.where, hint)

@@ -21,13 +21,13 @@ _DEPTH_OUTPUTS = ("depths", "points")
 
 
 def read_depth_range(block: Params, model: CameraModel) -> tuple[float, float]:
-    """Nearest and farthest depth [m] of a `<camera>` block: `<depth_camera><clip>`, else the camera's own `<clip>`."""
+    """Read the range of depths [m] of a `<camera>` block: `<depth_camera><clip>`, or else the camera's own `<clip>`."""
     depth = block.child("depth_camera")
     if depth is None:
         return model.near, model.far
     output = depth.text("output", "depths")
     if output not in _DEPTH_OUTPUTS:
-        message = f"<output>{output}</output> has no effect: there are always depths and points"
+        message = f"<output>{output}</output> has no effect: depths and points are always published"
         hint = "reflectance and normals of Gazebo Classic are not simulated"
         depth.diagnostics.warning("SK-SENSOR-111", message, depth.block("output").where, hint)
     clip = depth.child("clip")
@@ -48,16 +48,19 @@ class CameraOptions:
     """The `<camera>` block.
 
     Attributes:
-        encoding: of colour images, as ROS names it.
+        model: optics of the camera.
+        encoding: ROS encoding of colour images.
         noise: white noise; 1 is white for colours, 1 m for depths.
-        triggered: pictures are taken only when a message on `trigger_topic` has come in.
+        triggered: True takes images only after a message on `trigger_topic`.
+        trigger_topic: topic of the trigger; empty for the default.
+        info_topic: topic of `CameraInfo`; empty for the default.
         depth_near, depth_far: range of depths [m].
-        anti_aliasing: samples of each pixel; any but 0 are as many as the world's quality takes.
+        anti_aliasing: samples per pixel; any number except 0 uses the samples of the world's quality.
         name: `<camera name="…">`, or empty.
-        pose: of the camera in the sensor's frame.
-        optical_frame_id: frame of images and their `CameraInfo`, z forward; empty where they have the sensor's.
-        visibility_mask: visuals are seen that have one of its bits among their `<visibility_flags>`.
-        save: folder where each picture is saved; None saves none.
+        pose: pose of the camera in the sensor's frame.
+        optical_frame_id: frame of images and their `CameraInfo`, z forward; empty for the sensor's frame.
+        visibility_mask: mask of the visible visuals; one of its bits must be in their `<visibility_flags>`.
+        save: folder where each image is saved; None saves none.
     """
 
     model: CameraModel
@@ -80,16 +83,17 @@ AnyOptions = TypeVar("AnyOptions", bound=CameraOptions)
 
 
 def extend_options(options: CameraOptions, kind: type[AnyOptions], **more: Any) -> AnyOptions:
-    """The options of a camera as those of a kind that has more."""
+    """Return the options of a camera as those of a kind with additional fields."""
     return kind(**{field.name: getattr(options, field.name) for field in fields(CameraOptions)}, **more)
 
 
 def read_camera(block: Params, read_model: ModelReader = read_camera_model, has_depth: bool = False) -> CameraOptions:
-    """The options in a `<camera>` block.
+    """Read the options of a `<camera>` block.
 
     Args:
-        read_model: reads its optics for an image of a width and a height.
-        has_depth: whether the sensor's `<format>` may be that of its depths.
+        block: the `<camera>` block.
+        read_model: function that reads the optics for an image of a width and a height.
+        has_depth: True if the sensor's `<format>` may be a format of depths.
     """
     image = block.block("image")
     width, height = image.integer("width", 320, minimum=1), image.integer("height", 240, minimum=1)
@@ -121,20 +125,20 @@ def read_camera(block: Params, read_model: ModelReader = read_camera_model, has_
 
 
 def _read_encoding(image: Params, has_depth: bool) -> str:
-    """What ROS calls the `<format>`."""
-    found = image.child("format")
-    given = found.value if found is not None else "R8G8B8"
-    if found is None or (has_depth and given in image_messages.DEPTH_FORMATS):
+    """Read `<format>`, and return its name in ROS."""
+    element = image.child("format")
+    image_format = element.value if element is not None else "R8G8B8"
+    if element is None or (has_depth and image_format in image_messages.DEPTH_FORMATS):
         return "rgb8"
-    if given in image_messages.ENCODINGS:
-        return image_messages.ENCODINGS[given]
+    if image_format in image_messages.ENCODINGS:
+        return image_messages.ENCODINGS[image_format]
     allowed = "allowed is one of " + ", ".join(image_messages.ENCODINGS)
-    if given in image_messages.WITHOUT_ENCODING:
-        message = f"no image message holds <format>{given}</format>; the pictures are R8G8B8"
-        image.diagnostics.warning("SK-SENSOR-120", message, found.where, allowed)
+    if image_format in image_messages.WITHOUT_ENCODING:
+        message = f"no ROS image has <format>{image_format}</format>; images are R8G8B8 instead"
+        image.diagnostics.warning("SK-SENSOR-120", message, element.where, allowed)
     else:
-        message = f"found <format>{given}</format>, {allowed}"
-        found.error("SK-PARAM-002", message, did_you_mean(given.upper(), image_messages.ENCODINGS))
+        message = f"found <format>{image_format}</format>, {allowed}"
+        element.error("SK-PARAM-002", message, did_you_mean(image_format.upper(), image_messages.ENCODINGS))
     return "rgb8"
 
 
@@ -142,6 +146,6 @@ def _read_image_noise(block: Params) -> NoiseModel:
     noise = read_noise(block, "gaussian")
     extras = (noise.bias_mean, noise.bias_stddev, noise.precision, noise.wanders, noise.noise_density)
     if any(extras):
-        message = "of a camera's noise only mean and stddev are used, as in Gazebo"
+        message = "only <mean> and <stddev> of a camera's <noise> have an effect, as in Gazebo"
         block.diagnostics.warning("SK-SENSOR-008", message, block.block("noise").where)
     return noise

@@ -1,4 +1,4 @@
-"""Picture of all directions, assembled from the faces of a cube around the camera."""
+"""Image of all directions, assembled from the faces of a cube around the camera."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ _FACES = tuple(
         (_FORWARD, _LEFT), (_LEFT, -_FORWARD), (-_LEFT, _FORWARD), (_UP, _LEFT), (-_UP, _LEFT), (-_FORWARD, -_LEFT),
     )
 )  # fmt: skip
-"""Frames (x forward, y left, z up) of the faces in the camera's, shape (3, 3) each: what is in front comes first."""
+"""Frames (x forward, y left, z up) of the faces in the camera frame, shape (3, 3) each; the front face is first."""
 
-_ONE_FACE = 1.75  # tangent of the angle off the axis up to which a single picture costs less than several
-_MOST_TIMES = 4.0  # as many pixels as the picture has, in all faces together
-_MOST_PIXELS = 4096  # along an edge of a face
-_FINEST = 0.2  # this part of the picture may be finer than the faces
-_RIM = 0.02  # [half widths] over which Gazebo's picture fades to black at the cutoff angle
+_ONE_FACE = 1.75  # tangent of the angle off the axis up to which a single image is cheaper than several
+_MOST_TIMES = 4.0  # largest ratio of the pixels of all faces to those of the image
+_MOST_PIXELS = 4096  # largest edge of a face [px]
+_FINEST = 0.2  # quantile of the pixel density: this part of the image may be finer than the faces
+_RIM = 0.02  # [half widths] width over which Gazebo's image fades to black at the cutoff angle
 
 
 @dataclass(frozen=True, slots=True)
 class _Face:
-    """A part of a face: which pixels of the picture it gives, and its pixels per unit of tangent."""
+    """Part of a face: the pixels of the image that it provides, and its pixels per unit of tangent."""
 
     rotation: Vector
     pixels: npt.NDArray[np.bool_]
@@ -41,12 +41,13 @@ class _Face:
 
 
 class CubeMap:
-    """Draws what a wide lens sees: only the faces of a cube that it sees, only the part of each that it sees.
+    """Image of a wide lens, drawn from the faces of a cube.
 
-    Every face is drawn two pixels wider than it is used, so that no pixel is interpolated across a border of two.
+    Only the faces within the lens's view are drawn, and only their visible parts. Every face is drawn two pixels wider
+    than it is used, so that no pixel is interpolated across a border of two faces.
 
     Args:
-        model: the camera.
+        model: model of the camera.
     """
 
     def __init__(self, model: WideAngleModel) -> None:
@@ -64,7 +65,7 @@ class CubeMap:
         self._rim = _cutoff_fade(radius, known, model)
 
     def _lay_out(self, faces: list[_Face], shape: tuple[int, ...], model: WideAngleModel) -> None:
-        """One below the other on a sheet that is looked up as a whole."""
+        """Arrange the faces one below the other on a sheet, so that one lookup covers all of them."""
         import cv2
 
         column, row = (np.full(shape, -100.0, np.float32) for _ in range(2))
@@ -84,12 +85,11 @@ class CubeMap:
         self._maps = cv2.convertMaps(column, row, cv2.CV_16SC2)
 
     def develop(self, films: Iterator[Film], out: Colours) -> Colours:
-        """The picture, shape (height, width, 3), of one film of each of `shots`, in their order; black where nothing is
-        seen.
+        """Return the image, shape (height, width, 3); black where the lens shows nothing.
 
         Args:
-            films: of the shots.
-            out: contiguous, to be written to.
+            films: one film of each of `shots`, in their order.
+            out: contiguous output array.
         """
         import cv2
 
@@ -106,7 +106,7 @@ class CubeMap:
 
 
 def _faces(directions: Vector, known: npt.NDArray[np.bool_], model: WideAngleModel) -> list[_Face]:
-    """What each face of the cube shows of the picture."""
+    """Return the faces of the cube with the pixels of the image that they provide."""
     in_front = known & (directions[..., 0] > 0)
     steepest = np.abs(directions[known][:, 1:]).max(axis=1) <= _ONE_FACE * directions[known][:, 0]
     if (in_front == known).all() and steepest.all():
@@ -115,7 +115,7 @@ def _faces(directions: Vector, known: npt.NDArray[np.bool_], model: WideAngleMod
         along = np.stack([directions @ rotation[:, 0] for rotation in _FACES])
         owner = np.where(known, along.argmax(axis=0), -1)
     found = [_face(rotation, owner == i, directions, model) for i, rotation in enumerate(_FACES) if (owner == i).any()]
-    if not found:  # of a lens that shows nothing in the middle of any pixel
+    if not found:  # a lens that shows nothing in the middle of any pixel
         return []
     drawn = sum(np.ptp(face.right) * np.ptp(face.down) * face.scale**2 for face in found)
     shrink = 1.0 if model.face_size else min(1.0, math.sqrt(_MOST_TIMES * known.size / max(drawn, 1.0)))
@@ -131,15 +131,15 @@ def _face(rotation: Vector, pixels: npt.NDArray[np.bool_], directions: Vector, m
 
 
 def _pixel_density(right: Vector, down: Vector, pixels: npt.NDArray[np.bool_]) -> float:
-    """Pixels per unit of tangent that a face needs to be as fine as nearly all of the picture."""
+    """Return the pixels per unit of tangent that make a face as fine as nearly all of the image."""
     number = np.full(pixels.shape, -1, np.int32)
     number[pixels] = np.arange(len(right))
     steps = []
-    every = max(1, max(pixels.shape) // 200)  # what is looked at is even
-    for one, next_one in ((number[:, :-1], number[:, 1:]), (number[:-1], number[1:])):
-        one, next_one = one[::every, ::every], next_one[::every, ::every]
-        both = (one >= 0) & (next_one >= 0)
-        i, j = one[both], next_one[both]
+    every = max(1, max(pixels.shape) // 200)  # a regular subset of the pixels is sufficient
+    for current, following in ((number[:, :-1], number[:, 1:]), (number[:-1], number[1:])):
+        current, following = current[::every, ::every], following[::every, ::every]
+        both = (current >= 0) & (following >= 0)
+        i, j = current[both], following[both]
         steps.append(np.hypot(right[j] - right[i], down[j] - down[i]))
     step = np.concatenate(steps)
     step = step[step > 1e-9]
@@ -147,7 +147,7 @@ def _pixel_density(right: Vector, down: Vector, pixels: npt.NDArray[np.bool_]) -
 
 
 def _pixel_bounds(values: Vector, scale: float) -> tuple[float, int]:
-    """Where a part of a face begins, two pixels before the first value, and how many pixels it has."""
+    """Return the start of a part of a face, two pixels before the lowest value, and its number of pixels."""
     low, high = float(values.min()) - 2 / scale, float(values.max()) + 2 / scale
     return low, math.ceil((high - low) * scale)
 
@@ -155,7 +155,7 @@ def _pixel_bounds(values: Vector, scale: float) -> tuple[float, int]:
 def _cutoff_fade(
     radius: Vector, known: npt.NDArray[np.bool_], model: WideAngleModel
 ) -> tuple[slice, npt.NDArray[np.uint8]] | None:
-    """Rows that fade at the cutoff angle, and what their colours are multiplied by [1/255]; None where none does."""
+    """Return the rows that fade at the cutoff angle and their weights [1/255]; None if no row fades."""
     lens = model.lens
     if lens.cutoff > lens.widest:
         return None

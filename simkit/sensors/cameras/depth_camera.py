@@ -1,4 +1,4 @@
-"""Cameras with depth alone."""
+"""Depth cameras without colours."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from simkit.sensors.sample import Reading
 
 
 class DepthCamera(RgbdCamera):
-    """Depth alone, and its cloud in shades of grey: near is bright."""
+    """Depth camera: depths, and their cloud in shades of grey, where near is bright."""
 
     kinds = ("depth_camera", "depth")
 
@@ -25,9 +25,9 @@ class DepthCamera(RgbdCamera):
         options = self.options
         own, camera = (options.depth_near, options.depth_far), (options.model.near, options.model.far)
         if own != camera:
-            message = f"depths are from {own[0]:g} to {own[1]:g} m, by <depth_camera><clip>"
+            message = f"depths are from {own[0]:g} to {own[1]:g} m, as in <depth_camera><clip>"
             where = scene.params.block("camera").block("depth_camera").block("clip").where
-            hint = "Gazebo's depth_camera passes that over and takes the camera's <clip>; write the range there"
+            hint = "Gazebo's depth_camera uses the <clip> of <camera> instead; write the range there"
             diagnostics.note("SK-SENSOR-110", f"sensor {self.scoped!r}: {message}", where, hint)
 
     def attach(self, sim: Simulation) -> None:
@@ -39,16 +39,16 @@ class DepthCamera(RgbdCamera):
     def shots(self) -> Sequence[Shot]:
         if self._is_classic or "image" in self._topics:
             return super().shots()
-        return (Shot(self._drawn_view(), depth=True, sharp=True),)  # nobody asks for colours
+        return (Shot(self._drawn_view(), depth=True, sharp=True),)  # colours have no reader
 
     def default_topics(self) -> dict[str, str]:
         topic = self._default_topic("depth_image")
         return {"depth_image": topic, "points": topic + "/points", "camera_info": self._info_topic(topic)}
 
     def _cloud_colours(self, reading: Reading) -> Colours:
-        """White at the camera, black at the farthest point and at infinite ones (gz-sensors, DepthCameraSensor.cc).
+        """Return shades from white at the camera to black at the farthest point (gz-sensors, DepthCameraSensor.cc).
 
-        Gazebo Classic's clouds have the picture's colours.
+        Infinite points are black. Gazebo Classic's clouds have the image's colours.
         """
         if self._is_classic:
             return super()._cloud_colours(reading)

@@ -1,4 +1,4 @@
-"""Range of a camera's depths: from raw depths of the frame buffer to metres, infinite outside the range."""
+"""Range of a camera's depths: conversion of raw depths of the frame buffer to metres, infinite outside the range."""
 
 from __future__ import annotations
 
@@ -10,40 +10,41 @@ import numpy as np
 from simkit.sensors.cameras.camera_model import CameraModel
 from simkit.sensors.cameras.rendering.view import Depths, View
 
-_ROWS = 32  # at once: so many fit into a processor's cache, and what is done to them costs no more memory traffic
-_NEARER = 0.1  # of the near plane: where it is drawn from; Gazebo takes 0.9, and what houses a lens is not to blind it
-_STEP = 2.0**-24  # of raw depths: half of the last bit of a number just above 1
-_ROUNDING = 2.0**-21  # of a depth, in 32 bits
+_ROWS = 32  # rows at once, so that they fit into a processor's cache and further operations need no memory traffic
+_NEARER = 0.1  # drawn near plane over the near plane; Gazebo uses 0.9, but a lens's housing must not hide the image
+_STEP = 2.0**-24  # step of raw depths: half of the last bit of a float just above 1
+_ROUNDING = 2.0**-21  # relative rounding of a 32-bit depth
 
 
 def clip_planes(near: float, far: float) -> tuple[float, float]:
-    """Clip planes to be drawn with, so that what is nearer than `near` is seen and depths are exact.
+    """Return clip planes for drawing, so that objects nearer than `near` are visible and depths are exact.
 
-    The near plane is a power of two and the far plane has few digits, so that their sum and difference have no rounding
-    error and every graphics library gets the same quotient. The far plane is moved away by what the quotient may lose
-    (0.6 % for 0.1 and 100 m).
+    The near plane is a power of two and the far plane has few digits. Their sum and difference then have no rounding
+    error, and every graphics library computes the same quotient. The far plane is moved away by the possible error of
+    the quotient (0.6 % for 0.1 and 100 m).
 
     Args:
-        near, far: what is to be seen [m].
+        near: start of the visible range [m].
+        far: end of the visible range [m].
     """
     drawn = 2.0 ** math.floor(math.log2(near * _NEARER))
     reciprocal = 1.0 / far - _STEP / drawn
     if reciprocal <= _STEP / drawn:
-        return drawn, drawn * 2.0**30  # what is a far plane here is nowhere for 32 bits
+        return drawn, drawn * 2.0**30  # a far plane at this distance has no effect with 32-bit depths
     mantissa, exponent = math.frexp(1.0 / reciprocal)
     return drawn, math.ldexp(math.ceil(mantissa * 2.0**12), exponent - 12)
 
 
 class DepthRange:
-    """The range of depths of one camera.
+    """Range of depths of one camera.
 
-    What is as far from the camera as `<clip><far>`, in a straight line, has depth +inf; so has what is farther along
-    the axis than the depths' own range. What is nearer along the axis than both ranges begin has -inf
+    A depth is +inf if the straight distance to the camera is `<clip><far>` or more, or if the distance along the axis
+    exceeds the depths' own range. A depth is -inf if the distance along the axis is below the start of both ranges
     (gz-rendering, depth_camera_fs.glsl; gz-sensors, RgbdCameraSensor.cc).
 
     Args:
-        model: the camera.
-        near, far: the depths' own range [m].
+        model: model of the camera.
+        near, far: range of the depths [m].
     """
 
     def __init__(self, model: CameraModel, near: float, far: float) -> None:
@@ -51,18 +52,19 @@ class DepthRange:
         left, up = model.rays()
         squares = left * left + (up if up.ndim == 2 else up[:, None]) ** 2
         stretch: Depths = np.sqrt(1 + squares, dtype=np.float32)  # distance over depth of each pixel
-        stretch[np.isnan(stretch)] = np.inf  # where a lens shows nothing
+        stretch[np.isnan(stretch)] = np.inf  # the lens shows nothing there
         after = np.nextafter(np.float32(min(far, model.far)), np.float32(np.inf))
-        # from which depth on there is nothing, for each pixel
+        # depth of each pixel from which the result is infinite
         self._limit: Depths = np.minimum(np.float32(model.far * (1 - _ROUNDING)) / stretch, after)
         self._least = float(self._limit.min())
 
     def metres(self, raw: Depths, view: View, out: Depths) -> Depths:
-        """Depths along the optical axis [m] of raw ones, shape (h, w).
+        """Convert raw depths, shape (h, w), to depths along the optical axis [m].
 
         Args:
-            raw: drawn through `view`, and bent where the camera's lens bends; 0 is nothing.
-            out: contiguous, to be written to.
+            raw: depths drawn through `view`, and distorted if the camera's lens distorts; 0 means no object.
+            view: view that the raw depths were drawn through.
+            out: contiguous output array.
         """
         slope, offset = _depth_line(view.near, view.far)
         with np.errstate(divide="ignore"):
@@ -75,17 +77,17 @@ class DepthRange:
         return out
 
     def clip(self, depths: Depths) -> Depths:
-        """The same rule again in place, for depths [m] that noise was added to."""
+        """Apply the range again in place to depths [m] with noise."""
         for first in range(0, len(depths), _ROWS):
             rows = slice(first, first + _ROWS)
             self._clip_rows(depths[rows], self._limit[rows])
         return depths
 
     def _clip_rows(self, part: Depths, limit: Depths) -> None:
-        """The same for a few rows."""
+        """Apply the range to a few rows."""
         import cv2
 
-        if np.maximum.reduce(part, axis=None) >= self._least:  # else the limit itself need not be fetched from memory
+        if np.maximum.reduce(part, axis=None) >= self._least:  # otherwise the limit need not be read from memory
             cv2.copyTo(_constant_row(part.shape[1], np.inf)[: len(part)], cv2.compare(part, limit, cv2.CMP_GE), part)
         nearest = np.float32(self._lowest)
         if self._lowest > 0 and np.minimum.reduce(part, axis=None) < nearest:
@@ -94,10 +96,10 @@ class DepthRange:
 
 
 def _depth_line(near: float, far: float) -> tuple[np.float32, np.float32]:
-    """z = slope/(raw + offset), as the graphics library has it.
+    """Return slope and offset of z = slope/(raw + offset), as the graphics library computes it.
 
-    Its matrix is that of `glFrustum`, moved and scaled by ½ (mjr_render): raw = slope/z - offset with slope =
-    near·far/(far - near) and offset = ½·((far + near)/(far - near) - 1), where the quotient has 32 bits.
+    The library's matrix is that of `glFrustum`, shifted and scaled by ½ (mjr_render): raw = slope/z - offset with slope
+    = near·far/(far - near) and offset = ½·((far + near)/(far - near) - 1), where the quotient is a 32-bit float.
     """
     near, far = float(np.float32(near)), float(np.float32(far))
     quotient = float(np.float32((far + near) / (far - near)))

@@ -1,4 +1,4 @@
-"""Noise of depths that a stereo camera or a projected pattern finds by triangulation."""
+"""Noise of depths that a stereo camera or a projected pattern measures by triangulation."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ class DisparityOptions:
     """`<disparity_noise>` of a camera with depths.
 
     Attributes:
-        stddev: of disparities [px].
-        step: disparities are multiples of it [px]; 0 is any.
-        baseline: between the two eyes, or eye and projector [m].
-        focal_length: of the pixels that disparities are counted in [px].
+        stddev: standard deviation of disparities [px].
+        step: quantisation step of disparities [px]; 0 for none.
+        baseline: distance between the two cameras, or between camera and projector [m].
+        focal_length: focal length of the pixels in which disparities are measured [px].
     """
 
     stddev: float
@@ -32,7 +32,7 @@ class DisparityOptions:
 
 
 def read_disparity_noise(block: Params, model: CameraModel) -> DisparityOptions | None:
-    """The options of a `<camera>` block, None where there are none."""
+    """Read the options of a `<camera>` block; return None if it has none."""
     noise = block.child("disparity_noise")
     if noise is None:
         return None
@@ -47,13 +47,13 @@ def read_disparity_noise(block: Params, model: CameraModel) -> DisparityOptions 
 class DisparityNoise:
     """Gaussian noise on the disparity d = f·B/z of every pixel, which is then rounded to whole steps.
 
-    To first order the deviation of a depth is z²/(f·B) times that of a disparity, and the distance of neighbouring
-    depths z²/(f·B) times a step. A disparity of 0 or less is a depth of +inf.
+    To first order, the deviation of a depth is z²/(f·B) times that of a disparity. The distance of neighbouring depths
+    is z²/(f·B) times a step. A disparity of 0 or less gives a depth of +inf.
 
     Args:
-        options: of the camera.
-        streams: the simulation's.
-        scoped: the sensor's name.
+        options: options of the camera.
+        streams: random streams of the simulation.
+        scoped: scoped name of the sensor.
     """
 
     def __init__(self, options: DisparityOptions, streams: RandomStreams, scoped: str) -> None:
@@ -64,7 +64,7 @@ class DisparityNoise:
         self.is_silent = self._noise.is_silent and options.step == 0
 
     def on_depths(self, depths: Depths, index: int) -> Depths:
-        """Depths [m], shape (h, w), of sample `index`; infinite ones stay."""
+        """Return depths [m], shape (h, w), of sample `index` with noise; infinite depths stay infinite."""
         one, infinite = np.float32(1.0), np.isinf(depths)
         with np.errstate(divide="ignore", over="ignore"):
             inverse = np.divide(one, depths)

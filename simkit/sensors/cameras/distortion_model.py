@@ -10,21 +10,21 @@ import numpy as np
 
 from simkit.pose import Vector
 
-_WIDEST = 30.0  # tangent of the angle off the axis; what a lens sees beyond (88 degrees) is not drawn
-_ROWS = 64  # at once, so that what is worked on fits into a processor's cache
+_WIDEST = 30.0  # tangent of the largest angle off the axis (88 degrees) that is drawn
+_ROWS = 64  # rows at once, so that the data fits into a processor's cache
 
 
 @dataclass(frozen=True, slots=True)
 class Distortion:
-    """Brown's model, as OpenCV and `plumb_bob` have it.
+    """Brown's distortion model, as in OpenCV and `plumb_bob`.
 
-    A point at (x, y) on the plane at distance 1, x to the right and y downwards from the centre, is seen at
+    A point at (x, y) on the plane at distance 1, x to the right and y downwards from the centre, is moved to
 
         x·(1 + k1·r² + k2·r⁴ + k3·r⁶) + 2·p1·x·y + p2·(r² + 2x²),
         y·(1 + k1·r² + k2·r⁴ + k3·r⁶) + p1·(r² + 2y²) + 2·p2·x·y.
 
     Attributes:
-        centre: what it is about, as a part of the image's width and height; None is the principal point.
+        centre: centre of the distortion as a fraction of the image's width and height; None is the principal point.
     """
 
     k1: float = 0.0
@@ -36,7 +36,7 @@ class Distortion:
 
     @property
     def coefficients(self) -> Vector:
-        """k1, k2, p1, p2, k3: the order of `CameraInfo` and of OpenCV."""
+        """Coefficients k1, k2, p1, p2, k3, in the order of `CameraInfo` and of OpenCV."""
         return np.array((self.k1, self.k2, self.p1, self.p2, self.k3))
 
     def __bool__(self) -> bool:
@@ -44,11 +44,11 @@ class Distortion:
 
 
 NO_DISTORTION: Final = Distortion()
-"""A straight picture."""
+"""Model without distortion."""
 
 
 def distort(x: Vector, y: Vector, lens: Distortion) -> tuple[Vector, Vector]:
-    """Where points of the straight picture are seen in the bent one, both on the plane at distance 1."""
+    """Map points of the undistorted image to the distorted one, both on the plane at distance 1."""
     r2 = x * x + y * y
     radial = 1 + r2 * (lens.k1 + r2 * (lens.k2 + r2 * lens.k3))
     bent_x = x * radial + 2 * lens.p1 * x * y + lens.p2 * (r2 + 2 * x * x)
@@ -56,9 +56,9 @@ def distort(x: Vector, y: Vector, lens: Distortion) -> tuple[Vector, Vector]:
 
 
 def undistort(bent_x: Vector, bent_y: Vector, lens: Distortion) -> tuple[Vector, Vector]:
-    """Return where points of the distorted picture lie in the undistorted one, on the plane at distance 1.
+    """Map points of the distorted image to the undistorted one, both on the plane at distance 1.
 
-    Beyond the radius where the model folds back, and farther than 88 degrees off the axis, there is no answer: NaN.
+    Points beyond the radius where the model folds back, and farther than 88 degrees off the axis, are NaN.
     """
     out_x, out_y = np.empty_like(bent_x), np.empty_like(bent_y)
     seen, straight = _radial_table(lens)
@@ -69,8 +69,8 @@ def undistort(bent_x: Vector, bent_y: Vector, lens: Distortion) -> tuple[Vector,
 
 
 def _radial_table(lens: Distortion) -> tuple[Vector, Vector]:
-    """Radii as they are seen, rising, and the straight ones that they belong to."""
-    straight = np.sinh(np.linspace(0, math.asinh(_WIDEST * 100), 8192)) / 100  # dense where pictures are
+    """Return ascending distorted radii and the undistorted radii that they belong to."""
+    straight = np.sinh(np.linspace(0, math.asinh(_WIDEST * 100), 8192)) / 100  # dense at the radii of common images
     r2 = straight * straight
     slope = 1 + r2 * (3 * lens.k1 + r2 * (5 * lens.k2 + r2 * 7 * lens.k3))
     folds = np.flatnonzero(slope <= 0)
@@ -80,7 +80,7 @@ def _radial_table(lens: Distortion) -> tuple[Vector, Vector]:
 
 
 def _solve(bent_x: Vector, bent_y: Vector, lens: Distortion, seen: Vector, straight: Vector) -> tuple[Vector, Vector]:
-    """By Newton's method in two dimensions, from the radial answer."""
+    """Solve the distortion by Newton's method in two dimensions, from the radial solution."""
     radius = np.hypot(bent_x, bent_y)
     ratio = np.interp(radius, seen, straight) / np.maximum(radius, 1e-300)
     x, y = bent_x * ratio, bent_y * ratio

@@ -1,4 +1,4 @@
-"""Draw pictures through a distorted lens: wide enough without distortion, then remapped pixel by pixel."""
+"""Lens distortion of images: a wider image is drawn without distortion and then remapped pixel by pixel."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ from simkit.sensors.cameras.array_pool import AnyArray
 from simkit.sensors.cameras.camera_model import CameraModel
 from simkit.sensors.cameras.rendering.view import View
 
-_MOST_DRAWN = 4096  # pixels along an edge of what is drawn
-_MOST_TIMES = 4.0  # as many pixels as the picture has
-_FINEST = 1.5  # as fine as the picture in its middle
-_DENSE = 1.5  # drawn pixels per pixel of the picture from which they are averaged first
-_EDGE = 0.01  # of a raw depth: neighbours that differ by more than a plane's do belong to two surfaces
+_MOST_DRAWN = 4096  # largest edge of the drawn image [px]
+_MOST_TIMES = 4.0  # largest ratio of drawn pixels to pixels of the result
+_FINEST = 1.5  # largest resolution over that of the result in its middle
+_DENSE = 1.5  # drawn pixels per pixel of the result from which they are averaged first
+_EDGE = 0.01  # relative change of raw depths between neighbours, beyond a plane's, that separates two surfaces
 
 
-_Maps = tuple[AnyArray, AnyArray]  # the place and the fraction of each pixel, as OpenCV keeps them
+_Maps = tuple[AnyArray, AnyArray]  # integer and fractional source position of each pixel, in OpenCV's format
 
 
 class ImageDistorter:
-    """Draws what a pinhole sees wide enough and bends it: each pixel of the result looks up where it came from.
+    """Distorter of a wide undistorted image: each pixel of the result looks up its source position.
 
-    Works for skewed pixels as well, which no rasteriser draws.
+    Skewed pixels, which no rasteriser draws, are supported as well.
     """
 
     def __init__(self, model: CameraModel) -> None:
@@ -36,7 +36,7 @@ class ImageDistorter:
         if not known.any():
             x, y, known = np.zeros_like(x), np.zeros_like(y), np.ones_like(known)
         scale_x, scale_y = _pixel_density(x, y, known, model)
-        # edges of what is drawn lie on edges of pixels, so that rows that are not bent stay as they are
+        # the drawn edges lie on pixel edges, so that undistorted rows stay exact
         left, right = _pixel_bounds(x[known], scale_x, model.cx * scale_x / model.fx)
         top, bottom = _pixel_bounds(y[known], scale_y, model.cy * scale_y / model.fy)
         self._frustum = left / scale_x, right / scale_x, -bottom / scale_y, -top / scale_y
@@ -51,31 +51,31 @@ class ImageDistorter:
 
         self._maps = cv2.convertMaps(column, row, cv2.CV_16SC2)
         width, height = self._size
-        places = np.clip(np.rint(row), 0, height - 1).astype(np.int32) * np.int32(width)
-        self._nearest = places + np.clip(np.rint(column), 0, width - 1).astype(np.int32)
+        indices = np.clip(np.rint(row), 0, height - 1).astype(np.int32) * np.int32(width)
+        self._nearest = indices + np.clip(np.rint(column), 0, width - 1).astype(np.int32)
         self._empty = None if self._is_full else row < -50
         self._coarse: tuple[_Maps, npt.NDArray[np.float32], npt.NDArray[np.float32]] | None = None
         if min(row.shape) > 1:
             step = np.maximum(*(np.hypot(np.gradient(column, axis=a), np.gradient(row, axis=a)) for a in (0, 1)))
             if np.count_nonzero(step > _DENSE) > 0.01 * step.size:
                 share = np.clip(2 * (step - 1), 0.0, 1.0).astype(np.float32)
-                # the smaller picture's pixels are on every second one of the larger
+                # the half-size image has its pixels at every second pixel of the full one
                 self._coarse = cv2.convertMaps(column / 2, row / 2, cv2.CV_16SC2), 1 - share, share
 
     def view(self) -> View:
-        """What is to be drawn; it sees what the lens sees."""
+        """Return the view to draw, which contains everything that the lens shows."""
         return View(*self._size, *self._frustum, self._near, self._far)
 
     def distort(
         self, picture: npt.NDArray[np.uint8], out: npt.NDArray[np.uint8] | None = None
     ) -> npt.NDArray[np.uint8]:
-        """Colours (h, w, 3) through the lens, black where it shows nothing.
+        """Return colours (h, w, 3) through the lens, black where the lens shows nothing.
 
-        Where a strong lens crowds what is drawn, it is averaged, so that fine patterns do not flicker.
+        Where a strong lens compresses the drawn image, pixels are averaged, so that fine patterns do not flicker.
 
         Args:
-            picture: drawn through `view`.
-            out: contiguous, of the camera's size, to be written to.
+            picture: colours drawn through `view`.
+            out: contiguous output array of the camera's size.
         """
         import cv2
 
@@ -87,10 +87,11 @@ class ImageDistorter:
         return np.asarray(bent, dtype=np.uint8)
 
     def distort_depths(self, raw: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
-        """Raw depths through the lens, 0 (nothing) where it shows nothing.
+        """Return raw depths through the lens, 0 (no object) where the lens shows nothing.
 
-        They change as 1/z does, linearly on planes, so between neighbours of one surface they are interpolated, which
-        is exact on a plane. Where two surfaces meet, the nearest is taken: no point hangs in the air between them.
+        Raw depths change as 1/z, which is linear on planes. Neighbours on one surface are therefore interpolated, which
+        is exact on a plane. Where two surfaces meet, the nearest pixel is used, so that no point lies between the
+        surfaces.
         """
         import cv2
 
@@ -98,37 +99,38 @@ class ImageDistorter:
         bent: npt.NDArray[np.float32] = self._remap(raw, self._maps)
         uneven = cv2.Laplacian(raw, cv2.CV_32F, ksize=1, borderType=cv2.BORDER_REPLICATE)
         edges = cv2.compare(np.abs(uneven), raw * np.float32(_EDGE), cv2.CMP_GT)
-        edges[[0, -1]] = edges[:, [0, -1]] = 0  # of what is drawn; a slope shows there as an edge
+        edges[[0, -1]] = edges[:, [0, -1]] = 0  # at the border of the drawn image, a slope looks like an edge
         if edges.any():
             edges = cv2.dilate(edges, np.ones((3, 3), np.uint8))
-            near_edges = self._taken(edges)
-            np.copyto(bent, self._taken(raw), where=near_edges.view(np.bool_))
+            near_edges = self._take_nearest(edges)
+            np.copyto(bent, self._take_nearest(raw), where=near_edges.view(np.bool_))
         if self._empty is not None:
             bent[self._empty] = 0
         return bent
 
     def distort_ids(self, ids: npt.NDArray[np.int32]) -> npt.NDArray[np.int32]:
-        """The geom at each pixel through the lens, -1 where it shows nothing; names are not blended."""
-        bent: npt.NDArray[np.int32] = self._taken(ids)
+        """Return the geom at each pixel through the lens, -1 where the lens shows nothing; ids are not blended."""
+        bent: npt.NDArray[np.int32] = self._take_nearest(ids)
         if self._empty is not None:
             bent[self._empty] = -1
         return bent
 
-    def _taken(self, what: AnyArray) -> AnyArray:
-        return np.ascontiguousarray(what).ravel().take(self._nearest)
+    def _take_nearest(self, image: AnyArray) -> AnyArray:
+        return np.ascontiguousarray(image).ravel().take(self._nearest)
 
-    def _remap(self, what: AnyArray, maps: _Maps, out: AnyArray | None = None) -> Any:
+    def _remap(self, image: AnyArray, maps: _Maps, out: AnyArray | None = None) -> Any:
         import cv2
 
         border = cv2.BORDER_REPLICATE if self._is_full else cv2.BORDER_CONSTANT
-        places, parts = maps
-        return cv2.remap(np.ascontiguousarray(what), places, parts, cv2.INTER_LINEAR, dst=out, borderMode=border)
+        positions, fractions = maps
+        image = np.ascontiguousarray(image)
+        return cv2.remap(image, positions, fractions, cv2.INTER_LINEAR, dst=out, borderMode=border)
 
 
 def _pixel_density(x: Vector, y: Vector, known: npt.NDArray[np.bool_], model: CameraModel) -> tuple[float, float]:
-    """Pixels to be drawn per unit of x and y on the plane at distance 1.
+    """Return the pixels to draw per unit of x and y on the plane at distance 1.
 
-    As fine as the picture in most of it, so that nothing that the lens magnifies is blurred, within bounds.
+    The density matches most of the result, so that nothing that the lens magnifies is blurred, within bounds.
     """
     step = np.abs(np.diff(x, axis=1)) * model.fx if x.shape[1] > 1 else np.ones(1)
     step = step[np.isfinite(step) & (step > 1e-9)]
@@ -141,6 +143,6 @@ def _pixel_density(x: Vector, y: Vector, known: npt.NDArray[np.bool_], model: Ca
 
 
 def _pixel_bounds(values: Vector, scale: float, centre: float) -> tuple[float, float]:
-    """First and last pixel edge around all values, one pixel more on each side, counted from the axis."""
+    """Return the first and last pixel edge around all values, widened by one pixel, counted from the axis."""
     low, high = float(values.min()) * scale + centre, float(values.max()) * scale + centre
     return math.floor(low) - 1 - centre, math.ceil(high) + 1 - centre

@@ -1,4 +1,4 @@
-"""Convert arrays into `Image` messages, and camera models into `CameraInfo` messages."""
+"""Conversion of arrays into `Image` messages, and of camera models into `CameraInfo` messages."""
 
 from __future__ import annotations
 
@@ -22,44 +22,45 @@ ENCODINGS: Mapping[str, str] = {
     "BAYER_RGGB8": "bayer_rggb8", "BAYER_BGGR8": "bayer_bggr8",
     "BAYER_GBRG8": "bayer_gbrg8", "BAYER_GRBG8": "bayer_grbg8",
 }  # fmt: skip
-"""SDF's image formats (sdformat, Camera.cc, and Classic's spellings) and what ROS calls them."""
+"""ROS encodings by the image formats of SDF (sdformat, Camera.cc, and Classic's spellings)."""
 
 WITHOUT_ENCODING = ("R_FLOAT16", "RGB_FLOAT16", "RGB_INT32", "BGR_INT32")
-"""SDF's image formats that no `Image` message can hold."""
+"""Image formats of SDF that no `Image` message can contain."""
 
 DEPTH_FORMATS = ("R_FLOAT32", "R_FLOAT16")
-"""What files of depth cameras say of their depths; such a camera's colours are plain."""
+"""Formats of depth cameras that refer to the depths; the colours of such a camera are `rgb8`."""
 
-_WHITE_16 = 65535 // 255  # 8 bits to 16: white stays white
+_WHITE_16 = 65535 // 255  # factor from 8 to 16 bits that keeps white white
 
 
 def is_grey(encoding: str) -> bool:
+    """Check whether an encoding contains brightness only."""
     return encoding.startswith("mono")
 
 
 def grey(colours: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
-    """Brightness, shape (h, w), by the weights of Rec. 601."""
+    """Return the brightness, shape (h, w), by the weights of Rec. 601."""
     import cv2
 
     return np.asarray(cv2.cvtColor(colours, cv2.COLOR_RGB2GRAY), dtype=np.uint8)
 
 
-# Pixels of an image, bytes, whole numbers or floats as its encoding says.
+# pixels of an image: bytes, integers or floats, depending on its encoding
 Pixels = AnyArray
 
 
 def image_message(header: msgs.Header, pixels: Pixels, encoding: str) -> msgs.Image:
-    """A message of pixels, shape (h, w) or (h, w, n), in their own byte order (little-endian)."""
+    """Return a message of pixels, shape (h, w) or (h, w, n), in their own byte order (little-endian)."""
     data = np.ascontiguousarray(pixels)
     height, width = data.shape[:2]
     return msgs.Image(header, height, width, encoding, 0, data.nbytes // height, data.reshape(-1).view(np.uint8))
 
 
 def colour_message(header: msgs.Header, colours: npt.NDArray[np.uint8], encoding: str) -> msgs.Image:
-    """A message of colours (h, w, 3), or of brightness (h, w) for a grey encoding.
+    """Return a message of colours (h, w, 3), or of brightness (h, w) for a grey encoding.
 
-    Of 16 bits, white is 65535; of floats it is 1, and one channel alone is red, as a render target of SDF's
-    `R_FLOAT32` keeps it.
+    White is 65535 with 16 bits and 1 with floats. A single float channel is red, as in a render target of SDF's
+    `R_FLOAT32`.
     """
     return image_message(header, _encode_colours(colours, encoding), encoding)
 
@@ -85,10 +86,10 @@ def _encode_colours(colours: npt.NDArray[np.uint8], encoding: str) -> Pixels:
 
 
 def _bayer_mosaic(colours: npt.NDArray[np.uint8], encoding: str) -> npt.NDArray[np.uint8]:
-    """One colour per pixel, in squares of four named row by row."""
+    """Return one colour per pixel, in squares of four that the encoding names row by row."""
     out = np.empty(colours.shape[:2], dtype=np.uint8)
-    for place, letter in enumerate(encoding[len("bayer_") : -1]):
-        row, column = divmod(place, 2)
+    for index, letter in enumerate(encoding[len("bayer_") : -1]):
+        row, column = divmod(index, 2)
         out[row::2, column::2] = colours[row::2, column::2, "rgb".index(letter)]
     return out
 
@@ -101,7 +102,7 @@ _PIXELS: Mapping[str, tuple[str, int]] = {
 
 
 def pixels_of(message: msgs.Image) -> Pixels:
-    """The pixels of an `Image`, shape (h, w), or (h, w, n) with more channels than one."""
+    """Return the pixels of an `Image`, shape (h, w), or (h, w, n) with several channels."""
     kind, channels = _PIXELS.get(message.encoding, ("u1", 1))
     flat = np.asarray(message.data, dtype=np.uint8).view(kind)
     shape = (message.height, message.width) + ((channels,) if channels > 1 else ())
@@ -112,10 +113,10 @@ CAMERA_INFO_TYPE = "sensor_msgs/msg/CameraInfo"
 
 
 class CameraInfoMaker:
-    """Makes the same message again and again, with a new header.
+    """Factory of `CameraInfo` messages that differ only in their headers.
 
     Args:
-        model: the camera.
+        model: model of the camera.
         baseline: distance [m] to the left camera of a stereo pair; P's last column becomes -fx·baseline, with P's fx.
     """
 
@@ -131,7 +132,7 @@ class CameraInfoMaker:
             self._p[3] = -self._p[0] * baseline
 
     def make(self, time_ns: int, frame_id: str) -> msgs.CameraInfo:
-        """The message of one picture."""
+        """Return the message of one image."""
         height, width = self._size
         message: msgs.CameraInfo = msgs.make(
             CAMERA_INFO_TYPE,

@@ -1,4 +1,4 @@
-"""Readings of cameras, and Gaussian noise fresh for every pixel of every frame, by random words and a table."""
+"""Readings of cameras, and independent Gaussian noise for every pixel of every image, by random words and a table."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class CameraReading:
 
 
 class NoisyCameraReading:
-    """Colours with noise, drawn when they are first asked for."""
+    """Reading with noise on its colours, which is drawn when the colours are first read."""
 
     def __init__(self, picture: CameraReading, noise: ImageNoise, index: int) -> None:
         self._picture, self._noise, self._index = picture, noise, index
@@ -40,15 +40,15 @@ class NoisyCameraReading:
 
 
 _WORDS = 1 << 16
-_LONGEST = 1e30  # [m] of a depth's noise, which has 32 bits
-_PIXELS = 1 << 16  # at once: they fit into a processor's cache, and OpenCV wakes no threads for so few
-_MIDDLE = 128  # stands for no change where brighter and darker share a byte
+_LONGEST = 1e30  # [m] limit of the noise of a 32-bit depth
+_PIXELS = 1 << 16  # pixels at once: they fit into a processor's cache, and OpenCV uses one thread for so few
+_MIDDLE = 128  # value for no change where brighter and darker share a byte
 _OGRE_EXPONENT = 2.1
 
 
 @functools.cache
 def _normal_table() -> npt.NDArray[np.float64]:
-    """The standard normal's value in the middle of each of 65536 equally likely slices, scaled to variance 1."""
+    """Return the standard normal's value in the middle of each of 65536 equally likely slices, scaled to variance 1."""
     upper = [NormalDist().inv_cdf((i + 0.5) / _WORDS) for i in range(_WORDS // 2, _WORDS)]
     table = np.concatenate((-np.array(upper[::-1]), upper))
     table /= table.std()
@@ -63,7 +63,7 @@ def _looks_up_words() -> bool:
 
 
 def _look_up(table: npt.NDArray[np.generic], words: npt.NDArray[np.uint16], out: npt.NDArray[np.generic]) -> None:
-    """`out[...] = table[words]`; OpenCV from version 5 on does it three times as fast."""
+    """Set `out[...] = table[words]`; OpenCV 5 and newer do so three times as fast as NumPy."""
     if _looks_up_words():
         import cv2
 
@@ -73,14 +73,14 @@ def _look_up(table: npt.NDArray[np.generic], words: npt.NDArray[np.uint16], out:
 
 
 class ImageNoise:
-    """Noise of one camera. Several threads may ask at the same time.
+    """Noise of one camera. The class is thread-safe.
 
     Args:
-        model: in units of the full range (1 is white) for colours, in metres for depth; white noise only.
-        streams: the simulation's.
-        scoped: the sensor's name.
-        as_ogre: bends the noise of colours as Gazebo's renderer does: what it adds is z → sign(z)·|z|^2.1, which makes
-            little noise of ordinary amounts vanish (gz-rendering's shader `gaussian_noise_fs.glsl`).
+        model: white noise, in units of the full range (1 is white) for colours, in metres for depths.
+        streams: random streams of the simulation.
+        scoped: scoped name of the sensor.
+        as_ogre: True distorts the noise of colours as Gazebo's renderer does: z → sign(z)·|z|^2.1, which removes most
+            noise of common amounts (gz-rendering's shader `gaussian_noise_fs.glsl`).
     """
 
     def __init__(self, model: NoiseModel, streams: RandomStreams, scoped: str, *, as_ogre: bool = False) -> None:
@@ -93,9 +93,9 @@ class ImageNoise:
     def _strips(
         self, channel: str, index: int, shape: tuple[int, ...]
     ) -> Iterator[tuple[slice, npt.NDArray[np.uint16]]]:
-        """Rows of a picture, strip by strip, with a random word for each of their pixels."""
+        """Yield the rows of an image, strip by strip, with a random word for each of their pixels."""
         height, width = shape[:2]
-        # a generator of its own per frame, so that what was drawn before does not matter; the fastest one for the bulk
+        # a generator per frame, so that earlier draws have no influence; SFC64 is the fastest for many numbers
         key: Any = self._streams[channel].generator(index).bit_generator
         bits: Any = np.random.SFC64(np.random.SeedSequence(key.random_raw(2).tolist()))
         for first in range(0, height, _strip_height(width)):
@@ -104,34 +104,34 @@ class ImageNoise:
             if self._model.stddev > 0:
                 words = bits.random_raw(-(-count // 4)).view(np.uint16)[:count]
             else:
-                words = np.zeros(count, np.uint16)  # all values of the table are the same
+                words = np.zeros(count, np.uint16)  # all values of the table are equal
             yield slice(first, last), words.reshape(last - first, width)
 
     def _brightness_changes(self, shape: tuple[int, ...]) -> _BrightnessChanges:
-        """Of this thread, kept from picture to picture: fresh memory would take longer than what is done in it."""
-        kept: dict[tuple[int, ...], _BrightnessChanges] = vars(self._own).setdefault("changes", {})
-        if shape not in kept:
-            kept[shape] = _BrightnessChanges(self._step_tables, shape)
-        return kept[shape]
+        """Return this thread's buffers, kept between images because fresh memory takes longer than the work."""
+        changes_by_shape: dict[tuple[int, ...], _BrightnessChanges] = vars(self._own).setdefault("changes", {})
+        if shape not in changes_by_shape:
+            changes_by_shape[shape] = _BrightnessChanges(self._step_tables, shape)
+        return changes_by_shape[shape]
 
     def _output_buffer(self, like: AnyArray) -> AnyArray:
-        """An array to be written to."""
+        """Return an array for the result."""
         key = like.shape, like.dtype.str
         if key not in self._spares:
             self._spares[key] = ArrayPool(like.shape, like.dtype)
         return self._spares[key].take()
 
     def _draw_noise(self) -> npt.NDArray[np.float64]:
-        """The noise of each random word."""
+        """Return the noise of each random word."""
         return _normal_table() * self._model.stddev + self._model.mean
 
     @functools.cached_property
     def _step_tables(self) -> tuple[npt.NDArray[np.uint8], ...]:
-        """What is added to a byte, for each random word: around 128 where that will do, else as it goes up and down."""
+        """Tables of the change of a byte by random word: one table around 128 if it fits, else one up and one down."""
         noise = self._draw_noise()
         if self._as_ogre:
             noise = np.sign(noise) * np.abs(noise) ** _OGRE_EXPONENT
-        # rounding first is exact, since what it is added to is whole
+        # rounding before the addition is exact, because the pixels are integers
         levels = np.clip(np.rint(noise * 255.0), -255, 255)
         if levels[0] >= -_MIDDLE and levels[-1] < _MIDDLE:
             return ((levels + _MIDDLE).astype(np.uint8),)
@@ -139,11 +139,11 @@ class ImageNoise:
 
     @functools.cached_property
     def _length_table(self) -> npt.NDArray[np.float32]:
-        """What is added to a depth [m], for each random word."""
+        """Table of the change of a depth [m] by random word."""
         return np.clip(self._draw_noise(), -_LONGEST, _LONGEST).astype(np.float32)
 
     def on_colours(self, picture: npt.NDArray[np.uint8], index: int) -> npt.NDArray[np.uint8]:
-        """A picture, shape (h, w) or (h, w, 3), with one draw per pixel for all its channels, clipped to 0..255."""
+        """Return an image, shape (h, w) or (h, w, 3), with one draw per pixel for all channels, clipped to 0..255."""
         import cv2
 
         picture = np.ascontiguousarray(picture)
@@ -156,7 +156,7 @@ class ImageNoise:
         return out
 
     def on_depths(self, depths: npt.NDArray[np.float32], index: int) -> npt.NDArray[np.float32]:
-        """Depths [m], shape (h, w), with a draw per pixel; infinite ones stay."""
+        """Return depths [m], shape (h, w), with one draw per pixel; infinite depths stay infinite."""
         out = self._output_buffer(depths)
         for rows, words in self._strips("depth", index, depths.shape):
             part = out[rows]
@@ -166,11 +166,11 @@ class ImageNoise:
 
 
 class _BrightnessChanges:
-    """By how much pixels become brighter and darker, for a strip of random words at a time.
+    """Increase and decrease of brightness for a strip of random words at a time.
 
     Args:
-        steps: one table around 128, or two.
-        shape: of the picture.
+        steps: one table around 128, or two tables.
+        shape: shape of the image.
     """
 
     def __init__(self, steps: tuple[npt.NDArray[np.uint8], ...], shape: tuple[int, ...]) -> None:
@@ -181,7 +181,7 @@ class _BrightnessChanges:
         self._wide = np.empty((*size, 3), np.uint8) if len(shape) == 3 else None
 
     def of(self, words: npt.NDArray[np.uint16]) -> list[npt.NDArray[np.uint8]]:
-        """Two arrays like the words; views of buffers that the next call overwrites."""
+        """Return two arrays like the words, as views of buffers that the next call overwrites."""
         import cv2
 
         count = len(words)
@@ -196,7 +196,7 @@ class _BrightnessChanges:
         return [up, down]
 
     def widened(self, change: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
-        """The same for all channels of the picture, in a buffer that the next call overwrites."""
+        """Return a change for all channels of the image, in a buffer that the next call overwrites."""
         if self._wide is None:
             return change
         import cv2
@@ -207,5 +207,5 @@ class _BrightnessChanges:
 
 
 def _strip_height(width: int) -> int:
-    """Of a strip; whole quadruples, since random words come in fours."""
+    """Return the height of a strip, a multiple of four because random words come in fours."""
     return max(4, _PIXELS // width // 4 * 4)

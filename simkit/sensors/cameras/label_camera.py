@@ -26,12 +26,14 @@ _FOLDERS: Final = {IMAGE: "images", COLOURS: "colored_maps", LABELS: "labels_map
 
 
 class DatasetSaver(ImageSaver):
-    """Writes `images/image_0000000.png`, `labels_maps/labels_0000000.png`, ..., `boxes/boxes_0000000.csv`.
+    """Writer of `images/image_0000000.png`, `labels_maps/labels_0000000.png`, ..., `boxes/boxes_0000000.csv`.
 
-    The numbers go on after those that lie in `images`, so that runs of several worlds make one data set.
+    The numbers continue after the files in `images`, so that runs of several worlds make one data set.
 
     Args:
-        folder: of the whole data set.
+        sim: simulation that receives the reports.
+        sensor: sensor that the images belong to.
+        folder: folder of the whole data set.
         what: IMAGE, COLOURS, LABELS or BOXES.
     """
 
@@ -55,7 +57,7 @@ def _count_files(folder: Path) -> int:
 
 
 class LabelCamera(RenderedCamera):
-    """A camera that knows which geom it sees at each pixel, exactly: without noise, and with no edge blended."""
+    """Camera with the exact geom at each pixel: without noise and without blending of edges."""
 
     reads_labels: ClassVar[bool] = True
     makes_boxes: ClassVar[bool] = False
@@ -66,22 +68,22 @@ class LabelCamera(RenderedCamera):
         self._items_of: tuple[object, object] = (None, None)
         image = scene.params.block("camera").block("image")
         if self.options.encoding != "rgb8":
-            message = f"<format> {image.text('format')!r} is not used by a {scene.kind}: its pictures are R8G8B8"
+            message = f"<format> {image.text('format')!r} has no effect on a {scene.kind}, whose images are R8G8B8"
             diagnostics.warning("SK-SENSOR-130", message, image.block("format").where)
             self.options = replace(self.options, encoding="rgb8")
         noise = self.options.noise
         if noise.mean or noise.stddev:
-            message = f"<noise> is not used by a {scene.kind}, as in Gazebo: it tells what is there"
+            message = f"<noise> has no effect on a {scene.kind}, as in Gazebo"
             diagnostics.warning("SK-SENSOR-131", message, scene.params.block("camera").block("noise").where)
 
     @property
     def items(self) -> LabelledObjects:
-        """What wears which label in the sample that is measured, or was measured last."""
+        """Labelled objects of the sample that is measured, or was measured last."""
         return self._labelled_surroundings()[0]
 
     @property
     def structure(self) -> WorldStructure:
-        """What was in the world at that sample."""
+        """Structure of the world at that sample."""
         return self._labelled_surroundings()[1]
 
     def _labelled_surroundings(self) -> tuple[LabelledObjects, WorldStructure]:
@@ -91,11 +93,11 @@ class LabelCamera(RenderedCamera):
         return found
 
     def capture_surroundings(self) -> tuple[LabelledObjects, WorldStructure]:
-        """What wears which label now, and what is in the world."""
+        """Return the current labelled objects and structure of the world."""
         sim = self.sim
-        now = sim.contents.labels.state, sim.engine.structure
-        if self._items is None or self._items_of[0] is not now[0] or self._items_of[1] is not now[1]:
-            self._items, self._items_of = find_labelled_objects(sim, self.makes_boxes), now
+        current = sim.contents.labels.state, sim.engine.structure
+        if self._items is None or self._items_of[0] is not current[0] or self._items_of[1] is not current[1]:
+            self._items, self._items_of = find_labelled_objects(sim, self.makes_boxes), current
         return self._items, sim.engine.structure
 
     def leave(self) -> None:
@@ -103,7 +105,7 @@ class LabelCamera(RenderedCamera):
         self._items, self._items_of = None, (None, None)
 
     def seen(self, film: Film) -> Ids:
-        """The geom at each pixel of the camera's picture, -1 where there is none."""
+        """Return the geom at each pixel of the camera's image, -1 where there is none."""
         assert film.ids is not None
         if self._pictures.distorter:
             return self._pictures.distorter.distort_ids(film.ids)
@@ -117,13 +119,13 @@ class LabelCamera(RenderedCamera):
         return DatasetSaver(self.sim, self.scene, folder, name)
 
     def _picture(self, film: Film) -> npt.NDArray[np.uint8]:
-        """The colours of a film, through the lens."""
+        """Return the colours of a film through the lens."""
         assert film.colours is not None
-        kept = self._pictures.spares.take()
+        picture = self._pictures.spares.take()
         if self._pictures.distorter:
-            return self._pictures.distorter.distort(film.colours, kept)
-        np.copyto(kept, film.colours)
-        return kept
+            return self._pictures.distorter.distort(film.colours, picture)
+        np.copyto(picture, film.colours)
+        return picture
 
     def perturb(self, reading: object, index: int) -> object:
         return reading
@@ -132,24 +134,27 @@ class LabelCamera(RenderedCamera):
         if not len(sim.contents.labels) and not any(
             getattr(p, "gives_labels", False) for p in sim.engine.structure.all_plugins()
         ):
-            message = f"sensor {self.scoped!r} tells labels, and nothing in the world has one"
-            hint = '<plugin filename="gz-sim-label-system" name="gz::sim::systems::Label"><label>10</label></plugin>'
-            sim.engine.reports.warning("SK-SENSOR-132", message, self.scene.where, f"in a <model> or <visual>: {hint}")
+            message = f"sensor {self.scoped!r} publishes labels, but no object in the world has a label"
+            plugin = '<plugin filename="gz-sim-label-system" name="gz::sim::systems::Label"><label>10</label></plugin>'
+            hint = f"add to a <model> or <visual>: {plugin}"
+            sim.engine.reports.warning("SK-SENSOR-132", message, self.scene.where, hint)
 
 
 def read_keyword(params: Params, element: str, meanings: Mapping[str, str], default: str) -> str:
-    """The meaning of a word in `<camera>`, or in `<sensor>`, where older files have it; in any case of letters.
+    """Return the meaning of a keyword in `<camera>`, or in `<sensor>` as in older files; case is ignored.
 
     Args:
-        element: says what a camera tells.
-        meanings: the words that it may hold, each with what it means.
+        params: the `<sensor>` block.
+        element: name of the element with the keyword.
+        meanings: meanings by keyword.
+        default: keyword that applies without the element.
     """
     camera = params.block("camera")
-    place = camera if camera.has(element) or not params.has(element) else params
-    found = place.child(element)
-    given = default if found is None else found.value.strip().lower()
-    if found is not None and given not in meanings:
-        message = f"found <{element}>{found.value}</{element}>, allowed is one of {', '.join(meanings)}"
-        found.error("SK-PARAM-002", message, did_you_mean(given, tuple(meanings)))
-        given = default
-    return meanings[given]
+    block = camera if camera.has(element) or not params.has(element) else params
+    child = block.child(element)
+    keyword = default if child is None else child.value.strip().lower()
+    if child is not None and keyword not in meanings:
+        message = f"found <{element}>{child.value}</{element}>, allowed is one of {', '.join(meanings)}"
+        child.error("SK-PARAM-002", message, did_you_mean(keyword, tuple(meanings)))
+        keyword = default
+    return meanings[keyword]

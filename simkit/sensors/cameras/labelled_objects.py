@@ -1,4 +1,4 @@
-"""Labelled objects of a world, and which geom belongs to which of them."""
+"""Labelled objects of a world, and the geoms that belong to them."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ _GAZEBOS_BACKGROUND: Final = 255
 
 @dataclass(frozen=True, slots=True)
 class DrawnVisual:
-    """A visual with what draws it.
+    """Visual with the geoms that draw it.
 
     Attributes:
-        scoped: its name.
+        scoped: scoped name.
         link: scoped name of its link.
         model: name of its top-level model.
-        geoms: ids of the engine's geoms.
-        label: that it wears; UNLABELLED where it wears none.
+        geoms: geom ids of the engine.
+        label: label of the visual; UNLABELLED for none.
     """
 
     scoped: str
@@ -40,13 +40,13 @@ class DrawnVisual:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LabelledObject:
-    """All that wears one label in a top-level model.
+    """All visuals with one label in a top-level model.
 
     Attributes:
         model: name of the top-level model.
-        label: of all of it.
-        instance: counts the items of that label from 1.
-        visuals: in document order.
+        label: label of the visuals.
+        instance: number of the object among those of its label, from 1.
+        visuals: visuals in document order.
     """
 
     model: str
@@ -57,13 +57,13 @@ class LabelledObject:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LabelledObjects:
-    """The items of a world. Tables have one row for each geom and a last one for what is no geom, number -1.
+    """Labelled objects of a world. Tables have one row per geom and a last row for "no geom", number -1.
 
     Attributes:
-        items: in the order of their instances: by model name, from the last in the alphabet to the first, as Gazebo.
-        label_of: the label of each geom, UNLABELLED for none.
-        instance_of: the instance of each geom, 0 where it wears no label.
-        item_of: the position in `items` of what each geom belongs to, -1 for none.
+        items: objects in the order of their instances: by model name, in reverse alphabetical order, as in Gazebo.
+        label_of: label of each geom, UNLABELLED for none.
+        instance_of: instance of each geom, 0 without a label.
+        item_of: index in `items` of each geom's object, -1 for none.
     """
 
     items: tuple[LabelledObject, ...]
@@ -73,11 +73,12 @@ class LabelledObjects:
 
 
 def find_labelled_objects(sim: Simulation, boxed: bool = False) -> LabelledObjects:
-    """The items of a simulation as it is now.
+    """Return the labelled objects of a simulation in its current state.
 
     Args:
-        boxed: whether boxes are put around them. Gazebo then makes one item of all that wears a label in a top-level
-            model, whichever, and takes the label 255 for the background.
+        sim: simulation.
+        boxed: True for bounding boxes. Gazebo then makes one object of all labelled visuals in a top-level model,
+            whatever their labels, and treats the label 255 as background.
     """
     quirks = bool(sim.world.gazebo_quirks)
     labels = sim.contents.labels.by_visual(nested=not quirks)
@@ -98,7 +99,7 @@ def find_labelled_objects(sim: Simulation, boxed: bool = False) -> LabelledObjec
 
 
 def _drawn_visuals(structure: WorldStructure, labels: dict[str, int]) -> Iterator[DrawnVisual]:
-    """Every visual that is drawn, in document order."""
+    """Yield every visual that is drawn, in document order."""
     names: NameMap = structure.compiled.names
     for model in structure.models.values():
         for link in model.all_links():
@@ -111,7 +112,7 @@ def _drawn_visuals(structure: WorldStructure, labels: dict[str, int]) -> Iterato
 
 
 def _gazebo_name_order(name: str) -> bytes:
-    # as gz's names continue, so that `cup` comes before `cup_2` there or after it
+    # gz continues names with "::", which decides whether `cup` precedes `cup_2`
     return f"{name}::".encode()
 
 
@@ -131,9 +132,10 @@ def _group_visuals(visuals: list[DrawnVisual], is_merged: bool) -> list[Labelled
 
 
 def _count_instances_as_gazebo(visuals: list[DrawnVisual]) -> Iterator[tuple[DrawnVisual, int]]:
-    """gz counts an instance only where the model changes, so a model's second label shares a number or has 0.
+    """Yield visuals with instance counts as gz computes them.
 
-    It goes through all visuals by name, from the last to the first (gz-rendering, Ogre2SegmentationMaterialSwitcher).
+    gz increments the count only when the model changes, so a model's second label shares a number or has 0. gz visits
+    all visuals by name in reverse order (gz-rendering, Ogre2SegmentationMaterialSwitcher).
     """
     counts: dict[int, int] = {}
     before = ""

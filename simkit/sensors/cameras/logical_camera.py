@@ -1,4 +1,4 @@
-"""Logical camera: the models in its view and their poses, without a picture."""
+"""Logical camera: the models in its view and their poses, without an image."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ IMAGE = "ros_gz_interfaces/msg/LogicalCameraImage"
 FRUSTUM = "simkit_msgs/msg/LogicalCameraSensor"
 
 _ROUNDING = 1e-9
-"""What an origin may be outside a plane [m]: the sensor's own model is often exactly at the frustum's tip."""
+"""Tolerance at the frustum's planes [m]; the sensor's own model is often exactly at the frustum's tip."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,9 +29,9 @@ class LogicalCameraOptions:
     """The `<logical_camera>` block: a frustum along the sensor's x axis.
 
     Attributes:
-        near, far: its ends [m] along the axis.
+        near, far: distances of its ends along the axis [m].
         horizontal_fov: angle between its left and right side [rad].
-        aspect_ratio: the ratio of its width to its height.
+        aspect_ratio: ratio of its width to its height.
     """
 
     near: float
@@ -42,11 +42,11 @@ class LogicalCameraOptions:
 
 @dataclass(frozen=True, slots=True)
 class LogicalImage:
-    """What it sees.
+    """Reading of a logical camera.
 
     Attributes:
-        pose: of the sensor in the world.
-        models: (name, pose in the sensor's frame) of each model in the frustum, by name.
+        pose: pose of the sensor in the world.
+        models: name and pose in the sensor's frame of each model in the frustum, sorted by name.
     """
 
     pose: Pose
@@ -54,12 +54,12 @@ class LogicalImage:
 
 
 class Frustum:
-    """The part of space that a logical camera looks at.
+    """Volume that a logical camera sees.
 
     Args:
-        options: its measures.
-        as_gazebo: as Gazebo computes its planes: where they start in one point (near = 0) only the far and the right
-            one are left, since the others are made of two corners that are the same.
+        options: size of the frustum.
+        as_gazebo: True computes the planes as Gazebo does. With near = 0 only the far and the right plane remain,
+            because Gazebo defines the other planes by coinciding corners.
     """
 
     def __init__(self, options: LogicalCameraOptions, as_gazebo: bool = False) -> None:
@@ -69,7 +69,7 @@ class Frustum:
         self._is_broken = as_gazebo and options.near == 0
 
     def contains(self, points: Vector) -> npt.NDArray[np.bool_]:
-        """Whether points, shape (n, 3) [m] in the sensor's frame, are within; what is on a plane is."""
+        """Check which points, shape (n, 3) [m] in the sensor's frame, are inside; points on a plane are."""
         x, y, z = points.T
         within = (x <= self._far + _ROUNDING) & (-y <= x * self._across + _ROUNDING)
         if not self._is_broken:
@@ -80,10 +80,10 @@ class Frustum:
 
 
 class LogicalCamera(Sensor):
-    """`logical_camera`: name and pose of every model whose origin is in its frustum, whatever is in between.
+    """Logical camera, `logical_camera`: name and pose of every model with its origin in the frustum, hidden or not.
 
-    That is what gz-sensors does; Gazebo Classic asks for bounding boxes instead. Nested models count, and so does the
-    one that carries the sensor.
+    gz-sensors has the same rule; Gazebo Classic uses bounding boxes instead. Nested models and the sensor's own model
+    are included.
     """
 
     kinds = ("logical_camera",)
@@ -105,7 +105,7 @@ class LogicalCamera(Sensor):
         return LogicalCameraOptions(near, far, fov, aspect)
 
     def describe(self) -> dict[str, object]:
-        """Lengths in m, angle in rad."""
+        """Return the frustum, with lengths in m and the angle in rad."""
         o = self.options
         frustum = {"near": o.near, "far": o.far, "hfov": o.horizontal_fov, "aspect_ratio": o.aspect_ratio}
         return {"logical_camera": frustum}
@@ -116,25 +116,26 @@ class LogicalCamera(Sensor):
 
     def bind(self, compiled: Compiled) -> None:
         super().bind(compiled)
-        found: dict[str, tuple[int, Pose]] = {}
+        carriers: dict[str, tuple[int, Pose]] = {}
         quirks = self.sim.world.gazebo_quirks
         for top in self.sim.engine.structure.models.values():
             poses = {model.scoped: model.pose_world for model in top.all_models()}
             for model in top.all_models():
-                # Gazebo tells the last part of a name, so that one model hides another, and takes a nested model's pose
+                # Gazebo publishes the last part of a name, so that one model hides another, and uses a nested model's
+                # pose in its parent as its pose in the world
                 # in its parent for one in the world
                 if quirks and model is not top:
-                    found[model.name] = 0, poses[model.scoped.rpartition("::")[0]].inverse() @ model.pose_world
+                    carriers[model.name] = 0, poses[model.scoped.rpartition("::")[0]].inverse() @ model.pose_world
                 else:
-                    found[model.scoped] = self._place_of(model, compiled.names)
-        self._names = sorted(found)
-        self._bodies = np.array([found[name][0] for name in self._names], dtype=np.intp)
-        self._frames = [found[name][1] for name in self._names]
+                    carriers[model.scoped] = self._find_carrier(model, compiled.names)
+        self._names = sorted(carriers)
+        self._bodies = np.array([carriers[name][0] for name in self._names], dtype=np.intp)
+        self._frames = [carriers[name][1] for name in self._names]
         self._origins = np.array([frame.position for frame in self._frames]).reshape(-1, 3)
 
-    def _place_of(self, model: SceneModel, names: NameMap) -> tuple[int, Pose]:
-        """The engine's body that carries a model, and the model's frame in it."""
-        if model.canonical_link not in names.links:  # a model without links stays where it is put
+    def _find_carrier(self, model: SceneModel, names: NameMap) -> tuple[int, Pose]:
+        """Return the engine's body that carries a model, and the model's frame in that body."""
+        if model.canonical_link not in names.links:  # a model without links has a fixed pose
             return 0, self.sim.model(model.scoped).pose
         body, frame = names.model_frame(model)
         return body, frame

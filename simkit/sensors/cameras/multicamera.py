@@ -1,4 +1,4 @@
-"""Several cameras in one sensor, whose shutters open at one instant: stereo pairs and rigs of cameras."""
+"""Several cameras in one sensor that take images at the same instant: stereo pairs and camera rigs."""
 
 from __future__ import annotations
 
@@ -29,57 +29,57 @@ from simkit.sensors.cameras.rendering.view import Film, Shot
 from simkit.sensors.sample import Reading
 from simkit.sensors.topics_and_frames import OPTICAL_POSE, sibling_topic
 
-_PARALLEL = 1e-6  # [rad], and [m] of how far two cameras of a pair are one before the other
+_PARALLEL = 1e-6  # tolerance of parallel axes [rad], and of the forward distance between two cameras of a pair [m]
 
 
 class CameraUnit:
-    """One of the cameras.
+    """One camera of the sensor.
 
     Attributes:
-        name: in topics.
-        options: its `<camera>` block; a pose is in the sensor's frame.
+        name: name in topics.
+        options: the `<camera>` block, with the pose in the sensor's frame.
     """
 
     def __init__(self, name: str, options: CameraOptions) -> None:
         self.name, self.options = name, options
-        self.beside = (0.0, 0.0)  # how far left of the reference and above it, where P tells that [m]
+        self.offset = (0.0, 0.0)  # distance to the left of the reference and above it, for P [m]
 
     def open(self, sim: Simulation, scoped: str) -> None:
-        """Once, when the simulation is known."""
+        """Make lens, noise and buffers; called once, when the simulation is known."""
         if sim.world.gazebo_quirks:
             self.options = replace(self.options, model=self.options.model.as_gazebo())
         self._pictures = PictureMaker(self.options, sim, f"{scoped}::{self.name}")
         self.update_camera_info()
 
     def update_camera_info(self) -> None:
-        """After a change of what `CameraInfo` says."""
+        """Update `CameraInfo` after a change of its model."""
         model = self.options.model.info_model or self.options.model
         if (model.tx, model.ty) == (0.0, 0.0):
-            (left, up), p = self.beside, model.projection
+            (left, up), p = self.offset, model.projection
             model = replace(model, tx=p[0] * left, ty=p[5] * up)
         self.info = CameraInfoMaker(model)
 
     @property
     def shot(self) -> Shot:
-        """What is drawn."""
+        """View to draw."""
         pose = self.options.pose
         return Shot(self._pictures.view, position=np.asarray(pose.position), rotation=pose.matrix)
 
     def develop(self, film: Film) -> CameraReading:
-        """The picture without noise, in arrays of its own."""
+        """Return the image without noise, in arrays of its own."""
         assert film.colours is not None
         return CameraReading(self._pictures.develop(film.colours), None)
 
     def perturb(self, picture: CameraReading, index: int) -> object:
-        """The picture with the noise of a sample."""
+        """Return the image with the noise of a sample."""
         return self._pictures.perturb(picture, index)
 
 
 class MultiCamera(RenderedCamera):
-    """`multicamera`: an image and a `CameraInfo` of each `<camera name="…"><pose>`, all of the same instant.
+    """Multicamera, `multicamera`: an image and a `CameraInfo` of each `<camera name="…"><pose>`, at the same instant.
 
-    One of them, the one with `left` in its name, else the first, is the reference: the others that look the same way
-    tell in P's last column where they are beside or below it, as ROS has it of rectified stereo pairs.
+    The reference is the camera with `left` in its name, or else the first. For cameras parallel to the reference, P's
+    last column contains their offset from it, as ROS defines P for rectified stereo pairs.
     """
 
     kinds = ("multicamera",)
@@ -88,7 +88,7 @@ class MultiCamera(RenderedCamera):
 
     def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
         super().__init__(scene, diagnostics)
-        self._place()
+        self._find_offsets()
 
     def read_options(self, params: Params) -> CameraOptions:
         blocks = params.all("camera") or [params.block("camera")]
@@ -98,50 +98,50 @@ class MultiCamera(RenderedCamera):
             self.eyes.append(CameraUnit(_free_name(self.eyes, options.name or f"camera_{number}", block), options))
         options = self.eyes[0].options
         self._report_shared()
-        waiting = next((eye.options for eye in self.eyes if eye.options.triggered), options)
-        saving = next((eye.options.save for eye in self.eyes if eye.options.save), None)
+        triggered = next((eye.options for eye in self.eyes if eye.options.triggered), options)
+        folder = next((eye.options.save for eye in self.eyes if eye.options.save), None)
         return replace(
-            options, pose=IDENTITY, triggered=waiting.triggered, trigger_topic=waiting.trigger_topic, save=saving
+            options, pose=IDENTITY, triggered=triggered.triggered, trigger_topic=triggered.trigger_topic, save=folder
         )
 
     def _report_shared(self) -> None:
-        """Warns of what is one for all cameras of a sensor, and differs between these."""
+        """Report options that apply to all cameras of a sensor, and that differ between its cameras."""
         options = [eye.options for eye in self.eyes]
-        differ: dict[str, set[object]] = {
+        values_by_element: dict[str, set[object]] = {
             "<visibility_mask>": {o.visibility_mask for o in options},
             "<anti_aliasing>": {o.anti_aliasing > 0 for o in options},
             "<trigger_topic>": {o.trigger_topic for o in options if o.triggered},
             "<path> of <save>": {o.save for o in options if o.save is not None},
         }
-        for element, found in differ.items():
-            if len(found) > 1:
-                message = f"the cameras of one sensor have one {element}, these have {len(found)}: the first is used"
-                self.diagnostics.warning("SK-SENSOR-125", message, self.scene.where, "a sensor for each")
+        for element, values in values_by_element.items():
+            if len(values) > 1:
+                message = f"the cameras of one sensor share one {element}, of {len(values)} the first is used"
+                self.diagnostics.warning("SK-SENSOR-125", message, self.scene.where, "use one sensor per camera")
 
     @property
     def reference(self) -> CameraUnit:
-        """The camera that the others of a stereo rig are described against."""
+        """Camera that the others of a stereo rig are described relative to."""
         return next((eye for eye in self.eyes if "left" in eye.name), self.eyes[0])
 
-    def _place(self) -> None:
-        """Tells each camera where it is from the reference."""
+    def _find_offsets(self) -> None:
+        """Set each camera's offset from the reference."""
         reference = self.reference
         for eye in self.eyes:
             if eye is reference:
                 continue
             relative = reference.options.pose.inverse() @ eye.options.pose
             if _is_parallel(relative):
-                eye.beside = relative.position[1], relative.position[2]
+                eye.offset = relative.position[1], relative.position[2]
             else:
-                message = f"camera {eye.name!r} does not look as {reference.name!r} does, or from a point before it"
-                says = "its projection matrix tells no baseline; images have to be rectified first"
-                self.diagnostics.note("SK-SENSOR-124", f"{message}: {says}", self.scene.where)
+                message = f"camera {eye.name!r} is not parallel to {reference.name!r}, or not beside it"
+                effect = "its projection matrix has no baseline; rectify the images first"
+                self.diagnostics.note("SK-SENSOR-124", f"{message}: {effect}", self.scene.where)
 
     def set_baseline(self, baseline: float) -> None:
-        """Says how far [m] to the right of the reference the others are, whatever their poses are."""
+        """Set the distance [m] of the other cameras to the right of the reference in `CameraInfo`; their poses stay."""
         for eye in self.eyes:
             if eye is not self.reference:
-                eye.beside = -baseline, 0.0
+                eye.offset = -baseline, 0.0
                 eye.update_camera_info()
 
     def override_camera_info(self, change: Callable[[CameraModel], CameraModel]) -> None:
@@ -184,7 +184,7 @@ class MultiCamera(RenderedCamera):
             view = eye.options.model
             renderer_of(self.sim).uploads.reserve(view.width, view.height)
 
-    # ------------------------------------------------------------------ pictures
+    # ------------------------------------------------------------------ images
 
     def shots(self) -> Sequence[Shot]:
         return tuple(eye.shot for eye in self.eyes)
@@ -211,13 +211,13 @@ class MultiCamera(RenderedCamera):
         topics = {}
         for eye in self.eyes:
             topics[f"{eye.name}/image"] = topic = valid_topic(f"{base}/{eye.name}/image")
-            given = eye.options.info_topic
-            topics[f"{eye.name}/camera_info"] = valid_topic(given) if given else sibling_topic(topic, "camera_info")
+            info = eye.options.info_topic
+            topics[f"{eye.name}/camera_info"] = valid_topic(info) if info else sibling_topic(topic, "camera_info")
         return topics
 
     def _trigger_topic(self) -> str:
-        given = self.options.trigger_topic
-        return valid_topic(given) if given else self._default_topic("") + "/trigger"
+        topic = self.options.trigger_topic
+        return valid_topic(topic) if topic else self._default_topic("") + "/trigger"
 
     def saved_products(self) -> dict[str, str]:
         return {f"{eye.name}/image": f"{self.scoped}::{eye.name}" for eye in self.eyes if eye.options.save}
@@ -236,15 +236,15 @@ class MultiCamera(RenderedCamera):
 
 
 def _is_parallel(relative: Pose) -> bool:
-    """Whether a camera at that pose looks as one at the origin does, from a point beside it."""
-    turned = 2 * math.atan2(float(np.linalg.norm(relative.quaternion[1:])), abs(relative.quaternion[0]))
-    return turned < _PARALLEL and abs(relative.position[0]) < _PARALLEL
+    """Check whether a camera at a pose has the same axes as one at the origin, and lies in its image plane."""
+    angle = 2 * math.atan2(float(np.linalg.norm(relative.quaternion[1:])), abs(relative.quaternion[0]))
+    return angle < _PARALLEL and abs(relative.position[0]) < _PARALLEL
 
 
 def _free_name(others: Sequence[CameraUnit], name: str, block: Params) -> str:
-    """The name, or another where it is used; that is an error."""
+    """Return the name, or report an error and return another one if the name is already used."""
     used = {eye.name for eye in others}
     if name not in used:
         return name
-    block.error("SK-PARAM-002", f"two cameras of a sensor are named {name!r}, allowed are different names")
+    block.error("SK-PARAM-002", f"two cameras of a sensor have the name {name!r}, allowed are different names")
     return f"{name}_{len(others)}"

@@ -1,4 +1,4 @@
-"""Base of all rendered cameras: their options, optics, trigger, noise and messages."""
+"""Base of all rendered cameras: options, optics, trigger, noise and messages."""
 
 from __future__ import annotations
 
@@ -41,12 +41,12 @@ TRIGGER_TYPES = ("std_msgs/msg/Bool", "std_msgs/msg/Empty")
 
 
 class Trigger:
-    """Messages that each call for a picture at the next due time.
+    """Messages that each request an image at the next due time.
 
     Attributes:
-        pending: pictures that are called for.
-        counts: whether messages that come in before a due time give a picture each, at that and the next ones; else
-            they give one.
+        pending: number of requested images.
+        counts: True if several messages before a due time request one image each, at this and the next due times;
+            False if they request one image together.
     """
 
     def __init__(self) -> None:
@@ -54,11 +54,11 @@ class Trigger:
         self.counts = False
 
     def on_message(self, _: object) -> None:
-        """Call for a picture, whatever the message says."""
+        """Request an image, whatever the content of the message."""
         self.pending = self.pending + 1 if self.counts else 1
 
     def take(self) -> bool:
-        """Whether a picture is called for now, which is one less then."""
+        """Check whether an image is requested, and count it as taken."""
         if self.pending == 0:
             return False
         self.pending -= 1
@@ -66,12 +66,12 @@ class Trigger:
 
 
 class PictureMaker:
-    """Lens, noise and memory of the pictures of one camera.
+    """Lens, noise and buffers of the images of one camera.
 
     Args:
-        options: of the camera.
-        sim: the simulation.
-        name: of its random streams.
+        options: options of the camera.
+        sim: simulation of the camera.
+        name: name of its random streams.
     """
 
     def __init__(self, options: CameraOptions, sim: Simulation, name: str) -> None:
@@ -81,35 +81,35 @@ class PictureMaker:
 
     @cached_property
     def distorter(self) -> ImageDistorter | None:
-        """The lens; found out at the first picture, since it takes a while. None where it bends nothing."""
+        """Lens distortion, made for the first image because that takes a while; None without distortion."""
         return ImageDistorter(self._model) if self._model.is_distorted else None
 
     @cached_property
     def view(self) -> View:
-        """The frustum that is drawn."""
+        """View that is drawn."""
         return self.distorter.view() if self.distorter else self._model.view()
 
     def develop(self, colours: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
-        """Colours (h, w, 3) that were drawn, through the lens, in memory of their own; brightness (h, w) for grey."""
+        """Return drawn colours (h, w, 3) through the lens, in memory of their own; brightness (h, w) for grey."""
         if self.distorter:
             colours = self.distorter.distort(colours)
         if image_messages.is_grey(self._encoding):
             return image_messages.grey(colours)
         if self.distorter:
             return colours
-        kept: npt.NDArray[np.uint8] = self.spares.take()
-        np.copyto(kept, colours)
-        return kept
+        picture: npt.NDArray[np.uint8] = self.spares.take()
+        np.copyto(picture, colours)
+        return picture
 
     def perturb(self, picture: CameraReading, index: int) -> object:
-        """The picture with the noise of a sample."""
+        """Return the image with the noise of a sample."""
         return picture if self.noise.is_silent else NoisyCameraReading(picture, self.noise, index)
 
 
 class RenderedCamera(RenderedSampler):
-    """A camera: looks along its x axis, y to its left, z up.
+    """Camera that looks along its x axis, with y to its left and z up.
 
-    Its options, optics, trigger, noise and messages; `RenderedSampler` draws.
+    This class contains options, optics, trigger, noise and messages; `RenderedSampler` draws.
     """
 
     has_depth: ClassVar[bool] = False
@@ -123,11 +123,11 @@ class RenderedCamera(RenderedSampler):
 
     @staticmethod
     def read_model(params: Params, width: int, height: int) -> CameraModel:
-        """The optics in a `<camera>` block, for an image of `width` by `height` [px]."""
+        """Read the optics of a `<camera>` block for an image of `width` by `height` [px]."""
         return read_camera_model(params, width, height)
 
     def read_options(self, params: Params) -> CameraOptions:
-        """The options of the file; a camera that stands elsewhere in its sensor takes the sensor there."""
+        """Read the options; a camera with a pose of its own moves the sensor to that pose."""
         options = read_camera(params.block("camera"), self.read_model, self.has_depth)
         if options.pose != IDENTITY:
             self.scene = replace(self.scene, pose_link=self.scene.pose_link @ options.pose)
@@ -143,7 +143,7 @@ class RenderedCamera(RenderedSampler):
     def attach(self, sim: Simulation) -> None:
         if sim.world.gazebo_quirks:
             self.options = replace(self.options, model=self.options.model.as_gazebo())
-            self.optical_frame_id = ""  # gz-sensors' main branch passes it over (CameraSensor.cc, OpticalFrameId)
+            self.optical_frame_id = ""  # gz-sensors' main branch ignores it (CameraSensor.cc, OpticalFrameId)
         options = self.options
         self._pictures = PictureMaker(options, sim, self.scoped)
         self._info = CameraInfoMaker(options.model, self._baseline)
@@ -152,53 +152,53 @@ class RenderedCamera(RenderedSampler):
             self.trigger_on(self._trigger_topic())
 
     def _drawn_view(self) -> View:
-        """The frustum that is drawn."""
+        """Return the view that is drawn."""
         return self._pictures.view
 
     def shots(self) -> Sequence[Shot]:
-        """What is drawn for one sample."""
+        """Return the views to draw for one sample."""
         return (Shot(self._drawn_view()),)
 
     def override_camera_info(self, change: Callable[[CameraModel], CameraModel]) -> None:
-        """Says in `CameraInfo` what another camera would see; the pictures stay as they are.
+        """Publish another camera's model in `CameraInfo`; the images stay the same.
 
         Args:
-            change: gives that camera for the one that there is.
+            change: function that returns the model to publish for the true model.
         """
         model = self.options.model
         self.options = replace(self.options, model=replace(model, info_model=change(model)))
         self._info = CameraInfoMaker(self.options.model, self._baseline)
 
     def transform_messages(self, product: str, change: Callable[[Message], Message]) -> None:
-        """Publishes what `change` makes of each message of a product, instead of it; before the first."""
-        of = self._products[product]
-        make_message = of.make
-        changed = replace(of, make=lambda reading, time_ns: change(make_message(reading, time_ns)))
+        """Replace each message of a product by the result of `change`; call this method before the first message."""
+        original = self._products[product]
+        make_message = original.make
+        changed = replace(original, make=lambda reading, time_ns: change(make_message(reading, time_ns)))
         self._products = {**self._products, product: changed}
 
     def set_frame_id(self, frame: str) -> None:
-        """Names the frame of all its messages."""
+        """Set the frame of all messages."""
         self.frame_id, self.optical_frame_id = frame, ""
 
     def optical_frames(self) -> dict[str, Pose]:
         return {self.optical_frame_id: OPTICAL_POSE} if self.optical_frame_id else {}
 
     def set_baseline(self, baseline: float) -> None:
-        """Says how far [m] the left camera of a stereo pair is; it shows in the projection matrix."""
+        """Set the distance [m] to the left camera of a stereo pair, for the projection matrix."""
         self._baseline = baseline
         self._info = CameraInfoMaker(self.options.model, baseline)
 
     def _trigger_topic(self) -> str:
-        given = self.options.trigger_topic
-        return valid_topic(given or (self.scene.topic or self.topic) + "/trigger")
+        topic = self.options.trigger_topic
+        return valid_topic(topic or (self.scene.topic or self.topic) + "/trigger")
 
     def trigger_on(self, topic: str, types: Sequence[str] = TRIGGER_TYPES, counts: bool = False) -> None:
-        """Takes pictures only when messages call for them, on this topic too where there is one already.
+        """Take images only when messages request them, on this topic in addition to earlier ones.
 
         Args:
-            topic: absolute.
-            types: of the messages, whatever they say; the first is the listed one.
-            counts: as `Trigger` says.
+            topic: absolute topic.
+            types: accepted message types; the first is the listed one.
+            counts: see `Trigger`.
         """
         if self._trigger is None:
             self._trigger = Trigger()
@@ -233,10 +233,10 @@ class RenderedCamera(RenderedSampler):
     def restart(self) -> None:
         self.remember(0)
 
-    # ------------------------------------------------------------------ saved pictures
+    # ------------------------------------------------------------------ saved images
 
     def saved_products(self) -> dict[str, str]:
-        """Image product -> name of the files that it is saved in, where the file says so."""
+        """Return the file names of saved images by product."""
         names = (
             name
             for name in (*self._topics, *self._products)
@@ -253,7 +253,7 @@ class RenderedCamera(RenderedSampler):
             self._publishers.append((product, self._make_image_saver(folder, name), True))
 
     def _make_image_saver(self, folder: Path, name: str) -> ImageSaver:
-        """What writes a product's pictures to files."""
+        """Return the publisher that writes a product's images to files."""
         far = self.options.depth_far if self.has_depth else None
         return ImageSaver(self.sim, self.scene, folder, name, far)
 
@@ -266,7 +266,7 @@ class RenderedCamera(RenderedSampler):
         return Product(image_messages.CAMERA_INFO_TYPE, self._info_message, needs_reading=False)
 
     def _image_header(self, time_ns: int) -> msgs.Header:
-        """Of images, whose axes are optical."""
+        """Return the header of images, whose axes are optical."""
         return msgs.header(time_ns, self.optical_frame_id or self.frame_id)
 
     def _colour_message(self, reading: CameraReading, time_ns: int) -> msgs.Image:
@@ -275,6 +275,6 @@ class RenderedCamera(RenderedSampler):
     def _info_message(self, _: object, time_ns: int) -> msgs.CameraInfo:
         return self._info.make(time_ns, self.optical_frame_id or self.frame_id)
 
-    def _info_topic(self, beside: str) -> str:
-        given = self.options.info_topic
-        return valid_topic(given) if given else sibling_topic(beside, "camera_info")
+    def _info_topic(self, image_topic: str) -> str:
+        info_topic = self.options.info_topic
+        return valid_topic(info_topic) if info_topic else sibling_topic(image_topic, "camera_info")

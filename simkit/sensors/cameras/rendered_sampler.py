@@ -1,4 +1,4 @@
-"""Sampling by drawing: compose when a sample is due, draw on the render thread, finish when it is read."""
+"""Sampling by drawing: compose the scene when a sample is due, draw on the render thread, finish when read."""
 
 from __future__ import annotations
 
@@ -24,15 +24,14 @@ from simkit.sensors.sample import Memory, Reading
 
 
 class RenderedSampler(Sensor):
-    """A sensor whose readings are made of drawn pictures.
+    """Sensor whose readings are made of drawn images.
 
-    What is to be drawn is taken of the state when a sample is due; drawing, and all that is made of the pictures,
-    happens on the render thread where the simulation has one and nobody is called back with the messages.
-
-    Without a renderer it is switched off, which is said once; all else goes on.
+    The scene is composed from the state when a sample is due. The render thread draws it and processes the images, if
+    the simulation has a render thread and no callback waits for the messages. Without a renderer, the sensor switches
+    off with one report, and the simulation continues.
 
     Attributes:
-        surroundings: what besides the physics the sample at work is made of, see `capture_surroundings`.
+        surroundings: state besides the physics for the current sample, see `capture_surroundings`.
     """
 
     is_deferred = True
@@ -42,16 +41,16 @@ class RenderedSampler(Sensor):
     def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
         super().__init__(scene, diagnostics)
         self._failure: RenderError | None = None
-        self._picture_error: RenderError | None = None  # what went wrong with a picture, perhaps on the render thread
+        self._picture_error: RenderError | None = None  # error of an image, possibly on the render thread
         self._has_callback = False
         self.surroundings: Memory = None
 
     @abc.abstractmethod
     def shots(self) -> Sequence[Shot]:
-        """What is drawn for one sample."""
+        """Return the views to draw for one sample."""
 
     def finish_samples(self) -> None:
-        """Measures what waits to be looked at, before something that it is made of changes."""
+        """Measure the samples that wait for a reader, before the state that they depend on changes."""
         try:
             for sample in self._kept_samples():
                 self._finish_sample(sample)
@@ -67,15 +66,15 @@ class RenderedSampler(Sensor):
         return render_thread.run_now(self._make_exposure(model, data)).result()
 
     def capture(self, model: mujoco.MjModel, data: mujoco.MjData) -> render_thread.RenderJob:
-        """Composes what is to be drawn, and has it drawn: on the render thread, unless somebody waits for it."""
+        """Compose the scene, and draw it on the render thread, or at once if a callback waits for it."""
         expose = self._make_exposure(model, data)
-        # the first picture of all is drawn here, so that it is known at once whether there is a renderer
+        # the first image is drawn here, so that a missing renderer is detected at once
         if self._has_callback or not (self.sim.engine.render_thread and gl_context.is_open()):
             return render_thread.run_now(expose)
         return render_thread.submit(expose)
 
     def capture_held(self, model: mujoco.MjModel, data: mujoco.MjData, sample: Sample) -> render_thread.RenderJob:
-        # labels, temperatures, lights and what is in the world may be others by now
+        # labels, temperatures, lights and structure may have changed since the sample
         self.surroundings, lights = sample.surroundings
         with use_lights(model, data, lights):
             expose = self._make_exposure(model, data)
@@ -85,7 +84,7 @@ class RenderedSampler(Sensor):
         return raw.result()
 
     def _make_exposure(self, model: mujoco.MjModel, data: mujoco.MjData) -> Callable[[], Reading]:
-        """What draws and develops the pictures of a state; it needs the state no more."""
+        """Return a function that draws and processes the images of a state without reading the state again."""
         renderer = renderer_of(self.sim)
         smooth = self.options.anti_aliasing > 0
         composition = renderer.composer.compose(
@@ -104,7 +103,7 @@ class RenderedSampler(Sensor):
             films.close()
 
     def capture_surroundings(self) -> Memory:
-        """Return what a sample is made of besides the physics; `take_notes` reads it in `surroundings`."""
+        """Return the state besides the physics that a sample depends on; `take_notes` reads it from `surroundings`."""
         return None
 
     def _begin_sample(self, tick: int) -> Sample:
@@ -114,23 +113,23 @@ class RenderedSampler(Sensor):
         return sample
 
     def take_notes(self, model: mujoco.MjModel, data: mujoco.MjData) -> Memory:
-        """What `develop` needs of the state besides pictures."""
+        """Return the values of the state that `develop` needs besides images."""
         return None
 
     @abc.abstractmethod
     def develop(self, films: Iterator[Film], notes: Memory) -> object:
-        """The reading without noise, of what was drawn.
+        """Return the reading without noise, made from the drawn images.
 
         Args:
-            films: one of each shot, in their order; to be taken in turn.
-            notes: what `take_notes` gave.
+            films: one film of each shot, in their order, drawn one by one as they are read.
+            notes: result of `take_notes`.
         """
 
     def close(self) -> None:
         render_thread.drain()
         free_renderer(self.sim)
 
-    # ------------------------------------------------------------------ when there is no renderer
+    # ------------------------------------------------------------------ without a renderer
 
     def sample(self, tick: int) -> None:
         if self._failure is not None:
@@ -151,19 +150,20 @@ class RenderedSampler(Sensor):
 
     def _update_readers(self) -> None:
         super()._update_readers()
-        # what has a latency is not waited for when it is taken
-        self._has_callback = self._delayed is None and any(end.is_live for _, end, needs in self._wanted if needs)
+        # a callback of a delayed sample does not wait at the time of the sample
+        is_live = any(publisher.is_live for _, publisher, needs_reading in self._read_publishers if needs_reading)
+        self._has_callback = self._delayed is None and is_live
 
-    def _publish(self, sample: Sample, wanted: list[tuple[str, Publisher, bool]]) -> list[LazyMessage]:
-        put_off = super()._publish(sample, wanted)
+    def _publish(self, sample: Sample, read_publishers: list[tuple[str, Publisher, bool]]) -> list[LazyMessage]:
+        deferred = super()._publish(sample, read_publishers)
         drawing = self._pending_job(sample)
-        # what somebody will look at is made as soon as the picture is there; what may never be seen is not
-        awaited = [later for later in put_off if later.is_awaited]
+        # messages with a certain reader are made as soon as the image is drawn; messages that may stay unread are not
+        awaited = [later for later in deferred if later.is_awaited]
         if drawing is not None and awaited:
             sample.work = render_thread.submit(functools.partial(_make_messages_early, drawing, awaited))
-            for later in put_off:
+            for later in deferred:
                 later.work = sample.work
-        return put_off
+        return deferred
 
     def _pending_job(self, sample: Sample) -> render_thread.RenderJob | None:
         drawing: render_thread.RenderJob | None = sample.raw
@@ -178,18 +178,26 @@ class RenderedSampler(Sensor):
         try:
             return super()._message_on_demand(sample, product)
         except RenderError:
-            return NO_MESSAGE  # it has been said why
+            return NO_MESSAGE  # the reason was already reported
 
     @property
     def latest(self) -> Message:
-        """The newest picture, or None before the first; raises RenderError where there is no renderer."""
+        """Newest image, or None before the first.
+
+        Raises:
+            RenderError: there is no renderer.
+        """
         if self._failure is not None:
             raise self._failure
         return super().latest
 
     @property
     def truth(self) -> Message:
-        """The newest picture without noise; raises RenderError where there is no renderer."""
+        """Newest image without noise, or None before the first.
+
+        Raises:
+            RenderError: there is no renderer.
+        """
         if self._failure is not None:
             raise self._failure
         return super().truth
@@ -208,16 +216,16 @@ class RenderedSampler(Sensor):
             return
         self._failure = error
         self._drop_samples()
-        why = str(error).removeprefix(error.code).strip()
-        is_known = any(d.code == error.code and d.message.endswith(why) for d in self.sim.engine.reports)
-        message = f"camera {self.scoped!r} is switched off: {why}"
+        reason = str(error).removeprefix(error.code).strip()
+        is_known = any(d.code == error.code and d.message.endswith(reason) for d in self.sim.engine.reports)
+        message = f"camera {self.scoped!r} is switched off: {reason}"
         self.sim.engine.reports.warning(error.code, message, self.scene.where)
-        if not is_known:  # what ails all cameras is said aloud once
+        if not is_known:  # an error common to all cameras is logged once
             self.sim.engine.log.error("%s %s", error.code, message)
 
 
 def _make_messages_early(work: render_thread.RenderJob, messages: Sequence[LazyMessage]) -> None:
-    """Makes messages of a picture that was drawn before."""
+    """Make the messages of an image that is already drawn."""
     work.result()
     for message in messages:
         message.get()

@@ -30,17 +30,20 @@ from simkit.sensors.sample import Reading
 from simkit.sensors.topics_and_frames import OPTICAL_POSE
 
 _NO_COLOURS: Colours = np.empty((0, 0, 3), np.uint8)
-_TURNED = 1e-3  # rad; axes that differ by less are the same
+_TURNED = 1e-3  # [rad] axes that differ by less are equal
 
 
 class NoisyDepths(NoisyCameraReading):
-    """Colours and depths with noise, drawn when they are first asked for: who wants no depths pays for none.
+    """Colours and depths with noise, drawn when first read, so that unread depths cost nothing.
 
     Args:
-        make_depths: gives the noisy depths of true ones and the sample's index.
+        picture: reading without noise.
+        noise: noise of the colours.
+        index: number of the sample.
+        make_depths: function from true depths and the sample's index to noisy depths.
 
     Attributes:
-        true_depths: without noise.
+        true_depths: depths without noise.
     """
 
     def __init__(
@@ -64,15 +67,15 @@ class NoisyDepths(NoisyCameraReading):
 
 
 class RgbdCamera(RenderedCamera):
-    """Colour, depth along the optical axis, and an organised cloud, of one pass: each pixel has all three.
+    """Camera with colour, depth along the optical axis, and an organised cloud of the same pixels, drawn in one pass.
 
-    Depth is +inf where nothing is in range and -inf for what is nearer than the range. Noise is in metres for depths
-    and in units of white for colours. The cloud is in the sensor's frame (x forward), or in the optical one (z forward)
-    where the file names that by `<optical_frame_id>`. `<points_frame_id>` names a frame for the cloud alone, x forward;
-    `<gz:use_ros_convention>` turns the axes of its points to z forward, whatever the frame is.
+    Depth is +inf where nothing is in range and -inf for an object nearer than the range. Noise is in metres for depths
+    and in units of white for colours. The cloud is in the sensor's frame (x forward), or in the optical frame (z
+    forward) if the file sets `<optical_frame_id>`. `<points_frame_id>` sets a frame for the cloud only, x forward.
+    `<gz:use_ros_convention>` rotates the axes of its points to z forward in any frame.
 
     Attributes:
-        points_frame_id: frame of the cloud; empty where it has that of the images.
+        points_frame_id: frame of the cloud; empty for that of the images.
     """
 
     kinds: ClassVar[tuple[str, ...]] = ("rgbd_camera",)
@@ -91,12 +94,12 @@ class RgbdCamera(RenderedCamera):
         self._disparity = DisparityNoise(disparity, sim.engine.streams, self.scoped) if disparity else None
         self._view: View | None = None
         self._spare_depths = ArrayPool((model.height, model.width), np.float32)
-        # of several samples of a pixel only one has a depth, and not in its middle
+        # with several samples per pixel, only one sample has a depth, and not in the pixel's middle
         self._is_blended = self.options.anti_aliasing > 0 and Appearance.of(sim.world).quality.samples > 0
         super().attach(sim)
 
     def set_depth_range(self, near: float | None, far: float | None) -> None:
-        """Sets the range of depths [m]; None leaves an end as it is."""
+        """Set the range of depths [m]; None keeps an end."""
         old = self.options
         near, far = old.depth_near if near is None else near, old.depth_far if far is None else far
         self.options = replace(old, depth_near=near, depth_far=far)
@@ -106,7 +109,7 @@ class RgbdCamera(RenderedCamera):
         if self._view is None:
             options = self.options
             self._range = DepthRange(options.model, options.depth_near, options.depth_far)
-            # what is too near is to be seen as such, not to be cut away
+            # an object that is too near must be visible and not clipped
             near, far = clip_planes(options.model.near, options.model.far)
             self._view = replace(super()._drawn_view(), near=near, far=far)
         return self._view
@@ -143,20 +146,26 @@ class RgbdCamera(RenderedCamera):
         return {**topics, "camera_info": self._info_topic(base + "/image")}
 
     def use_optical_cloud_axes(self) -> None:
-        """Gives clouds as Gazebo Classic does: z forward, x right, y down, 32 bytes a point, whatever the frame is.
+        """Make clouds as Gazebo Classic does: z forward, x right, y down, 32 bytes per point, in any frame.
 
-        Where they are published in the frame of a link of the same model that has other axes, that is noted.
+        A note reports clouds that are published in the frame of a link with other axes in the same model.
         """
         self._is_classic = True
         self._clouds_made = None
 
     def crop_depth_images(self, near: float, far: float, *, in_millimetres: bool) -> None:
-        """Gives depth images as drivers do: NaN where depth is not between `near` and `far` [m], or 16UC1 and 0."""
+        """Publish depth images as camera drivers do, limited to a range.
+
+        Args:
+            near: start of the range of depths [m].
+            far: end of the range of depths [m].
+            in_millimetres: True for 16UC1 with 0 outside the range, False for floats with NaN outside the range.
+        """
         change = depth_messages.depths_in_millimetres if in_millimetres else depth_messages.depths_with_nan
         self.transform_messages("depth_image", functools.partial(change, near=near, far=far))
 
     def crop_clouds(self, near: float, far: float) -> None:
-        """Gives clouds whose points are NaN where depth, along z, is not between `near` and `far` [m]."""
+        """Publish clouds whose points are NaN where the depth, along z, is not between `near` and `far` [m]."""
         self.transform_messages("points", functools.partial(depth_messages.crop_cloud, near=near, far=far))
 
     def publish_on(self, topics: Mapping[str, str]) -> None:
@@ -164,26 +173,26 @@ class RgbdCamera(RenderedCamera):
         if not (self._is_classic and "points" in topics) or self._angle_to_frame() < _TURNED:
             return
         frame = self._cloud_frame
-        message = f"sensor {self.scoped!r}: its cloud has z forward, as in Gazebo Classic, but its frame is {frame!r}"
-        hint = "name a link by <frame_name> that is turned to the sensor's by an rpy of -1.5708 0 -1.5708"
-        says = f"{message}, a link with other axes: it shows turned"
-        self.sim.engine.reports.note("SK-SENSOR-112", says, self.scene.where, hint)
+        message = f"sensor {self.scoped!r}: the cloud has z forward, as in Gazebo Classic, but its frame {frame!r}"
+        message += " is a link with other axes, so the cloud appears rotated"
+        hint = "set <frame_name> to a link with an rpy of -1.5708 0 -1.5708 relative to the sensor"
+        self.sim.engine.reports.note("SK-SENSOR-112", message, self.scene.where, hint)
 
     # ------------------------------------------------------------------ readings
 
     @property
     def depth(self) -> Depths | None:
-        """Depths along the optical axis of the newest picture [m], shape (h, w), or None before the first."""
+        """Depths along the optical axis of the newest image [m], shape (h, w), or None before the first."""
         return _locked_depths(self._noisy_reading())
 
     @property
     def true_depth(self) -> Depths | None:
-        """The same without noise."""
+        """Depths of the newest image without noise [m], shape (h, w), or None before the first."""
         return _locked_depths(self._true_reading())
 
     @property
     def points(self) -> npt.NDArray[np.float32] | None:
-        """Where each pixel's point is [m], shape (h, w, 3), as in the cloud's message, or None before the first."""
+        """Points of the newest image [m], shape (h, w, 3), as in the cloud's message, or None before the first."""
         reading = self._noisy_reading()
         return None if reading is None else self._clouds.points(reading.depths, self._shift(reading))
 
@@ -199,7 +208,7 @@ class RgbdCamera(RenderedCamera):
         return NoisyDepths(reading, self._pictures.noise, index, self._noisy_depths)
 
     def _noisy_depths(self, depths: Depths, index: int) -> Depths:
-        """Noise of disparities, noise of depths, then the range's rule again, as in Gazebo."""
+        """Add noise to the disparities and the depths, then apply the range again, as in Gazebo."""
         if self._disparity is not None and not self._disparity.is_silent:
             depths = self._disparity.on_depths(depths, index)
         if not self._pictures.noise.is_silent:
@@ -223,7 +232,7 @@ class RgbdCamera(RenderedCamera):
         return self._clouds_made
 
     def _shift(self, reading: Reading) -> Depths | None:
-        """Gazebo adds its noise to all three coordinates alike, not along the ray (gaussian_noise_depth_fs.glsl)."""
+        """Return the noise that Gazebo adds to all three coordinates alike (gaussian_noise_depth_fs.glsl)."""
         if not self.sim.world.gazebo_quirks or not isinstance(reading, NoisyDepths):
             return None
         with np.errstate(invalid="ignore"):
@@ -242,7 +251,7 @@ class RgbdCamera(RenderedCamera):
 
     @property
     def _is_cloud_optical(self) -> bool:
-        """Whether z of the cloud's points is forward."""
+        """True if the z axis of the cloud's points is forward."""
         is_with_images = bool(self.optical_frame_id) and not self.points_frame_id
         return self._is_classic or self._has_ros_axes or is_with_images
 
@@ -257,7 +266,7 @@ class RgbdCamera(RenderedCamera):
         return found
 
     def _angle_to_frame(self) -> float:
-        """By how much the frame's axes are turned from optical ones [rad]; 0 where it is no link of the model."""
+        """Return the angle between the frame's axes and optical axes [rad]; 0 if the frame is no link of the model."""
         frame, (owner, _, _) = self._cloud_frame, self.scene.parent.rpartition("::")
         links = [link for model in self.sim.models.values() for link in model.scene.all_links()]
         named = [link for link in links if link.name == frame and link.scoped.rpartition("::")[0] == owner]
@@ -269,7 +278,7 @@ class RgbdCamera(RenderedCamera):
 
 
 def _locked_depths(reading: Reading | None) -> Depths | None:
-    """A view of a reading's depths that cannot be written to: messages share the memory."""
+    """Return a read-only view of a reading's depths, because messages share their memory."""
     if reading is None:
         return None
     view: Depths = reading.depths.view()

@@ -1,4 +1,4 @@
-"""`<save>` of a camera: each picture as a PNG in a folder that the file names and the user allows."""
+"""Saving of camera images as PNG files in a folder that the file names and the user allows (`<save>`)."""
 
 from __future__ import annotations
 
@@ -19,24 +19,25 @@ from simkit.scene import SceneSensor
 from simkit.sensors.cameras.image_messages import IMAGE_TYPE, pixels_of
 
 MAX_IMAGES = 100_000
-"""Pictures of one camera in a run."""
+"""Largest number of saved images per camera and run."""
 
 _MAX_NAME_LENGTH = 150
 
 
 def read_save(block: Params) -> Path | None:
-    """The folder of a `<camera>` block's `<save>`; None where nothing is to be saved.
+    """Read the folder of a `<camera>` block's `<save>`; return None if nothing is to be saved.
 
-    A file from somewhere else writes nowhere but below the working directory and the folders in `SIMKIT_SAVE_PATH`.
+    Files may come from untrusted sources, so images are saved only below the working directory and the folders in
+    `SIMKIT_SAVE_PATH`.
     """
     save = block.child("save")
     if save is None:
         return None
-    given = save.attribute("enabled", "") or save.text("enabled", "false")
-    if given not in ("true", "1"):
+    enabled = save.attribute("enabled", "") or save.text("enabled", "false")
+    if enabled not in ("true", "1"):
         save.mark_all_read()
-        if given not in ("false", "0"):
-            save.error("SK-PARAM-002", f'found <save enabled="{given}">, allowed is true, false, 1 or 0')
+        if enabled not in ("false", "0"):
+            save.error("SK-PARAM-002", f'found <save enabled="{enabled}">, allowed is true, false, 1 or 0')
         return None
     path = save.text("path", required=True)
     if not path:
@@ -44,32 +45,30 @@ def read_save(block: Params) -> Path | None:
     folder = allowed_folder(path)
     if folder is None:
         where = save.block("path").where
-        message = f"<path>{path}</path> of <save> lies outside the folders that may be written to; nothing is saved"
-        hint = (
-            f"a path below the working directory, or the folder's name in the environment variable {SAVE_PATH_VARIABLE}"
-        )
+        message = f"<path>{path}</path> of <save> is outside the folders that simkit may write to; nothing is saved"
+        hint = f"use a path below the working directory, or add the folder to the variable {SAVE_PATH_VARIABLE}"
         save.diagnostics.warning("SK-SENSOR-009", message, where, hint)
     return folder
 
 
 class ImageSaver(Publisher):
-    """An end of a camera's images that writes each of them to a file: `<name>_0.png`, `<name>_1.png`, …
+    """Publisher that writes each image to a file: `<name>_0.png`, `<name>_1.png`, and so on.
 
-    They are counted through resets, so that a run never writes over its own pictures. What cannot be written ends the
-    saving, and is said once.
+    The count continues after a reset, so that a run never overwrites its own images. A write error ends the saving,
+    with one report.
 
     Args:
-        sim: whose reports it writes to.
-        sensor: of whom.
-        folder: made when the first picture comes.
-        name: before the number.
-        far: the distance [m] that is black in a picture of depths; None where floats are brightness.
+        sim: simulation that receives the reports.
+        sensor: sensor that the images belong to.
+        folder: folder of the files, made for the first image.
+        name: file name before the number.
+        far: depth [m] that is black in a depth image; None where floats are brightness.
     """
 
     __slots__ = ("_count", "_far", "_folder", "_is_over", "_name", "_sensor", "_sim")
 
     def __init__(self, sim: Simulation, sensor: SceneSensor, folder: Path, name: str, far: float | None) -> None:
-        sides = TopicSides(TopicReaders(), [])  # nobody reads what is written to files
+        sides = TopicSides(TopicReaders(), [])  # files have no subscribers
         super().__init__(sim.communication.bus, sides, f"/{name}/saved", IMAGE_TYPE, False, None)
         self._sim, self._sensor, self._folder, self._far = sim, sensor, folder, far
         self._name = re.sub(r"[^A-Za-z0-9_.:-]", "_", name)[:_MAX_NAME_LENGTH]
@@ -88,11 +87,11 @@ class ImageSaver(Publisher):
         return 0
 
     def publish(self, message: Message) -> None:
-        """Writes one picture."""
+        """Write one image."""
         if self._is_over:
             return
         if self._count >= MAX_IMAGES:
-            self._end(f"{MAX_IMAGES} pictures of it have been saved")
+            self._end(f"the limit of {MAX_IMAGES} images per run is reached")
             return
         try:
             self._folder.mkdir(parents=True, exist_ok=True)
@@ -103,18 +102,18 @@ class ImageSaver(Publisher):
         self._count += 1
 
     def _file(self, message: Message) -> tuple[str, bytes]:
-        """Name and content of the next file."""
+        """Return name and content of the next file."""
         return f"{self._name}_{self._count}.png", encode_png(message, self._far)
 
-    def _end(self, why: str) -> None:
+    def _end(self, reason: str) -> None:
         self._is_over = True
         self._sim.communication.bus.revision += 1
-        message = f"camera {self._sensor.scoped!r} saves no more pictures: {why}"
+        message = f"camera {self._sensor.scoped!r} saves no more images: {reason}"
         self._sim.engine.reports.warning("SK-SENSOR-121", message, self._sensor.where)
 
 
 def _write(path: Path, data: bytes) -> None:
-    """All of the file or nothing."""
+    """Write a whole file, or leave no file."""
     partial = path.with_name(f".{path.name}.part")
     try:
         partial.write_bytes(data)
@@ -125,13 +124,13 @@ def _write(path: Path, data: bytes) -> None:
 
 
 def encode_png(message: msgs.Image, far: float | None = None) -> bytes:
-    """An `Image` message as a PNG: 8 or 16 bits as they are, a Bayer image as its mosaic.
+    """Encode an `Image` message as a PNG: 8 or 16 bits unchanged, a Bayer image as its mosaic.
 
-    Depths (`32FC1` in metres) become shades of grey, from white at 0 to black at `far` [m], as in Gazebo; without it
-    floats are brightness from 0 to 1.
+    Depths (`32FC1` in metres) become shades of grey, from white at 0 to black at `far` [m], as in Gazebo. Without
+    `far`, floats are brightness from 0 to 1.
 
     Raises:
-        OSError: it cannot be written as one.
+        OSError: the image cannot be written as a PNG.
     """
     import cv2
 

@@ -1,6 +1,6 @@
-"""Segmentation cameras: the label, and the object of that label, at each pixel.
+"""Segmentation cameras: the label, and the number of the object with that label, at each pixel.
 
-Colours of coloured maps are Gazebo's, which draws them from a generator seeded with the number.
+The colours of coloured maps are Gazebo's, which draws them from a generator seeded with the number.
 """
 
 from __future__ import annotations
@@ -32,12 +32,12 @@ _BUCKET: Final = (_MODULUS - 2) // 256
 
 
 def label_colours(numbers: Iterable[int]) -> dict[int, Colour]:
-    """A colour for each number, no two the same and none black.
+    """Return a colour for each number; all are different, and none is black.
 
-    Gazebo draws a number's red, green and blue one after the other from C++'s `default_random_engine`, seeded with
-    that number, through `uniform_int_distribution` from 0 to 255 (gz-rendering, Ogre2SegmentationMaterialSwitcher.cc):
-    with GNU's library Lehmer's generator with the factor 16807, in 256 equal parts. Where two numbers give one colour,
-    the later goes on drawing.
+    Gazebo draws a number's red, green and blue one after the other from C++'s `default_random_engine`, seeded with that
+    number, through `uniform_int_distribution` from 0 to 255 (gz-rendering, Ogre2SegmentationMaterialSwitcher.cc). With
+    GNU's library that is Lehmer's generator with the factor 16807, in 256 equal parts. If a colour is already used, the
+    later number draws again.
     """
     used = {BACKGROUND}
     found: dict[int, Colour] = {}
@@ -55,7 +55,7 @@ def label_colours(numbers: Iterable[int]) -> dict[int, Colour]:
 
 
 def _random_channels(seed: int) -> Iterator[int]:
-    """Numbers from 0 to 255."""
+    """Yield numbers from 0 to 255."""
     state = seed % _MODULUS or 1
     while True:
         state = state * _FACTOR % _MODULUS
@@ -71,10 +71,10 @@ _TYPES: Final = {"semantic": "semantic", "instance": "panoptic", "panoptic": "pa
 
 @dataclass(frozen=True, slots=True)
 class SegmentationOptions(CameraOptions):
-    """The `<camera>` block; depths, distances of clip planes and noise as of every camera, in m.
+    """The `<camera>` block; depths, clip planes and noise as for every camera, in m.
 
     Attributes:
-        type: semantic tells labels, panoptic also tells things of one label apart.
+        type: `semantic` for labels, `panoptic` to distinguish objects of one label as well.
     """
 
     type: str = "semantic"
@@ -82,7 +82,7 @@ class SegmentationOptions(CameraOptions):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Palette:
-    """What the pixels of each geom hold: bytes of four, the last for no geom, each as one number."""
+    """Pixel values of each geom: four bytes, as one number; the last entry is for no geom."""
 
     labels: npt.NDArray[np.uint32]
     colours: npt.NDArray[np.uint32]
@@ -90,12 +90,12 @@ class Palette:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Segmentation:
-    """What is seen.
+    """Reading of a segmentation camera.
 
     Attributes:
-        geoms: the model's geom at each pixel, shape (h, w); -1 where there is none.
-        palette: what is written for each geom.
-        colours: the picture, shape (h, w, 3), where pictures are saved as well.
+        geoms: geom id at each pixel, -1 for none, shape (h, w).
+        palette: pixel values of each geom.
+        colours: camera image, shape (h, w, 3), if images are saved as well.
     """
 
     geoms: Ids
@@ -104,20 +104,21 @@ class Segmentation:
 
     @property
     def labels(self) -> Pixels:
-        """The map of labels, shape (h, w, 3)."""
+        """Map of labels, shape (h, w, 3)."""
         return _paint(self.palette.labels, self.geoms)
 
     @property
     def coloured(self) -> Pixels:
-        """The map of colours, shape (h, w, 3)."""
+        """Map of colours, shape (h, w, 3)."""
         return _paint(self.palette.colours, self.geoms)
 
 
 class SegmentationCamera(LabelCamera):
-    """`segmentation_camera`: a map of labels and one of colours.
+    """Segmentation camera, `segmentation_camera`: a map of labels and a map of colours.
 
-    Semantic: the label in all three channels. Panoptic: red and green are the low and the high byte of the number of
-    the thing among those of its label, from 1; blue is the label. What has no label is 0, and black.
+    In a semantic map, all three channels contain the label. In a panoptic map, red and green are the low and the high
+    byte of the object's number among those of its label, from 1; blue is the label. Pixels without a label are 0, and
+    black.
     """
 
     kinds = ("segmentation_camera", "segmentation")
@@ -176,7 +177,7 @@ class SegmentationCamera(LabelCamera):
 
 
 def make_palette(items: LabelledObjects, kind: str) -> Palette:
-    """Return what is written for each geom in a semantic or panoptic map."""
+    """Return the pixel values of each geom in a semantic or panoptic map."""
     labels, instances = np.maximum(items.label_of, 0), items.instance_of
     codes = np.zeros((len(labels), 4), np.uint8)
     if kind == "semantic":

@@ -1,4 +1,4 @@
-"""The corners of drawn shapes, for boxes around them."""
+"""Corners of drawn shapes, for the boxes around them."""
 
 from __future__ import annotations
 
@@ -15,27 +15,27 @@ from simkit.sensors.rays.embree_rays import heightmap_grid, mesh_triangles
 
 Pairs = npt.NDArray[np.int32]
 
-_ROUND: Final = 64  # corners of a circle: a ball of 400 px is met to half a pixel
-_ENDLESS: Final = 1000.0  # [m], of a plane without a size
+_ROUND: Final = 64  # corners of a circle, which gives a ball of 400 px an error of half a pixel
+_ENDLESS: Final = 1000.0  # [m] size of an infinite plane
 _KINDS = mujoco.mjtGeom
 
 CUBE: Final = np.array([(x, y, z) for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
-"""Corners of a cube with edges of 2, shape (8, 3); two whose numbers differ in one bit share an edge."""
+"""Corners of a cube with edges of 2, shape (8, 3); two corners whose numbers differ in one bit share an edge."""
 
 CUBE_EDGES: Final = np.array([(i, i | bit) for i in range(8) for bit in (1, 2, 4) if not i & bit], np.int32)
-"""Pairs of them, shape (12, 2)."""
+"""Edges of the cube as pairs of corners, shape (12, 2)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Corners:
-    """A shape's corners in its geom's frame [m], shape (n, 3), and the pairs of them that edges join, shape (m, 2)."""
+    """Corners of a shape in its geom's frame [m], shape (n, 3), and its edges as pairs of corners, shape (m, 2)."""
 
     points: Vector
     edges: Pairs
 
 
 def geom_corners(model: mujoco.MjModel, geom: int) -> Corners:
-    """The corners of a geom as it is drawn; round shapes have enough of them."""
+    """Return the corners of a geom as it is drawn; a circle has 64 corners."""
     kind, size = int(model.geom_type[geom]), np.array(model.geom_size[geom])
     if kind in (_KINDS.mjGEOM_SPHERE, _KINDS.mjGEOM_ELLIPSOID):
         ball = _sphere()
@@ -61,7 +61,7 @@ def geom_corners(model: mujoco.MjModel, geom: int) -> Corners:
 
 
 def _grid_edges(rows: int, columns: int, is_closed: bool = False) -> Pairs:
-    """Edges of a grid of corners, along rows and columns; closed: each row's end joins its beginning."""
+    """Return the edges of a grid of corners along rows and columns; if closed, the end of a row joins its beginning."""
     numbers = np.arange(rows * columns, dtype=np.int32).reshape(rows, columns)
     along = np.stack((numbers, np.roll(numbers, -1, axis=1)), axis=-1)
     if not is_closed:
@@ -71,7 +71,7 @@ def _grid_edges(rows: int, columns: int, is_closed: bool = False) -> Pairs:
 
 
 def _unique_edges(faces: npt.NDArray[np.integer]) -> Pairs:
-    """Each edge of triangles (m, 3) once."""
+    """Return each edge of triangles (m, 3) once."""
     ends = np.sort(np.concatenate((faces[:, :2], faces[:, 1:], faces[:, ::2])), axis=1).astype(np.int32)
     found: Pairs = np.unique(ends, axis=0)
     return found
@@ -93,7 +93,7 @@ def _cylinder() -> Corners:
 
 @functools.cache
 def _sphere() -> Corners:
-    """Of radius 1; its widest ring is there twice, for the two halves of a capsule."""
+    """Return a sphere of radius 1; its widest ring exists twice, for the two halves of a capsule."""
     heights = np.linspace(-np.pi / 2, np.pi / 2, _ROUND // 2 + 1)
     middle = len(heights) // 2
     heights = np.insert(heights, middle, heights[middle])

@@ -27,48 +27,47 @@ Kelvins = npt.NDArray[np.float32]
 
 _LUMA: Final = np.array((0.299, 0.587, 0.114))
 _FAR: Final = np.float32(1e6)
-_DEFAULT: Final = (0.5, 0.5, 0.5, 1.0)  # the engine's colour of a geom that is given none
+_DEFAULT: Final = (0.5, 0.5, 0.5, 1.0)  # colour that the engine gives to a geom without one
 
 
 @dataclass(frozen=True, eq=False)
 class HeatTexture:
-    """The red channel of a picture, from 0 to 1, rows from the top; it repeats beyond its edges.
+    """Red channel of an image, from 0 to 1, rows from the top; the texture repeats beyond its edges.
 
     Attributes:
-        framed: with a pixel more on each side, of the opposite one, so that what is between the last and the first is
-            right.
-        mean: of all its pixels.
+        framed: pixels with a border of one pixel copied from the opposite edge, so that interpolation wraps around.
+        mean: mean of all pixels.
     """
 
     framed: npt.NDArray[np.float32]
     mean: float
 
     def at(self, uv: Vector) -> npt.NDArray[np.float32]:
-        """Its values at texture coordinates, shape (n, 2), v upwards, between its pixels linearly."""
+        """Return the linearly interpolated values at texture coordinates, shape (n, 2), with v upwards."""
         import cv2
 
         height, width = self.framed.shape[0] - 2, self.framed.shape[1] - 2
         column = (uv[:, 0] % 1.0 * width + 0.5).astype(np.float32)
         row = ((1.0 - uv[:, 1]) % 1.0 * height + 0.5).astype(np.float32)
         found = []
-        for first in range(0, len(uv), 32000):  # OpenCV's rows end at 32767
+        for first in range(0, len(uv), 32000):  # OpenCV's rows are limited to 32767 pixels
             part = slice(first, first + 32000)
             found.append(cv2.remap(self.framed, column[None, part], row[None, part], cv2.INTER_LINEAR)[0])
         return np.concatenate(found) if found else np.empty(0, np.float32)
 
 
 class TexturedMesh:
-    """The triangles of a visual, in its own frame, with texture coordinates.
+    """Triangles of a visual with texture coordinates, in the visual's own frame.
 
     Args:
-        corners: [m], shape (n, 3).
-        faces: shape (m, 3).
-        uv: of the corners, shape (n, 2).
+        corners: corners [m], shape (n, 3).
+        faces: corner indices of the triangles, shape (m, 3).
+        uv: texture coordinates of the corners, shape (n, 2).
     """
 
     def __init__(self, corners: Vector, faces: npt.NDArray[np.int32], uv: Vector) -> None:
         self._scene = TriangleScene(corners, faces)
-        # on each triangle both coordinates are linear: uv = slope · point + start
+        # both coordinates are linear on each triangle: uv = slope · point + start
         a, first = corners[faces[:, 0]], uv[faces[:, 0]]
         edges = np.stack([corners[faces[:, k]] - a for k in (1, 2)], axis=1)
         rises = np.stack([uv[faces[:, k]] - first for k in (1, 2)], axis=1)
@@ -77,28 +76,30 @@ class TexturedMesh:
         self._maps = np.concatenate((slopes, starts[:, :, None]), axis=2)
 
     def texture_hits(self, origin: Vector, directions: Vector) -> tuple[npt.NDArray[np.intp], Vector]:
-        """Which rays from a point hit, and the texture coordinates there.
+        """Return the indices of the rays that hit, and the texture coordinates there.
 
         Args:
-            origin: shape (3,) [m].
+            origin: origin of the rays [m], shape (3,).
             directions: unit vectors, shape (n, 3).
         """
         limits = np.full(len(directions), _FAR)
-        which, distances, triangles = self._scene.nearest(origin, directions, 0.0, limits)
-        points = origin + directions[which] * distances[:, None]
+        hits, distances, triangles = self._scene.nearest(origin, directions, 0.0, limits)
+        points = origin + directions[hits] * distances[:, None]
         maps = self._maps.take(triangles, axis=0)
         u, v = (np.einsum("nj,nj->n", maps[:, i, :3], points) + maps[:, i, 3] for i in (0, 1))
-        return which, np.column_stack((u, v))
+        return hits, np.column_stack((u, v))
 
 
 @dataclass(frozen=True, eq=False)
 class HeatSurface:
-    """A visual with a heat signature.
+    """Visual with a heat signature.
 
     Attributes:
-        body: of the engine, that carries it.
-        pose: of the visual in that body.
-        skin: None where nothing tells where on the picture a point is; it then has the mean everywhere.
+        body: body of the engine that carries the visual.
+        pose: pose of the visual in that body.
+        signature: range of temperatures.
+        picture: heat texture.
+        skin: triangles with texture coordinates; None without them, and the temperature is then the mean everywhere.
     """
 
     body: int
@@ -109,7 +110,7 @@ class HeatSurface:
 
     @property
     def mean(self) -> float:
-        """[K]."""
+        """Mean temperature [K]."""
         return float(self._temperature_at(np.float32(self.picture.mean)))
 
     def _temperature_at(self, share: Any) -> Any:
@@ -117,29 +118,29 @@ class HeatSurface:
         return coldest + (hottest - coldest) * share
 
     def temperatures(self, eye: Vector, rotation: Vector, directions: Vector) -> Kelvins:
-        """Where rays meet it [K], shape (n,); the mean where they pass its edge.
+        """Return the temperatures where rays hit the surface [K], shape (n,); the mean where rays miss its triangles.
 
         Args:
-            eye: of the camera in the visual's frame [m].
-            rotation: of the camera in it, shape (3, 3).
+            eye: position of the camera in the visual's frame [m].
+            rotation: rotation matrix of the camera in that frame, shape (3, 3).
             directions: unit vectors in the camera's frame, shape (n, 3).
         """
         found = np.full(len(directions), self.mean, np.float32)
         if self.skin is not None and len(directions):
-            which, uv = self.skin.texture_hits(eye, directions @ rotation.T)
-            found[which] = self._temperature_at(self.picture.at(uv))
+            hits, uv = self.skin.texture_hits(eye, directions @ rotation.T)
+            found[hits] = self._temperature_at(self.picture.at(uv))
         return found
 
 
 @dataclass(frozen=True, eq=False)
 class TemperatureMap:
-    """The temperatures of one world at one time.
+    """Temperatures of one world at one time.
 
     Attributes:
-        table: of each geom [K], shape (ngeom + 1,); the last, index -1, is of where there is none.
-        is_source: which of them have a temperature of their own.
-        surfaces: what has more than one.
-        surface_of: the place of each geom's among them, -1 for most.
+        table: temperature of each geom [K], shape (ngeom + 1,); the last, index -1, applies where there is no geom.
+        is_source: True for geoms with a temperature of their own.
+        surfaces: visuals with more than one temperature.
+        surface_of: index of each geom's surface in `surfaces`, -1 for none.
     """
 
     table: Kelvins
@@ -148,24 +149,25 @@ class TemperatureMap:
     surface_of: npt.NDArray[np.int32]
 
     def seen(self, ids: Ids) -> Iterator[tuple[int, npt.NDArray[np.intp]]]:
-        """The places of surfaces that are seen, and at which pixels of the flattened picture."""
-        places = self.surface_of.take(ids.ravel(), mode="wrap")
-        pixels = np.flatnonzero(places >= 0)
-        places = places[pixels]
-        pixels = pixels[np.argsort(places, kind="stable")]
-        counts = np.bincount(places, minlength=len(self.surfaces))
-        for place, part in enumerate(np.split(pixels, np.cumsum(counts)[:-1])):
+        """Yield the indices of visible surfaces, with their pixels in the flattened image."""
+        surfaces = self.surface_of.take(ids.ravel(), mode="wrap")
+        pixels = np.flatnonzero(surfaces >= 0)
+        surfaces = surfaces[pixels]
+        pixels = pixels[np.argsort(surfaces, kind="stable")]
+        counts = np.bincount(surfaces, minlength=len(self.surfaces))
+        for surface, part in enumerate(np.split(pixels, np.cumsum(counts)[:-1])):
             if len(part):
-                yield place, part
+                yield surface, part
 
 
 def make_temperature_map(sim: Simulation, air: float, span: float) -> TemperatureMap:
-    """What is how warm now.
+    """Return the current temperatures.
 
     Args:
-        air: temperature of what has none of its own [K].
-        span: between what is black and what is white of that [K], as in Gazebo: half of it below the air's temperature
-            and half above.
+        sim: simulation.
+        air: temperature of objects without one of their own [K].
+        span: difference between a black and a white object of that temperature [K], half of it below and half of it
+            above, as in Gazebo.
     """
     model, names = sim.mj_model, sim.engine.names
     table = np.full(model.ngeom + 1, air, np.float32)
@@ -191,12 +193,12 @@ def make_temperature_map(sim: Simulation, air: float, span: float) -> Temperatur
 
 
 def _brightness(model: mujoco.MjModel) -> Vector:
-    """Of each geom's colour without light, from 0 to 1 (Rec. 601); a texture counts with its mean."""
+    """Return the brightness of each geom's unlit colour, from 0 to 1 (Rec. 601); of a texture, its mean is used."""
     shown = model.geom_rgba[:, :3].astype(np.float64)
     material = model.geom_matid
     of_material = material >= 0
     if of_material.any():
-        # what has the engine's default colour has that of its material
+        # a geom with the engine's default colour shows the colour of its material
         plain = of_material & (model.geom_rgba == np.array(_DEFAULT, np.float32)).all(axis=1)
         shown[plain] = model.mat_rgba[material[plain], :3]
         textures = model.mat_texid[:, int(mujoco.mjtTextureRole.mjTEXROLE_RGB)]
@@ -224,7 +226,7 @@ def _load_heat_texture(path: Path) -> HeatTexture:
 
 @lru_cache(maxsize=64)
 def _make_textured_mesh(shape: Geometry) -> TexturedMesh | None:
-    """The triangles of a shape; None for a shape without texture coordinates, and without a ray tracer."""
+    """Return the triangles of a shape; None for a shape without texture coordinates, and without Embree."""
     if not has_embree():
         return None
     parts = list(_triangles(shape))
@@ -237,7 +239,7 @@ def _make_textured_mesh(shape: Geometry) -> TexturedMesh | None:
 
 
 def _triangles(shape: Geometry) -> Iterator[tuple[Vector, npt.NDArray[np.int32], Vector]]:
-    """Corners, faces and texture coordinates of its parts, where they have some."""
+    """Yield corners, faces and texture coordinates of the parts of a shape that have texture coordinates."""
     if isinstance(shape, Mesh):
         for part in [] if shape.missing else load_mesh(shape, Diagnostics(), NOWHERE):
             if part.uv is not None:

@@ -25,21 +25,21 @@ from simkit.sensors.cameras.temperature_map import Kelvins, TemperatureMap, make
 from simkit.sensors.sample import Reading
 
 _FINE, _COARSE = 0.01, 3.0
-"""[K] of one step, as in Gazebo, of pictures with 16 and with 8 bits."""
+"""Step of the temperature, as in Gazebo, of images with 16 and with 8 bits [K]."""
 
 _BITS_BY_FORMAT: Final = {"L8": 8, "L_INT8": 8, "L16": 16, "L_INT16": 16}
 _NEARER: Final = 0.1
-"""Gazebo does not cut away what is nearer than the near plane; this much of the way to it is cut away here."""
+"""Drawn near plane over the near plane: Gazebo does not clip objects nearer than the near plane."""
 
 
 @dataclass(frozen=True, slots=True)
 class ThermalOptions(CameraOptions):
-    """The `<camera>` block; distances of clip planes in m, noise as a part of the largest number of a pixel.
+    """The `<camera>` block; clip planes in m, noise relative to the largest pixel value.
 
     Attributes:
-        bits: of a pixel.
+        bits: bits of a pixel.
         resolution: temperature [K] of one step.
-        coldest, hottest: what can be told [K].
+        coldest, hottest: range of measurable temperatures [K].
     """
 
     bits: int = 16
@@ -50,10 +50,11 @@ class ThermalOptions(CameraOptions):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ThermalState:
-    """What it needs to know of a state beside the picture.
+    """State that a sample needs besides the image.
 
     Attributes:
-        views: place [m] and rotation of the camera in the frame of each surface with a picture of temperatures.
+        heat: temperatures of the world.
+        views: position [m] and rotation of the camera in the frame of each surface with a heat texture.
     """
 
     heat: TemperatureMap
@@ -61,11 +62,11 @@ class ThermalState:
 
 
 class ThermalCamera(RenderedCamera):
-    """`thermal_camera`: temperatures, as multiples of a resolution, in 16 bits or in 8.
+    """Thermal camera, `thermal_camera`: temperatures as multiples of a resolution, in 16 or 8 bits.
 
-    What has a temperature of its own shows that, evenly or by its heat signature. All else, and the sky, has that of
-    the air; the colour of things shifts it a little, as in Gazebo: by half a span down for black, by half a span up for
-    white. The span is what the air's temperature gradient makes over the height of the view at its far plane.
+    An object with a temperature of its own shows that temperature, uniform or by its heat signature. All other objects
+    and the sky have the temperature of the air. As in Gazebo, their colour shifts it by up to half a span: down for
+    black, up for white. The span is the air's temperature gradient times the height of the view at its far plane.
     """
 
     kinds = ("thermal_camera", "thermal")
@@ -81,12 +82,12 @@ class ThermalCamera(RenderedCamera):
         self._heat_of: tuple[object, object] = (None, None)
 
     def describe(self) -> dict[str, object]:
-        """Temperatures in K."""
+        """Return the description, with temperatures in K."""
         options = self.options
         return {**super().describe(), "thermal": {"bits": options.bits, "resolution": options.resolution}}
 
     def set_temperatures(self, coldest: float, hottest: float, resolution: float | None = None) -> None:
-        """Says what it can tell [K]; a resolution of None stays as it is."""
+        """Set the range of measurable temperatures [K]; a resolution of None is not changed."""
         old = self.options
         self.options = replace(old, coldest=coldest, hottest=hottest, resolution=resolution or old.resolution)
 
@@ -94,7 +95,7 @@ class ThermalCamera(RenderedCamera):
         air = self.sim.world.atmosphere or Atmosphere()
         self._air = air.temperature
         self._quirks = self.sim.world.gazebo_quirks
-        self._ways: Vector | None = None
+        self._directions: Vector | None = None
         self._span = abs(air.temperature_gradient) * self._height_of_view()
 
     def bind(self, compiled: Compiled) -> None:
@@ -106,7 +107,7 @@ class ThermalCamera(RenderedCamera):
         self._heat, self._heat_of = None, (None, None)
 
     def _height_of_view(self) -> float:
-        """Of the frustum at its far plane [m]; Gazebo divides width by height in whole numbers (Sensors.cc)."""
+        """Return the height of the frustum at its far plane [m]; Gazebo uses an integer aspect ratio (Sensors.cc)."""
         model = self.options.model
         aspect = model.width // model.height if self._quirks else model.width / model.height
         half = math.tan(model.hfov / 2)
@@ -129,7 +130,7 @@ class ThermalCamera(RenderedCamera):
         return (Shot(self._drawn_view(), ids=True),)
 
     def capture_surroundings(self) -> TemperatureMap:
-        """What is how warm now."""
+        """Return the current temperatures of the world."""
         sim = self.sim
         state, structure = sim.contents.temperatures.state, sim.engine.structure
         if self._heat is None or self._heat_of[0] is not state or self._heat_of[1] is not structure:
@@ -137,7 +138,7 @@ class ThermalCamera(RenderedCamera):
             self._heat_of = state, structure
             table = self._heat.table
             if self._quirks:
-                table[-1] -= self._span / 2  # the sky is black
+                table[-1] -= self._span / 2  # the sky counts as black
                 table[self._heat.is_source] = self._quantise_as_gazebo(table[self._heat.is_source])
         return self._heat
 
@@ -148,12 +149,12 @@ class ThermalCamera(RenderedCamera):
             position, rotation = self._frame_in_world(data)
             for surface in heat.surfaces:
                 turn = data.xmat[surface.body].reshape(3, 3) @ surface.pose.matrix
-                place = data.xpos[surface.body] + data.xmat[surface.body].reshape(3, 3) @ surface.pose.position
-                views.append((turn.T @ (position - place), turn.T @ rotation))
+                origin = data.xpos[surface.body] + data.xmat[surface.body].reshape(3, 3) @ surface.pose.position
+                views.append((turn.T @ (position - origin), turn.T @ rotation))
         return ThermalState(heat, tuple(views))
 
     def develop(self, films: Iterator[Film], notes: ThermalState) -> Kelvins:
-        """Temperatures [K], shape (height, width)."""
+        """Return the temperatures [K], shape (height, width)."""
         film = next(films)
         assert film.ids is not None
         ids = self._pictures.distorter.distort_ids(film.ids) if self._pictures.distorter else film.ids
@@ -166,13 +167,13 @@ class ThermalCamera(RenderedCamera):
 
     def _apply_heat_textures(self, kelvins: Kelvins, ids: npt.NDArray[np.int32], notes: ThermalState) -> None:
         """Replace the temperatures of pixels on surfaces that have a heat texture."""
-        if self._ways is None:
+        if self._directions is None:
             x, y = self.options.model.directions()
-            ways = np.stack((np.ones_like(x), -x, -y), axis=-1).reshape(-1, 3)
-            self._ways = ways / np.linalg.norm(ways, axis=1, keepdims=True)
+            directions = np.stack((np.ones_like(x), -x, -y), axis=-1).reshape(-1, 3)
+            self._directions = directions / np.linalg.norm(directions, axis=1, keepdims=True)
         flat = kelvins.reshape(-1)
-        for place, pixels in notes.heat.seen(ids):
-            found = notes.heat.surfaces[place].temperatures(*notes.views[place], self._ways[pixels])
+        for index, pixels in notes.heat.seen(ids):
+            found = notes.heat.surfaces[index].temperatures(*notes.views[index], self._directions[pixels])
             flat[pixels] = self._quantise_as_gazebo(found) if self._quirks else found
 
     def _quantise_as_gazebo(self, kelvins: Kelvins) -> Kelvins:
@@ -182,7 +183,7 @@ class ThermalCamera(RenderedCamera):
         return coarse
 
     def perturb(self, reading: Reading, index: int) -> object:
-        if self._pictures.noise.is_silent or self._quirks:  # Gazebo adds none
+        if self._pictures.noise.is_silent or self._quirks:  # Gazebo adds no noise
             return reading
         draws = self._pictures.noise.on_depths(np.zeros_like(reading), index)
         return reading + draws * np.float32(self._max_pixel_value() * self.options.resolution)
@@ -200,10 +201,10 @@ class ThermalCamera(RenderedCamera):
 
 
 def _read_bits(scene: SceneSensor, diagnostics: Diagnostics) -> int:
-    """Of a pixel, by its format; 16 without one, and where it is another's, which is said."""
+    """Read the bits of a pixel from its format; report a format of another kind of camera, and return 16 for it."""
     image = scene.params.block("camera").block("image")
     pixel_format = image.text("format", "").strip()
     if pixel_format and pixel_format not in _BITS_BY_FORMAT:
-        message = f"<format> {pixel_format!r} is not used by a thermal camera: its pictures are L16, or L8"
+        message = f"<format> {pixel_format!r} has no effect on a thermal camera, whose images are L16 or L8"
         diagnostics.warning("SK-SENSOR-140", message, image.block("format").where)
     return _BITS_BY_FORMAT.get(pixel_format, 16)

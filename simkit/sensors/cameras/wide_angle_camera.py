@@ -15,7 +15,7 @@ from simkit.sensors.cameras.wide_angle_lens import WideAngleModel, read_wide_ang
 
 
 class WideAngleCamera(Camera):
-    """`wide_angle_camera`: up to all directions through one of SDF's lenses, black beyond its cutoff angle."""
+    """Wide-angle camera, `wide_angle_camera`: up to all directions, through a lens of SDF with a cutoff angle."""
 
     kinds = ("wide_angle_camera", "wideanglecamera")
 
@@ -33,7 +33,7 @@ class WideAngleCamera(Camera):
         return {"camera": {**self._describe_image(), "lens": model.lens.type}}
 
     def shots(self) -> Sequence[Shot]:
-        """What is drawn for one sample; found out at the first picture, since a lens takes a while."""
+        """Return the views to draw for one sample, computed for the first image because a lens takes a while."""
         if self._cube is None:
             model = self.options.model
             assert isinstance(model, WideAngleModel)

@@ -1,4 +1,4 @@
-"""SDF's lens models: image radius as a function of the angle off the optical axis."""
+"""Lens models of SDF: image radius as a function of the angle off the optical axis."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ from simkit.pose import Vector
 from simkit.sensors.cameras.camera_model import MAX_PIXELS, CameraModel, read_clip
 
 _NARROWEST = 0.001  # [rad]
-_ALL_ROUND = 6.2832  # [rad]; a file that says a whole turn in four digits says it
-_ALMOST = 1e-3  # [rad] short of a right angle, whose tangent is infinite
-_LEAST, _MOST = 1e-6, 1e6  # of the numbers of a custom function
-_INTRINSICS = 277.0, 277.0, 160.0, 120.0  # SDF's defaults [px]
-_TERMS = 4  # of the polynomial that ROS knows for wide lenses
+_ALL_ROUND = 6.2832  # [rad] upper limit, slightly above a full turn so that a value rounded to four digits is valid
+_ALMOST = 1e-3  # [rad] distance from a right angle, whose tangent is infinite
+_LEAST, _MOST = 1e-6, 1e6  # limits of the numbers of a custom function
+_INTRINSICS = 277.0, 277.0, 160.0, 120.0  # [px] defaults of SDF: fx, fy, cx, cy
+_TERMS = 4  # number of coefficients of ROS's polynomial for wide lenses
 
 
 @dataclass(frozen=True, slots=True)
 class Lens:
-    """r = c1 · f · fun(θ / c2 + c3): an angle θ off the axis is seen r half widths from the middle.
+    """Lens r = c1 · f · fun(θ / c2 + c3), which maps an angle θ off the axis to a radius r [half widths].
 
     Attributes:
-        type: SDF's name.
+        type: name of the lens in SDF.
         function: `sin`, `tan` or `id`.
-        cutoff: angle off the axis beyond which the picture is black [rad].
+        cutoff: angle off the axis beyond which the image is black [rad].
     """
 
     type: str
@@ -41,21 +41,21 @@ class Lens:
 
     @property
     def widest(self) -> float:
-        """Angle off the axis up to which r rises [rad]."""
+        """Angle off the axis up to which the radius increases [rad]."""
         if self.function == "id":
             return math.pi
         end = math.pi / 2 - (_ALMOST if self.function == "tan" else 0.0)
         return min(math.pi, self.c2 * (end - self.c3))
 
     def radius(self, angle: Vector) -> Vector:
-        """Distance from the middle [half widths] of an angle off the axis [rad]."""
+        """Return the radius [half widths] of an angle off the axis [rad]."""
         argument = angle / self.c2 + self.c3
         if self.function == "id":
             return self.c1 * self.f * argument
         return self.c1 * self.f * (np.sin(argument) if self.function == "sin" else np.tan(argument))
 
     def angle(self, radius: Vector) -> Vector:
-        """Angle off the axis [rad] that is seen at a distance from the middle [half widths]; NaN where none is."""
+        """Return the angle off the axis [rad] of a radius [half widths]; NaN where there is none."""
         value = radius / (self.c1 * self.f)
         with np.errstate(invalid="ignore"):
             if self.function == "sin":
@@ -66,7 +66,7 @@ class Lens:
             return np.where((angle >= -1e-9) & (angle <= self.widest), np.maximum(angle, 0.0), np.nan)
 
     def scaled_to(self, hfov: float) -> Lens:
-        """The same lens with the `f` that puts half of `hfov` [rad] on the left and right edge."""
+        """Return the lens with the `f` that maps half of `hfov` [rad] to the left and right edge."""
         unit = replace(self, f=1.0)
         return replace(self, f=1.0 / float(unit.radius(np.array(hfov / 2))))
 
@@ -81,20 +81,20 @@ LENSES: Final[Mapping[str, Lens]] = {
         ("orthographic", 1.0, "sin"),
     )
 }
-"""Lenses by SDF's names, unscaled."""
+"""Unscaled lenses by their names in SDF."""
 
 
 @dataclass(frozen=True, slots=True)
 class WideAngleModel(CameraModel):
-    """A camera with any of SDF's lenses.
+    """Camera with any of SDF's lenses.
 
-    The focal lengths are those near the axis, and the principal point is the middle of the picture.
+    The focal lengths are those near the axis, and the principal point is the middle of the image.
 
     Attributes:
-        lens: scaled.
-        face_size: pixels along an edge of a face of the cube that the picture is made of; 0 has as many as it needs.
-        polynomial: k1 to k4 of ROS's `equidistant` model, closest to the lens.
-        given: fx, fy, cx, cy of `<intrinsics>`, which the picture does not follow, or SDF's defaults.
+        lens: scaled lens.
+        face_size: edge of a face of the cube that the image is made of [px]; 0 uses the necessary size.
+        polynomial: k1 to k4 of ROS's `equidistant` model, fitted to the lens.
+        given: fx, fy, cx, cy of `<intrinsics>`, which do not affect the image, or SDF's defaults.
     """
 
     lens: Lens = LENSES["stereographic"]
@@ -104,12 +104,12 @@ class WideAngleModel(CameraModel):
 
     @property
     def distortion_model(self) -> str:
-        """`plumb_bob` (without distortion) for a gnomonical lens, which is a pinhole, else `equidistant`."""
+        """Distortion model: `plumb_bob` (without distortion) for a gnomonical lens (a pinhole), else `equidistant`."""
         return "plumb_bob" if self.lens.type == "gnomonical" else "equidistant"
 
     @property
     def coefficients(self) -> Vector:
-        """D: k1, k2, k3, k4 of θ·(1 + k1·θ² + k2·θ⁴ + k3·θ⁶ + k4·θ⁸); five zeros for a gnomonical lens."""
+        """Coefficients D: k1 to k4 of θ·(1 + k1·θ² + k2·θ⁴ + k3·θ⁶ + k4·θ⁸); five zeros for a gnomonical lens."""
         return np.zeros(5) if self.lens.type == "gnomonical" else np.array(self.polynomial)
 
     @property
@@ -117,15 +117,18 @@ class WideAngleModel(CameraModel):
         return True
 
     def offsets(self) -> tuple[Vector, Vector]:
-        """Of each pixel's middle from the picture's [half widths], to the right and downwards, (height, width)."""
+        """Return each pixel's offset from the middle [half widths], right and downwards, shape (height, width)."""
         across = (np.arange(self.width) + 0.5 - self.cx) * (2 / self.width)
         down = (np.arange(self.height) + 0.5 - self.cy) * (2 / self.width)
         x, y = np.meshgrid(across, down)
         return x, y
 
     def as_gazebo(self) -> CameraModel:
-        """What gz does with the same file: it passes over `<scale_to_hfov>` and `<cutoff_angle>`, and tells the
-        intrinsics of the file, or SDF's defaults, whatever the lens (gz-sensors, WideAngleCameraSensor.cc)."""
+        """Return the model that Gazebo uses for the same file.
+
+        Gazebo ignores `<scale_to_hfov>` and `<cutoff_angle>`. Its `CameraInfo` contains the intrinsics of the file, or
+        SDF's defaults, for every lens (gz-sensors, WideAngleCameraSensor.cc).
+        """
         fx, fy, cx, cy = self.given
         info_model = CameraModel(self.width, self.height, fx, fy, cx, cy, self.hfov, self.near, self.far)
         lens = replace(self.lens, cutoff=math.pi / 2)
@@ -135,7 +138,7 @@ class WideAngleModel(CameraModel):
 
 
 def read_wide_angle_model(params: Params, width: int, height: int) -> WideAngleModel:
-    """The `<camera>` block's optics for an image of `width` by `height` [px]."""
+    """Read the optics of the `<camera>` block for an image of `width` by `height` [px]."""
     block = params.block("lens")
     lens, hfov = _read_lens(block), params.number("horizontal_fov", 1.047, minimum=_NARROWEST, maximum=_ALL_ROUND)
     near, far = read_clip(params)
@@ -144,13 +147,13 @@ def read_wide_angle_model(params: Params, width: int, height: int) -> WideAngleM
     face_size = block.integer("env_texture_size", 0, minimum=8, maximum=MAX_PIXELS)
     focal, polynomial, miss = _fit_equidistant(lens, width, height)
     if miss > 0.5 and lens.type != "gnomonical":
-        message = f"CameraInfo describes the lens to within {miss:.1f} px only: ROS has four coefficients for it"
-        block.diagnostics.note("SK-SENSOR-102", message, block.where, "a smaller <cutoff_angle> lets them fit better")
+        message = f"CameraInfo has an error of {miss:.1f} px: ROS has only four coefficients for the lens"
+        block.diagnostics.note("SK-SENSOR-102", message, block.where, "reduce <cutoff_angle> for a better fit")
     distortion = params.child("distortion")
     if distortion is not None:
         distortion.mark_all_read()
-        message = "<distortion> is not used: a wide_angle_camera has its <lens>"
-        params.diagnostics.warning("SK-SENSOR-103", message, distortion.where, "Gazebo does not use it there either")
+        message = "<distortion> has no effect on a wide_angle_camera, which uses its <lens>"
+        params.diagnostics.warning("SK-SENSOR-103", message, distortion.where, "remove it; Gazebo ignores it too")
     return WideAngleModel(
         width, height, focal, focal, width / 2, height / 2, hfov, near, far,
         lens=lens, face_size=face_size, polynomial=polynomial, given=_read_intrinsics(block),
@@ -158,9 +161,9 @@ def read_wide_angle_model(params: Params, width: int, height: int) -> WideAngleM
 
 
 def _read_lens(block: Params) -> Lens:
-    """Unscaled."""
+    """Read the lens without scaling it."""
     name = block.choice("type", (*LENSES, "custom", "gnomonic"), "stereographic")
-    name = "gnomonical" if name == "gnomonic" else name  # gz takes both
+    name = "gnomonical" if name == "gnomonic" else name  # gz accepts both names
     custom = block.child("custom_function")
     if name == "custom":
         source = custom or block.block("custom_function")
@@ -168,24 +171,25 @@ def _read_lens(block: Params) -> Lens:
         c3 = source.number("c3", 0.0, minimum=-_MOST, maximum=_MOST)
         lens = Lens(name, c1, c2, c3, f, source.choice("fun", ("sin", "tan", "id"), "tan"))
         if not (lens.widest > 0 and float(lens.radius(np.array(lens.widest))) > 0):
-            source.error("SK-PARAM-002", f"found c2 {c2:g} and c3 {c3:g}, allowed is a lens that sees something")
+            source.error("SK-PARAM-002", f"found c2 {c2:g} and c3 {c3:g}, allowed is a wider lens")
             lens = LENSES["stereographic"]
     else:
         lens = LENSES[name]
         if custom is not None:
             custom.mark_all_read()
-            message = f"<custom_function> is not used: the lens is {name}"
-            block.diagnostics.warning("SK-SENSOR-103", message, custom.where, "<type>custom</type> uses it")
+            message = f"<custom_function> has no effect: the lens type is {name}"
+            block.diagnostics.warning("SK-SENSOR-103", message, custom.where, "use <type>custom</type>")
     return replace(lens, cutoff=block.number("cutoff_angle", math.pi / 2, minimum=_NARROWEST, maximum=_ALL_ROUND))
 
 
 def _scale_to_view(params: Params, lens: Lens, hfov: float) -> tuple[Lens, float]:
-    """The lens that shows `hfov` [rad] across the picture, and what it is."""
+    """Return the lens that shows `hfov` [rad] across the image, and that angle after a correction of invalid values."""
     if hfov / 2 > lens.widest + 1e-4 or not float(lens.radius(np.array(hfov / 2))) > 0:
         found, widest = params.block("horizontal_fov"), 2 * lens.widest
         message = f"found <horizontal_fov>{hfov:g}</horizontal_fov>, allowed for a lens of type {lens.type} is"
         least = max(_NARROWEST, -2 * lens.c2 * lens.c3)
-        found.error("SK-PARAM-002", f"{message} a number from {least:.4g} to {widest:.4g}", "see <lens><type>")
+        hint = "choose another <type> of <lens>"
+        found.error("SK-PARAM-002", f"{message} a number from {least:.4g} to {widest:.4g}", hint)
         hfov = widest
     return lens.scaled_to(min(hfov, 2 * lens.widest)), hfov
 
@@ -194,8 +198,8 @@ def _read_intrinsics(block: Params) -> tuple[float, float, float, float]:
     intrinsics, projection = block.child("intrinsics"), block.child("projection")
     for found in (intrinsics, projection):
         if found is not None:
-            message = f"<{found.name}> is not used: <lens><type> and <horizontal_fov> say what a wide_angle_camera sees"
-            block.diagnostics.warning("SK-SENSOR-103", message, found.where, "Gazebo draws the picture so, too")
+            message = f"<{found.name}> does not affect the image: <lens><type> and <horizontal_fov> define it"
+            block.diagnostics.warning("SK-SENSOR-103", message, found.where, "Gazebo draws the same image")
             found.mark_all_read()
     if intrinsics is None:
         return _INTRINSICS
@@ -204,10 +208,13 @@ def _read_intrinsics(block: Params) -> tuple[float, float, float, float]:
 
 
 def _fit_equidistant(lens: Lens, width: int, height: int) -> tuple[float, tuple[float, ...], float]:
-    """Focal length [px], k1 to k4 and the largest error [px] of ROS's `equidistant` model, which is OpenCV's `fisheye`:
-    an angle θ is seen focal · θ·(1 + k1·θ² + k2·θ⁴ + k3·θ⁶ + k4·θ⁸) from the middle.
+    """Fit ROS's `equidistant` model, which is OpenCV's `fisheye`, to a lens.
 
-    J. Kannala and S. Brandt, IEEE Trans. Pattern Analysis and Machine Intelligence 28 (2006) 1335.
+    The model maps an angle θ to the radius focal · θ·(1 + k1·θ² + k2·θ⁴ + k3·θ⁶ + k4·θ⁸). See J. Kannala and S. Brandt,
+    IEEE Trans. Pattern Analysis and Machine Intelligence 28 (2006) 1335.
+
+    Returns:
+        Focal length [px], k1 to k4, and the largest error [px].
     """
     corner = float(lens.angle(np.array(math.hypot(width, height) / width)))
     end = min(lens.cutoff, lens.widest, corner if math.isfinite(corner) else math.pi)

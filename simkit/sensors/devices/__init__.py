@@ -1,5 +1,5 @@
-"""Sensors in joints and on surfaces: contact, encoder, force and torque.
+"""Sensors in joints and on surfaces: contact, encoder, and force and torque.
 
-Joint positions, joint wrenches and contacts of the physics enter; `JointState`, `WrenchStamped` and `Contacts` messages
-leave. None of them acts on a joint.
+Inputs are the joint positions, joint wrenches and contacts of the physics. Outputs are `JointState`, `WrenchStamped`
+and `Contacts` messages. These sensors exert no force on a joint.
 """

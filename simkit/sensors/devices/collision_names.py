@@ -1,8 +1,8 @@
-"""Find the collision that a contact sensor names.
+"""Search for the collision that a contact sensor names.
 
-In SDF that is a collision of the sensor's own link. A robot in URDF is turned into SDF by Gazebo first: links behind
-fixed joints become part of the link that carries them, and every collision gets a new name. Files are written with
-those names, so they are understood here too, although every link stays a link (sdformat, src/parser_urdf.cc).
+In SDF the name belongs to a collision of the sensor's own link. Gazebo converts a URDF robot into SDF first: links
+behind fixed joints are merged into their parent link, and every collision gets a new name. Many files use those names,
+so this module recognises them too, although simkit keeps every link (sdformat, src/parser_urdf.cc).
 """
 
 from __future__ import annotations
@@ -18,10 +18,12 @@ _NUMBER_SUFFIX = re.compile(r"_\d+$")
 
 
 def find_collision(name: str, link: SceneLink, model: SceneModel) -> SceneCollision | None:
-    """The collision that a sensor on `link` means by `name`, or None.
+    """Return the collision that a sensor on `link` refers to as `name`, or None.
 
     Args:
-        model: the top-level model of the link.
+        name: name of a collision: its own, its scoped name, or its name after Gazebo's conversion.
+        link: link of the sensor.
+        model: top-level model of the link.
     """
     for collision in link.collisions:
         if collision.name == name or ("::" in name and f"::{collision.scoped}".endswith(f"::{name}")):
@@ -32,14 +34,14 @@ def find_collision(name: str, link: SceneLink, model: SceneModel) -> SceneCollis
         found = rigid.converted(carrier).get(name)
         if found is not None:
             return found
-    # the numbers count what Gazebo found on the lumped link, which a file may have wrong or from an older version
+    # the number depends on the collisions that Gazebo merged, so it may be wrong or of an older version
     stem = _NUMBER_SUFFIX.sub("", name.rsplit(_LUMPED_INFIX, 1)[-1])
     near = [c for base, c in rigid.lumped(carriers[-1]) if stem == f"{base}_collision"]
     return near[0] if len(near) == 1 else None
 
 
 class _RigidLinks:
-    """The links of a model by the fixed joints between them."""
+    """Links of a model, connected by the fixed joints between them."""
 
     def __init__(self, model: SceneModel) -> None:
         self._links = {link.scoped: link for link in model.all_links()}
@@ -51,21 +53,21 @@ class _RigidLinks:
                 self._below.setdefault(joint.parent_link, []).append(joint)
 
     def carriers(self, link: SceneLink) -> Iterator[SceneLink]:
-        """The link, the one that carries it over a fixed joint, and so on."""
+        """Yield the link, the link that it is fixed to, and so on up to the first."""
         seen: set[str] = set()
-        at: SceneLink | None = link
-        while at is not None and at.scoped not in seen:
-            seen.add(at.scoped)
-            yield at
-            above = self._above.get(at.scoped)
-            at = self._links.get(above.parent_link) if above is not None and at.name != "world" else None
-            if at is not None and at.name == "world":
+        current: SceneLink | None = link
+        while current is not None and current.scoped not in seen:
+            seen.add(current.scoped)
+            yield current
+            above = self._above.get(current.scoped)
+            current = self._links.get(above.parent_link) if above is not None and current.name != "world" else None
+            if current is not None and current.name == "world":
                 return
 
     def lumped(self, link: SceneLink, seen: frozenset[str] = frozenset()) -> Iterator[tuple[str, SceneCollision]]:
-        """Its collisions and those of all that it carries rigidly, in Gazebo's order, each with the base of its name.
+        """Yield a link's collisions and those of all links fixed to it, in Gazebo's order, each with its base name.
 
-        The children come in the order of their joints' names.
+        Child links are in the order of their joints' names.
         """
         seen |= {link.scoped}
         for collision in link.collisions:
@@ -76,7 +78,7 @@ class _RigidLinks:
                 yield from self.lumped(self._links[joint.child_link], seen)
 
     def converted(self, root: SceneLink) -> dict[str, SceneCollision]:
-        """The collisions by the names that they have in Gazebo if `root` is what carries them all."""
+        """Return the collisions by the names that Gazebo gives them if it merges all links into `root`."""
         found: dict[str, SceneCollision] = {}
         for number, (base, collision) in enumerate(self.lumped(root)):
             name = f"{base}_collision" + (f"_{number}" if number else "")

@@ -33,8 +33,8 @@ class ContactOptions:
     """The `<contact>` block.
 
     Attributes:
-        collisions: as the file names them, each with its place.
-        topic: as given, or empty.
+        collisions: names of collisions as in the file, each with its place.
+        topic: topic as in the file, or empty.
     """
 
     collisions: tuple[tuple[str, Where], ...]
@@ -42,17 +42,17 @@ class ContactOptions:
 
 
 class Contact(Sensor):
-    """`contact`: the contacts of collisions of its link, told where there are any.
+    """Contact sensor, `contact`: the contacts of collisions of its link, published where there are any.
 
-    It has no noise: `truth` is the same message.
+    The sensor has no noise; `truth` is the same message.
 
     Attributes:
-        collisions: scoped names of what it watches, in the order of the file.
+        collisions: scoped names of the sensor's collisions, in the order of the file.
     """
 
     kinds = ("contact",)
     example = "<contact><collision>c</collision></contact>"
-    needs_acceleration = True  # what pushed in the last step is part of what presses
+    needs_acceleration = True  # the contact forces of the last step are needed
     reads_contacts = True
     is_deferred = True
     options: ContactOptions
@@ -76,25 +76,26 @@ class Contact(Sensor):
         return {"contact": {"collisions": [name for name, _ in self.options.collisions]}}
 
     def build(self, builder: SpecBuilder) -> None:
-        """Finds the collisions; reports those that are not there."""
+        """Find the collisions, and report those that are missing."""
         model = builder.records[self.scene.parent.split("::")[0]].scene
-        link = next((one for one in model.all_links() if one.scoped == self.scene.parent), None)
+        link = next((candidate for candidate in model.all_links() if candidate.scoped == self.scene.parent), None)
         if link is None:
-            return  # on a joint, which is an error already
+            return  # the sensor is on a joint, which is reported elsewhere
         listed = [c.name for c in link.collisions]
-        has = f"; the link has: {', '.join(map(repr, listed))}" if listed else "; the link has none"
+        available = f"; the link has: {', '.join(map(repr, listed))}" if listed else "; the link has none"
         found: dict[str, None] = {}
         for name, where in self.options.collisions:
             collision = find_collision(name, link, model)
             if collision is None:
-                message = f"contact sensor {self.scoped!r}: its link has no collision {name!r}{has}"
+                message = f"contact sensor {self.scoped!r}: its link has no collision {name!r}{available}"
                 self.diagnostics.warning("SK-SENSOR-040", message, where, self._hint(name, listed, model))
             else:
                 found[collision.scoped] = None
         self.collisions = tuple(found)
         if not self.options.collisions:
-            message = f"contact sensor {self.scoped!r} names no <collision>; it feels nothing, as in Gazebo{has}"
-            self.diagnostics.warning("SK-SENSOR-041", message, self.scene.where, "name each: <contact><collision>...")
+            message = f"contact sensor {self.scoped!r} has no <collision>: it detects nothing, as in Gazebo{available}"
+            hint = "add <collision>NAME</collision> to its <contact>"
+            self.diagnostics.warning("SK-SENSOR-041", message, self.scene.where, hint)
 
     def _hint(self, name: str, listed: Collection[str], model: SceneModel) -> str:
         near = did_you_mean(name, listed)
@@ -102,12 +103,12 @@ class Contact(Sensor):
         other = next((link for link in others if any(c.name == name for c in link.collisions)), None)
         if near or other is None:
             return near
-        return f"link {other.scoped!r} has one of that name: a sensor feels only what its own link touches"
+        return f"link {other.scoped!r} has one of that name: move the sensor to that link"
 
     def prepare(self) -> None:
         self._quirks = bool(self.sim.world.gazebo_quirks)
         if self._quirks:
-            self.update_rate = 0.0  # Gazebo tells of contacts at every step, whatever <update_rate> says
+            self.update_rate = 0.0  # Gazebo publishes contacts at every step, whatever the <update_rate>
         self._is_named = _includes_entity_names(self.sim.world)
 
     def bind(self, compiled: Compiled) -> None:
@@ -115,22 +116,26 @@ class Contact(Sensor):
         self._numbers: CollisionTable = collision_table(compiled)
         self._mine = self._numbers.mask(self.collisions)
         known = {name: number for number, name in enumerate(self._numbers.names)}
-        self._order = {known[name]: place for place, name in enumerate(self.collisions) if name in known}
+        self._order = {known[name]: index for index, name in enumerate(self.collisions) if name in known}
         self._centres = {number: self._centre_of(self._numbers.names[number], compiled) for number in self._order}
         self._frame = self._find_frame(compiled.names)
 
     def _centre_of(self, collision: str, compiled: Compiled) -> tuple[int, Vector]:
-        """Body, and centre of mass in its frame, of a collision's link."""
+        """Return the body of a collision's link, and the link's centre of mass in the body's frame [m]."""
         link = compiled.names.link(collision.rsplit("::", 1)[0])
         return int(link.body), link.offset.transform(link.scene.inertial.com)
 
-    # ------------------------------------------------------------------ what Classic's bumper tells
+    # ------------------------------------------------------------------ states of Gazebo Classic's bumper
 
     def publish_states(self, topic: str, frame: str) -> bool:
-        """Publishes `ContactsState` instead, at every sample; False where there is no link of that name (yet).
+        """Publish `ContactsState` instead, at every sample.
 
         Args:
-            frame: link that everything is told in the frame of, or `world`. While there is none it is the world.
+            topic: absolute topic.
+            frame: link that all values are relative to, or `world`. Without such a link they are in the world frame.
+
+        Returns:
+            False if no link of that name exists yet.
         """
         self._states_frame = frame.strip("/")
         self.update_rate = self.scene.rate
@@ -139,7 +144,7 @@ class Contact(Sensor):
         return self._frame is not None or self._states_frame in _WORLD_FRAMES
 
     def _find_frame(self, names: NameMap) -> tuple[int, Vector, Vector] | None:
-        """Body, position and rotation in it of the link that states are told in; None for the world."""
+        """Return the body of the states' frame with the frame's position and rotation in it; None for the world."""
         frame = self._states_frame
         if frame is None or frame in _WORLD_FRAMES or self._quirks:
             return None
@@ -157,8 +162,8 @@ class Contact(Sensor):
         return {"contacts": Product(CONTACTS, self._contacts), "states": Product(STATES, self._states)}
 
     def default_topics(self) -> dict[str, str]:
-        given = self.options.topic
-        return {"contacts": valid_topic(given) if given else self._default_topic("contact")}
+        topic = self.options.topic
+        return {"contacts": valid_topic(topic) if topic else self._default_topic("contact")}
 
     def publishes(self, product: str, raw: RawContacts) -> bool:
         return product == "states" or raw.touches is not None
@@ -167,7 +172,7 @@ class Contact(Sensor):
         return self.finish(self.capture(model, data))
 
     def capture(self, model: mujoco.MjModel, data: mujoco.MjData) -> RawContacts:
-        """The engine's contacts, and where the links are that a bumper's states need."""
+        """Return the engine's contacts and the link positions that the bumper's states need."""
         found = find_contacts(model, data, self._mine)
         if self._states_frame is None:
             return RawContacts(found, self._numbers, self._order)
@@ -195,6 +200,6 @@ class Contact(Sensor):
 
 
 def _includes_entity_names(world: SceneWorld) -> bool:
-    """`<include_entity_names>` of the Physics system that the world lists; Gazebo then tells only ids."""
+    """Read `<include_entity_names>` of the world's Physics system; without names, Gazebo publishes ids only."""
     physics = (p for p in world.plugins if p.name.endswith("::Physics") or _PHYSICS_PLUGIN in p.filename)
     return all(p.params.block("contacts").boolean("include_entity_names", True) for p in physics)

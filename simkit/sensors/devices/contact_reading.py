@@ -1,4 +1,4 @@
-"""Reading of a contact sensor: MuJoCo's contacts by pairs of collisions, and its messages of gz and Gazebo Classic."""
+"""Reading of a contact sensor: MuJoCo's contacts by pairs of collisions, and the messages of gz and Gazebo Classic."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ _ORIGIN, _AXES = np.zeros(3), np.eye(3)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ContactPair:
-    """What one collision of the sensor and another collision have in common, at k points; world frame.
+    """Contacts between a collision of the sensor and another collision, at k points; world frame.
 
     Attributes:
         collision1, collision2: scoped names, the sensor's own first.
-        ids: their numbers in the world of the moment, from 1.
-        positions: [m], shape (k, 3).
+        ids: numbers of the two collisions in the current world, from 1.
+        positions: contact points [m], shape (k, 3).
         normals: unit vectors towards collision1, shape (k, 3).
-        depths: how deep they are in each other [m], shape (k,).
-        forces: on collision1 [N], shape (k, 3).
-        torques: on collision1 about the point [N·m], of its friction against spinning and rolling, shape (k, 3).
+        depths: penetration depths [m], shape (k,).
+        forces: forces on collision1 [N], shape (k, 3).
+        torques: torsional and rolling friction torques on collision1 about the point [N·m], shape (k, 3).
         centre: centre of mass of the link of collision1 [m], shape (3,).
     """
 
@@ -44,12 +44,12 @@ class ContactPair:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ContactReading:
-    """All that the sensor's collisions touch.
+    """All contacts of the sensor's collisions.
 
     Attributes:
-        pairs: by the sensor's collisions in the order of the file, then by the others in that of the world.
-        origin, axes: [m] and rotation matrix of the frame that `ContactsState` is told in.
-        frame_id: of that frame.
+        pairs: contacts in the order of the sensor's collisions in the file, then of the other collisions in the world.
+        origin, axes: position [m] and rotation matrix of the frame of `ContactsState`.
+        frame_id: name of that frame.
     """
 
     pairs: tuple[ContactPair, ...]
@@ -60,14 +60,14 @@ class ContactReading:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RawContacts:
-    """What is taken from the engine at a sample.
+    """Values captured from the engine at a sample.
 
     Attributes:
-        touches: None where nothing touches.
-        collisions: those of the model at that time.
-        order: places in the file of the sensor's collisions, by number.
-        centres: centre of mass of their links, by number; where states are wanted.
-        frame_id, origin, axes: of the frame that states are told in; None for the world's.
+        touches: contacts; None where nothing touches.
+        collisions: collisions of the model at that time.
+        order: positions of the sensor's collisions in the file, by collision number.
+        centres: centres of mass of the links, by collision number; present if states are published.
+        frame_id, origin, axes: frame of the states; None for the world's.
     """
 
     touches: CollisionContacts | None
@@ -79,18 +79,18 @@ class RawContacts:
     axes: Vector | None = None
 
     def reading(self) -> ContactReading:
-        """What it means."""
+        """Return the reading made from these values."""
         pairs = () if self.touches is None else _group_by_pair(self, self.touches)
         origin = _ORIGIN if self.origin is None else self.origin
         return ContactReading(pairs, origin, _AXES if self.axes is None else self.axes, self.frame_id)
 
 
 def _group_by_pair(raw: RawContacts, found: CollisionContacts) -> tuple[ContactPair, ...]:
-    """The contacts by pairs of collisions; one between two collisions of the sensor is told of each."""
+    """Group the contacts by pairs of collisions; a contact between two of the sensor's collisions counts for each."""
     order, names = raw.order, raw.collisions.names
     sides: list[tuple[int, int, int, int, float]] = []
     for row, (first, second) in enumerate(raw.collisions.of_geom.take(found.geoms).tolist()):
-        # frames and wrenches are those of the engine's second geom
+        # the engine's frame and wrench belong to its second geom
         if second in order:
             sides.append((order[second], first, second, row, 1.0))
         if first in order:
@@ -99,7 +99,7 @@ def _group_by_pair(raw: RawContacts, found: CollisionContacts) -> tuple[ContactP
     rows, sign = [s[3] for s in sides], np.array([s[4] for s in sides])[:, None]
     positions, depths, frames = found.positions[rows], found.depths[rows], found.frames[rows]
     normals = frames[:, 0] * sign
-    # a row vector times a matrix whose rows are the axes: into the world
+    # the rows of each frame are its axes, so this product rotates into the world
     wrenches = (found.wrenches[rows] * sign).reshape(-1, 2, 3) @ frames
     pairs, start = [], 0
     while start < len(sides):
@@ -123,7 +123,7 @@ def _group_by_pair(raw: RawContacts, found: CollisionContacts) -> tuple[ContactP
     return tuple(pairs)
 
 
-_COLLISION = 5  # of ros_gz_interfaces/msg/Entity
+_COLLISION = 5  # value for collisions in ros_gz_interfaces/msg/Entity
 
 
 class _Types(NamedTuple):
@@ -148,10 +148,12 @@ def _types() -> _Types:
 
 
 def contacts_message(reading: ContactReading, header: msgs.Header, is_named: bool = True) -> msgs.Contacts:
-    """`ros_gz_interfaces/msg/Contacts`: world frame; wrenches about the contact's point.
+    """Make a `ros_gz_interfaces/msg/Contacts`, in the world frame, with wrenches about the contact points.
 
     Args:
-        is_named: whether the collisions' names are said, and not only their ids.
+        reading: contacts of the sensor.
+        header: header of the message.
+        is_named: True includes the names of the collisions, False only their ids.
     """
     types = _types()
     return types.contacts(header, [_contact(types, pair, header, is_named) for pair in reading.pairs])
@@ -159,8 +161,8 @@ def contacts_message(reading: ContactReading, header: msgs.Header, is_named: boo
 
 def _contact(types: _Types, pair: ContactPair, header: msgs.Header, is_named: bool) -> msgs.Contact:
     vector, wrench = types.vector, types.wrench
-    one, other = (pair.collision1, pair.collision2) if is_named else ("", "")
-    names = types.string(one), types.string(other)
+    name1, name2 = (pair.collision1, pair.collision2) if is_named else ("", "")
+    names = types.string(name1), types.string(name2)
     ids = types.number(pair.ids[0]), types.number(pair.ids[1])
     wrenches = []
     for (fx, fy, fz), (tx, ty, tz) in zip(pair.forces.tolist(), pair.torques.tolist(), strict=True):
@@ -168,8 +170,8 @@ def _contact(types: _Types, pair: ContactPair, header: msgs.Header, is_named: bo
         on_second = wrench(vector(-fx, -fy, -fz), vector(-tx, -ty, -tz))
         wrenches.append(types.joint_wrench(header, names[0], ids[0], names[1], ids[1], on_first, on_second))
     return types.contact(
-        types.entity(pair.ids[0], one, _COLLISION),
-        types.entity(pair.ids[1], other, _COLLISION),
+        types.entity(pair.ids[0], name1, _COLLISION),
+        types.entity(pair.ids[1], name2, _COLLISION),
         [vector(*p) for p in pair.positions.tolist()],
         [vector(*n) for n in pair.normals.tolist()],
         pair.depths,
@@ -178,9 +180,9 @@ def _contact(types: _Types, pair: ContactPair, header: msgs.Header, is_named: bo
 
 
 def states_message(reading: ContactReading, header: msgs.Header) -> msgs.ContactsState:
-    """`gazebo_msgs/msg/ContactsState`: in the frame of the reading; torques about the link's centre of mass.
+    """Make a `gazebo_msgs/msg/ContactsState` in the reading's frame, with torques about the link's centre of mass.
 
-    That is where Classic's ODE gives them (the feedback of a contact joint).
+    Gazebo Classic's ODE uses the same reference point (the feedback of a contact joint).
     """
     types, count = _types(), len(reading.pairs)
     states = [_state(types, pair, reading, header, f"{i + 1}/{count}") for i, pair in enumerate(reading.pairs)]

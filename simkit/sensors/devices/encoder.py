@@ -22,20 +22,20 @@ _ROTARY_TYPES = ("revolute", "continuous", "universal", "revolute2", "ball", "sc
 _LINEAR_TYPES = ("prismatic", "planar")
 _WIDTHS = {"universal": 2, "revolute2": 2, "ball": 3, "planar": 3}
 
-CountMark = tuple[int, Vector, int, Any]  # time [ns], position, sample, and the noise of positions at that sample
+CountMark = tuple[int, Vector, int, Any]  # time [ns], position, sample, and the sample's position noise
 
 
 @dataclass(frozen=True, slots=True)
 class EncoderOptions:
-    """The `<encoder>` block, of our own.
+    """The `<encoder>` block, which is simkit's own.
 
     Attributes:
-        resolution: of a position [rad or m per count]; 0 counts nothing.
-        absolute: whether positions are those of the joint; else from where it stood at the start.
-        from_counts: whether the velocity is told from the counts; else it is the joint's own.
+        resolution: size of a position count [rad or m]; 0 disables the rounding.
+        absolute: True for the joint's position, False for the change of position since the start.
+        from_counts: True computes the velocity from the counts, False uses the joint's own.
         window: shortest time [s] between the two counts that give a velocity; 0 is one sample.
-        velocity_resolution: [rad/s or m/s] per count; 0 counts nothing.
-        position_noise, velocity_noise: on every axis, before it is counted [rad and rad/s, or m and m/s].
+        velocity_resolution: size of a velocity count [rad/s or m/s]; 0 disables the rounding.
+        position_noise, velocity_noise: noise on every axis before the rounding [rad and rad/s, or m and m/s].
     """
 
     resolution: float
@@ -56,10 +56,11 @@ class JointReading:
 
 
 class Encoder(Sensor):
-    """`encoder` (`<sensor type="custom" gz:type="encoder">`), under a joint: its position and velocity.
+    """Joint encoder, `encoder` (`<sensor type="custom" gz:type="encoder">`), under a joint: its position and velocity.
 
-    A position is the nearest count to the true one with its noise. A velocity is told from two counts, as a drive does
-    that has nothing else, or is the joint's own with noise and resolution of its own. The truth is not counted.
+    The position is the true one with noise, rounded to the nearest count. The velocity is computed from two counts,
+    as in a drive without a velocity sensor, or is the joint's own with separate noise and resolution. The truth is not
+    rounded.
     """
 
     kinds = ("encoder",)
@@ -87,20 +88,20 @@ class Encoder(Sensor):
         )
 
     def describe(self) -> dict[str, object]:
-        """What it counts in."""
+        """Return the resolution and the kind of position."""
         return {"encoder": {"resolution": self.options.resolution, "absolute": self.options.absolute}}
 
     def build(self, builder: SpecBuilder) -> None:
         joint = builder.names.joints.get(self.scene.parent)
-        if joint is None:  # left out for a fault of its own, which is said already
+        if joint is None:  # the joint was left out for an error that is already reported
             return
         where = self.scene.where
         if joint.type not in (*_ROTARY_TYPES, *_LINEAR_TYPES):
-            message = f"sensor {self.scoped!r}: there is nothing to count on a {joint.type} joint"
-            self.diagnostics.error("SK-SENSOR-051", message, where, "an encoder is for a joint that turns or slides")
+            message = f"sensor {self.scoped!r}: an encoder cannot measure a {joint.type} joint"
+            self.diagnostics.error("SK-SENSOR-051", message, where, "move it to a joint that turns or slides")
         elif joint.type in _LINEAR_TYPES and self.scene.params.block("encoder").has("counts_per_revolution"):
-            message = f"sensor {self.scoped!r}: <counts_per_revolution> of a {joint.type} joint, which slides"
-            self.diagnostics.error("SK-SENSOR-051", message, where, "give it a <resolution> in metres")
+            message = f"sensor {self.scoped!r}: <counts_per_revolution> on a {joint.type} joint, which slides"
+            self.diagnostics.error("SK-SENSOR-051", message, where, "use <resolution> in metres")
 
     def prepare(self) -> None:
         options, joint = self.options, self.sim.engine.names.joint(self.scene.parent)
@@ -113,10 +114,10 @@ class Encoder(Sensor):
         self._velocity_step = np.full(width, options.velocity_resolution)
         self._position_noise = self._make_noise([options.position_noise] * width, "position")
         self._velocity_noise = self._make_noise([options.velocity_noise] * width, "velocity")
-        self._track: CountHistory | None = None
+        self._history: CountHistory | None = None
         if options.from_counts:
-            # last, so that the noise of a sample has moved on before its position is read
-            self._track = self._register_noise(CountHistory(self, round(options.window * 1e9)))
+            # registered last, so that the noise has advanced to a sample before its position is read
+            self._history = self._register_noise(CountHistory(self, round(options.window * 1e9)))
 
     def bind(self, compiled: Compiled) -> None:
         super().bind(compiled)
@@ -138,8 +139,8 @@ class Encoder(Sensor):
 
     def perturb(self, reading: JointReading, index: int) -> JointReading:
         velocity = reading.velocity
-        if self._track is not None:
-            position, velocity = self._track.told()
+        if self._history is not None:
+            position, velocity = self._history.position_and_velocity()
         else:
             position = self._count_position(reading.position, index)
         if not self._velocity_noise.is_silent:
@@ -147,21 +148,21 @@ class Encoder(Sensor):
         return JointReading(position, quantise(velocity, self._velocity_step))
 
     def mark(self, index: int) -> CountMark:
-        """What is needed to tell the position of this tick, as sample `index`, at any time."""
+        """Return the values from which `read` computes the position of this tick, as sample `index`, later."""
         position = self._position_in(self.sim.mj_data)
         return self.sim.time_ns, position, index, self._position_noise.state
 
     def read(self, mark: CountMark) -> Vector:
-        """The position of a mark, in counts."""
+        """Return the position of a mark, in counts."""
         _, position, index, state = mark
         noise = self._position_noise
-        now, noise.state = noise.state, state
-        told = self._count_position(position if self.options.absolute else self.change(self._start, position), index)
-        noise.state = now
-        return told
+        current_state, noise.state = noise.state, state
+        counted = self._count_position(position if self.options.absolute else self.change(self._start, position), index)
+        noise.state = current_state
+        return counted
 
     def change(self, before: Vector, after: Vector) -> Vector:
-        """From one position to another; of a ball joint the rotation vector between the two attitudes."""
+        """Return the change between two positions; for a ball joint, the rotation vector between the two attitudes."""
         if not self._is_ball:
             return after - before
         first, second, turn = np.empty(4), np.empty(4), np.empty(3)
@@ -182,20 +183,20 @@ class Encoder(Sensor):
 
     def _message_of(self, reading: JointReading, time_ns: int) -> msgs.JointState:
         header = msgs.header(time_ns, self.frame_id)
-        # each message its own arrays: who receives one may keep or change it
+        # own arrays for each message, because a subscriber may keep or change them
         values = reading.position.copy(), reading.velocity.copy(), np.zeros(0)
         return msgs.JointState(header, list(self._names), *values)
 
 
 class CountHistory:
-    """What an encoder remembers of its last counts; kept like the state of its noise, sample by sample.
+    """Last counts of an encoder, saved and restored with each sample like the state of its noise.
 
     Args:
-        encoder: whose.
+        encoder: encoder that the counts belong to.
         window: shortest time [ns] between the two counts that give a velocity.
 
     Attributes:
-        state: the marks that are still needed, the newest last; never written to, only replaced.
+        state: marks that are still needed, the newest last; replaced and never modified.
     """
 
     wanders: ClassVar[bool] = True
@@ -204,8 +205,8 @@ class CountHistory:
         self._encoder, self._window = encoder, window
         self.state: tuple[CountMark, ...] = ()
 
-    def told(self) -> tuple[Vector, Vector]:
-        """The newest position, and the change to it from the oldest, per second; 0 where there is but one."""
+    def position_and_velocity(self) -> tuple[Vector, Vector]:
+        """Return the newest position, and the mean velocity from the oldest position to it; 0 if there is only one."""
         first, last = self.state[0], self.state[-1]
         position = self._encoder.read(last)
         if first is last:
@@ -213,7 +214,7 @@ class CountHistory:
         return position, self._encoder.change(self._encoder.read(first), position) / ((last[0] - first[0]) * 1e-9)
 
     def evolve(self, index: int, dt: float) -> None:
-        """Adds the mark of sample `index`, and drops those that are older than the window needs."""
+        """Add the mark of sample `index`, and drop the marks that are older than the window needs."""
         mark = self._encoder.mark(index)
         now, marks = mark[0], (*self.state, mark)
         first = max((k for k in range(len(marks) - 1) if now - marks[k][0] >= self._window), default=0)
@@ -223,4 +224,4 @@ class CountHistory:
         self.state = ()
 
     def set_interval(self, interval: float) -> None:
-        """Its samples tell their own time."""
+        """Do nothing: the marks contain their own times."""

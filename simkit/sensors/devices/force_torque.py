@@ -1,4 +1,4 @@
-"""Force and torque that pass through a joint."""
+"""Force and torque transmitted through a joint."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ class ForceTorqueOptions:
     """The `<force_torque>` block.
 
     Attributes:
-        frame: whose axes it is in, `parent`, `child` (links) or `sensor`; it is about the sensor's origin in all.
-        from_parent: the wrench by the parent on the child; else its opposite.
+        frame: frame of the axes, `parent` link, `child` link or `sensor`; the torque is about the sensor's origin.
+        from_parent: True for the wrench that the parent exerts on the child, False for its opposite.
         force, torque: noise per axis [N, N·m].
     """
 
@@ -35,10 +35,11 @@ class ForceTorqueOptions:
 
 
 class ForceTorque(VectorSensor):
-    """`force_torque`, under a joint: what the parent link does to the child link through it, or the opposite.
+    """Force and torque sensor, `force_torque`, under a joint: the wrench that the parent link exerts on the child link.
 
-    The torque is about the sensor's origin. Gazebo's formula gives that only where the sensor is not turned against the
-    joint frame or stands in its origin; a world with `<gazebo_quirks>` errs as it does.
+    The measure direction can reverse it. The torque is about the sensor's origin. Gazebo's formula agrees only if the
+    sensor is not rotated against the joint frame or if the two origins coincide. A world with `<gazebo_quirks>` uses
+    Gazebo's formula.
     """
 
     kinds = ("force_torque",)
@@ -47,7 +48,7 @@ class ForceTorque(VectorSensor):
     belongs_to = ("joint",)
     has_dynamic_bias = True
     needs_acceleration = True
-    # a load that sleeps on something that never moves would weigh nothing
+    # a load that sleeps on a static body would have no weight
     reads_contacts = True
     options: ForceTorqueOptions
 
@@ -62,7 +63,7 @@ class ForceTorque(VectorSensor):
         )
 
     def describe(self) -> dict[str, object]:
-        """Frame and direction."""
+        """Return the frame and the direction."""
         direction = "parent_to_child" if self.options.from_parent else "child_to_parent"
         return {"force_torque": {"frame": self.options.frame, "measure_direction": direction}}
 
@@ -75,50 +76,50 @@ class ForceTorque(VectorSensor):
         joint = self._joint = names.joint(self.scene.parent)
         if joint.moved_body <= 0:
             message = f"sensor {self.scoped!r} reads zero: joint {joint.scoped!r} ({joint.type}) carries nothing"
-            why = "a floating joint and a gearbox bind no body, and between links that never move nothing is computed"
-            self.diagnostics.warning("SK-SENSOR-050", message, self.scene.where, why)
+            hint = "floating joints, gearboxes and links that never move transmit nothing; use another joint"
+            self.diagnostics.warning("SK-SENSOR-050", message, self.scene.where, hint)
         self._link = names.link(joint.scene.child_link)
-        # the axes that the wrench is given in: a body's, turned; None: the world's
+        # the wrench is expressed in the axes of this body, rotated; None means the world's axes
         frame = self.options.frame
-        of = names.links.get(joint.scene.parent_link) if frame == "parent" else self._link
-        self._axes_body = of.body if of is not None else 0
-        self._axes_turn: Vector = np.eye(3) if of is None else of.offset.matrix
+        link = names.links.get(joint.scene.parent_link) if frame == "parent" else self._link
+        self._axes_body = link.body if link is not None else 0
+        self._axes_turn: Vector = np.eye(3) if link is None else link.offset.matrix
         if frame == "sensor":
             self._axes_turn = self._offset_rotation
-        # for Gazebo's formula: the joint frame in the child link's body
+        # joint frame in the child link's body, for Gazebo's formula
         self._joint_frame = self._link.offset @ joint.pose_child
         self._is_turned = not np.array_equal(self._axes_turn, np.eye(3))
         self._viewed: mujoco.MjData | None = None
 
     def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> Vector:
-        """Force [N] and torque [N·m], six numbers."""
+        """Return the force [N] and the torque [N·m], six numbers."""
         if data is not self._viewed:
             self._bind_views(model, data)
         if self.sim.world.gazebo_quirks or self._joint.moved_body <= 0:
             force, torque = self._forces(model, data)
-        else:  # `transmitted_wrench`, of what is looked at
+        else:  # same as `transmitted_wrench`, on the cached views
             wrench = -self._wrench if self._joint.is_reversed else self._wrench
-            force, torque = wrench[3:], torque_about(wrench, self._centre, self._place + self._attitude @ self._arm)
+            force, torque = wrench[3:], torque_about(wrench, self._centre, self._position + self._attitude @ self._arm)
         axes = self._axes @ self._axes_turn if self._is_turned else self._axes
         if not self.options.from_parent:
             axes = -axes
         return np.concatenate((force @ axes, torque @ axes))
 
     def _bind_views(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
-        """Chooses what a measurement is made of: views of the data, which are got once."""
+        """Store views of the data that a measurement reads; creating views at every sample would be slower."""
         self._viewed, body, moved = data, self._body, max(self._joint.moved_body, 0)
         self._wrench, self._centre = data.cfrc_int[moved], data.subtree_com[model.body_rootid[moved]]
-        self._place, self._attitude = data.xpos[body], data.xmat[body].reshape(3, 3)
+        self._position, self._attitude = data.xpos[body], data.xmat[body].reshape(3, 3)
         self._arm, self._axes = self._offset_position, data.xmat[self._axes_body].reshape(3, 3)
 
     def _forces(self, model: mujoco.MjModel, data: mujoco.MjData) -> tuple[Vector, Vector]:
-        """What passes through the joint, about the sensor's origin, world axes."""
+        """Return the force and torque through the joint, about the sensor's origin, in world axes."""
         if self.sim.world.gazebo_quirks:
             return self._as_gazebo(model, data)
-        return transmitted_wrench(model, data, self._joint, self._place + self._attitude @ self._arm)
+        return transmitted_wrench(model, data, self._joint, self._position + self._attitude @ self._arm)
 
     def _as_gazebo(self, model: mujoco.MjModel, data: mujoco.MjData) -> tuple[Vector, Vector]:
-        """The same, the lever arm taken in the joint's axes though the force is in the sensor's, world axes."""
+        """Return them as Gazebo does: the lever arm is in the joint's axes although the force is in the sensor's."""
         body = data.xmat[self._body].reshape(3, 3)
         origin = data.xpos[self._body] + body @ self._joint_frame.position
         force, torque = transmitted_wrench(model, data, self._joint, origin)

@@ -28,7 +28,7 @@ class AirPressureOptions:
 
 
 class AirPressure(AirSensor):
-    """`air_pressure`: the pressure of the world's `<atmosphere>` at the height of the sensor's origin."""
+    """Barometer, `air_pressure`: the pressure of the world's `<atmosphere>` at the height of the sensor's origin."""
 
     kinds = ("air_pressure",)
     example = "<air_pressure/>"
@@ -41,7 +41,7 @@ class AirPressure(AirSensor):
         return AirPressureOptions(altitude, read_noise(block.block("pressure")))
 
     def describe(self) -> dict[str, object]:
-        """Height of the origin that the file gives [m], standard deviation [Pa]."""
+        """Return the origin's height in the file [m] and the standard deviation [Pa]."""
         options = self.options
         altitude, stddev = options.reference_altitude, options.pressure.stddev
         return {"air_pressure": {"reference_altitude": altitude, "pressure_stddev": stddev}}
@@ -50,11 +50,9 @@ class AirPressure(AirSensor):
         self._read_air_column(self.options.reference_altitude)
         self.noise = self._make_noise((self.options.pressure,), "air_pressure")
         if self.sim.world.gazebo_quirks and self.options.reference_altitude:
-            message = (
-                "<reference_altitude> is not used: the world asks for Gazebo's behaviour, and Gazebo passes it over"
-            )
+            message = "<reference_altitude> has no effect with <gazebo_quirks>, because Gazebo ignores it"
             where = self.scene.params.block("air_pressure").block("reference_altitude").where
-            self.diagnostics.warning("SK-SENSOR-062", message, where, "put the model at that height")
+            self.diagnostics.warning("SK-SENSOR-062", message, where, "change the z of the model's <pose> instead")
 
     def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> Vector:
         return np.array((self._column.at(self._height(data)).pressure,))
@@ -62,5 +60,5 @@ class AirPressure(AirSensor):
     def _message_of(self, reading: Vector, time_ns: int) -> msgs.FluidPressure:
         variance = self.noise.variance()
         if self.sim.world.gazebo_quirks:
-            variance = variance**0.25  # the root of the deviation
+            variance = variance**0.25  # square root of the standard deviation
         return msgs.FluidPressure(msgs.header(time_ns, self.frame_id), float(reading[0]), variance)

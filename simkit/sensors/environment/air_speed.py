@@ -1,4 +1,4 @@
-"""Air speed: the dynamic pressure in a tube that looks along the sensor's x, and the temperature of the air."""
+"""Air speed: the dynamic pressure in a tube along the sensor's x axis, and the temperature of the air."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ class AirSpeedOptions:
 
 
 class AirSpeed(AirSensor):
-    """`air_speed`: ½ρv·|v| with the speed v of the air along the sensor's x and its density ρ there.
+    """Air-speed sensor, `air_speed`: ½ρv·|v| with the air speed v along the sensor's x axis and the air density ρ.
 
-    The air moves with the world's wind, the gusts of a wind plugin included; the sensor's velocity is that of its own
-    origin, lever arm included.
+    The air moves with the world's wind, including the gusts of a wind plugin. The sensor's velocity is the velocity
+    of its own origin, including the lever arm.
     """
 
     kinds = ("air_speed",)
@@ -39,7 +39,7 @@ class AirSpeed(AirSensor):
         return AirSpeedOptions(read_noise(params.block("air_speed").block("pressure")))
 
     def describe(self) -> dict[str, object]:
-        """Standard deviation [Pa]."""
+        """Return the standard deviation [Pa]."""
         return {"air_speed": {"pressure_stddev": self.options.pressure.stddev}}
 
     def prepare(self) -> None:
@@ -50,7 +50,7 @@ class AirSpeed(AirSensor):
         self.noise = self._make_noise((self.options.pressure,), "air_speed")
 
     def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> Vector:
-        """Dynamic pressure [Pa], negative where the air comes from behind, and temperature [K]."""
+        """Return the dynamic pressure [Pa], negative for air from behind, and the temperature [K]."""
         rotation = data.xmat[self._body].reshape(3, 3)
         velocity = self._velocity_in_world(model, data, rotation @ self._offset_position)
         speed = float((velocity - self._wind(data)) @ (rotation @ self._offset_rotation[:, 0]))
@@ -58,7 +58,7 @@ class AirSpeed(AirSensor):
         return np.array((0.5 * air.density * speed * abs(speed), air.temperature))
 
     def _wind(self, data: mujoco.MjData) -> Vector:
-        """Velocity of the air [m/s] in the step that led to a state, shape (3,); Gazebo's sensor knows of none."""
+        """Return the wind velocity [m/s], shape (3,), in the step that led to a state; Gazebo's sensor ignores wind."""
         if self._is_calm:
             return np.zeros(3)
         return np.array(self.sim.engine.wind.at(max(round(data.time / self.sim.timestep) - 1, 0)))

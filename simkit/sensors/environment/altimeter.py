@@ -1,4 +1,4 @@
-"""Altimeter: height above where the sensor started, and vertical velocity."""
+"""Altimeter: height above the sensor's initial height, and vertical velocity."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ class AltimeterOptions:
 
 
 class Altimeter(VectorSensor):
-    """`altimeter`: height and rate of climb of the sensor's own origin, along the world's z.
+    """Altimeter, `altimeter`: height and climb rate of the sensor's own origin, along the world's z axis.
 
-    The reference is the height [m] of the sensor when it came into the world, at the load or the spawn. Nothing changes
-    it afterwards: neither a reset nor a pose that is set.
+    The reference is the height [m] of the sensor when it was loaded or spawned. A reset or a new pose does not change
+    the reference.
     """
 
     kinds = ("altimeter",)
@@ -44,7 +44,7 @@ class Altimeter(VectorSensor):
         )
 
     def describe(self) -> dict[str, object]:
-        """Standard deviations [m, m/s]."""
+        """Return the standard deviations [m, m/s]."""
         options = self.options
         return {"altimeter": {"position_stddev": options.position.stddev, "velocity_stddev": options.velocity.stddev}}
 
@@ -58,12 +58,12 @@ class Altimeter(VectorSensor):
 
     @property
     def reference(self) -> float:
-        """Height in the world [m] that positions are measured from."""
+        """Reference height in the world [m] of the measured positions."""
         assert self._reference is not None
         return self._reference
 
     def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> Vector:
-        """Height above the reference [m] and its rate [m/s]."""
+        """Return the height above the reference [m] and its rate [m/s]."""
         body = self._body
         lever = data.xmat[body].reshape(3, 3) @ self._offset_position
         velocity = self._velocity_in_world(model, data, lever)

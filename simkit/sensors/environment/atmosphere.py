@@ -1,8 +1,8 @@
 """Temperature, pressure and density of the air at a height: the U.S. Standard Atmosphere of 1976, or a world's own.
 
-The air is at rest and an ideal gas; its temperature changes evenly with the geopotential height from one layer to the
-next. A world's `<atmosphere>` gives temperature and pressure at sea level and the rate of the lowest layer; the layers
-above it are the standard's. Above the standard's last layer the air has that layer's temperature.
+The air is an ideal gas at rest. Its temperature changes linearly with the geopotential height within a layer. A world's
+`<atmosphere>` gives temperature and pressure at sea level and the rate of the lowest layer. The layers above are the
+standard's. Above the standard's last layer, the temperature is constant.
 """
 
 from __future__ import annotations
@@ -15,29 +15,29 @@ from typing import Final, NamedTuple
 from simkit.scene import Atmosphere
 
 GRAVITY: Final = 9.80665
-"""[m/s²] Standard gravity; geopotential heights are measured with it."""
+"""Standard gravity [m/s²], which defines geopotential heights."""
 
 GAS_CONSTANT: Final = 8314.32
-"""[J/(kmol·K)] As the standard of 1976 has it."""
+"""Gas constant of the standard of 1976 [J/(kmol·K)]."""
 
 MOLAR_MASS: Final = 28.9644
-"""[kg/kmol] Of air."""
+"""Molar mass of air [kg/kmol]."""
 
 EARTH_RADIUS: Final = 6356766.0
-"""[m] For geopotential heights."""
+"""Radius of the Earth for geopotential heights [m]."""
 
 MIN_ALTITUDE, MAX_ALTITUDE = -5000.0, 86000.0
-"""[m] Heights that the standard's table covers; beyond them it is extended."""
+"""Heights that the standard's table covers [m]; beyond them the table is extrapolated."""
 
 _LAPSE_RATES: Final = ((11e3, 0.0), (20e3, 0.001), (32e3, 0.0028), (47e3, 0.0), (51e3, -0.0028), (71e3, -0.002))
-_TOP: Final = 84852.0  # geopotential metres; 86 km
-_MIN_TEMPERATURE: Final = 1.0  # [K] no layer gets colder, so that an absurd rate ends in a vacuum and not in no number
+_TOP: Final = 84852.0  # geopotential height of 86 km [m]
+_MIN_TEMPERATURE: Final = 1.0  # [K] lower bound, so that an absurd rate gives a vacuum and not NaN
 _MAX_EXPONENT: Final = 400.0  # largest logarithm of a pressure ratio
 _HYDROSTATIC: Final = GRAVITY * MOLAR_MASS / GAS_CONSTANT  # [K/m]
 
 
 class Layer(NamedTuple):
-    """Air from a geopotential height [m] upwards: temperature [K] and pressure [Pa] there, rate [K/m]."""
+    """Layer of air above a geopotential height [m]: temperature [K] and pressure [Pa] there, rate [K/m]."""
 
     base: float
     temperature: float
@@ -45,7 +45,7 @@ class Layer(NamedTuple):
     rate: float
 
     def at(self, height: float) -> tuple[float, float]:
-        """Temperature [K] and pressure [Pa] at a geopotential height [m]."""
+        """Return the temperature [K] and pressure [Pa] at a geopotential height [m]."""
         rise = height - self.base
         temperature = self.temperature + self.rate * rise
         if self.rate:
@@ -56,7 +56,7 @@ class Layer(NamedTuple):
 
 
 class AirState(NamedTuple):
-    """Temperature [K], pressure [Pa], density [kg/m³]."""
+    """Temperature [K], pressure [Pa] and density [kg/m³] of the air."""
 
     temperature: float
     pressure: float
@@ -64,13 +64,18 @@ class AirState(NamedTuple):
 
 
 class AirColumn:
-    """The air above (and below) sea level."""
+    """Column of air above and below sea level.
+
+    Args:
+        temperature: temperature at sea level [K].
+        gradient: change of the temperature with height at sea level [K/m].
+        pressure: pressure at sea level [Pa].
+    """
 
     def __init__(self, temperature: float, gradient: float, pressure: float) -> None:
-        """Args: temperature [K] and pressure [Pa] at sea level, change of the temperature with height there [K/m]."""
         lowest = Layer(0.0, max(temperature, _MIN_TEMPERATURE), pressure, gradient)
         layers, bounds = [lowest], []
-        if gradient > 0:  # it gets colder downwards
+        if gradient > 0:  # the temperature falls with depth
             end = (_MIN_TEMPERATURE - lowest.temperature) / gradient
             layers.insert(0, Layer(end, *lowest.at(end), 0.0))
             bounds.append(end)
@@ -86,8 +91,8 @@ class AirColumn:
         self._layers, self._bounds = layers, bounds
 
     def at(self, height: float) -> AirState:
-        """The air at a geometric height above sea level [m]; finite and never negative, whatever the height."""
-        # half the way to the Earth's centre nothing of this means anything any more
+        """Return the air at a geometric height above sea level [m]; finite and never negative at any height."""
+        # below half the Earth's radius the model has no meaning, and the formula would reach a pole
         height = max(height, -0.5 * EARTH_RADIUS)
         geopotential = EARTH_RADIUS * (height / (EARTH_RADIUS + height))
         layer = self._layers[bisect_right(self._bounds, geopotential)]
@@ -97,5 +102,5 @@ class AirColumn:
 
 @lru_cache(maxsize=16)
 def air_column(atmosphere: Atmosphere) -> AirColumn:
-    """The air of a world."""
+    """Return the air column of a world."""
     return AirColumn(atmosphere.temperature, atmosphere.temperature_gradient, atmosphere.pressure)

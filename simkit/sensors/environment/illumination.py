@@ -1,4 +1,4 @@
-"""Light that a point of the world receives from one lamp: direction, share, and what casts a shadow on it."""
+"""Light that a point of the world receives from one lamp: direction, share, and shadow caster."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ from simkit.scene import SceneLight
 from simkit.sensors.temporary_values import temporary_values
 
 LEAST_OPACITY: Final = 0.5
-"""What is less opaque than this throws no shadow."""
+"""Lowest opacity of a visual that casts a shadow."""
 
-_MIN_DISTANCE: Final = 1e-3  # [m]; nobody is nearer to a lamp
+_MIN_DISTANCE: Final = 1e-3  # [m]; a smaller distance to a lamp counts as this one
 _OPEN_GROUP: Final = 0
-"""Nothing of ours is in this group, so for a moment it can hold exactly what a ray is to see."""
+"""Group that simkit leaves empty, so the geoms that a ray can hit are moved into it temporarily."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,8 +33,9 @@ class Beam:
 
     Attributes:
         direction: unit vector from the point to the light, world frame, shape (3,).
-        distance: to the light [m]; infinite where its rays are parallel.
-        share: of the light that goes there, from 0 to 1: 0 where it is off, or the point lies outside its cone.
+        distance: distance to the light [m]; infinite for parallel rays.
+        share: share of the light that reaches the point, from 0 to 1; 0 if the light is off or the point is outside its
+            cone.
     """
 
     direction: Vector
@@ -43,12 +44,12 @@ class Beam:
 
 
 class Lamp:
-    """A light as the points of the world see it.
+    """Light as a point of the world receives it.
 
     Args:
-        light: its handle.
-        by_position: a directional light too is where its pose is, as for the course's sensor; else its rays are
-            parallel and come from where it does not shine to.
+        light: handle of the light.
+        by_position: True treats a directional light as a point at its pose, as the course's sensor does. False uses
+            parallel rays against the light's direction.
     """
 
     def __init__(self, light: Light, by_position: bool = False) -> None:
@@ -57,23 +58,23 @@ class Lamp:
 
     @property
     def scene(self) -> SceneLight:
-        """What the light is like now."""
+        """Current properties of the light."""
         return self.light.scene
 
     def bind(self, names: NameMap) -> None:
-        """Finds what carries it in a compiled model's name map."""
+        """Find the link that carries the light in a compiled model's name map."""
         carrier = names.link(self.scene.link) if self.scene.link else None
         self._body = int(carrier.body) if carrier else 0
         self._offset: Pose | None = carrier.offset if carrier else None
 
     def pose(self, state: LightState, data: mujoco.MjData) -> Pose:
-        """In the world, of a state of the light and one of the physics."""
+        """Return the light's pose in the world, from a state of the light and the physics data."""
         if self._offset is None:
             return state.pose
         return Pose(data.xpos[self._body], data.xquat[self._body]) @ self._offset @ state.pose
 
     def at(self, state: LightState, data: mujoco.MjData, point: Vector) -> Beam:
-        """The light at a point of the world [m], shape (3,), of a state of the light and one of the physics."""
+        """Return the light at a world point [m], shape (3,), from a state of the light and the physics data."""
         pose = self.pose(state, data)
         share = 1.0 if state.on else 0.0
         if self.is_parallel:
@@ -90,10 +91,12 @@ class Lamp:
 
 
 def falloff_share(scene: SceneLight, distance: float, rule: str) -> float:
-    """The factor by which a lamp fades over a distance [m].
+    """Return the factor by which a lamp fades over a distance.
 
     Args:
-        rule: `none` (1), `inverse_square` (1 at 1 m), or `attenuation`, the light's own in the file: 0 beyond its
+        scene: light of the scene.
+        distance: distance to the light [m].
+        rule: `none` (1), `inverse_square` (1 at 1 m), or `attenuation`, the rule of the file: 0 beyond the light's
             range, else 1 / (constant + linear·r + quadratic·r²), at most 1.
     """
     if rule == "inverse_square":
@@ -106,10 +109,10 @@ def falloff_share(scene: SceneLight, distance: float, rule: str) -> float:
 
 
 class ShadowRay:
-    """Finds what stands between a link and a light: what is drawn and throws shadows.
+    """Search for shadow casters between a link and a light.
 
-    Of a link without visuals the collisions count. A visual with `<cast_shadows>` false throws none, nor does one that
-    lets more than half of the light through. The link itself is the housing and is passed over, as is the lamp's.
+    The visuals of a link cast shadows, or its collisions if it has no visuals. A visual casts none if its
+    `<cast_shadows>` is false or if its opacity is below one half. The links of the sensor and the lamp are ignored.
     """
 
     def __init__(self) -> None:
@@ -118,17 +121,23 @@ class ShadowRay:
         self._geom = np.empty(1, dtype=np.int32)
 
     def bind(self, compiled: Compiled, link: str, lamp: str = "") -> None:
-        """Finds what throws shadows on a link in a compiled model; `lamp` is the link of the light, if any (scoped)."""
+        """Find the geoms of a compiled model that can cast a shadow on a link.
+
+        Args:
+            compiled: compiled model.
+            link: scoped name of the link.
+            lamp: scoped name of the light's link; empty if it has none.
+        """
         names = self._names = compiled.names
-        casters = names.shared("what throws shadows", lambda: _shadow_casters(compiled.model, names))
-        ends = [names.link(name) for name in (link, lamp) if name]
-        own = {geom for end in ends for geom in (*end.visuals, *end.ray_geoms)}
+        casters = names.shared("shadow casters", lambda: _shadow_casters(compiled.model, names))
+        housings = [names.link(name) for name in (link, lamp) if name]
+        own = {geom for housing in housings for geom in (*housing.visuals, *housing.ray_geoms)}
         self._casters = np.array([g for g in casters if g not in own], dtype=np.intp)
 
     def find(self, model: mujoco.MjModel, data: mujoco.MjData, origin: Vector, beam: Beam) -> str:
-        """Scoped name of the visual or collision nearest to `origin` that is in the way, or an empty text.
+        """Return the scoped name of the first visual or collision between `origin` and the light, or "".
 
-        The ray ends at the lamp; a parallel one passes through the whole scene.
+        The ray ends at the lamp; a parallel ray passes through the whole scene.
         """
         if not len(self._casters):
             return ""
@@ -140,7 +149,7 @@ class ShadowRay:
 
 
 def _shadow_casters(model: mujoco.MjModel, names: NameMap) -> list[int]:
-    """Ids of the geoms that throw shadows."""
+    """Return the ids of the geoms that cast shadows."""
     opaque: npt.NDArray[np.bool_] = model.geom_rgba[:, 3] >= LEAST_OPACITY
     drawn = opaque & np.asarray(model.geom_castshadow, dtype=bool)
     found: set[int] = set()

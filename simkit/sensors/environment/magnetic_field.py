@@ -1,8 +1,9 @@
-"""The Earth's magnetic field: the World Magnetic Model, evaluated where the sensor is, at a date of its own.
+"""Earth's magnetic field: the World Magnetic Model, evaluated at the sensor's position and at a date.
 
-The coefficients in `wmm/` are those that NOAA's National Centers for Environmental Information and the British
-Geological Survey publish (public domain), as they stand in the files `WMM.COF` of 2015 (second version), 2020 and 2025.
-Each holds for five years. The model has the field of the core alone: on the ground it is good to about 150 nT.
+The coefficients in `wmm/` are published by NOAA's National Centers for Environmental Information and the British
+Geological Survey (public domain). They are copied from the files `WMM.COF` of 2015 (second version), 2020 and 2025.
+Each file is valid for five years. The model contains only the field of the core; on the ground its error is about
+150 nT.
 """
 
 from __future__ import annotations
@@ -19,23 +20,27 @@ from simkit.pose import Vector
 from simkit.sensors.environment.geodesy import WorldOnPlanet
 
 DEFAULT_DATE: Final = 2025.0
-"""Decimal year of the field where a file names no date."""
+"""Decimal year of the field if a file gives no date."""
 
 FIRST_YEAR, LAST_YEAR = 2015.0, 2030.0
-"""Decimal years that the models cover."""
+"""First and last decimal year that the models cover."""
 
 MIN_HEIGHT, MAX_HEIGHT = -1e3, 850e3
-"""[m] Heights above the ellipsoid that the model is made for."""
+"""Lowest and highest height above the ellipsoid that the model is valid for [m]."""
 
 _MODELS: Final = ((2025.0, "WMM_2025.COF"), (2020.0, "WMM_2020.COF"), (2015.0, "WMM_2015v2.COF"))
 _DEGREE: Final = 12
-_RADIUS: Final = 6371200.0  # [m] of the sphere that the coefficients are for
-_CORE: Final = 3480e3  # [m] the sources of the field begin here; nearer to the centre the series means nothing
-_CELL: Final = 1000.0  # [m] within a cube of it the field is taken as linear: the error stays below 0.01 nT
+_RADIUS: Final = 6371200.0  # [m] radius of the sphere that the coefficients refer to
+_CORE: Final = 3480e3  # [m] the sources of the field begin here; closer to the centre the series has no meaning
+_CELL: Final = 1000.0  # [m] edge of the cubes in which the field is linearised, with an error below 0.01 nT
 
 
 def decimal_year(text: str) -> float:
-    """`2026-07-01` or `2026.5` as a decimal year; raises ValueError."""
+    """Convert `2026-07-01` or `2026.5` into a decimal year.
+
+    Raises:
+        ValueError: the text is not a date, or is NaN or infinite.
+    """
     text = text.strip()
     if text.count("-") == 2:
         day = date.fromisoformat(text)
@@ -48,22 +53,24 @@ def decimal_year(text: str) -> float:
 
 
 class MagneticModel:
-    """The model at one date.
+    """Magnetic model at one date.
 
     Args:
-        year: decimal; raises ValueError outside `FIRST_YEAR` to `LAST_YEAR`.
+        year: decimal year.
+
+    Raises:
+        ValueError: the year is not from `FIRST_YEAR` to `LAST_YEAR`.
     """
 
     def __init__(self, year: float) -> None:
         if not FIRST_YEAR <= year <= LAST_YEAR:
-            raise ValueError(
-                f"no model of the Earth's field for {year:g}, there are ones from {FIRST_YEAR:g} to {LAST_YEAR:g}"
-            )
+            covered = f"from {FIRST_YEAR:g} to {LAST_YEAR:g}"
+            raise ValueError(f"there is no model of the Earth's magnetic field for {year:g}; use a year {covered}")
         epoch, file = next(m for m in _MODELS if year >= m[0])
         self._weights = _field_weights(_coefficients(file), year - epoch)
 
     def at(self, x: float, y: float, z: float) -> Vector:
-        """The field [T] at a position [m], both in the Earth's axes (ECEF), shape (3,)."""
+        """Return the field [T] at a position [m], both in the Earth's axes (ECEF), shape (3,)."""
         distance = math.sqrt(x * x + y * y + z * z)
         if distance < _CORE:
             x, y, z = (x * _CORE / distance, y * _CORE / distance, z * _CORE / distance) if distance else (_CORE, 0, 0)
@@ -73,31 +80,31 @@ class MagneticModel:
 
 
 class EarthField:
-    """The Earth's field in a world's axes, at a place in the world.
+    """Earth's field in a world's axes, at a position in the world.
 
     Args:
-        year: decimal.
-        place: of the world on the Earth.
+        year: decimal year.
+        planet: frame of the world on the Earth.
     """
 
-    def __init__(self, year: float, place: WorldOnPlanet) -> None:
-        self._model, self._place = magnetic_model(year), place
+    def __init__(self, year: float, planet: WorldOnPlanet) -> None:
+        self._model, self._planet = magnetic_model(year), planet
         self._cell = lru_cache(maxsize=1024)(self._linear)
 
     def at(self, position: Vector) -> Vector:
-        """The field [T] at a position [m], both in the world's axes, shape (3,)."""
+        """Return the field [T] at a position [m], both in the world's axes, shape (3,)."""
         cell = tuple(round(v / _CELL) for v in position.tolist())
         centre, field, gradient = self._cell(cell)
         found: Vector = field + gradient @ (position - centre)
         return found
 
     def exactly_at(self, position: Vector) -> Vector:
-        """The same without the linear pieces."""
-        field: Vector = self._model.at(*self._place.on_planet(position).tolist()) @ self._place.axes
+        """Return the same field without linearisation."""
+        field: Vector = self._model.at(*self._planet.on_planet(position).tolist()) @ self._planet.axes
         return field
 
     def _linear(self, cell: tuple[int, int, int]) -> tuple[Vector, Vector, Vector]:
-        """Centre of a cell, field there, and its change with each coordinate as columns."""
+        """Return a cell's centre, the field there, and the field's derivatives by each coordinate as columns."""
         centre = np.array(cell, dtype=np.float64) * _CELL
         steps = 0.5 * _CELL * np.eye(3)
         slopes = [(self.exactly_at(centre + s) - self.exactly_at(centre - s)) / _CELL for s in steps]
@@ -106,27 +113,31 @@ class EarthField:
 
 @lru_cache(maxsize=8)
 def magnetic_model(year: float) -> MagneticModel:
-    """The model at a decimal year; raises ValueError where there is none."""
+    """Return the model at a decimal year, cached.
+
+    Raises:
+        ValueError: no model covers the year.
+    """
     return MagneticModel(year)
 
 
 @lru_cache(maxsize=4)
 def _coefficients(file: str) -> list[list[float]]:
-    """Degree, order, g and h [nT], and their change per year, Schmidt's semi-normalisation."""
+    """Return rows of degree, order, g and h [nT], and their change per year, in Schmidt's semi-normalisation."""
     path = Path(__file__).parent / "wmm" / file
     rows: list[list[float]] = np.loadtxt(path, skiprows=1, max_rows=_DEGREE * (_DEGREE + 3) // 2).tolist()
     return rows
 
 
 def _harmonic_index(n: int, m: int) -> int:
-    """Where the harmonic of degree n and order m stands."""
+    """Return the index of the harmonic of degree n and order m."""
     return n * (n + 1) // 2 + m
 
 
 def _harmonics(x: float, y: float, z: float) -> list[complex]:
-    """Exterior solid harmonics V + iW up to one degree more than the model has, by Cunningham's recursions.
+    """Compute the exterior solid harmonics V + iW up to one degree above the model's, by Cunningham's recursions.
 
-    They have no singular place but the centre; L. E. Cunningham, Celestial Mechanics 2 (1970), in the form of
+    Their only singularity is the centre. See L. E. Cunningham, Celestial Mechanics 2 (1970), in the form of
     O. Montenbruck and E. Gill, Satellite Orbits (2000), section 3.2.4.
     """
     inverse = 1.0 / (x * x + y * y + z * z)
@@ -142,7 +153,7 @@ def _harmonics(x: float, y: float, z: float) -> list[complex]:
 
 
 def _field_weights(rows: list[list[float]], years: float) -> Vector:
-    """What the field [T], -∇ of the potential, takes of each harmonic's real and imaginary part; shape (3, 2·count)."""
+    """Return the weights of each harmonic's real and imaginary part in the field [T], shape (3, 2·count)."""
     weights = np.zeros((3, _harmonic_index(_DEGREE + 2, 0), 2))
     for degree, order, g, h, g_rate, h_rate in rows:
         n, m = int(degree), int(order)

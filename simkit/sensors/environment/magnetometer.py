@@ -1,4 +1,4 @@
-"""Magnetometer: the magnetic field around the sensor, in its own axes."""
+"""Magnetometer: the magnetic field at the sensor, in the sensor's axes."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from simkit.sensors.noise import ThreeAxes, read_axes
 from simkit.sensors.vector_sensor import VectorSensor
 
 _TYPES = "sensor_msgs/msg/MagneticField", "geometry_msgs/msg/Vector3"
-_GAUSS = 1e4  # in a tesla
+_GAUSS = 1e4  # gauss per tesla
 _EARTH = "EARTH_WGS84"
 _SYSTEM = "magnetometer-system"
 
@@ -45,27 +45,27 @@ class MagnetometerOptions:
 
 
 def _read_year(block: Params) -> float:
-    given = block.child("date")
-    if given is None:
+    element = block.child("date")
+    if element is None:
         return DEFAULT_DATE
     try:
-        year = decimal_year(given.value)
+        year = decimal_year(element.value)
     except ValueError:
         year = float("nan")
     if FIRST_YEAR <= year <= LAST_YEAR:
         return year
     allowed = f"allowed is a date as 2026-07-01 or 2026.5 from {FIRST_YEAR:g} to {LAST_YEAR:g}"
-    message = f"found <date>{given.value[:60]}</date>, {allowed}"
-    given.error("SK-SENSOR-063", message)
+    message = f"found <date>{element.value[:60]}</date>, {allowed}"
+    element.error("SK-SENSOR-063", message)
     return DEFAULT_DATE
 
 
 class Magnetometer(VectorSensor):
-    """`magnetometer`: the world's `<magnetic_field>`, or the Earth's at the place of its `<spherical_coordinates>`.
+    """Magnetometer, `magnetometer`: the world's `<magnetic_field>`, or the Earth's field if the world has a location.
 
-    In tesla, in the sensor's axes. Settings of the world's Magnetometer system that Gazebo has by default (gauss
-    instead of tesla, and north, east, down along the world's x, y, z) count where the file writes them, and in a world
-    with `<gazebo_quirks>`.
+    The reading is in tesla, in the sensor's axes; `<spherical_coordinates>` give the location. Gazebo's Magnetometer
+    system uses gauss instead of tesla, and north, east, down along the world's x, y, z. Both apply where the file sets
+    them in the system's plugin, and in a world with `<gazebo_quirks>`.
     """
 
     kinds = ("magnetometer",)
@@ -78,7 +78,7 @@ class Magnetometer(VectorSensor):
         return MagnetometerOptions(read_axes(block), _read_year(block))
 
     def describe(self) -> dict[str, object]:
-        """Decimal year of the Earth's field, standard deviations [T]."""
+        """Return the decimal year of the Earth's field and the standard deviations [T]."""
         return {"magnetometer": {"year": self.options.year, "stddev": [axis.stddev for axis in self.options.axes]}}
 
     def prepare(self) -> None:
@@ -88,7 +88,7 @@ class Magnetometer(VectorSensor):
         self.relocate()
 
     def relocate(self) -> None:
-        """Takes the field of where the world lies now."""
+        """Update the field after a change of the world's location."""
         world = self.sim.world
         self._earth: EarthField | None = None
         self._scale, self._to_world = 1.0, np.eye(3)
@@ -96,28 +96,28 @@ class Magnetometer(VectorSensor):
             self._locate_on_planet(world)
 
     def _locate_on_planet(self, world: SceneWorld) -> None:
-        place = world.spherical_coordinates
-        assert place is not None
-        written = world.magnetic_field != SceneWorld().magnetic_field
-        if place.surface != _EARTH:
-            message = f"no model of the magnetic field of {place.surface}; the world's <magnetic_field> is used"
-            report_once(self, "note", "SK-SENSOR-064", message, place.where)
+        coordinates = world.spherical_coordinates
+        assert coordinates is not None
+        is_field_set = world.magnetic_field != SceneWorld().magnetic_field
+        if coordinates.surface != _EARTH:
+            message = f"simkit has no magnetic model of {coordinates.surface}; the world's <magnetic_field> is used"
+            report_once(self, "note", "SK-SENSOR-064", message, coordinates.where)
             return
-        if written:
+        if is_field_set:
             message = "<magnetic_field> is replaced by the Earth's field: the world has <spherical_coordinates>"
-            hint = "leave <spherical_coordinates> out for a field of your own"
+            hint = "remove <spherical_coordinates> to use this <magnetic_field>"
             report_once(self, "warning", "SK-SENSOR-065", message, world.where, hint)
-        if not MIN_HEIGHT <= place.elevation <= MAX_HEIGHT:
-            height = f"{place.elevation:g} m, the model of the Earth's field is for {MIN_HEIGHT:g} to {MAX_HEIGHT:g} m"
-            message = f"the world is at a height of {height}"
-            report_once(self, "warning", "SK-SENSOR-066", message, place.where)
-        planet = WorldOnPlanet(place)
+        if not MIN_HEIGHT <= coordinates.elevation <= MAX_HEIGHT:
+            allowed = f"{MIN_HEIGHT:g} to {MAX_HEIGHT:g} m"
+            message = f"<elevation> {coordinates.elevation:g} m is outside the Earth's magnetic model, {allowed}"
+            report_once(self, "warning", "SK-SENSOR-066", message, coordinates.where)
+        planet = WorldOnPlanet(coordinates)
         self._earth = EarthField(self.options.year, planet)
         if _read_system_switch(world, "use_units_gauss"):
             self._scale = _GAUSS
         if _read_system_switch(world, "use_earth_frame_ned"):
-            # Gazebo takes north, east, down for the world's axes, whatever its heading
-            sine, cosine = np.sin(place.heading), np.cos(place.heading)
+            # Gazebo maps north, east, down to the world's axes without its heading
+            sine, cosine = np.sin(coordinates.heading), np.cos(coordinates.heading)
             self._to_world = np.array(((sine, cosine, 0.0), (cosine, -sine, 0.0), (0.0, 0.0, -1.0)))
 
     def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> Vector:
@@ -125,8 +125,8 @@ class Magnetometer(VectorSensor):
         field = self._uniform
         if self._earth is not None:
             field = self._to_world @ self._earth.at(position) * self._scale
-        seen: Vector = field @ rotation
-        return seen
+        measured: Vector = field @ rotation
+        return measured
 
     def _message_of(self, reading: Vector, time_ns: int) -> msgs.MagneticField:
         field, vector = msgs.types_of(*_TYPES)
@@ -136,7 +136,7 @@ class Magnetometer(VectorSensor):
 
 
 def _read_system_switch(world: SceneWorld, name: str) -> bool:
-    """A switch of the world's Magnetometer system; Gazebo's default, which is true, only with its quirks."""
+    """Read a switch of the world's Magnetometer system; Gazebo's default, true, applies only with its quirks."""
     for plugin in world.plugins:
         if _SYSTEM in plugin.filename or plugin.name.endswith("::Magnetometer"):
             child = next((c for c in plugin.params.children if c.name == name), None)

@@ -1,4 +1,4 @@
-"""Satellite navigation: latitude, longitude, height, and the velocity over ground."""
+"""Satellite navigation: latitude, longitude, height, and velocity over ground."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ from simkit.sensors.environment.geodesy import WorldOnPlanet, east_north_up
 from simkit.sensors.noise import Noise, NoiseModel, read_noise
 
 FIX, VELOCITY, GPS = "sensor_msgs/msg/NavSatFix", "geometry_msgs/msg/Vector3Stamped", "gps_msgs/msg/GPSFix"
-_UNKNOWN, _DIAGONAL = 0, 2  # types of a position's covariance
+_UNKNOWN, _DIAGONAL = 0, 2  # covariance types of NavSatFix
 _STATUS_FIX, _SERVICE_GPS = 0, 1
 _SOURCE_GPS, _SOURCE_DOPPLER = 1, 4
-# gpsd's uncertainties are those that hold 95 % of the readings: of one and of two normal numbers
+# gpsd's uncertainties contain 95 % of the readings; these are the factors for one and for two normal axes
 _SIGMAS_95_ONE_AXIS, _SIGMAS_95_TWO_AXES = 1.959964, math.sqrt(-2.0 * math.log(0.05))
-_FARTHEST: Final = 1e30  # [m] of a reading with noise, so that its square is a number
+_FARTHEST: Final = 1e30  # [m] limit of noise, so that its square is finite
 
 
 @dataclass(frozen=True, slots=True)
 class NavSatOptions:
-    """The `<navsat>` (in Gazebo Classic `<gps>`) block: noise of position [m] and velocity [m/s]."""
+    """The `<navsat>` block (`<gps>` in Gazebo Classic): noise of position [m] and velocity [m/s]."""
 
     horizontal_position: NoiseModel
     vertical_position: NoiseModel
@@ -38,13 +38,13 @@ class NavSatOptions:
 
 @dataclass(frozen=True, slots=True)
 class NavSatReading:
-    """Where it is and how it moves.
+    """Position and velocity of the receiver.
 
     Attributes:
-        east, north: on the plane that touches the planet at the world's origin [m].
-        latitude, longitude: [rad].
-        altitude: above the ellipsoid [m].
-        velocity: to east, north and up of where it is [m/s], shape (3,).
+        east, north: position on the plane that touches the planet at the world's origin [m].
+        latitude, longitude: geodetic position [rad].
+        altitude: height above the ellipsoid [m].
+        velocity: velocity to east, north and up at the position [m/s], shape (3,).
     """
 
     east: float
@@ -56,10 +56,11 @@ class NavSatReading:
 
 
 class NavSat(Sensor):
-    """`navsat`, `gps`: a receiver in a world with `<spherical_coordinates>`; in one without it gives nothing.
+    """Satellite receiver, `navsat` or `gps`; without `<spherical_coordinates>` in the world it publishes nothing.
 
-    Noise of the position is in metres. Gazebo takes that of latitude and longitude for degrees, has no covariance, and
-    gives the velocity along the world's axes whatever their heading; so does a world with `<gazebo_quirks>`.
+    Noise of the position is in metres. Gazebo applies it to latitude and longitude in degrees, publishes no
+    covariance, and gives the velocity along the world's axes without their heading. A world with `<gazebo_quirks>`
+    does the same.
     """
 
     kinds = ("navsat", "gps")
@@ -77,45 +78,46 @@ class NavSat(Sensor):
         return NavSatOptions(**noises)
 
     def describe(self) -> dict[str, object]:
-        """Standard deviations [m, m/s]."""
+        """Return the standard deviations [m, m/s]."""
         return {"navsat": {f"{f.name}_stddev": getattr(self.options, f.name).stddev for f in fields(NavSatOptions)}}
 
     def prepare(self) -> None:
-        options, place = self.options, self.sim.world.spherical_coordinates
-        level, plumb = options.horizontal_position, options.vertical_position
-        flat, climb = options.horizontal_velocity, options.vertical_velocity
-        self.noise = self._make_noise((level, level, plumb, flat, flat, climb), "navsat")
-        self._quirks, self._turn = self.sim.world.gazebo_quirks, 0.0
-        self._place: WorldOnPlanet | None = None
-        if place is None:
-            message = f"sensor {self.scoped!r} gives nothing: the world has no <spherical_coordinates>"
-            hint = "give the world <spherical_coordinates> with latitude_deg, longitude_deg and elevation"
+        options, coordinates = self.options, self.sim.world.spherical_coordinates
+        horizontal, vertical = options.horizontal_position, options.vertical_position
+        horizontal_rate, vertical_rate = options.horizontal_velocity, options.vertical_velocity
+        models = (horizontal, horizontal, vertical, horizontal_rate, horizontal_rate, vertical_rate)
+        self.noise = self._make_noise(models, "navsat")
+        self._quirks, self._heading_offset = self.sim.world.gazebo_quirks, 0.0
+        self._planet: WorldOnPlanet | None = None
+        if coordinates is None:
+            message = f"sensor {self.scoped!r} publishes nothing: the world has no <spherical_coordinates>"
+            hint = "add to the world <spherical_coordinates> with latitude_deg, longitude_deg and elevation"
             self.diagnostics.warning("SK-SENSOR-067", message, self.scene.where, hint)
         else:
-            self._stand(place)
+            self._locate(coordinates)
 
     def relocate(self) -> None:
-        """The world lies elsewhere on its planet from now on."""
-        place = self.sim.world.spherical_coordinates
-        if place is None:
-            self._place = None
+        """Update the receiver after a change of the world's location."""
+        coordinates, offset = self.sim.world.spherical_coordinates, self._heading_offset
+        if coordinates is None:
+            self._planet = None
         else:
-            self._stand(replace(place, heading=place.heading + self._turn) if self._turn else place)
+            self._locate(replace(coordinates, heading=coordinates.heading + offset) if offset else coordinates)
 
-    def _stand(self, place: SphericalCoordinates) -> None:
-        self._place = WorldOnPlanet(place)
-        sine, cosine = math.sin(place.heading), math.cos(place.heading)
+    def _locate(self, coordinates: SphericalCoordinates) -> None:
+        self._planet = WorldOnPlanet(coordinates)
+        sine, cosine = math.sin(coordinates.heading), math.cos(coordinates.heading)
         self._heading = np.array(((cosine, -sine), (sine, cosine)))
 
     def use_classic_noise(self) -> None:
-        """With `<gazebo_quirks>` the world's heading is half a turn off, as in Gazebo Classic, and nothing else is."""
-        place = self.sim.world.spherical_coordinates
-        if self._quirks and place is not None:
-            self._quirks, self._turn = False, math.pi
-            self._stand(replace(place, heading=place.heading + self._turn))
+        """Replace the quirks of a world with `<gazebo_quirks>` by Classic's: a heading rotated by half a turn."""
+        coordinates = self.sim.world.spherical_coordinates
+        if self._quirks and coordinates is not None:
+            self._quirks, self._heading_offset = False, math.pi
+            self._locate(replace(coordinates, heading=coordinates.heading + self._heading_offset))
 
     def accepts(self, tick: int) -> bool:
-        return self._place is not None
+        return self._planet is not None
 
     def products(self) -> dict[str, Product]:
         return {
@@ -129,15 +131,15 @@ class NavSat(Sensor):
         return {"fix": topic, "velocity": f"{topic}/velocity", "gps_fix": f"{topic}/gps_fix"}
 
     def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> NavSatReading:
-        place = self._place
-        assert place is not None
+        planet = self._planet
+        assert planet is not None
         body = self._body
         lever = data.xmat[body].reshape(3, 3) @ self._offset_position
         position = data.xpos[body] + lever
         velocity = self._velocity_in_world(model, data, lever)
-        latitude, longitude, altitude = place.geodetic(position)
+        latitude, longitude, altitude = planet.geodetic(position)
         if not self._quirks:
-            velocity = (place.axes @ velocity) @ east_north_up(latitude, longitude)
+            velocity = (planet.axes @ velocity) @ east_north_up(latitude, longitude)
         east, north = (self._heading @ position[:2]).tolist()
         return NavSatReading(east, north, latitude, longitude, altitude, velocity)
 
@@ -157,21 +159,21 @@ class NavSat(Sensor):
         return NavSatReading(reading.east, reading.north, latitude, longitude, altitude, values[3:])
 
     def _move_over_ground(self, reading: NavSatReading, east: float, north: float) -> tuple[float, float]:
-        """Latitude and longitude that many metres away along the ground [m]."""
-        place = self._place
-        assert place is not None
+        """Return the latitude and longitude [rad] of a reading displaced by `east` and `north` on the ground [m]."""
+        planet = self._planet
+        assert planet is not None
         if not (east or north):
             return reading.latitude, reading.longitude
         east, north = (max(-_FARTHEST, min(v, _FARTHEST)) for v in (east, north))
         across, along, _ = east_north_up(reading.latitude, reading.longitude).T
-        at = place.ellipsoid.cartesian(reading.latitude, reading.longitude, reading.altitude)
-        moved = at + east * across + north * along
-        return place.ellipsoid.geodetic(*moved.tolist())[:2]
+        position = planet.ellipsoid.cartesian(reading.latitude, reading.longitude, reading.altitude)
+        moved = position + east * across + north * along
+        return planet.ellipsoid.geodetic(*moved.tolist())[:2]
 
     # ------------------------------------------------------------------ messages
 
     def _covariance(self) -> tuple[Vector, int]:
-        """Of the position to east, north and up [m²], and its type."""
+        """Return the covariance of the position to east, north and up [m²], and its type."""
         return (np.zeros(9), _UNKNOWN) if self._quirks else (self.noise.covariance(), _DIAGONAL)
 
     def _fix_of(self, reading: NavSatReading, time_ns: int) -> msgs.NavSatFix:
@@ -193,7 +195,8 @@ class NavSat(Sensor):
     def _gps_fix_of(self, reading: NavSatReading, time_ns: int) -> msgs.GPSFix:
         east, north, up = reading.velocity.tolist()
         covariance, kind = self._covariance()
-        level, plumb, flat, climb = (math.sqrt(self.noise.variance(channel)) for channel in (0, 2, 3, 5))
+        deviations = (math.sqrt(self.noise.variance(channel)) for channel in (0, 2, 3, 5))
+        horizontal, vertical, horizontal_rate, vertical_rate = deviations
         message: msgs.GPSFix = msgs.make(
             GPS,
             header=msgs.header(time_ns, self.frame_id),
@@ -210,11 +213,11 @@ class NavSat(Sensor):
             speed=math.hypot(east, north),
             climb=up,
             time=time_ns * 1e-9,
-            err=math.hypot(_SIGMAS_95_TWO_AXES * level, _SIGMAS_95_ONE_AXIS * plumb),
-            err_horz=_SIGMAS_95_TWO_AXES * level,
-            err_vert=_SIGMAS_95_ONE_AXIS * plumb,
-            err_speed=_SIGMAS_95_TWO_AXES * flat,
-            err_climb=_SIGMAS_95_ONE_AXIS * climb,
+            err=math.hypot(_SIGMAS_95_TWO_AXES * horizontal, _SIGMAS_95_ONE_AXIS * vertical),
+            err_horz=_SIGMAS_95_TWO_AXES * horizontal,
+            err_vert=_SIGMAS_95_ONE_AXIS * vertical,
+            err_speed=_SIGMAS_95_TWO_AXES * horizontal_rate,
+            err_climb=_SIGMAS_95_ONE_AXIS * vertical_rate,
             position_covariance=covariance,
             position_covariance_type=kind,
         )
@@ -222,5 +225,5 @@ class NavSat(Sensor):
 
 
 def _normalised(angle: float) -> float:
-    """From -π to π."""
+    """Return an angle reduced to the range from -π to π."""
     return math.remainder(angle, math.tau)

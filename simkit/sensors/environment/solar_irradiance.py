@@ -1,4 +1,4 @@
-"""Light at a solar sensor or a solar panel: direction, validity, shadow, irradiance, power."""
+"""Light at a solar sensor or a solar panel: direction, validity, shadow, irradiance and power."""
 
 from __future__ import annotations
 
@@ -17,9 +17,7 @@ from simkit.scene.geometry import Vec3
 from simkit.sensors.environment.illumination import Lamp, ShadowRay, falloff_share
 
 STANDARD_IRRADIANCE: Final = 1000.0
-"""[W/m²] of a light of which nothing says it: that of standard test conditions (IEC 60904-3)."""
-
-"""Of an irradiance [W/m²] and of an area [m²], whose product is a number then."""
+"""Irradiance of a light without a value of its own [W/m²]; that of standard test conditions (IEC 60904-3)."""
 
 _UP: Final = (0.0, 0.0, 1.0)
 _FULL_CIRCLE: Final = 2 * math.pi
@@ -28,12 +26,12 @@ FALLOFFS: Final = ("none", "inverse_square", "attenuation")
 
 @dataclass(frozen=True, slots=True)
 class Panel:
-    """A flat solar panel.
+    """Flat solar panel.
 
     Attributes:
-        area: [m²].
-        efficiency: electrical power by the light's on its area, from 0 to 1.
-        normal: unit vector out of its face, sensor frame.
+        area: area [m²].
+        efficiency: electrical power over the power of the light on the area, from 0 to 1.
+        normal: unit vector out of the panel's face, sensor frame.
     """
 
     area: float
@@ -43,17 +41,17 @@ class Panel:
 
 @dataclass(frozen=True, slots=True)
 class SolarOptions:
-    """What a solar sensor measures, and how.
+    """Options of the measurement of light.
 
     Attributes:
-        shadow: whether what stands in the way makes a reading invalid.
-        towards: `direction`: a directional light is where its rays come from; `position`: where its pose is.
-        irradiance: of a surface that faces the light [W/m²], of a lamp at 1 m; None for what the light says of itself.
-        falloff: how a lamp fades with the distance; see `lighting.faded`.
+        shadow: True if an object between sensor and light makes a reading invalid.
+        towards: `direction` points against the rays of a directional light; `position` points at the light's pose.
+        irradiance: irradiance of a surface that faces the light [W/m²], for a lamp at 1 m; None for the light's own.
+        falloff: rule by which a lamp fades with the distance; see `illumination.falloff_share`.
         normal: unit vector out of the sensor's face, sensor frame.
-        field_of_view: full angle of the cone about it in which a light is seen [rad].
-        panel: None for none.
-        measures_irradiance: whether the file asks for it.
+        field_of_view: full angle of the cone about the normal in which a light is visible [rad].
+        panel: solar panel, or None.
+        measures_irradiance: True if the file requests the irradiance.
     """
 
     shadow: bool = False
@@ -68,15 +66,15 @@ class SolarOptions:
 
 @dataclass(frozen=True, slots=True)
 class SolarReading:
-    """What is there at one time, without noise.
+    """Light at one time, without noise.
 
     Attributes:
-        orientation: (w, x, y, z) in the sensor frame; its x axis points at the light, its y axis is level there.
-        is_valid: whether the sensor has the light: it shines there, is in the field of view, and nothing is between.
+        orientation: rotation (w, x, y, z) in the sensor frame; its x axis points at the light, its y axis is level.
+        is_valid: True if the light is on, reaches the sensor, is in the field of view, and is not hidden.
         shadow: scoped name of the visual or collision that casts its shadow on the sensor, or empty.
         incidence: angle between the sensor's normal and the direction to the light [rad].
-        irradiance: of the sensor's face [W/m²].
-        power: of the panel [W]; 0 without one.
+        irradiance: irradiance of the sensor's face [W/m²].
+        power: power of the panel [W]; 0 without one.
     """
 
     orientation: Vector
@@ -91,19 +89,24 @@ NO_LIGHT: Final = SolarReading(np.array((1.0, 0.0, 0.0, 0.0)), False, "", math.p
 
 
 def read_solar_options(params: Params, towards: str) -> SolarOptions:
-    """Reads the elements that the sensor and the course's plugin have in common; `towards` is the default."""
+    """Read the elements that the sensor and the course's plugin have in common.
+
+    Args:
+        params: block that contains the elements.
+        towards: default of `<towards>`.
+    """
     normal = _normal(params, _UP)
-    given = params.text("irradiance", "")
-    asks = params.has("irradiance") or params.has("panel")
+    irradiance = params.text("irradiance", "")
+    measures_irradiance = params.has("irradiance") or params.has("panel")
     return SolarOptions(
         shadow=params.boolean("shadow", False),
         towards=params.choice("towards", ("direction", "position"), towards),
-        irradiance=None if given in ("", "light") else _irradiance(params),
+        irradiance=None if irradiance in ("", "light") else _irradiance(params),
         falloff=params.choice("falloff", FALLOFFS, "none"),
         normal=normal,
         field_of_view=params.number("field_of_view", _FULL_CIRCLE, minimum=0, maximum=_FULL_CIRCLE + 1e-9),
         panel=_panel(params, normal),
-        measures_irradiance=asks,
+        measures_irradiance=measures_irradiance,
     )
 
 
@@ -138,20 +141,23 @@ def _normal(params: Params, default: Vec3) -> Vec3:
 
 
 def report_unused_options(params: Params, options: SolarOptions, light: Light) -> None:
-    """Warns of an option that has no effect on a light of its type."""
-    directional = light.scene.type == "directional"
-    idle = {"falloff": directional and options.falloff != "none", "towards": not directional and params.has("towards")}
-    for name in (name for name, has_none in idle.items() if has_none):
-        message = f"<{name}> has no effect: {light.scoped!r} is a {light.scene.type} light"
+    """Report options that have no effect on a light of this type."""
+    is_directional = light.scene.type == "directional"
+    unused = {
+        "falloff": is_directional and options.falloff != "none",
+        "towards": not is_directional and params.has("towards"),
+    }
+    for name in (name for name, is_unused in unused.items() if is_unused):
+        message = f"<{name}> has no effect, because {light.scoped!r} is a {light.scene.type} light"
         params.diagnostics.warning("SK-SENSOR-083", message, params.block(name).where)
 
 
 class SolarView:
-    """What a place on a link has of a light.
+    """View of a light from a point on a link.
 
     Args:
-        options: of the sensor.
-        light: the light's handle.
+        options: options of the sensor.
+        light: handle of the light.
     """
 
     def __init__(self, options: SolarOptions, light: Light) -> None:
@@ -161,7 +167,7 @@ class SolarView:
         self._half = options.field_of_view / 2 + 1e-12
 
     def bind(self, compiled: Compiled, link: str) -> None:
-        """Finds the light and what throws shadows on `link` in a compiled model."""
+        """Find the light, and the geoms that cast shadows on `link`, in a compiled model."""
         self.lamp.bind(compiled.names)
         if self._ray is not None:
             self._ray.bind(compiled, link, self.light.scene.link)
@@ -169,13 +175,14 @@ class SolarView:
     def measure(
         self, model: mujoco.MjModel, data: mujoco.MjData, state: LightState, origin: Vector, rotation: Vector
     ) -> SolarReading:
-        """The reading.
+        """Return the reading.
 
         Args:
-            model, data: with everything computed.
-            state: of the light.
-            origin: of the sensor in the world [m], shape (3,).
-            rotation: of its frame, shape (3, 3).
+            model: compiled model.
+            data: data of the model with everything computed.
+            state: state of the light.
+            origin: position of the sensor in the world [m], shape (3,).
+            rotation: rotation matrix of the sensor's frame in the world, shape (3, 3).
         """
         options = self.options
         beam = self.lamp.at(state, data, origin)
@@ -197,7 +204,7 @@ class SolarView:
         return SolarReading(orientation, incidence <= self._half, "", incidence, irradiance, power)
 
     def _facing(self, state: LightState) -> float:
-        """Irradiance [W/m²] of a surface that faces the light."""
+        """Return the irradiance [W/m²] of a surface that faces the light."""
         if self.options.irradiance is not None:
             return self.options.irradiance
         return STANDARD_IRRADIANCE if state.irradiance is None else state.irradiance
@@ -210,23 +217,26 @@ class SolarView:
 
 
 def orientation_towards(direction: Vector) -> Vector:
-    """(w, x, y, z) whose x axis is a unit vector and whose y axis is level: pitch = asin(-z), yaw = atan2(y, x)."""
+    """Return the rotation (w, x, y, z) whose x axis is a unit vector and whose y axis is level.
+
+    Its pitch is asin(-z), and its yaw is atan2(y, x).
+    """
     x, y, z = direction.tolist()
     return quat_from_rpy(0.0, math.asin(-max(-1.0, min(1.0, z))), math.atan2(y, x))
 
 
 def angle_between(first: Vector, second: Vec3) -> float:
-    """Angle between two unit vectors [rad], exact for small ones too."""
+    """Return the angle between two unit vectors [rad], exact for small angles too."""
     (ax, ay, az), (bx, by, bz) = first.tolist(), second
     across = math.hypot(ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx)
     return math.atan2(across, ax * bx + ay * by + az * bz)
 
 
 def deflect_orientation(orientation: Vector, errors: Vector) -> Vector:
-    """An orientation turned about its own y and z axes together by two angles [rad]: its x axis errs.
+    """Return an orientation rotated about its own y and z axes together by two angles [rad], so that its x axis errs.
 
-    With independent normal angles of standard deviation σ the x axis is turned about a random axis at right angles to
-    it by an angle that has Rayleigh's distribution of scale σ.
+    With independent normal angles of standard deviation σ, the x axis turns about a random axis perpendicular to it.
+    The angle of that turn has Rayleigh's distribution of scale σ.
     """
     about_y, about_z = errors.tolist()
     angle = math.hypot(about_y, about_z)
@@ -237,7 +247,7 @@ def deflect_orientation(orientation: Vector, errors: Vector) -> Vector:
 
 
 def covariance_across(axis: Vector, variance: float) -> Vector:
-    """Row-major covariance, shape (9,), of a turn about all axes at right angles to a unit vector [rad²]."""
+    """Return the row-major covariance [rad²], shape (9,), of a rotation about all axes perpendicular to `axis`."""
     x, y, z = axis.tolist()
     xx, yy, zz, xy, xz, yz = 1.0 - x * x, 1.0 - y * y, 1.0 - z * z, -x * y, -x * z, -y * z
     covariance: Vector = variance * np.array((xx, xy, xz, xy, yy, yz, xz, yz, zz))

@@ -1,4 +1,4 @@
-"""Solar sensor: the direction of a light, whether anything stands between, and what light and power it gives."""
+"""Solar sensor: the direction of a light, its visibility, and the irradiance and power that it gives."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from simkit.sensors.sample import Memory
 
 TYPE = "sensor_msgs/msg/Imu"
 NUMBER = "std_msgs/msg/Float64"
-_ERRORS = np.zeros(2)  # to which the noise is added
+_ERRORS = np.zeros(2)  # zeros that the noise is added to
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,9 +31,9 @@ class SolarSensorOptions:
     """The `<solar>` block.
 
     Attributes:
-        light_name: of the light; empty for the first directional one.
-        view: what is measured.
-        noise: of the direction, about each of the two axes at right angles to it [rad].
+        light_name: name of the light; empty for the first directional light.
+        view: options of the measurement.
+        noise: noise of the direction, about each of the two axes perpendicular to it [rad].
     """
 
     light_name: str
@@ -42,10 +42,10 @@ class SolarSensorOptions:
 
 
 class SolarSensor(Sensor):
-    """`solar_irradiance`: the direction of a light as an orientation whose x axis points at it.
+    """Solar sensor, `solar`: the direction of a light as an orientation whose x axis points at the light.
 
     Attributes:
-        light: the light's handle; None where there is none.
+        light: handle of the light; None if there is none.
     """
 
     kinds = ("solar",)
@@ -56,16 +56,16 @@ class SolarSensor(Sensor):
 
     def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
         super().__init__(scene, diagnostics)
-        # rounding is of the angles and not of their errors
+        # the rounding applies to the angles and not to their errors
         self._precision = np.full(2, self.options.noise.precision)
         self._motions: list[tuple[int, LightMotion | None]] = []
         self._view: SolarView | None = None
 
     def read_options(self, params: Params) -> SolarSensorOptions:
         block = params.block("solar")
-        noise, plain = read_noise(block), block.number("angular_noise", 0.0, minimum=0, maximum=LARGEST)
-        if plain > 0:
-            noise = replace(noise, stddev=math.hypot(noise.stddev, plain))
+        noise, angular_noise = read_noise(block), block.number("angular_noise", 0.0, minimum=0, maximum=LARGEST)
+        if angular_noise > 0:
+            noise = replace(noise, stddev=math.hypot(noise.stddev, angular_noise))
         return SolarSensorOptions(
             block.text("light_name", ""), solar_irradiance.read_solar_options(block, "direction"), noise
         )
@@ -113,14 +113,14 @@ class SolarSensor(Sensor):
     def bind(self, compiled: Compiled) -> None:
         super().bind(compiled)
         if self.light is None or self.sim.contents.lights.get(self.light.scoped) is not self.light:
-            self._find_light()  # it came, or went, with a model
+            self._find_light()  # the light was spawned or removed with a model
         if self._view is not None:
             self._view.bind(compiled, self._link_name)
 
-    # ------------------------------------------------------------------ the light
+    # ------------------------------------------------------------------ light
 
     def _find_light(self) -> None:
-        """The light that the file names, else the first directional one, else none."""
+        """Find the light that the file names, or the first directional light."""
         lights, name = self.sim.contents.lights, self.options.light_name
         suns = (light for light in lights.values() if light.scene.type == "directional")
         self.light = lights.get(name) if name else next(suns, None)
@@ -129,24 +129,24 @@ class SolarSensor(Sensor):
     def _report_missing(self) -> None:
         lights, name = self.sim.contents.lights, self.options.light_name
         where = self.scene.params.block("solar").block("light_name").where
-        listed = ", ".join(repr(n) for n in sorted(lights)) or "none"
-        said = f"sensor {self.scoped!r}: "
+        light_names = ", ".join(repr(n) for n in sorted(lights)) or "none"
+        prefix = f"sensor {self.scoped!r}: "
         if not lights and self.sim.world.where == NOWHERE:
-            message = said + "a bare model has no light: readings are invalid until it stands in a world that has one"
+            message = prefix + "there is no light, so readings are invalid; put the model into a world with a light"
             self.diagnostics.note("SK-SENSOR-081", message, self.scene.where)
         elif name:
-            message = said + f"there is no light {name!r}; lights are: {listed}"
+            message = prefix + f"there is no light {name!r}; lights are: {light_names}"
             self.diagnostics.error("SK-SENSOR-080", message, where, did_you_mean(name, lights))
         else:
-            message = said + f"the world has no directional light: every reading is invalid; lights are: {listed}"
-            self.diagnostics.warning("SK-SENSOR-082", message, self.scene.where, "<light_name> names another one")
+            message = f"{prefix}the world has no directional light, so readings are invalid; lights are: {light_names}"
+            self.diagnostics.warning("SK-SENSOR-082", message, self.scene.where, "name another light in <light_name>")
 
     def evolve(self, index: int, dt: float) -> None:
         super().evolve(index, dt)
         motion, motions = self.light.motion if self.light is not None else None, self._motions
         if motions and motions[-1][1] is motion:
             return
-        # a sample that is measured later keeps the light of its own time
+        # a sample that is measured later keeps the light's motion at its own time
         oldest = min((sample.index for sample in self._kept_samples()), default=index)
         while len(motions) > 1 and motions[1][0] <= oldest:
             del motions[0]
@@ -174,7 +174,7 @@ class SolarSensor(Sensor):
         return self._measure(model, data, motion.at(sample.time_ns) if motion is not None else None)
 
     def _measure(self, model: mujoco.MjModel, data: mujoco.MjData, state: LightState | None) -> SolarReading:
-        """With the light as it was at the time of the data; None where there is none."""
+        """Return the reading with the light's state at the time of the data; None means that there is no light."""
         if self._view is None or state is None:
             return NO_LIGHT
         return self._view.measure(model, data, state, *self._frame_in_world(data))
@@ -205,22 +205,22 @@ class SolarSensor(Sensor):
         else:
             covariance[0] = -1.0
         header = msgs.header(time_ns, self.frame_id)
-        none = np.zeros(9), np.zeros(9)
-        none[0][0] = none[1][0] = -1.0
-        still = vector(0.0, 0.0, 0.0), vector(0.0, 0.0, 0.0)
-        message: msgs.Imu = imu(header, quaternion(x, y, z, w), covariance, still[0], none[0], still[1], none[1])
+        unknown = np.zeros(9), np.zeros(9)
+        unknown[0][0] = unknown[1][0] = -1.0
+        zeros = vector(0.0, 0.0, 0.0), vector(0.0, 0.0, 0.0)
+        message: msgs.Imu = imu(header, quaternion(x, y, z, w), covariance, zeros[0], unknown[0], zeros[1], unknown[1])
         return message
 
     # ------------------------------------------------------------------ truth
 
     @property
     def reading(self) -> SolarReading | None:
-        """What is true of the newest sample (direction, shadow, incidence, light, power), or None before the first."""
+        """True reading of the newest sample (direction, shadow, incidence, light, power), or None before the first."""
         found: SolarReading | None = self._true_reading()
         return found
 
     @property
     def shadow(self) -> str:
-        """Scoped name of the visual or collision that cast its shadow on the newest sample, or empty."""
+        """Scoped name of the visual or collision that cast its shadow on the newest sample, or ""."""
         reading = self.reading
         return reading.shadow if reading is not None else ""

@@ -1,4 +1,5 @@
-"""Inertial measurement units, one by one and in batches, and the frames that their orientation is measured against.
+"""Inertial measurement units, alone and in batches, and the reference frames of their orientation.
 
-Velocities and accelerations of MuJoCo's bodies enter; `Imu` messages leave. A batch changes no bit of a message.
+Inputs are the velocities and accelerations of MuJoCo's bodies. Outputs are `Imu` messages. A batch changes no bit of a
+message.
 """

@@ -1,4 +1,4 @@
-"""Inertial measurement unit: `imu` sensors and their messages, one by one or many at once, to the same bits."""
+"""Inertial measurement unit: `imu` sensors and their messages, alone or in a batch, with the same bits."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from simkit.sensors.sensor_batch import SensorBatch, form_batches
 
 _TYPES = "sensor_msgs/msg/Imu", "geometry_msgs/msg/Vector3", "geometry_msgs/msg/Quaternion"
 _BATCH_TYPES = *_TYPES, "std_msgs/msg/Header", "builtin_interfaces/msg/Time"
-_NUMBERS = 31  # captured of each
-_NOISE_BLOCK = 64  # samples whose noise is looked up at a time
+_NUMBERS = 31  # numbers captured per sensor
+_NOISE_BLOCK = 64  # samples whose noise is drawn at a time
 _NS = 1_000_000_000
 
 
 def _batch_key(imu: ImuMeasurement) -> Hashable | None:
-    """What has to be the same for the same arithmetic; None where there is more to do than a batch does."""
+    """Return the properties that select the arithmetic; None if an IMU needs more than a batch computes."""
     noise = imu.noise
     if noise.wanders or noise._is_quantised or not imu._attitude_noise.is_silent or imu._more_noise is not None:
         return None
@@ -33,7 +33,7 @@ def _batch_key(imu: ImuMeasurement) -> Hashable | None:
 
 
 class ImuBatch(SensorBatch[ImuMeasurement]):
-    """IMUs that differ in place and noise alone."""
+    """Batch of IMUs that differ only in position and noise."""
 
     def __init__(self, members: Sequence[ImuMeasurement]) -> None:
         super().__init__(members)
@@ -64,9 +64,9 @@ class ImuBatch(SensorBatch[ImuMeasurement]):
         self._time_ns = self.sim.time_ns
         self._clock = divmod(self._time_ns, _NS)
 
-    def captured(self, place: int) -> bytes:
-        # a copy: whoever keeps one sample does not keep those of all
-        captured: bytes = self._raw[place].tobytes()
+    def captured(self, member_index: int) -> bytes:
+        # a copy, because a view would keep the array of all members alive
+        captured: bytes = self._raw[member_index].tobytes()
         return captured
 
     def publish_sample(self, member: Sampler, tick: int) -> bool:
@@ -75,36 +75,36 @@ class ImuBatch(SensorBatch[ImuMeasurement]):
         index = member._index + 1
         if self._index != index:
             self._finish(index)
-        place = member.batch_index
+        member_index = member.batch_index
         sample = Sample(index, self._time_ns)
-        sample.raw = self._raw[place].tobytes()  # for `truth`
-        sample.messages["imu"] = message = self._message(place)
+        sample.raw = self._raw[member_index].tobytes()  # read by `truth`
+        sample.messages["imu"] = message = self._message(member_index)
         member._index, member._time_ns, member._newest = index, self._time_ns, sample
-        for _, publisher, _ in member._wanted:
+        for _, publisher, _ in member._read_publishers:
             publisher.publish(message)
         return True
 
-    def _message(self, place: int) -> msgs.Imu:
+    def _message(self, member_index: int) -> msgs.Imu:
         make, vector, quaternion, header, time = msgs.types_of(*_BATCH_TYPES)
-        frame, (of_orientation, of_rate, of_force), has_attitude = self._message_constants[place]
-        w, x, y, z, rx, ry, rz, fx, fy, fz = self._rows[place]
+        frame, (orientation_cov, rate_cov, force_cov), has_attitude = self._message_constants[member_index]
+        w, x, y, z, rx, ry, rz, fx, fy, fz = self._rows[member_index]
         if not has_attitude:
             w, x, y, z = 1.0, 0.0, 0.0, 0.0
         message: msgs.Imu = make(
             header(time(*self._clock), frame),
             quaternion(x, y, z, w),
-            of_orientation,
+            orientation_cov,
             vector(rx, ry, rz),
-            of_rate,
+            rate_cov,
             vector(fx, fy, fz),
-            of_force,
+            force_cov,
         )
         return message
 
-    # ------------------------------------------------------------------ the arithmetic
+    # ------------------------------------------------------------------ arithmetic
 
     def _finish(self, index: int) -> None:
-        """The numbers of everybody's message, noise included, shape (members, 10)."""
+        """Compute the numbers of all members' messages, noise included, shape (members, 10)."""
         rows = np.ascontiguousarray(self._raw.T)
         attitude, motion = sensor_motion(rows, self._arms, self._mounts, self._turns, self._references)
         numbers = np.empty((len(self.members), 10))
@@ -117,7 +117,7 @@ class ImuBatch(SensorBatch[ImuMeasurement]):
             self._update_message_constants()
 
     def _update_message_constants(self) -> None:
-        """What of everybody's message changes with the rate alone."""
+        """Update the parts of all members' messages that change only with the rate."""
         self._constants_of, self._message_constants = self.members[0].noise.state.interval, []
         for imu in self.members:
             self._message_constants.append((imu.frame_id, tuple(imu.covariances()), imu.options.enable_orientation))
@@ -134,7 +134,7 @@ class ImuBatch(SensorBatch[ImuMeasurement]):
         return out
 
     def _white(self, index: int) -> Vector:
-        """Standard normal numbers of everybody's sample, shape (members, 6)."""
+        """Return the standard normal numbers of all members' samples, shape (members, 6)."""
         row = index - self._first_index
         if not 0 <= row < len(self._normals) or self._seed != self.sim.engine.streams.seed:
             streams = [imu.noise._white for imu in self.members if imu.noise._white is not None]
@@ -146,7 +146,7 @@ class ImuBatch(SensorBatch[ImuMeasurement]):
 
 
 class Imu(ImuMeasurement):
-    """`imu`: specific force, angular rate, attitude."""
+    """IMU, `imu`: specific force, angular rate and attitude."""
 
     kinds = ("imu",)
     example = "<imu/>"
@@ -164,16 +164,16 @@ class Imu(ImuMeasurement):
 
     def _message_of(self, reading: ImuReading, time_ns: int) -> msgs.Imu:
         imu, vector, quaternion = msgs.types_of(*_TYPES)
-        of_orientation, of_rate, of_force = self.covariances()
+        orientation_cov, rate_cov, force_cov = self.covariances()
         w, x, y, z = reading.orientation if self.options.enable_orientation else NO_ROTATION
         rx, ry, rz, fx, fy, fz = reading.motion
         message: msgs.Imu = imu(
             msgs.header(time_ns, self.frame_id),
             quaternion(x, y, z, w),
-            of_orientation,
+            orientation_cov,
             vector(rx, ry, rz),
-            of_rate,
+            rate_cov,
             vector(fx, fy, fz),
-            of_force,
+            force_cov,
         )
         return message

@@ -26,7 +26,7 @@ from simkit.sensors.inertial.orientation_reference import OrientationReference, 
 from simkit.sensors.noise import Noise, NoiseModel, ThreeAxes, read_axes, read_noise
 from simkit.sensors.sample import Memory
 
-_unpack_numbers = struct.Struct("=31d").unpack  # of what is captured
+_unpack_numbers = struct.Struct("=31d").unpack  # captured numbers
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,9 +36,9 @@ class ImuOptions:
     Attributes:
         angular_velocity: noise per axis [rad/s].
         linear_acceleration: noise per axis [m/s²].
-        orientation: noise per axis [rad]: a small turn of the measured attitude about the sensor's axes.
-        reference: what the orientation is measured against; None for the attitude at the start.
-        enable_orientation: False leaves the orientation out.
+        orientation: noise per axis [rad], applied as a small rotation of the measured attitude about the sensor's axes.
+        reference: reference frame of the orientation; None for the attitude at the start.
+        enable_orientation: False omits the orientation.
     """
 
     angular_velocity: ThreeAxes
@@ -49,11 +49,11 @@ class ImuOptions:
 
 
 class ImuReading(NamedTuple):
-    """What the unit feels.
+    """Measurement of an inertial unit.
 
     Attributes:
-        orientation: attitude (w, x, y, z) against the reference.
-        motion: rate [rad/s] and specific force [m/s²] in the sensor frame, six numbers.
+        orientation: attitude (w, x, y, z) relative to the reference.
+        motion: angular rate [rad/s] and specific force [m/s²] in the sensor frame, six numbers.
     """
 
     orientation: Sequence[float]
@@ -61,25 +61,25 @@ class ImuReading(NamedTuple):
 
     @property
     def angular_velocity(self) -> Vector:
-        """[rad/s], shape (3,)."""
+        """Angular rate in the sensor frame [rad/s], shape (3,)."""
         return np.array(self.motion[:3])
 
     @property
     def linear_acceleration(self) -> Vector:
-        """[m/s²], gravity's reaction included, shape (3,)."""
+        """Specific force in the sensor frame [m/s²], including the reaction to gravity, shape (3,)."""
         return np.array(self.motion[3:])
 
 
 def _read_axis_noise(quantity: Params) -> ThreeAxes:
-    """`<x>`, `<y>`, `<z>` with a `<noise>` each; one `<noise>` beside them is for the axes that have none."""
+    """Read a `<noise>` in each of `<x>`, `<y>` and `<z>`; a `<noise>` beside them applies to the axes without one."""
     return read_axes(quantity, read_noise(quantity))
 
 
 class ImuMeasurement(Sensor):
-    """Base of `imu`: specific force, angular rate and attitude, with noise and covariances, without a message.
+    """Base of `imu`: specific force, angular rate and attitude with noise and covariances, without messages.
 
     Attributes:
-        reference: (w, x, y, z) of the frame that the orientation is measured against, in the world.
+        reference: rotation (w, x, y, z) in the world of the frame that the orientation is measured against.
     """
 
     gathers = True
@@ -118,35 +118,35 @@ class ImuMeasurement(Sensor):
         self.set_orientation_reference(reference_orientation(options.reference, self.scene, self.sim))
 
     def set_orientation_reference(self, reference: Vector | QuaternionTuple) -> None:
-        """Sets the frame, (w, x, y, z) in the world, that the orientation is measured against."""
-        self.batch = None  # until the next schedule
+        """Set the frame that the orientation is measured against, as a rotation (w, x, y, z) in the world."""
+        self.batch = None  # until the batches are formed again
         self.reference = np.array(reference, dtype=np.float64)
         w, x, y, z = self.reference.tolist()
         self._from_reference: QuaternionTuple = (w, -x, -y, -z)
 
     def rotate_orientation(self, rpy: tuple[float, float, float]) -> None:
-        """Turns every orientation by roll, pitch, yaw [rad] about the reference's axes."""
+        """Rotate every orientation by roll, pitch, yaw [rad] about the reference's axes."""
         self.set_orientation_reference(quat_multiply(self.reference, quat_conjugate(quat_from_rpy(*rpy))))
 
     def add_white_noise(self, stddev: float) -> None:
-        """Noise on top of the file's, the same number on every rate [rad/s], acceleration [m/s²] and angle [rad]."""
+        """Add white noise of one deviation to every rate [rad/s], acceleration [m/s²] and angle [rad]."""
         self.batch = None
         self._more_noise = self._make_noise((NoiseModel(stddev=stddev),) * 9, "more")
         self._covariances_of = None
 
     @property
     def is_mounted_straight(self) -> bool:
-        """Whether its axes are those of the body that it is on."""
+        """True if the sensor's axes are parallel to those of its body."""
         return self._mount == NO_ROTATION
 
     @property
     def is_against_world(self) -> bool:
-        """Whether its orientation is measured against the world's axes."""
+        """True if the orientation is measured against the world's axes."""
         return self._from_reference == NO_ROTATION
 
     def bind(self, compiled: Compiled) -> None:
         super().bind(compiled)
-        # as numbers: so few are sooner multiplied one by one than by NumPy
+        # plain numbers, because for so few NumPy is slower
         self._arm: tuple[float, ...] = tuple(self._offset_position.tolist())
         self._mount: QuaternionTuple = tuple(self._offset.quaternion.tolist())
         self._rotation: tuple[float, ...] = tuple(self._offset_rotation.reshape(9).tolist())
@@ -158,14 +158,17 @@ class ImuMeasurement(Sensor):
         return self.finish(self.capture(model, data))
 
     def capture(self, model: mujoco.MjModel, data: mujoco.MjData) -> bytes:
-        """How the body lies and moves, see `_look_at`; as bytes, which are the soonest taken."""
+        """Return the body's state, see `_bind_views`, as bytes, which are the fastest to copy."""
         if data is not self._viewed:
             self._bind_views(model, data)
         return b"".join(self._views)
 
     def _bind_views(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
-        """Chooses what is captured: the body's quaternion, rotation matrix and place, and the point that its spatial
-        velocity and acceleration (rotation first, in world axes) are of."""
+        """Select the captured numbers: quaternion, rotation matrix, position and motion of the body.
+
+        The motion is the spatial velocity and acceleration (rotation first, in world axes), captured with their
+        reference point.
+        """
         body, self._viewed = self._body, data
         root = int(model.body_rootid[body])
         self._views = (
@@ -205,18 +208,18 @@ class ImuMeasurement(Sensor):
         self.set_orientation_reference(memory[1])
 
     def covariances(self) -> list[Vector]:
-        """Return the covariances of orientation, rate and force; anew where white noise follows the sample interval."""
+        """Return the covariances of orientation, rate and force; recompute them if the sample interval changes."""
         noise = self.noise
         if self._covariances_of is noise.state.interval:
             return self._covariances
         self._covariances_of = noise.state.interval
-        of_all = [self._attitude_noise.covariance(), noise.covariance(), noise.covariance(3)]
+        covariances = [self._attitude_noise.covariance(), noise.covariance(), noise.covariance(3)]
         if self._more_noise is not None:
-            of_all = [of_file + self._more_noise.covariance() for of_file in of_all]
+            covariances = [c + self._more_noise.covariance() for c in covariances]
         if not self.options.enable_orientation:
-            of_all[0] = np.zeros(9)
-            of_all[0][0] = -1.0  # as ROS says that there is none
-        for covariance in of_all:
+            covariances[0] = np.zeros(9)
+            covariances[0][0] = -1.0  # the ROS convention for an unavailable quantity
+        for covariance in covariances:
             covariance.flags.writeable = False
-        self._covariances = of_all
-        return of_all
+        self._covariances = covariances
+        return covariances

@@ -1,4 +1,4 @@
-"""Attitude, angular rate and specific force of a sensor from the motion of the body that carries it."""
+"""Kinematics of a sensor: attitude, angular rate and specific force from the motion of its body."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ Number = Any
 Numbers = tuple[Number, ...]
 
 QuaternionTuple = tuple[float, float, float, float]
-"""(w, x, y, z)."""
+"""Quaternion (w, x, y, z)."""
 
 NO_ROTATION: QuaternionTuple = (1.0, 0.0, 0.0, 0.0)
 
@@ -23,35 +23,39 @@ def sensor_motion(
     rotation: Iterable[Number],
     reference: Iterable[Number] | None,
 ) -> tuple[Numbers, Numbers]:
-    """Return the attitude (w, x, y, z), and rate [rad/s] and specific force [m/s²] in the sensor's frame, six numbers.
+    """Return the attitude, and the angular rate and specific force in the sensor's frame.
 
-    Each number is a float, or an array with one float for each of several sensors: the bits are the same.
+    Each number is a float, or an array with one float for each of several sensors. Both give the same bits.
 
     Args:
-        numbers: of the body, 31 of them: quaternion (4) and rotation matrix (9) in the world, position, and the point
-            that its spatial velocity and acceleration (rotation first, in world axes) are of.
+        numbers: state of the body, 31 numbers: quaternion (4) and rotation matrix (9) in the world, position (3),
+            reference point (3) of the spatial motion, spatial velocity (6) and spatial acceleration (6). Spatial
+            vectors have the rotation first and are in world axes.
         arm: position of the sensor in the body [m].
-        mount: quaternion of the sensor in the body; None where their axes are the same.
-        rotation: the same as a matrix, nine numbers.
-        reference: quaternion of the world in the frame that the attitude is measured against; None for the world.
+        mount: quaternion of the sensor in the body; None where their axes are parallel.
+        rotation: rotation matrix of the sensor in the body, nine numbers.
+        reference: quaternion of the world in the reference frame of the attitude; None for the world.
+
+    Returns:
+        Attitude (w, x, y, z), and six numbers: rate [rad/s] and specific force [m/s²].
     """
     qw, qx, qy, qz, a, b, c, d, e, f, g, h, i, px, py, pz, ox, oy, oz, *motion = numbers
     wx, wy, wz, vx, vy, vz, dx, dy, dz, fx, fy, fz = motion
     attitude: Numbers = (qw, qx, qy, qz)
-    # from there to the sensor, in world axes
+    # lever arm from the reference point to the sensor, in world axes
     ax, ay, az = arm
     x = px - ox + a * ax + b * ay + c * az
     y = py - oy + d * ax + e * ay + f * az
     z = pz - oz + g * ax + h * ay + i * az
-    # not in place: the numbers may be rows of an array
+    # not in place, because the numbers may be rows of an array
     vx = vx + (wy * z - wz * y)
     vy = vy + (wz * x - wx * z)
     vz = vz + (wx * y - wy * x)
-    # the acceleration of the sensor's own point: a spatial one lacks the turning of the velocity
+    # acceleration of the sensor's own point: a spatial acceleration lacks the term ω × v
     fx = fx + (dy * z - dz * y + wy * vz - wz * vy)
     fy = fy + (dz * x - dx * z + wz * vx - wx * vz)
     fz = fz + (dx * y - dy * x + wx * vy - wy * vx)
-    # from the world's axes to the body's, and to the sensor's
+    # from the world's axes to the body's, then to the sensor's
     wx, wy, wz = wx * a + wy * d + wz * g, wx * b + wy * e + wz * h, wx * c + wy * f + wz * i
     fx, fy, fz = fx * a + fy * d + fz * g, fx * b + fy * e + fz * h, fx * c + fy * f + fz * i
     if mount is not None:
@@ -65,7 +69,7 @@ def sensor_motion(
 
 
 def hamilton_product(a: Iterable[Number], b: Iterable[Number]) -> Numbers:
-    """Hamilton product of two (w, x, y, z), each a number or a row of them."""
+    """Return the Hamilton product of two quaternions (w, x, y, z), each of numbers or of arrays."""
     aw, ax, ay, az = a
     bw, bx, by, bz = b
     return (

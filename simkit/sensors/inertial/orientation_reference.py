@@ -1,4 +1,4 @@
-"""Frame that an IMU's orientation is measured against: `<orientation_reference_frame>` as a rotation."""
+"""Reference frame of an IMU's orientation: `<orientation_reference_frame>` as a rotation."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from simkit.runtime import Simulation
 from simkit.scene import SceneModel, SceneSensor
 
 WORLD = "world"
-# from east-north-up to the named axes
+# roll, pitch, yaw [rad] from east-north-up to the named axes
 _NAMED_AXES = {"ENU": (0.0, 0.0, 0.0), "NED": (math.pi, 0.0, math.pi / 2), "NWU": (0.0, 0.0, math.pi / 2)}
 _GRAVITY_SIGNS = {"GRAV_UP": 1.0, "GRAV_DOWN": -1.0}
-_PARALLEL = 1e-6  # [rad] between gravity and a direction that is to be orthogonal to it
+_PARALLEL = 1e-6  # [rad] smallest angle between gravity and a direction that defines the x axis
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,10 +28,10 @@ class OrientationReference:
 
     Attributes:
         localization: CUSTOM, ENU, NED, NWU, GRAV_UP or GRAV_DOWN.
-        rpy: CUSTOM: roll, pitch, yaw [rad] of the reference in the parent frame.
-        x_direction: GRAV_UP, GRAV_DOWN: what its x axis points along as far as it is level, in the parent frame.
+        rpy: for CUSTOM: roll, pitch, yaw [rad] of the reference in the parent frame.
+        x_direction: for GRAV_UP and GRAV_DOWN: direction in the parent frame whose horizontal part is the x axis.
         parent_frame: `world`, a name in the model or in the world, or empty for the sensor's own frame.
-        where: of the element that names the parent frame.
+        where: place of the element that names the parent frame.
     """
 
     localization: str
@@ -42,7 +42,7 @@ class OrientationReference:
 
 
 def read_reference(imu: Params) -> OrientationReference | None:
-    """The block, or None where the file has none: the attitude at the start."""
+    """Read the block; return None, which means the attitude at the start, if the file has no block."""
     block = imu.child("orientation_reference_frame")
     if block is None:
         return None
@@ -51,17 +51,17 @@ def read_reference(imu: Params) -> OrientationReference | None:
     turn = block.vector3("custom_rpy", (0.0, 0.0, 0.0))
     direction = block.vector3("grav_dir_x", (1.0, 0.0, 0.0))
     by_gravity = localization in _GRAVITY_SIGNS
-    given = level if by_gravity else custom
+    element = level if by_gravity else custom
     if not by_gravity and level is not None:
         level.attribute("parent_frame")
-    parent = given.attribute("parent_frame").strip() if given is not None else ""
-    return OrientationReference(localization, turn, direction, parent, given.where if given else block.where)
+    parent = element.attribute("parent_frame").strip() if element is not None else ""
+    return OrientationReference(localization, turn, direction, parent, element.where if element else block.where)
 
 
 def reference_orientation(reference: OrientationReference | None, sensor: SceneSensor, sim: Simulation) -> Vector:
-    """The reference as a rotation (w, x, y, z) in the world, as things stand in the file.
+    """Return the reference as a rotation (w, x, y, z) in the world, from the poses of the file.
 
-    Without a block, and where there was something to report, it is the sensor's own attitude.
+    Without a block, or after a diagnostic, the result is the sensor's own attitude.
     """
     own = sensor.pose_world.quaternion
     if reference is None:
@@ -75,7 +75,7 @@ def reference_orientation(reference: OrientationReference | None, sensor: SceneS
     if parent is None:
         return own
     if reference.localization == "CUSTOM":
-        # Gazebo turns the world by the heading here too, so that the east of the map is meant
+        # Gazebo rotates the world by the heading here too, so the axes are those of the map
         start = _heading(sim) if reference.parent_frame == WORLD else parent.quaternion
         return quat_multiply(start, quat_from_rpy(*reference.rpy))
     up = -_GRAVITY_SIGNS[reference.localization] * np.array(sim.world.gravity)
@@ -83,37 +83,40 @@ def reference_orientation(reference: OrientationReference | None, sensor: SceneS
     if levelled is None:
         if up.any():
             message = f"orientation reference {reference.localization}: <grav_dir_x> is parallel to gravity"
-            hint = "its part orthogonal to gravity is the x axis; name another direction"
+            hint = "its horizontal part is the x axis; choose another direction"
         else:
             message = f"orientation reference {reference.localization}: the world has no gravity"
-            hint = "ENU, NED, NWU and CUSTOM need none"
+            hint = "use ENU, NED, NWU or CUSTOM, which need no gravity"
         diagnostics.error("SK-SENSOR-071", message, reference.where, hint)
         return own
     return levelled
 
 
 def _is_unsupported_by_gazebo(reference: OrientationReference, diagnostics: Diagnostics) -> bool:
-    """Whether Gazebo takes the attitude at the start instead; that is said."""
+    """Report references that Gazebo replaces by the attitude at the start; return True for those."""
     localization, parent = reference.localization, reference.parent_frame
     is_custom = localization == "CUSTOM"
     if localization in _NAMED_AXES or (is_custom and parent == WORLD):
         return False
     if is_custom and not parent and not any(reference.rpy):
-        return True  # which is what the file says
-    what = f"CUSTOM in {parent or 'the frame of the sensor'}" if is_custom else localization
-    message = f"orientation reference {what} is taken as the attitude at the start, as in Gazebo"
-    diagnostics.warning("SK-SENSOR-002", message, reference.where, "without <gazebo_quirks> it is as the file says")
+        return True  # the file requests that attitude itself
+    name = f"CUSTOM in {parent or 'the frame of the sensor'}" if is_custom else localization
+    message = f"orientation reference {name} is replaced by the attitude at the start, as in Gazebo"
+    diagnostics.warning("SK-SENSOR-002", message, reference.where, "remove <gazebo_quirks> to use this reference")
     return True
 
 
 def _heading(sim: Simulation) -> Vector:
-    """East-north-up in the world: `<heading_deg>` turns it about z."""
-    place = sim.world.spherical_coordinates
-    return quat_from_rpy(0.0, 0.0, place.heading if place else 0.0)
+    """Return the rotation of east-north-up in the world: `<heading_deg>` rotates it about z."""
+    coordinates = sim.world.spherical_coordinates
+    return quat_from_rpy(0.0, 0.0, coordinates.heading if coordinates else 0.0)
 
 
 def _level_rotation(up: Vector, direction: Vector) -> Vector | None:
-    """A rotation with z along `up` and x along the part of `direction` orthogonal to it; None where there is none."""
+    """Return a rotation with z along `up` and x along the part of `direction` orthogonal to it.
+
+    The result is None if `up` is zero or parallel to `direction`.
+    """
     size = float(np.linalg.norm(up))
     if not size:
         return None
@@ -133,7 +136,7 @@ def _level_rotation(up: Vector, direction: Vector) -> Vector | None:
 def _find_parent_frame(
     reference: OrientationReference, sensor: SceneSensor, sim: Simulation, diagnostics: Diagnostics
 ) -> Pose | None:
-    """Pose of the parent frame in the world at load; None after an error."""
+    """Return the pose of the parent frame in the world at load; None after an error."""
     name = reference.parent_frame
     if not name:
         return sensor.pose_world
@@ -141,7 +144,7 @@ def _find_parent_frame(
         return IDENTITY
     known = dict(_named_frames(sim))
     scope = sensor.parent.split("::")[:-1]
-    # as in SDF, a name is first looked for beside the sensor's link, then further out
+    # as in SDF, the search begins in the model of the sensor's link and continues outwards
     for depth in range(len(scope), -1, -1):
         found = known.get("::".join((*scope[:depth], name)))
         if found is not None:
@@ -155,7 +158,7 @@ def _find_parent_frame(
 
 
 def _named_frames(sim: Simulation) -> Iterator[tuple[str, Pose]]:
-    """Everything with a pose that a file can name, by scoped name."""
+    """Yield the scoped name and pose of everything that a file can name."""
     for frame in sim.world.frames:
         yield frame.scoped, frame.pose_world
     for top in sim.engine.structure.models.values():
@@ -166,6 +169,6 @@ def _named_frames(sim: Simulation) -> Iterator[tuple[str, Pose]]:
 
 def _model_frames(model: SceneModel) -> Iterator[tuple[str, Pose]]:
     yield f"{model.scoped}::__model__", model.pose_world
-    for parts in (model.frames, model.joints, model.links):
-        for part in parts:
-            yield part.scoped, part.pose_world
+    for elements in (model.frames, model.joints, model.links):
+        for element in elements:
+            yield element.scoped, element.pose_world

@@ -1,7 +1,7 @@
 """Presets: a sensor names a real device, `<simkit:preset>LDS-01</simkit:preset>`, and gets its published numbers.
 
-A `<sensor>` enters, the same sensor with the device's settings under its own leaves. The numbers are data: one TOML
-file in `data/` for each maker or family. No code here knows a device.
+Input is a `<sensor>`. Output is the same sensor with the device's settings as defaults. The numbers are data: one TOML
+file in `data/` for each maker or family. The code contains no device.
 """
 
 from __future__ import annotations
@@ -17,34 +17,38 @@ __all__ = ["Preset", "find", "normalise_name", "presets"]
 
 @functools.cache
 def presets() -> tuple[Preset, ...]:
-    """Every preset, by kind and name.
+    """Return every preset, sorted by kind, maker and name.
 
     Raises:
-        RuntimeError: two of one kind answer to one name.
+        TypeError: a preset has an unknown key or lacks one.
     """
     return tuple(sorted(load_presets(), key=lambda p: (p.kind, p.maker, p.name)))
 
 
 @functools.cache
 def _by_name() -> Mapping[str, Mapping[str, Preset]]:
-    """Folded name -> kind -> preset."""
+    """Return the presets by normalised name and kind.
+
+    Raises:
+        RuntimeError: two presets of one kind have the same name.
+    """
     table: dict[str, dict[str, Preset]] = {}
     for preset in presets():
         for name in (preset.name, *preset.aliases):
-            of_name = table.setdefault(normalise_name(name), {})
-            if of_name.setdefault(preset.kind, preset) is not preset:
-                raise RuntimeError(f"{name!r} is {preset.name!r} and {of_name[preset.kind].name!r}")
+            presets_by_kind = table.setdefault(normalise_name(name), {})
+            if presets_by_kind.setdefault(preset.kind, preset) is not preset:
+                raise RuntimeError(f"presets {preset.name!r} and {presets_by_kind[preset.kind].name!r} share {name!r}")
     return table
 
 
 def find(name: str) -> Mapping[str, Preset]:
-    """The presets of that name by their kind; empty where there is none.
+    """Return the presets of a name by their kind; empty if there is none.
 
-    Capitals, spaces and dashes do not count: `tim571` is `TiM571`.
+    Capitals, spaces and dashes are ignored: `tim571` finds `TiM571`.
     """
     return _by_name().get(normalise_name(name), {})
 
 
 def normalise_name(name: str) -> str:
-    """A name as it is compared with others."""
+    """Return a name in the form in which names are compared: lower case, letters and digits only."""
     return re.sub(r"[^0-9a-z]", "", name.lower())

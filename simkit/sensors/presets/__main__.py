@@ -1,4 +1,4 @@
-"""`python -m simkit.sensors.presets [NAME]` prints one preset, or writes the page of all."""
+"""Command `python -m simkit.sensors.presets [NAME]`: print one preset, or write the page of all."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from simkit.sensors.presets.preset_page import describe_preset, presets_page
 
 
 def main(name: str | None) -> int:
-    """Prints; 2 where there is no such preset."""
+    """Print the presets; return 2 if there is no preset of that name."""
     if name is None:
         sys.stdout.write(presets_page())
         return 0

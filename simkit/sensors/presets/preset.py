@@ -1,8 +1,8 @@
-"""A preset: the published numbers of a device, as elements of an SDF file, loaded from the TOML files in `data/`.
+"""Presets: the published numbers of a device as elements of an SDF file, loaded from the TOML files in `data/`.
 
-There is one file for each maker or family. Keys above the first `[[preset]]` of a file hold for all presets of that
-file. Settings are in SI units; `xyz` and `xy` stand for axes with the same settings. A comment gives the number of the
-data sheet where its unit differs.
+There is one file for each maker or family. Keys above the first `[[preset]]` of a file apply to all presets of that
+file. Settings are in SI units. `xyz` and `xy` abbreviate axes with the same settings. If the data sheet uses another
+unit, a comment gives its number.
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ from pathlib import Path
 from typing import Any, Final
 
 Settings = Mapping[str, Any]
-"""Elements of a `<sensor>` by name: a mapping is an element with children, `@name` in it an attribute."""
+"""Elements of a `<sensor>` by name: a mapping is an element with children, a key `@name` is an attribute."""
 
 SENSOR_KINDS: Mapping[str, tuple[str, ...]] = {
     "lidar": ("lidar", "ray", "gpu_lidar", "gpu_ray"),
     "navsat": ("navsat", "gps"),
     "depth_camera": ("depth_camera", "depth"),
 }
-"""Sensor types that share a block; a kind that is not here is the one type of its name."""
+"""Sensor types that share a block, by kind; a kind that is not listed has one type of the same name."""
 
 _FOLDER: Final = Path(__file__).parent / "data"
 _AXES: Final = ("xyz", "xy")
@@ -30,18 +30,18 @@ _BLOCKS = {"depth_camera": "camera", "rgbd_camera": "camera"}
 
 @dataclass(frozen=True, slots=True)
 class Preset:
-    """A device, and what its data sheet says of it.
+    """Device with the numbers of its data sheet.
 
     Attributes:
-        name: as the maker writes it. Several presets may have one name where a device is several sensors.
-        kind: of sensor; `lidar` stands for `ray`, `gpu_lidar` and `gpu_ray` too.
-        maker: who sells it.
-        source: data sheet, with its revision where that is certain, and where in it the numbers are.
+        name: maker's name of the device. Several presets share a name if the device contains several sensors.
+        kind: kind of sensor; `lidar` includes `ray`, `gpu_lidar` and `gpu_ray`.
+        maker: manufacturer or vendor.
+        source: data sheet, its revision if known, and the place of the numbers in it.
         settings: elements of the sensor, in SI units.
-        rate: samples a second [Hz]; 0 where the data sheet leaves it to the user.
+        rate: samples per second [Hz]; 0 if the data sheet leaves the rate to the user.
         aliases: other names of the same device.
-        remark: what the numbers leave out, or how one was made of a published one.
-        unconfirmed: elements whose numbers were found in no second place, with the names above where one is not enough.
+        remark: properties that the numbers omit, or the derivation of a number from a published one.
+        unconfirmed: elements whose numbers have only one source, with parent elements where the name is ambiguous.
     """
 
     name: str
@@ -56,17 +56,17 @@ class Preset:
 
     @property
     def sensor_kinds(self) -> tuple[str, ...]:
-        """The `<sensor type>`s that may name it."""
+        """`<sensor type>` names that may use the preset."""
         return SENSOR_KINDS.get(self.kind, (self.kind,))
 
     @property
     def block(self) -> str:
-        """The element that the settings are in."""
+        """Name of the element that contains the settings."""
         return _BLOCKS.get(self.kind, self.kind)
 
     @property
     def elements(self) -> Settings:
-        """All of it: the settings, and the rate where there is one."""
+        """All elements: the settings, and the rate if the preset has one."""
         return {"update_rate": self.rate, **self.settings} if self.rate else self.settings
 
 
@@ -99,24 +99,25 @@ def _expand_axes(settings: Settings) -> Settings:
 
 
 def outline(settings: Settings) -> str:
-    """The settings on one line; neighbours that say the same (the axes of an IMU, mostly) are said once."""
+    """Return the settings on one line; neighbours with equal settings, such as the axes of an IMU, are merged."""
     return ", ".join(_outline_items(settings))
 
 
 def _outline_items(settings: Settings) -> list[str]:
     names: dict[str, list[str]] = {}
-    said = {name: value for name, value in settings.items() if not str(value).startswith("gaussian")} or settings
-    for name, value in said.items():
+    listed = {name: value for name, value in settings.items() if not str(value).startswith("gaussian")} or settings
+    for name, value in listed.items():
         if isinstance(value, Mapping):
-            within = _outline_items(value)
-            names.setdefault(f" ({', '.join(within)})" if len(within) > 1 else f" {within[0]}", []).append(name)
+            children = _outline_items(value)
+            text = f" ({', '.join(children)})" if len(children) > 1 else f" {children[0]}"
+            names.setdefault(text, []).append(name)
         else:
             names[f"{name} {format_value(value)}".removeprefix("@")] = []
-    return ["/".join(of_these) + text for text, of_these in names.items()]
+    return ["/".join(merged_names) + text for text, merged_names in names.items()]
 
 
 def format_value(value: object) -> str:
-    """A value as a file would have it: a number with all its digits, `true` or `false`."""
+    """Return a value as it is written in a file: a number with all its digits, `true` or `false`."""
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, float):

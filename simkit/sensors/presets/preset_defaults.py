@@ -1,4 +1,4 @@
-"""Add a preset's numbers as defaults to a sensor of a file: the file wins, element by element."""
+"""Merging of a preset's numbers into a sensor as defaults: elements of the file take precedence."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from simkit.sensors.presets import find, normalise_name, presets
 from simkit.sensors.presets.preset import Preset, Settings, format_value, outline
 
 _OLD_BLOCKS = {"lidar": "ray", "navsat": "gps"}
-"""Blocks with an older spelling: a preset's goes into the one that the file has."""
+"""Older spellings of blocks: a preset's block is merged into the block that the file has."""
 
 _ALTERNATIVE_ELEMENTS = {
     "noise": (
@@ -25,13 +25,16 @@ _ALTERNATIVE_ELEMENTS = {
     ),
     "encoder": (({"resolution"}, {"counts_per_revolution"}),),
 }
-"""Two ways to say one thing of a block: who says it in one takes nothing from a preset that says it in the other."""
+"""Pairs of element sets that describe the same property of a block.
+
+If the file has an element of one set, the preset's elements of the other set are dropped.
+"""
 
 
 def add_preset_defaults(sensor: SceneSensor, diagnostics: Diagnostics) -> SceneSensor:
-    """The sensor with the numbers of the device it names under its own; the same sensor where it names none.
+    """Return the sensor with the numbers of its preset as defaults; the same sensor if it names no preset.
 
-    What is wrong with the name is an error in `diagnostics`.
+    An unknown or unsuitable preset is an error in `diagnostics`.
     """
     element = sensor.params.child("preset")
     if element is None:
@@ -39,15 +42,15 @@ def add_preset_defaults(sensor: SceneSensor, diagnostics: Diagnostics) -> SceneS
     preset = _find_preset(sensor, element, diagnostics)
     if preset is None:
         return sensor
-    given: dict[str, object] = {}
-    params = _Merge(element.where, sensor.params.diagnostics).merged(sensor.params, preset.elements, given)
+    added: dict[str, object] = {}
+    params = _Merge(element.where, sensor.params.diagnostics).merged(sensor.params, preset.elements, added)
     for child in ("preset", "update_rate"):
         params.child(child)
-    what = outline(given) or "nothing that the file does not say itself"
+    text = outline(added) or "nothing, because the file sets everything itself"
     diagnostics.note(
-        "SK-SENSOR-092", f"sensor {sensor.scoped!r}: preset {preset.name} gives {what}", element.where, preset.source
+        "SK-SENSOR-092", f"sensor {sensor.scoped!r}: preset {preset.name} gives {text}", element.where, preset.source
     )
-    rate = preset.rate if "update_rate" in given else sensor.rate
+    rate = preset.rate if "update_rate" in added else sensor.rate
     return replace(sensor, params=params, rate=rate)
 
 
@@ -57,54 +60,52 @@ def _find_preset(sensor: SceneSensor, element: Params, diagnostics: Diagnostics)
     for preset in found.values():
         if sensor.kind in preset.sensor_kinds:
             return preset
-    mine = ", ".join(p.name for p in fitting)
+    names_of_kind = ", ".join(p.name for p in fitting)
     if found:
         kinds = " and ".join(found)
-        message = (
-            f"sensor {sensor.scoped!r}: preset {element.value!r} is of kind {kinds}, the sensor is {sensor.kind!r}"
-        )
-        hint = f"presets of this kind: {mine}" if mine else "there are none of this kind"
+        message = f"sensor {sensor.scoped!r} of type {sensor.kind!r}: preset {element.value!r} is for {kinds}"
+        hint = f"presets of this kind: {names_of_kind}" if names_of_kind else "there are none of this kind"
         diagnostics.error("SK-SENSOR-091", message, element.where, hint)
         return None
     names = {normalise_name(n): p.name for p in (fitting or presets()) for n in (p.name, *p.aliases)}
-    near = did_you_mean(normalise_name(element.value), names)
-    for plain, name in names.items():
-        near = near.replace(repr(plain), repr(name))
-    all_of_it = f"presets of this kind: {mine}" if mine else "there are none of this kind"
+    suggestion = did_you_mean(normalise_name(element.value), names)
+    for normalised, name in names.items():
+        suggestion = suggestion.replace(repr(normalised), repr(name))
+    all_presets = f"presets of this kind: {names_of_kind}" if names_of_kind else "there are none of this kind"
     message = f"sensor {sensor.scoped!r}: there is no preset {element.value!r}"
-    diagnostics.error("SK-SENSOR-090", message, element.where, "; ".join(filter(None, (near, all_of_it))))
+    diagnostics.error("SK-SENSOR-090", message, element.where, "; ".join(filter(None, (suggestion, all_presets))))
     return None
 
 
 class _Merge:
-    """Makes elements that stand where the preset is named."""
+    """Merge of a preset into a block; new elements get the place where the preset is named."""
 
     def __init__(self, where: Where, diagnostics: Diagnostics) -> None:
         self._where, self._diagnostics = where, diagnostics
 
-    def merged(self, owner: Params, settings: Settings, given: dict[str, object]) -> Params:
-        """A copy of `owner` with what it does not say itself; what was taken goes into `given`."""
+    def merged(self, owner: Params, settings: Settings, added: dict[str, object]) -> Params:
+        """Return a copy of `owner` with the settings that it lacks; record the added settings in `added`."""
         children = list(owner.children)
         attributes = dict(owner.attributes)
         for name, value in _missing_settings(owner, settings).items():
             if name.startswith("@"):
                 if name[1:] not in attributes:
-                    attributes[name[1:]] = given[name] = str(value)
+                    attributes[name[1:]] = added[name] = str(value)
                 continue
-            at = _find_child_index(children, name)
+            index = _find_child_index(children, name)
             if isinstance(value, Mapping):
-                below: dict[str, object] = {}
-                mine = children[at] if at is not None else self._element(name)
-                block = self.merged(mine, value, below)
-                if at is None:
+                added_below: dict[str, object] = {}
+                child = children[index] if index is not None else self._element(name)
+                block = self.merged(child, value, added_below)
+                if index is None:
                     children.append(block)
                 else:
-                    children[at] = block
-                if below:
-                    given[block.name] = below
-            elif at is None:
+                    children[index] = block
+                if added_below:
+                    added[block.name] = added_below
+            elif index is None:
                 children.append(self._element(name, format_value(value)))
-                given[name] = value
+                added[name] = value
         return Params(owner.name, owner.value, attributes, children, owner.where, owner.diagnostics)
 
     def _element(self, name: str, text: str = "") -> Params:
@@ -112,20 +113,20 @@ class _Merge:
 
 
 def _find_child_index(children: list[Params], name: str) -> int | None:
-    """Where the element is that a reader would take; an older spelling of it counts."""
+    """Return the index of the element with a name or with its older spelling; None if there is none."""
     for spelling in (name, _OLD_BLOCKS.get(name)):
-        for at, child in enumerate(children):
+        for index, child in enumerate(children):
             if child.name == spelling:
-                return at
+                return index
     return None
 
 
 def _missing_settings(block: Params, settings: Settings) -> Settings:
-    """What a block of the file may take from a preset: nothing if it is a noise that is to be none."""
-    said = {c.name for c in block.children} | {f"@{a}" for a in block.attributes}
+    """Return the settings of a preset that a block lacks; none for a noise of type `none`."""
+    present = {c.name for c in block.children} | {f"@{a}" for a in block.attributes}
     if block.name == "noise" and "none" in {block.attributes.get("type"), *(c.value for c in block.children)}:
         return {}
     dropped: set[str] = set()
-    for one, other in _ALTERNATIVE_ELEMENTS.get(block.name, ()):
-        dropped |= (other if said & one else set()) | (one if said & other else set())
+    for first, second in _ALTERNATIVE_ELEMENTS.get(block.name, ()):
+        dropped |= (second if present & first else set()) | (first if present & second else set())
     return {name: value for name, value in settings.items() if name not in dropped}

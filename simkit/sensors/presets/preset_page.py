@@ -1,4 +1,4 @@
-"""Presets as text: the page of all, and one of them."""
+"""Text of presets: the page of all presets, and the description of one."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from simkit.sensors.presets import presets
 from simkit.sensors.presets.preset import Preset, outline
 
 _TEXTS = Path(__file__).with_name("preset_page.toml")
-"""What the page begins with, and the titles of its sections in their order."""
+"""Introduction of the page, and the titles of its sections in order."""
 
 
 def presets_page() -> str:
-    """Write `docs/sensors/presets.md`."""
+    """Return the text of `docs/sensors/presets.md`."""
     texts = tomllib.loads(_TEXTS.read_text(encoding="utf-8"))
     titles = texts["titles"]
     kinds = {preset.kind for preset in presets()}
@@ -47,7 +47,7 @@ def _source(preset: Preset) -> str:
 
 
 def describe_preset(preset: Preset) -> str:
-    """One preset, line by line."""
+    """Return the description of one preset, line by line."""
     lines = [f"{preset.name} ({preset.maker}), {' / '.join(preset.sensor_kinds)}"]
     if preset.aliases:
         lines.append(f"also:   {', '.join(preset.aliases)}")

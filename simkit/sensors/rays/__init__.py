@@ -1,5 +1,6 @@
 """Ray sensors (lidar, sonar) and the casting of rays from one point.
 
-A `<sensor>` and the simulation enter; `LaserScan`, point clouds and `Range` messages leave. Few rays are cast by
-MuJoCo, many by NumPy on shapes and by Embree on triangles, all to the same distances. Nothing here needs OpenGL.
+Inputs are a `<sensor>` and the simulation. Outputs are `LaserScan`, point clouds and `Range` messages. MuJoCo casts few
+rays; NumPy casts many rays on shapes, and Embree casts many rays on triangles. All give the same distances. Nothing
+here needs OpenGL.
 """

@@ -1,7 +1,7 @@
-"""Rays on triangles by Embree, which finds the triangle in float32; the distance is then worked out in float64.
+"""Rays on triangles with Embree, which finds the triangle in float32; the distance is then computed in float64.
 
-Embree's time hardly grows with the number of triangles. Its scenes are built with the robust intersector, so that no
-ray slips between two triangles that share an edge.
+Embree's time hardly grows with the number of triangles. Its scenes use the robust intersector, so that no ray passes
+between two triangles that share an edge.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from simkit.sensors.rays.ray_culling import RayBundle, reaches_between_cones
 Faces = npt.NDArray[np.int32]
 
 _FLAT = 1e-2
-"""Below this cosine between ray and normal, rounding decides where a ray meets the plane of a triangle."""
+"""Cosine between ray and normal below which rounding decides where a ray meets the plane of a triangle."""
 _CUBE = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=np.float64)
 _CUBE_FACES = np.array(
     [
@@ -36,7 +36,7 @@ _CUBE_FACES = np.array(
 
 @functools.cache
 def has_embree() -> bool:
-    """Whether `embreex`, the binding of Intel's ray tracer, is installed and loads."""
+    """Check whether `embreex`, the binding of Intel's ray tracer, is installed and can be loaded."""
     try:
         importlib.import_module("embreex.rtcore_scene")
         importlib.import_module("embreex.mesh_construction")
@@ -46,20 +46,20 @@ def has_embree() -> bool:
 
 
 class TriangleScene:
-    """Triangles in one frame, ready to be traced.
+    """Triangles in one frame, prepared for tracing.
 
     Args:
-        vertices: [m], shape (n, 3).
-        faces: shape (m, 3).
+        vertices: positions [m], shape (n, 3).
+        faces: vertex indices, shape (m, 3).
     """
 
     def __init__(self, vertices: Vector, faces: Faces) -> None:
-        # optional: there is no wheel for every machine
+        # an optional dependency, because not every machine has a wheel
         from embreex.mesh_construction import TriangleMesh  # type: ignore[import-untyped]
         from embreex.rtcore_scene import EmbreeScene  # type: ignore[import-untyped]
 
         low, high = vertices.min(axis=0), vertices.max(axis=0)
-        self.centre: Vector = (low + high) / 2  # float32 is finest around zero
+        self.centre: Vector = (low + high) / 2  # float32 is most precise around zero
         self.vertices = vertices - self.centre
         self.radius = float(np.sqrt(np.einsum("ij,ij->i", self.vertices, self.vertices).max()))
         self.faces = faces
@@ -75,64 +75,67 @@ class TriangleScene:
     def nearest(
         self, origin: Vector, directions: Vector, start: float, limit: npt.NDArray[np.float32]
     ) -> tuple[Ids, Vector, npt.NDArray[np.int32]]:
-        """The first triangle on each ray that hits one.
+        """Find the first triangle on each ray.
 
         Args:
-            origin: shape (3,) [m].
+            origin: origin of the rays [m], shape (3,).
             directions: unit vectors, shape (n, 3).
-            start: where the rays begin [m].
-            limit: what is farther may be left out [m], shape (n,).
+            start: distance from the origin at which the rays start [m].
+            limit: distance beyond which hits may be omitted [m], shape (n,).
 
         Returns:
-            Which rays, their distances from the origin [m], and the triangles.
+            Indices of the rays that hit, their distances from the origin [m], and the triangles.
         """
-        place = origin - self.centre
+        local_origin = origin - self.centre
         rays = directions.astype(np.float32)
         if start > 0:
-            begins = rays * np.float32(start)
-            begins += place.astype(np.float32)
+            starts = rays * np.float32(start)
+            starts += local_origin.astype(np.float32)
         else:
-            begins = np.broadcast_to(place.astype(np.float32), rays.shape)
-        # a little farther, since float32 may put a surface that is just within the limit beyond it
+            starts = np.broadcast_to(local_origin.astype(np.float32), rays.shape)
+        # slightly farther, because float32 may move a surface just within the limit beyond it
         reach = (limit - np.float32(start)) * np.float32(1.000001)
         reach += np.float32(1e-5)
-        found = self._scene.run(begins, rays, dists=reach)
-        which = np.flatnonzero(found >= 0)
-        triangles = found[which]
+        found = self._scene.run(starts, rays, dists=reach)
+        hits = np.flatnonzero(found >= 0)
+        triangles = found[hits]
         planes = self._planes.take(triangles, 0)
-        ways = directions.take(which, 0)
+        hit_directions = directions.take(hits, 0)
         normals = planes[:, :3]
-        slope = np.einsum("ij,ij->i", normals, ways)
-        height = planes[:, 3] - np.einsum("ij,j->i", normals, place)
+        slope = np.einsum("ij,ij->i", normals, hit_directions)
+        height = planes[:, 3] - np.einsum("ij,j->i", normals, local_origin)
         with np.errstate(divide="ignore", invalid="ignore"):
             distances = height / slope
         flat = np.flatnonzero(np.abs(slope) < _FLAT)
         if len(flat):
-            distances[flat] = self._grazing(distances[flat], place, ways[flat], triangles[flat])
+            distances[flat] = self._clamp_grazing(distances[flat], local_origin, hit_directions[flat], triangles[flat])
         np.maximum(distances, start, out=distances)
-        return which, distances, triangles
+        return hits, distances, triangles
 
-    def _grazing(self, distances: Vector, place: Vector, ways: Vector, triangles: npt.NDArray[np.int32]) -> Vector:
-        """Keeps the distance of rays almost along their triangle between those of its corners."""
-        corners = self.vertices[self.faces[triangles]] - place
-        along = np.einsum("ijk,ik->ij", corners, ways)
+    def _clamp_grazing(
+        self, distances: Vector, origin: Vector, directions: Vector, triangles: npt.NDArray[np.int32]
+    ) -> Vector:
+        """Clamp the distances of rays almost parallel to their triangle to those of the triangle's corners."""
+        corners = self.vertices[self.faces[triangles]] - origin
+        along = np.einsum("ijk,ik->ij", corners, directions)
         low, high = along.min(axis=1), along.max(axis=1)
         kept: Vector = np.clip(np.where(np.isfinite(distances), distances, low), low, high)
         return kept
 
 
 class TriangleBody:
-    """The triangles of one carrier, in the frame of its body.
+    """Triangles of one carrier, in the frame of its body.
 
     Attributes:
-        centre, radius: of the sphere around them, in the body's frame [m].
-        geoms: that they are of.
+        centre, radius: bounding sphere in the body's frame [m].
+        geoms: geoms that the triangles belong to.
 
     Args:
-        carrier: number among the carriers.
-        body: MuJoCo body, 0 for what stands still.
+        model: compiled model.
+        carrier: number of the carrier; see `RayTargets`.
+        body: MuJoCo body; 0 for static geoms.
         geoms: meshes, heightmaps and boxes.
-        scenes: those that others have made of the same triangles in the same place.
+        scenes: triangle scenes by geometry, shared with other carriers that have the same triangles at the same pose.
     """
 
     def __init__(
@@ -153,16 +156,27 @@ class TriangleBody:
     def cast(
         self, data: mujoco.MjData, origin: Vector, directions: Vector, start: float, limit: npt.NDArray[np.float32]
     ) -> tuple[Ids, Vector, npt.NDArray[np.int32]]:
-        """Of rays in the world: which hit, their distances [m], and the geoms."""
+        """Cast rays given in the world frame.
+
+        Args:
+            data: physics data with up-to-date poses.
+            origin: origin of the rays [m], shape (3,).
+            directions: unit vectors, shape (n, 3).
+            start: distance from the origin at which the rays start [m].
+            limit: distance beyond which hits may be omitted [m], shape (n,).
+
+        Returns:
+            Indices of the rays that hit, their distances [m], and the geoms.
+        """
         if self.body > 0:
             turn = data.xmat[self.body].reshape(3, 3)
             origin, directions = (origin - data.xpos[self.body]) @ turn, rotate_vectors(directions, turn)
-        which, distances, triangles = self._scene.nearest(origin, directions, start, limit)
-        return which, distances, self._geom_of.take(triangles)
+        hits, distances, triangles = self._scene.nearest(origin, directions, start, limit)
+        return hits, distances, self._geom_of.take(triangles)
 
 
 class MovingBodies:
-    """Bodies of triangles that move, or have a sensor."""
+    """Bodies with triangles that move or have a sensor."""
 
     def __init__(self, bodies: list[TriangleBody]) -> None:
         self._bodies = bodies
@@ -170,39 +184,39 @@ class MovingBodies:
         self._centres = np.array([body.centre for body in bodies]).reshape(-1, 3)
         self._radii = np.array([body.radius for body in bodies])
 
-    def met(self, data: mujoco.MjData, rays: RayBundle) -> Iterator[tuple[TriangleBody, Ids]]:
-        """Each body that rays may meet, with those rays."""
+    def reached(self, data: mujoco.MjData, rays: RayBundle) -> Iterator[tuple[TriangleBody, Ids]]:
+        """Yield each body that rays may hit, with the indices of those rays."""
         if not self._bodies:
             return
         turns = data.xmat.take(self._ids, 0).reshape(-1, 3, 3)
-        places = data.xpos.take(self._ids, 0) + np.einsum("bij,bj->bi", turns, self._centres) - rays.origin
-        squares = np.einsum("ij,ij->i", places, places)
-        height = places @ rays.axis
+        centres = data.xpos.take(self._ids, 0) + np.einsum("bij,bj->bi", turns, self._centres) - rays.origin
+        squares = np.einsum("ij,ij->i", centres, centres)
+        height = centres @ rays.axis
         side = np.sqrt(np.maximum(squares - height * height, 0.0))
-        met = reaches_between_cones(height, side, self._radii, rays.lowest, rays.highest)
+        is_reached = reaches_between_cones(height, side, self._radii, rays.lowest, rays.highest)
         distance = np.sqrt(squares)
-        met &= distance - self._radii <= rays.reach
-        for i in np.flatnonzero(met).tolist():
+        is_reached &= distance - self._radii <= rays.reach
+        for i in np.flatnonzero(is_reached).tolist():
             far, radius = float(distance[i]), float(self._radii[i])
             if far <= radius * (1 + 1e-9):
                 yield self._bodies[i], np.arange(len(rays.directions))
                 continue
-            # the cosine between ray and centre is at least that of the sphere's edge; a hair more loses no ray
+            # the cosine between ray and centre is at least that of the sphere's edge; a margin of 1e-6 loses no ray
             least = math.sqrt(max(0.0, 1.0 - (radius / far) ** 2)) * far - 1e-6 * far
-            some = np.flatnonzero(rotate_vectors(rays.directions, places[i]) >= least)
-            if some.size:
-                yield self._bodies[i], some
+            near_rays = np.flatnonzero(rotate_vectors(rays.directions, centres[i]) >= least)
+            if near_rays.size:
+                yield self._bodies[i], near_rays
 
 
 def _geometry_key(model: mujoco.MjModel, geom: int) -> tuple[object, ...]:
-    """What the triangles of a geom follow from."""
+    """Return the properties of a geom that determine its triangles."""
     kind, data = int(model.geom_type[geom]), int(model.geom_dataid[geom])
     size = model.geom_size[geom].tobytes() if kind == BOX else b""
     return kind, data, size, model.geom_pos[geom].tobytes(), model.geom_quat[geom].tobytes()
 
 
 def triangles_of(model: mujoco.MjModel, geom: int) -> tuple[Vector, Faces]:
-    """Vertices [m], shape (n, 3), and faces, shape (m, 3), of a geom in its body's frame."""
+    """Return the vertices [m], shape (n, 3), and faces, shape (m, 3), of a geom in its body's frame."""
     kind = int(model.geom_type[geom])
     if kind == MESH:
         vertices, faces = mesh_triangles(model, int(model.geom_dataid[geom]))
@@ -217,14 +231,14 @@ def triangles_of(model: mujoco.MjModel, geom: int) -> tuple[Vector, Faces]:
 
 
 def mesh_triangles(model: mujoco.MjModel, mesh: int) -> tuple[Vector, Faces]:
-    """Vertices [m], shape (n, 3), and faces, shape (m, 3), of a mesh of the compiled model."""
+    """Return the vertices [m], shape (n, 3), and faces, shape (m, 3), of a mesh of the compiled model."""
     first, count = int(model.mesh_vertadr[mesh]), int(model.mesh_vertnum[mesh])
     start, faces = int(model.mesh_faceadr[mesh]), int(model.mesh_facenum[mesh])
     return model.mesh_vert[first : first + count].astype(np.float64), np.asarray(model.mesh_face[start : start + faces])
 
 
 def heightmap_grid(model: mujoco.MjModel, field: int) -> Vector:
-    """Points of a heightmap's surface [m], shape (rows, columns, 3)."""
+    """Return the points of a heightmap's surface [m], shape (rows, columns, 3)."""
     rows, columns, first = (int(a[field]) for a in (model.hfield_nrow, model.hfield_ncol, model.hfield_adr))
     half_x, half_y, height, _ = model.hfield_size[field].tolist()
     z = model.hfield_data[first : first + rows * columns].astype(np.float64).reshape(rows, columns) * height
@@ -233,14 +247,14 @@ def heightmap_grid(model: mujoco.MjModel, field: int) -> Vector:
 
 
 def _heightmap_triangles(model: mujoco.MjModel, field: int) -> tuple[Vector, Faces]:
-    """The surface, each cell cut from its first to its last corner, the skirt around it and the base below."""
+    """Return the surface, with each cell split from its first to its last corner, the skirt around it and the base."""
     points = heightmap_grid(model, field)
     (rows, columns, _), surface = points.shape, points.reshape(-1, 3)
     half_x, half_y, _, depth = model.hfield_size[field].tolist()
     cell = (np.arange(rows - 1)[:, None] * columns + np.arange(columns - 1)).ravel()
     right, above, across = cell + 1, cell + columns, cell + columns + 1
     tops = np.concatenate((np.column_stack((cell, right, across)), np.column_stack((cell, across, above))))
-    # around the edge, from the surface down to zero
+    # skirt around the edge, from the surface down to zero
     grid = np.arange(rows * columns).reshape(rows, columns)
     rim = np.concatenate((grid[0, :-1], grid[:-1, -1], grid[-1, :0:-1], grid[:0:-1, 0]))
     foot = surface[rim] * (1.0, 1.0, 0.0)

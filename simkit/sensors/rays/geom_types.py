@@ -1,4 +1,4 @@
-"""Numbers of MuJoCo's geom types, sorted by how rays are traced on them."""
+"""Numbers of MuJoCo's geom types, grouped by the method that traces rays on them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Lidars: planar and with several layers. `lidar` and `ray` see collisions, `gpu_lidar` and `gpu_ray` see visuals."""
+"""Lidars with one or several layers: `lidar` and `ray` detect collisions, `gpu_lidar` and `gpu_ray` visuals."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ _POINT = np.dtype([(name, "<f4") for name in ("x", "y", "z", "intensity")])
 
 
 class Lidar(LidarMeasurement):
-    """A fan of rays, and its messages: scans, clouds and ranges.
+    """Lidar with a fan of rays, and its messages: scans, clouds and ranges.
 
     Attributes:
-        min_intensity: lowest intensity in messages; of a `velodyne` cloud, of points in it.
+        min_intensity: lowest intensity in messages; in a `velodyne` cloud, points below it are omitted.
         cloud_range: shortest and longest range in a `velodyne` cloud [m], both excluded.
-        keeps_order: whether a `velodyne` cloud has a place for every ray.
-        radiation: of `Range` messages: 0 ultrasound, 1 infrared.
-        field_of_view: of `Range` messages [rad]; None is that of the rays.
+        keeps_order: True if a `velodyne` cloud has a point for every ray.
+        radiation: radiation type of `Range` messages: 0 ultrasound, 1 infrared.
+        field_of_view: field of view of `Range` messages [rad]; None is that of the rays.
     """
 
     kinds = ("lidar", "ray", "gpu_lidar", "gpu_ray")
@@ -66,7 +66,7 @@ class Lidar(LidarMeasurement):
     # ------------------------------------------------------------------ messages
 
     def _scan_message(self, reading: LidarReading, time_ns: int) -> msgs.LaserScan:
-        """All rays of a planar lidar; of several layers the middle one."""
+        """Make a scan of all rays, or of the middle layer if there are several layers."""
         o, n = self.options, self.options.horizontal.samples
         first = o.vertical.samples // 2 * n
         if self._retro is None and self.min_intensity <= 0:
@@ -89,7 +89,7 @@ class Lidar(LidarMeasurement):
         return message
 
     def _organised_cloud(self, reading: LidarReading, time_ns: int) -> msgs.PointCloud2:
-        """Every ray, layer by layer from the lowest; rays without a reading are not finite."""
+        """Make a cloud of all rays, layer by layer from the lowest; rays without a reading are not finite."""
         height, width = self.options.vertical.samples, self.options.horizontal.samples
         points = self._points(reading, slice(None), _RING_POINT)
         points["ring"] = np.repeat(np.arange(height, dtype=np.uint16), width)
@@ -97,52 +97,55 @@ class Lidar(LidarMeasurement):
         return point_cloud(msgs.header(time_ns, self.frame_id), points, height, width, dense)
 
     def _cloud_of_hits(self, reading: LidarReading, time_ns: int) -> msgs.PointCloud2:
-        """Only rays with a reading, in one row."""
+        """Make a cloud of the rays with a reading, in one row."""
         hit = np.flatnonzero(np.isfinite(reading.ranges))
         return point_cloud(msgs.header(time_ns, self.frame_id), self._points(reading, hit, _POINT), 1, len(hit), True)
 
     def _points(self, reading: LidarReading, which: Ids | slice, dtype: np.dtype[np.void]) -> npt.NDArray[np.void]:
-        """Points of some rays; what else there is in them is 0."""
+        """Return the points of some rays; fields other than position and intensity are 0."""
         ranges = reading.ranges[which]
         points = np.zeros(len(ranges), dtype)
         with np.errstate(invalid="ignore"):
-            places = self._directions[which] * ranges[:, None]
+            positions = self._directions[which] * ranges[:, None]
         for axis, name in enumerate("xyz"):
-            points[name] = places[:, axis]
+            points[name] = positions[:, axis]
         points["intensity"] = np.maximum(reading.intensities[which], self.min_intensity)
         return points
 
     def _velodyne_cloud(self, reading: LidarReading, time_ns: int) -> msgs.PointCloud2:
-        """Points within `cloud_range`, layer by layer from the lowest, or every ray, not a number where it has none."""
+        """Make a cloud of the points within `cloud_range`, layer by layer from the lowest.
+
+        If `keeps_order` is set, the cloud has a point for every ray, which is NaN outside the range.
+        """
         height, width = self.options.vertical.samples, self.options.horizontal.samples
         low, high = self.cloud_range
-        wanted = (reading.ranges > low) & (reading.ranges < high) & (reading.intensities >= self.min_intensity)
-        which = np.arange(self._fan.count) if self.keeps_order else np.flatnonzero(wanted)
+        in_range = (reading.ranges > low) & (reading.ranges < high) & (reading.intensities >= self.min_intensity)
+        which = np.arange(self._fan.count) if self.keeps_order else np.flatnonzero(in_range)
         points = self._points(reading, which, _WIDE_POINT)
         points["ring"] = which // width
         if not self.keeps_order:
             return point_cloud(msgs.header(time_ns, self.frame_id), points, 1, len(points), True)
         for axis in "xyz":
-            points[axis][~wanted] = np.nan
-        return point_cloud(msgs.header(time_ns, self.frame_id), points, height, width, bool(wanted.all()))
+            points[axis][~in_range] = np.nan
+        return point_cloud(msgs.header(time_ns, self.frame_id), points, height, width, bool(in_range.all()))
 
     def _old_cloud(self, reading: LidarReading, time_ns: int) -> msgs.PointCloud:
         hit = np.flatnonzero(np.isfinite(reading.ranges))
-        places = self._directions[hit] * reading.ranges[hit, None]
+        positions = self._directions[hit] * reading.ranges[hit, None]
         intensities = np.maximum(reading.intensities[hit], self.min_intensity)
-        return legacy_point_cloud(msgs.header(time_ns, self.frame_id), places, intensities)
+        return legacy_point_cloud(msgs.header(time_ns, self.frame_id), positions, intensities)
 
     def _block_cloud(self, reading: LidarReading, time_ns: int) -> msgs.PointCloud:
-        """Every ray, layer by layer from the lowest; one without a reading ends at the limit that it passed."""
-        places = self._directions * np.clip(reading.ranges, *self._limits)[:, None]
+        """Make a cloud of all rays, layer by layer from the lowest; without a reading, a ray ends at its limit."""
+        positions = self._directions * np.clip(reading.ranges, *self._limits)[:, None]
         intensities = np.maximum(reading.intensities, self.min_intensity)
         if reading.scatter is not None:
-            places[~reading.infinite] += reading.scatter[~reading.infinite, :3]
+            positions[~reading.infinite] += reading.scatter[~reading.infinite, :3]
             intensities = intensities + reading.scatter[:, 3]
-        return legacy_point_cloud(msgs.header(time_ns, self.frame_id), places, intensities)
+        return legacy_point_cloud(msgs.header(time_ns, self.frame_id), positions, intensities)
 
     def _range_message(self, reading: LidarReading, time_ns: int) -> msgs.Range:
-        """The nearest of all rays."""
+        """Make a range message of the nearest hit."""
         o = self.options
         view = max(o.horizontal.high - o.horizontal.low, o.vertical.high - o.vertical.low)
         return msgs.Range(

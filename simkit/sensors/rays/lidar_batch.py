@@ -1,4 +1,4 @@
-"""Cast the rays of many lidars of one make at once, to the same bits as one by one."""
+"""Batches of equal lidars whose rays are cast together, to the same bits as separately."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from simkit.sensors.rays.ray_culling import geom_half_sizes, reaches_between_con
 from simkit.sensors.rays.ray_fan import RayFan
 from simkit.sensors.sensor_batch import MIN_MEMBERS, SensorBatch
 
-_CHUNK = 1 << 16  # pairs of fan and shape that are looked at together
+_CHUNK = 1 << 16  # pairs of fan and shape that are tested together
 _MARGIN = 1e-9
 
 
 def lidar_batch_key(lidar: LidarMeasurement) -> Hashable | None:
-    """What lidars have in common that may be measured together; None for one whose rays are not cast in NumPy."""
+    """Return the properties that lidars of one batch share; None for a lidar whose rays are not cast in NumPy."""
     fan = lidar._fan
     if fan._by_engine or fan._targets.needs_engine or fan._grid is None:
         return None
@@ -30,7 +30,7 @@ def lidar_batch_key(lidar: LidarMeasurement) -> Hashable | None:
 
 
 class LidarBatch(SensorBatch[LidarMeasurement]):
-    """Lidars of one make, each on a robot of its own; those that somebody reads cast together."""
+    """Batch of equal lidars, each on its own robot; the lidars that have a reader cast together."""
 
     def __init__(self, members: Sequence[LidarMeasurement]) -> None:
         super().__init__(members)
@@ -42,73 +42,73 @@ class LidarBatch(SensorBatch[LidarMeasurement]):
         self._readings: dict[int, LidarReading] = {}
 
     def capture_all(self, data: mujoco.MjData) -> None:
-        read = [place for place, lidar in enumerate(self.members) if lidar.is_read_now]
+        read = [index for index, lidar in enumerate(self.members) if lidar.is_read_now]
         self._readings.clear()
         if len(read) < MIN_MEMBERS:
-            for place in read:
-                self._readings[place] = self.members[place].measure(self.model, data)
+            for index in read:
+                self._readings[index] = self.members[index].measure(self.model, data)
             return
-        places = [self.members[place]._place(data) for place in read]
-        origins, rotations = (np.array(part) for part in zip(*places, strict=True))
-        self._cast([self.members[place]._fan for place in read], data, origins, rotations)
-        for place in read:
-            self._readings[place] = self.members[place].reading_of_cast()
+        frames = [self.members[index].ray_frame(data) for index in read]
+        origins, rotations = (np.array(part) for part in zip(*frames, strict=True))
+        self._cast([self.members[index]._fan for index in read], data, origins, rotations)
+        for index in read:
+            self._readings[index] = self.members[index].reading_of_cast()
 
-    def captured(self, place: int) -> LidarReading:
-        reading = self._readings.pop(place, None)
-        # somebody has begun to read within this step
-        return self.members[place].measure_now() if reading is None else reading
+    def captured(self, member_index: int) -> LidarReading:
+        reading = self._readings.pop(member_index, None)
+        # without a reading, the first reader arrived within this step
+        return self.members[member_index].measure_now() if reading is None else reading
 
     def _cast(self, fans: Sequence[RayFan], data: mujoco.MjData, origins: Vector, rotations: Vector) -> None:
-        """Makes `distances`, `hits` and `infinite` of some fans anew, to the same bits as one by one.
+        """Compute `distances`, `hits` and `infinite` of some fans, to the same bits as separately.
 
         Args:
-            fans: k of them.
-            data: with up-to-date places.
-            origins: where distances are counted from, shape (k, 3) [m].
-            rotations: of the fans' frames, shape (k, 3, 3).
+            fans: k fans.
+            data: physics data with up-to-date poses.
+            origins: points from which distances are measured [m], shape (k, 3).
+            rotations: rotation matrices of the fans' frames, shape (k, 3, 3).
         """
         first, start = fans[0], self._start
         count, directions = first.count, first._fan
         assert directions is not None
         best, hits = np.full(len(fans) * count, np.inf), np.full(len(fans) * count, -1, dtype=np.int32)
         for i, fan in enumerate(fans):
-            mine = slice(i * count, (i + 1) * count)
-            fan.distances, fan.hits = best[mine], hits[mine]
+            own_rays = slice(i * count, (i + 1) * count)
+            fan.distances, fan.hits = best[own_rays], hits[own_rays]
             fan._cast_on_planes_and_triangles(data, fan._rays(origins[i], rotations[i], start))
-        for of, shapes in self._near(fans, data, origins, rotations):
+        for fan_indices, shapes in self._near(fans, data, origins, rotations):
             found = self._targets.shapes_in_frame(
-                data, self._which.take(shapes), origins.take(of, 0), rotations.take(of, 0)
+                data, self._which.take(shapes), origins.take(fan_indices, 0), rotations.take(fan_indices, 0)
             )
-            cast_on_shapes(directions, found, first.reach, start, best, hits, of * count)
+            cast_on_shapes(directions, found, first.reach, start, best, hits, fan_indices * count)
         for fan in fans:
-            # who keeps one scan does not keep those of all
+            # copies, because a view would keep the arrays of all scans alive
             fan.distances, fan.hits = fan.distances.copy(), fan.hits.copy()
-            fan._end()
+            fan._finish()
 
     def _near(
         self, fans: Sequence[RayFan], data: mujoco.MjData, origins: Vector, rotations: Vector
     ) -> Iterator[tuple[Ids, Ids]]:
-        """Pairs of fan and shape where rays may meet it, some fans at a time; never one too few."""
+        """Yield pairs of fan and shape that rays may connect, for some fans at a time; no pair is missed."""
         carriers = np.array([fan._carrier for fan in fans], dtype=np.intp)
-        places = data.geom_xpos.take(self._geoms, 0)
+        centres = data.geom_xpos.take(self._geoms, 0)
         reach = (self._radii + fans[0].reach) * (1 + 1e-9) + _MARGIN
-        some = max(1, _CHUNK // max(1, len(self._geoms)))
-        for first in range(0, len(fans), some):
-            part = slice(first, first + some)
-            to = places - origins[part, None]
-            square = to[..., 0] ** 2 + to[..., 1] ** 2 + to[..., 2] ** 2
-            mine = carriers[part, None]
-            of, shapes = np.nonzero((square <= reach * reach) & ((mine != self._carriers) | (mine == 0)))
+        fans_per_chunk = max(1, _CHUNK // max(1, len(self._geoms)))
+        for first in range(0, len(fans), fans_per_chunk):
+            part = slice(first, first + fans_per_chunk)
+            offsets = centres - origins[part, None]
+            square = offsets[..., 0] ** 2 + offsets[..., 1] ** 2 + offsets[..., 2] ** 2
+            own = carriers[part, None]
+            of, shapes = np.nonzero((square <= reach * reach) & ((own != self._carriers) | (own == 0)))
             axes = rotations[part, :, 2].take(of, 0)
-            height = (to[of, shapes] * axes).sum(axis=1)
+            height = (offsets[of, shapes] * axes).sum(axis=1)
             within = self._within(fans[0], data, shapes, axes, height, square[of, shapes])
             yield of[within] + first, shapes[within]
 
     def _within(
         self, fan: RayFan, data: mujoco.MjData, shapes: Ids, axes: Vector, height: Vector, square: Vector
     ) -> npt.NDArray[np.bool_]:
-        """Whether shapes reach between the ends of a fan, by their height over it."""
+        """Check which shapes reach into the fan's range of elevations, by their height above it."""
         lowest, highest = fan._bounds
         radii = self._radii.take(shapes)
         if lowest == highest == 0.0:

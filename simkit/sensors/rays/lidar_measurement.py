@@ -1,4 +1,4 @@
-"""Measurements of a lidar: read its options, cast its rays, find ranges and intensities, add noise."""
+"""Measurements of a lidar: options, ray casting, ranges and intensities, and noise."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ from simkit.sensors.rays.ray_fan import RayFan, fan_directions
 from simkit.sensors.visibility_mask import ALL_VISIBLE, hidden_geoms, read_visibility_mask
 
 _MAX_RAYS = 4_000_000
-MAX_RANGE = 3e38  # [m]; a message's numbers have 32 bits
-_MAX_ANGLE = 1e6  # [rad]; beyond it the rays of a scan are no longer told apart
-_BRIGHTEST = 2000.0  # of Gazebo's rendered lidars
+MAX_RANGE = 3e38  # [m]; messages contain 32-bit floats
+_MAX_ANGLE = 1e6  # [rad]; beyond it the angles of neighbouring rays are no longer distinct
+_BRIGHTEST = 2000.0  # upper limit of intensities of Gazebo's rendered lidars
 
 
 @dataclass(frozen=True, slots=True)
 class Sweep:
-    """`samples` angles from `low` to `high` [rad], both included."""
+    """Range of `samples` angles from `low` to `high` [rad], both included."""
 
     samples: int
     low: float
@@ -40,7 +40,7 @@ class Sweep:
 
     @property
     def angles(self) -> Vector:
-        """[rad], shape (samples,)."""
+        """Angles [rad], shape (samples,)."""
         angles: Vector = self.low + self.step * np.arange(float(self.samples))
         return angles
 
@@ -50,7 +50,7 @@ class LidarOptions:
     """The `<lidar>` or `<ray>` block; ranges in m.
 
     Attributes:
-        visibility_mask: visuals are seen that have one of its bits among their `<visibility_flags>`.
+        visibility_mask: mask of the visible visuals; one of its bits must be in their `<visibility_flags>`.
     """
 
     horizontal: Sweep
@@ -63,16 +63,16 @@ class LidarOptions:
 
 @dataclass(slots=True)
 class LidarReading:
-    """What all rays found, layer by layer from the lowest, each array of shape (layers · samples,).
+    """Readings of all rays, layer by layer from the lowest; each array has the shape (layers · samples,).
 
     Attributes:
-        ranges: [m].
-        intensities: `laser_retro` of what was hit.
-        infinite: where the range is no number of metres.
-        hits: what was hit, as positions in `geoms`; -1 for nothing.
-        geoms: MuJoCo's; the last is -1.
-        names: scoped names by geom; the last is empty.
-        scatter: what is added to x, y, z [m] and intensity of each ray in a `block` cloud, shape (layers · samples, 4).
+        ranges: distances [m].
+        intensities: `laser_retro` of the objects that were hit.
+        infinite: True where the range is infinite.
+        hits: indices in `geoms` of the objects that were hit; -1 for no hit.
+        geoms: MuJoCo's geom ids; the last entry is -1.
+        names: scoped names by geom id; the last is empty.
+        scatter: noise of x, y, z [m] and intensity of each ray in a `block` cloud, shape (layers · samples, 4).
     """
 
     ranges: Vector
@@ -85,15 +85,15 @@ class LidarReading:
 
 
 class LidarMeasurement(Sensor):
-    """Base of the lidars: a fan of rays, all cast at one instant, with noise, without a message.
+    """Base of the lidars: a fan of rays cast at one instant, with noise, without messages.
 
-    A reading beyond the maximum is +inf. Physics rays start at the minimum range, so that nearer surfaces do not
-    exist for them; rendered lidars say -inf for a nearer surface. The sensor's own link is never hit.
+    A reading beyond the maximum is +inf. The rays of `lidar` and `ray` start at the minimum range, so that they pass
+    through nearer surfaces. Rendered lidars read -inf for a nearer surface. The sensor's own link is never hit.
 
     Attributes:
-        ray_noise: of each ray, besides its own noise.
-        range_noise: one draw [m] for all rays of a sample, so of their nearest, besides the noise of each.
-        point_noise: of x, y, z [m] and intensity of each ray in a `block` cloud.
+        ray_noise: noise of each ray, besides its own noise.
+        range_noise: noise [m] with one draw for all rays of a sample, besides the noise of each ray.
+        point_noise: noise of x, y, z [m] and intensity of each ray in a `block` cloud.
     """
 
     options: LidarOptions
@@ -107,18 +107,18 @@ class LidarMeasurement(Sensor):
         options = self.options
         self.sees_visuals = scene.kind.startswith("gpu_")
         if not self.sees_visuals and options.visibility_mask != ALL_VISIBLE:
-            message = "<visibility_mask> hides nothing from this sensor: collisions have no <visibility_flags>"
-            diagnostics.warning("SK-SENSOR-004", message, scene.where, f"a gpu_{scene.kind} sees visuals")
+            message = "<visibility_mask> has no effect: the sensor detects collisions, which have no flags"
+            diagnostics.warning("SK-SENSOR-004", message, scene.where, f"gpu_{scene.kind} detects visuals")
         groups = (DRAWN_COLLISION, VISUAL) if self.sees_visuals else SEEN_AS_COLLISIONS
         grid = options.vertical.angles, options.horizontal.angles
         self._directions = fan_directions(grid[1], grid[0])
         self._fan = RayFan(self._directions, groups, options.range_max, grid=grid)
         self._start = 0.0 if self.sees_visuals else options.range_min
         self._retro: Vector | None = None
-        # shared by all readings and messages, which are never written to
+        # shared by all readings and messages, and therefore read-only
         self._dark, self._dark_layer = np.zeros(self._fan.count), np.zeros(options.horizontal.samples, np.float32)
         self._dark.flags.writeable = self._dark_layer.flags.writeable = False
-        # as arrays: NumPy takes as long to look at a number as to go through a planar scan
+        # arrays, because converting a number takes NumPy as long as a whole planar scan
         self._limits = np.array(options.range_min), np.array(options.range_max)
 
     def read_options(self, params: Params) -> LidarOptions:
@@ -173,18 +173,18 @@ class LidarMeasurement(Sensor):
         self._names = names.shared("scoped names of geoms", lambda: _scoped_names(compiled))
 
     def _reflectances(self, compiled: Compiled) -> Vector | None:
-        """`laser_retro` by geom id (the last entry, index -1, is for no hit), or None where all are 0."""
-        names, found = compiled.names, {}
+        """Return `laser_retro` by geom id (the last entry, index -1, means no hit), or None if all are 0."""
+        names, retro_by_geom = compiled.names, {}
         for link in names.links.values():
-            parts = link.scene.visuals if self.sees_visuals else link.scene.collisions
-            values = {part.scoped: part.laser_retro for part in parts if part.laser_retro}
+            shapes = link.scene.visuals if self.sees_visuals else link.scene.collisions
+            values = {shape.scoped: shape.laser_retro for shape in shapes if shape.laser_retro}
             if values:
                 for geom in link.visuals if self.sees_visuals else link.ray_geoms:
-                    found[geom] = values.get(names.geom_owner(geom)[1], 0.0)
-        if not found:
+                    retro_by_geom[geom] = values.get(names.geom_owner(geom)[1], 0.0)
+        if not retro_by_geom:
             return None
         table = np.zeros(compiled.model.ngeom + 1)
-        table[list(found)] = list(found.values())
+        table[list(retro_by_geom)] = list(retro_by_geom.values())
         if self.sees_visuals and self.sim.world.gazebo_quirks:
             np.clip(table, 0.0, _BRIGHTEST, out=table)
         return table
@@ -193,10 +193,10 @@ class LidarMeasurement(Sensor):
 
     @property
     def hits(self) -> npt.NDArray[np.object_] | None:
-        """What each ray of the newest sample hit, without noise, or None before the first.
+        """Objects that the rays of the newest sample hit, without noise, or None before the first.
 
-        Scoped names of collisions (of visuals for a rendered lidar), layer by layer from the lowest, shape
-        (layers · samples,); empty where nothing is within the range.
+        The names are scoped names of collisions (of visuals for a rendered lidar), layer by layer from the lowest,
+        shape (layers · samples,). A name is empty if the ray hits nothing within the range.
         """
         reading: LidarReading | None = self._true_reading()
         if reading is None:
@@ -207,16 +207,16 @@ class LidarMeasurement(Sensor):
         return names
 
     def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> LidarReading:
-        origin, rotation = self._place(data)
+        origin, rotation = self.ray_frame(data)
         self._fan.cast(model, data, origin, rotation, self._start)
         return self.reading_of_cast()
 
     def measure_now(self) -> LidarReading:
-        """Of the state at this tick."""
+        """Measure the state at this tick."""
         return self.measure(self.sim.mj_model, self._computed_data())
 
     def reading_of_cast(self) -> LidarReading:
-        """What the rays found when they were last cast."""
+        """Return the reading of the last cast."""
         fan = self._fan
         ranges, infinite = fan.distances, fan.infinite
         if self.sees_visuals and np.minimum.reduce(ranges) < self.options.range_min:
@@ -225,12 +225,12 @@ class LidarMeasurement(Sensor):
             infinite = infinite | too_near
         return LidarReading(ranges, self._intensities(infinite), infinite, fan.hits, fan.ids, self._names)
 
-    def _place(self, data: mujoco.MjData) -> tuple[Vector, Vector]:
-        """The same as `_frame_in_world`, without the arithmetic of an offset that is none."""
-        place, turn = data.xpos[self._body], data.xmat[self._body].reshape(3, 3)
+    def ray_frame(self, data: mujoco.MjData) -> tuple[Vector, Vector]:
+        """Return position and rotation matrix in the world like `_frame_in_world`, but skip an offset of zero."""
+        position, rotation = data.xpos[self._body], data.xmat[self._body].reshape(3, 3)
         if self._is_moved:
-            place = place + turn @ self._offset_position
-        return place, turn @ self._offset_rotation if self._is_turned else turn
+            position = position + rotation @ self._offset_position
+        return position, rotation @ self._offset_rotation if self._is_turned else rotation
 
     def _intensities(self, infinite: npt.NDArray[np.bool_]) -> Vector:
         if self._retro is None:
@@ -240,14 +240,14 @@ class LidarMeasurement(Sensor):
         return values
 
     def perturb(self, reading: LidarReading, index: int) -> LidarReading:
-        more, shift = self.ray_noise, self.range_noise
-        if self.noise.is_silent and more is None and shift is None and self.point_noise is None:
+        ray_noise, range_noise = self.ray_noise, self.range_noise
+        if self.noise.is_silent and ray_noise is None and range_noise is None and self.point_noise is None:
             return reading
         ranges, (low, high) = self.noise.apply(reading.ranges, index), self._limits
-        if more is not None:
-            ranges = more.apply(ranges, index)
-        if shift is not None:
-            ranges += shift.apply(np.zeros(1), index)
+        if ray_noise is not None:
+            ranges = ray_noise.apply(ranges, index)
+        if range_noise is not None:
+            ranges += range_noise.apply(np.zeros(1), index)
         np.maximum(ranges, low, out=ranges)
         np.minimum(ranges, high, out=ranges)
         np.copyto(ranges, reading.ranges, where=reading.infinite)
@@ -258,15 +258,15 @@ class LidarMeasurement(Sensor):
         return LidarReading(ranges, r.intensities, r.infinite, r.hits, r.geoms, r.names, scatter)
 
     def add_ray_noise(self, stddev: float) -> None:
-        """Sets `ray_noise`, of a standard deviation [m]."""
+        """Set `ray_noise` with a standard deviation [m]."""
         self.ray_noise = self._make_uniform_noise(NoiseModel(stddev=stddev), self._fan.count, "more on ranges")
 
     def add_range_noise(self, stddev: float) -> None:
-        """Sets `range_noise`, of a standard deviation [m]."""
+        """Set `range_noise` with a standard deviation [m]."""
         self.range_noise = self._make_noise((NoiseModel(stddev=stddev),), "nearest range")
 
     def add_point_noise(self, stddev: float) -> None:
-        """Sets `point_noise`, of a standard deviation [m, and of intensity]."""
+        """Set `point_noise` with a standard deviation, in m for positions and in the unit of intensity."""
         self.point_noise = self._make_uniform_noise(NoiseModel(stddev=stddev), 4 * self._fan.count, "points")
 
 
@@ -274,7 +274,7 @@ def _read_sweep(params: Params, samples: int) -> Sweep:
     resolution = params.number("resolution", 1.0, minimum=0)
     count = params.integer("samples", samples, minimum=1)
     if count > 1 and resolution not in (0.0, 1.0):
-        message = f"<resolution>{resolution:g}</resolution>: one ray per sample is cast, as Gazebo does"
+        message = f"<resolution>{resolution:g}</resolution> is ignored: one ray per sample is cast, as in Gazebo"
         params.diagnostics.note("SK-SENSOR-003", message, params.where)
     low = params.number("min_angle", 0.0, minimum=-_MAX_ANGLE, maximum=_MAX_ANGLE)
     high = params.number("max_angle", 0.0, minimum=-_MAX_ANGLE, maximum=_MAX_ANGLE)
@@ -286,7 +286,7 @@ def _read_sweep(params: Params, samples: int) -> Sweep:
 
 
 def _scoped_names(compiled: Compiled) -> npt.NDArray[np.object_]:
-    """Of the collision or visual that each geom is part of; the last, for no geom, is empty."""
+    """Return the scoped name of each geom's collision or visual; the last entry, for no geom, is empty."""
     count = compiled.model.ngeom
     table = np.empty(count + 1, dtype=object)
     table[:] = [*(compiled.names.geom_owner(geom)[1] for geom in range(count)), ""]

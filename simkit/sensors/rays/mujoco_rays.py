@@ -1,4 +1,4 @@
-"""RayBundle by MuJoCo's own casting: through everything, or through planes and shapes alone."""
+"""Ray casting with MuJoCo: through the whole model, or through planes and shapes only."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ import numpy.typing as npt
 
 from simkit.pose import Pose, Vector
 from simkit.sensors.rays.geom_types import Ids
-from simkit.sensors.rays.ray_culling import ENDLESS, NearbyGeoms, RayBundle, RayHits, can_meet, reaches_plane
+from simkit.sensors.rays.ray_culling import ENDLESS, NearbyGeoms, RayBundle, RayHits, can_reach, reaches_plane
 from simkit.sensors.temporary_values import temporary_values
 
-_SEEN, _UNSEEN = 0, 1  # geom groups of the copy
+_SEEN, _UNSEEN = 0, 1  # geom groups of the copied model
 _INFINITE = np.array(np.inf)
 _MJCF_HEADER = (
     '<mujoco><compiler angle="radian"/><option><flag contact="disable"/></option>'
@@ -35,15 +35,15 @@ def _cast(
     mujoco.mj_multiRay(
         model, data, rays.origin, directions.reshape(-1), groups, 1, exclude, geoms, distances, None, count, rays.reach
     )
-    # read as unsigned numbers, floats keep their order, and negative ones, which are misses, come after all others
+    # as unsigned integers, floats keep their order, and negative floats, which are misses, come last
     infinite = distances.view(np.uint64) > rays.limit
     np.copyto(distances, _INFINITE, where=infinite)
     if start > 0 and np.minimum.reduce(distances) < start:
-        # the engine knows one origin for all, so what is hit too near is looked for again, one by one
+        # the engine has no start distance, so rays with a hit before the start are cast again, one by one
         geom = np.empty(1, np.int32)
         for i in np.flatnonzero(distances < start).tolist():
-            place = rays.origin + start * directions[i]
-            found = mujoco.mj_ray(model, data, place, directions[i], groups, 1, exclude, geom, None)
+            position = rays.origin + start * directions[i]
+            found = mujoco.mj_ray(model, data, position, directions[i], groups, 1, exclude, geom, None)
             infinite[i] = found < 0 or start + found > rays.reach
             distances[i] = np.inf if infinite[i] else start + found
             geoms[i] = geom[0]
@@ -51,10 +51,10 @@ def _cast(
 
 
 class WholeModelCaster:
-    """Everything that is seen, in a copy of the compiled model.
+    """Caster of rays through all visible geoms, in a copy of the compiled model.
 
-    The copy differs in what the engine passes over: geoms without opacity, and bodies where a ray misses what
-    collides of them. Their bounds hold all that is seen here.
+    The engine skips transparent geoms, and bodies whose bounds of colliding geoms a ray misses. The copy has no
+    transparent geoms, and its bounds contain all visible geoms.
     """
 
     def __init__(self, model: mujoco.MjModel, seen: npt.NDArray[np.bool_]) -> None:
@@ -66,94 +66,97 @@ class WholeModelCaster:
         own.bvh_aabb[rows] = bounds
 
     def cast(self, data: mujoco.MjData, rays: RayBundle, body: int, own: Sequence[int]) -> RayHits:
-        """Casts through everything.
+        """Cast rays through all visible geoms.
 
         Args:
-            body: not hit, where it moves.
-            own: geoms that are not hit where it does not: excluding the body would exclude the world.
+            data: physics data with up-to-date poses.
+            rays: rays to cast.
+            body: moving body that is not hit, or 0.
+            own: geoms that are not hit if `body` is 0; excluding the world body would exclude all static geoms.
         """
         with temporary_values(self.model.geom_group, own if body <= 0 else (), _UNSEEN):
             return _cast(self.model, data, rays, _SOLIDS, body if body > 0 else -1)
 
 
 class ReducedModelCaster:
-    """Planes and shapes alone, each carrier a body, so that there is less to look through than in the compiled model.
+    """Caster of rays through planes and shapes only, in a smaller and faster model with one body per carrier.
 
-    What no ray can meet is left out: moving bodies above or below the whole fan, and planes out of reach.
+    Geoms that no ray can hit are left out: moving bodies above or below the whole fan, and planes out of reach.
 
     Args:
-        model: compiled.
+        model: compiled model.
         geoms: planes and shapes of that model, shape (m,).
-        types, carriers: of each, shape (m,).
+        types, carriers: type and carrier of each geom, shape (m,).
         bodies: MuJoCo body of each carrier.
 
     Attributes:
-        ids: geoms of the compiled model by those here; the last, -1, is for none.
-        movers: geoms of the compiled model that do not stand still, shape (k,).
+        ids: geom ids of the compiled model by the ids of this model; the last, -1, means no geom.
+        movers: geoms of the compiled model that can move, shape (k,).
     """
 
     def __init__(self, model: mujoco.MjModel, geoms: Ids, types: Ids, carriers: Ids, bodies: Sequence[int]) -> None:
         order = np.argsort(carriers, kind="stable")
         full, types, carriers = geoms[order], types[order], carriers[order]
-        standing = carriers == 0
-        first = int(np.count_nonzero(standing))
-        self._alone = _compile_reduced_model(model, full[:first], carriers[:first])
-        self._all = _compile_reduced_model(model, full, carriers) if first < len(full) else self._alone
+        is_static = carriers == 0
+        first = int(np.count_nonzero(is_static))
+        self._static = _compile_reduced_model(model, full[:first], carriers[:first])
+        self._all = _compile_reduced_model(model, full, carriers) if first < len(full) else self._static
         kept = np.unique(carriers[first:])
         self._model, self.ids = model, np.append(full, -1).astype(np.int32)
-        # carrier 0 stands where it is; all the others are looked up when they are needed
+        # carrier 0 is static; the poses of the other carriers are copied for each cast
         self.movers, self._carriers = full[first:], carriers[first:]
         self._bodies = np.array([bodies[c] for c in kept], dtype=np.intp)
-        self._firsts = np.searchsorted(self._carriers, kept)  # of each one's geoms
+        self._firsts = np.searchsorted(self._carriers, kept)  # index of each carrier's first geom
         data = self._all[1]
         self._geom_xpos, self._geom_xmat = data.geom_xpos[first:], data.geom_xmat[first:]
-        self._places = data.xipos[1:], data.xpos[1:], data.ximat[1:], data.xmat[1:]
-        flat = np.flatnonzero(standing & (types == 0))
-        normals, points = self._alone[1].geom_xmat[flat, 2::3], self._alone[1].geom_xpos[flat]
+        self._poses = data.xipos[1:], data.xpos[1:], data.ximat[1:], data.xmat[1:]
+        flat = np.flatnonzero(is_static & (types == 0))
+        normals, points = self._static[1].geom_xmat[flat, 2::3], self._static[1].geom_xpos[flat]
         self._planes = list(zip(points.tolist(), normals.tolist(), strict=True))
 
-    def sight(self, carrier: int, body: int, offset: Pose | None, lowest: float, highest: float) -> Ids:
-        """Which of the movers a fan may meet.
+    def reachable_movers(self, carrier: int, body: int, offset: Pose | None, lowest: float, highest: float) -> Ids:
+        """Return the indices of the movers that a fan can hit.
 
         Args:
-            carrier: what it does not meet.
-            body: that it is on.
-            offset: its frame in the body's; None where that may change.
-            lowest, highest: angles between which its rays leave the plane across the frame's z [rad].
+            carrier: carrier that the fan does not hit.
+            body: body that carries the fan.
+            offset: the fan's frame in the body's frame; None where it may change.
+            lowest: lowest elevation of the rays above the plane across the frame's z axis [rad].
+            highest: highest elevation of the rays above that plane [rad].
         """
-        met = self._carriers != carrier
+        is_reachable = self._carriers != carrier
         if offset is not None:
-            met &= can_meet(self._model, body, offset, self.movers, lowest, highest)
-        return np.flatnonzero(met)
+            is_reachable &= can_reach(self._model, body, offset, self.movers, lowest, highest)
+        return np.flatnonzero(is_reachable)
 
     def cast(self, data: mujoco.MjData, rays: RayBundle, nearby: NearbyGeoms) -> RayHits:
-        """Casts through planes, what stands still, and those of `movers` that are in `nearby`.
+        """Cast rays through planes, static shapes, and those of `movers` that are in `nearby`.
 
-        Geoms are positions in `ids`.
+        Geoms in the result are indices in `ids`.
         """
-        found = nearby.met(data, rays)
+        found = nearby.reached(data, rays)
         if not found.size:
             groups = _SOLIDS_AND_PLANES if self._planes and self._reaches_plane(rays) else _SOLIDS
-            return _cast(*self._alone, rays, groups)
-        met = np.zeros(len(self.movers), dtype=np.bool_)
-        met[found] = True
-        self._move(data, met)
+            return _cast(*self._static, rays, groups)
+        is_reached = np.zeros(len(self.movers), dtype=np.bool_)
+        is_reached[found] = True
+        self._move(data, is_reached)
         return _cast(*self._all, rays, _SOLIDS_AND_PLANES)
 
-    def _move(self, data: mujoco.MjData, met: npt.NDArray[np.bool_]) -> None:
-        """Puts movers in their places; far away those that no ray meets, where the engine passes them over soonest."""
-        # the sizes fit, so this is memory copied to memory; "clip" only spares NumPy a buffer
+    def _move(self, data: mujoco.MjData, is_reached: npt.NDArray[np.bool_]) -> None:
+        """Set the poses of the movers; movers that no ray reaches go far away, where the engine rejects them first."""
+        # the sizes match, so this copies memory; "clip" avoids a buffer in NumPy
         data.geom_xpos.take(self.movers, 0, self._geom_xpos, "clip")
         data.geom_xmat.take(self.movers, 0, self._geom_xmat, "clip")
-        self._geom_xpos[~met] = ENDLESS
-        xipos, xpos, ximat, xmat = self._places
+        self._geom_xpos[~is_reached] = ENDLESS
+        xipos, xpos, ximat, xmat = self._poses
         data.xpos.take(self._bodies, 0, xpos, "clip")
         data.xmat.take(self._bodies, 0, xmat, "clip")
-        xpos[~np.logical_or.reduceat(met, self._firsts)] = ENDLESS
+        xpos[~np.logical_or.reduceat(is_reached, self._firsts)] = ENDLESS
         xipos[:], ximat[:] = xpos, xmat
 
     def _reaches_plane(self, rays: RayBundle) -> bool:
-        """Whether a ray may come down on one of the planes that stand still; never wrongly False."""
+        """Check whether a ray may hit one of the static planes; a False is always correct."""
         return any(reaches_plane(rays, point, normal) for point, normal in self._planes)
 
 
@@ -165,31 +168,32 @@ def _compile_reduced_model(model: mujoco.MjModel, geoms: Ids, carriers: Ids) -> 
 
 
 def _reduced_mjcf(model: mujoco.MjModel, geoms: Ids, carriers: Ids) -> str:
-    """MJCF of some geoms, those of carrier 0 in the world, the others in a body each; sorted by carrier."""
-    text, carrier = [_MJCF_HEADER], 0
-    for geom, of in zip(geoms.tolist(), carriers.tolist(), strict=True):
-        if of != carrier:
-            text.append(("</body>" if carrier else "") + '<body mocap="true"><inertial pos="0 0 0" mass="1"')
-            text.append(' diaginertia="1 1 1"/>')
-            carrier = of
+    """Return MJCF of some geoms sorted by carrier: those of carrier 0 in the world, the others in one body each."""
+    parts, carrier = [_MJCF_HEADER], 0
+    for geom, geom_carrier in zip(geoms.tolist(), carriers.tolist(), strict=True):
+        if geom_carrier != carrier:
+            parts.append(("</body>" if carrier else "") + '<body mocap="true"><inertial pos="0 0 0" mass="1"')
+            parts.append(' diaginertia="1 1 1"/>')
+            carrier = geom_carrier
         kind = int(model.geom_type[geom])
-        place, turn, size = (
+        position, quaternion, size = (
             " ".join(map(repr, values.tolist()))
             for values in (model.geom_pos[geom], model.geom_quat[geom], model.geom_size[geom])
         )
         group = _SOLID if kind else _FLAT
-        text.append(
-            f'<geom type="{_GEOM_TYPE_NAMES[kind]}" group="{group}" size="{size}" pos="{place}" quat="{turn}"/>'
-        )
-    text.append(("</body>" if carrier else "") + "</worldbody></mujoco>")
-    return "".join(text)
+        shape = f'type="{_GEOM_TYPE_NAMES[kind]}" group="{group}" size="{size}"'
+        parts.append(f'<geom {shape} pos="{position}" quat="{quaternion}"/>')
+    parts.append(("</body>" if carrier else "") + "</worldbody></mujoco>")
+    return "".join(parts)
 
 
 def _bounds_to_widen(model: mujoco.MjModel, is_seen: npt.NDArray[np.bool_]) -> tuple[npt.NDArray[np.intp], Vector]:
-    """Bounds of bodies (rows of `bvh_aabb`: centre and half size, in the inertial frame) that seen geoms stick out of.
+    """Return the bounds of bodies that must grow, because visible geoms extend beyond them.
+
+    Bounds are rows of `bvh_aabb`: centre and half size, in the inertial frame.
 
     Returns:
-        The rows, shape (k,), and what they should be, shape (k, 6).
+        The rows, shape (k,), and their new values, shape (k, 6).
     """
     seen = np.flatnonzero(is_seen)
     bodies = model.geom_bodyid[seen]
@@ -200,7 +204,7 @@ def _bounds_to_widen(model: mujoco.MjModel, is_seen: npt.NDArray[np.bool_]) -> t
         mujoco.mju_quat2Mat(turn[body], model.body_iquat[body])
     centre = model.geom_pos[seen] - model.body_ipos[bodies]
     centre = np.einsum("gji,gj->gi", turn.reshape(-1, 3, 3)[bodies], centre)
-    # a plane has no radius: it has no end
+    # MuJoCo gives planes a radius of 0, but a plane is infinite
     radius = np.where(model.geom_rbound[seen] > 0, model.geom_rbound[seen], ENDLESS)[:, None]
     roots = model.body_bvhadr
     low, high = np.full((model.nbody, 3), np.inf), np.full((model.nbody, 3), -np.inf)

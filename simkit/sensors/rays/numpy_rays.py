@@ -1,8 +1,9 @@
 """Rays on spheres, boxes, cylinders, capsules, ellipsoids and planes, many at once in NumPy.
 
-Every shape here is convex, so a ray is inside it from one distance to another: each function gives both, in the
-shape's own frame, with the first beyond the second (or none of them a number) where the ray misses. Vectors are columns
-there, shape (3, n): an operation then runs through long rows. Of a single shape, origin and size are one column.
+Every shape here is convex, so a ray is inside the shape from one distance to another. Each function returns both
+distances. If the ray misses, the first is larger than the second, or one of them is NaN. Vectors are in the shape's own
+frame and are columns, shape (3, n), so that NumPy works on long rows. For a single shape, origin and size are one
+column.
 """
 
 from __future__ import annotations
@@ -18,14 +19,14 @@ from simkit.sensors.rays.geom_types import BOX, CAPSULE, CYLINDER, ELLIPSOID, SP
 
 Interval = tuple[Vector, Vector]
 
-_CHUNK = 32768  # pairs of ray and shape worked on at a time: they stay in the processor's cache
+_CHUNK = 32768  # pairs of ray and shape processed at a time, so that they stay in the processor's cache
 _ROWS = 4096
-_LARGE_BLOCK = 256  # rays towards one shape that are worked on by themselves
-_TINY = 1e-300  # instead of a zero that would be divided by
+_LARGE_BLOCK = 256  # number of rays towards one shape from which the shape is processed alone
+_TINY = 1e-300  # replacement for a zero divisor
 
 
 def rotate_vectors(vectors: Vector, matrix: Vector, out: Vector | None = None) -> Vector:
-    """`vectors @ matrix` (or a vector) on one core: with many rows at a time BLAS would wake threads for it."""
+    """Return `vectors @ matrix` (or a vector) on one core; with many rows at a time BLAS would use several threads."""
     if len(vectors) <= _ROWS:
         return np.matmul(vectors, matrix, out=out)
     if out is None:
@@ -36,7 +37,7 @@ def rotate_vectors(vectors: Vector, matrix: Vector, out: Vector | None = None) -
 
 
 def _quadratic(a: Vector, b: Vector, gap: Vector) -> Interval:
-    """The roots of a·t² + 2·b·t + c, by `gap`, which is c at its least: at t = -b/a."""
+    """Return the roots of a·t² + 2·b·t + c; `gap` is the minimum of that polynomial, at t = -b/a."""
     middle = -b / a
     half = np.sqrt(-gap / a)
     return middle - half, middle + half
@@ -46,7 +47,7 @@ def _unit_ball(o: Vector, d: Vector, radii: Vector) -> Interval:
     o, d = o / radii, d / radii
     a = np.maximum(_dot(d, d), _TINY)
     b = _dot(o, d)
-    nearest = o - (b / a) * d  # works where c - b²/a would lose its digits: far away
+    nearest = o - (b / a) * d  # point nearest to the centre; c - b²/a would lose digits at large distances
     return _quadratic(a, b, _dot(nearest, nearest) - 1.0)
 
 
@@ -69,16 +70,16 @@ def _box(o: Vector, d: Vector, size: Vector) -> Interval:
 
 
 def _infinite_cylinder(o: Vector, d: Vector, radius: Vector) -> Interval:
-    """A cylinder without ends."""
+    """Return the interval of a cylinder without ends."""
     a = np.maximum(d[0] * d[0] + d[1] * d[1], _TINY)
     b = o[0] * d[0] + o[1] * d[1]
-    way = b / a
-    x, y = o[0] - way * d[0], o[1] - way * d[1]
+    distance = b / a
+    x, y = o[0] - distance * d[0], o[1] - distance * d[1]
     return _quadratic(a, b, x * x + y * y - radius * radius)
 
 
 def _slab(o: Vector, d: Vector, half: Vector) -> Interval:
-    """What is between two planes across z."""
+    """Return the interval between two planes perpendicular to z."""
     inverse = 1.0 / np.where(d[2] == 0.0, _TINY, d[2])
     wide, middle = np.abs(half * inverse), -o[2] * inverse
     return middle - wide, middle + wide
@@ -86,7 +87,7 @@ def _slab(o: Vector, d: Vector, half: Vector) -> Interval:
 
 def _cylinder(o: Vector, d: Vector, size: Vector) -> Interval:
     (near, far), (low, high) = _infinite_cylinder(o, d, size[0]), _slab(o, d, size[1])
-    # a miss of the tube is not a number, and stays one
+    # a miss of the infinite cylinder is NaN and stays NaN
     return np.maximum(near, low), np.minimum(far, high)
 
 
@@ -111,11 +112,11 @@ _INTERVALS: dict[int, Callable[[Vector, Vector, Vector], Interval]] = {
 
 
 class FanDirections:
-    """Directions in the sensor's frame, and which of them a sphere may meet.
+    """Directions in the sensor's frame, with a search for those that may hit a sphere.
 
     Args:
         directions: unit vectors, shape (n, 3).
-        grid: elevations and azimuths [rad], ascending, where the directions are all their pairs, layer by layer.
+        grid: ascending elevations and azimuths [rad], if the directions are all their pairs, layer by layer; else None.
     """
 
     def __init__(self, directions: Vector, grid: tuple[Vector, Vector] | None) -> None:
@@ -126,38 +127,38 @@ class FanDirections:
             self._grid = grid
 
     def pairs(self, centres: Vector, radii: Vector) -> Iterator[tuple[Ids, Ids]]:
-        """Spheres and rays that may meet them, some thousands at a time.
+        """Yield spheres and the rays that may hit them, some thousands at a time.
 
         Args:
-            centres: of the spheres in the sensor's frame [m], shape (m, 3).
-            radii: [m], shape (m,).
+            centres: centres of the spheres in the sensor's frame [m], shape (m, 3).
+            radii: radii of the spheres [m], shape (m,).
 
         Yields:
-            Numbers of spheres and of rays, either as pairs, or one sphere and all rays towards it.
+            Indices of spheres and of rays, either as pairs, or one sphere and all rays towards it.
         """
         distance = np.sqrt(np.einsum("ij,ij->i", centres, centres))
         within = distance <= radii * (1 + 1e-9) + 1e-9
-        # a hair wider than they are, so that rounding loses no ray
+        # wider by a margin, so that rounding loses no ray
         width = np.where(within, np.pi, np.arcsin(np.minimum(1.0, radii / np.maximum(distance, _TINY))) + 1e-6)
         if self._grid is None:
-            for i, wide in enumerate(width.tolist()):
+            for i, angle in enumerate(width.tolist()):
                 along = rotate_vectors(self.directions, centres[i])
-                yield np.array((i,)), np.flatnonzero(along >= distance[i] * np.cos(min(wide, np.pi)) - 1e-9)
+                yield np.array((i,)), np.flatnonzero(along >= distance[i] * np.cos(min(angle, np.pi)) - 1e-9)
             return
         spheres, first_row, rows, first, columns = self._blocks(centres, distance, width)
-        wide = len(self._grid[1])
+        row_length = len(self._grid[1])
         large = rows * columns >= _LARGE_BLOCK
         for i in np.flatnonzero(large).tolist():
-            block = np.arange(first_row[i], first_row[i] + rows[i])[:, None] * wide
+            block = np.arange(first_row[i], first_row[i] + rows[i])[:, None] * row_length
             yield spheres[i : i + 1], (block + np.arange(first[i], first[i] + columns[i])).ravel()
         small = np.flatnonzero(~large)
         if small.size:
-            of = np.repeat(small, rows[small])
-            row = first_row[of] + _count_within_runs(rows[small])
-            yield from _expand_runs(spheres[of], row * wide + first[of], columns[of])
+            owners = np.repeat(small, rows[small])
+            row = first_row[owners] + _count_within_runs(rows[small])
+            yield from _expand_runs(spheres[owners], row * row_length + first[owners], columns[owners])
 
     def _blocks(self, centres: Vector, distance: Vector, width: Vector) -> tuple[Ids, Ids, Ids, Ids, Ids]:
-        """Blocks of the grid: of which sphere, the first row, rows, the first column, columns."""
+        """Return blocks of the grid: sphere, first row, number of rows, first column, number of columns."""
         assert self._grid is not None
         elevations, azimuths = self._grid
         height = np.arcsin(np.clip(centres[:, 2] / np.maximum(distance, _TINY), -1.0, 1.0))
@@ -168,33 +169,34 @@ class FanDirections:
         half = np.where(over_pole, np.pi, np.arcsin(np.minimum(side, 1.0)) + 1e-6)
         middle = np.arctan2(centres[:, 1], centres[:, 0])
         low, high = float(azimuths[0]), float(azimuths[-1])
-        # the fan may lie anywhere, and go round more than once
+        # the azimuths may start anywhere and cover more than one turn
         turns = np.arange(np.floor((low - 2 * np.pi) / (2 * np.pi)), np.ceil((high + 2 * np.pi) / (2 * np.pi)) + 1)
         begin = (middle - half)[:, None] + turns * (2 * np.pi)
         end = begin + 2 * half[:, None]
         spheres, turn = np.nonzero((end >= low) & (begin <= high) & (rows > 0)[:, None])
         first = np.searchsorted(azimuths, begin[spheres, turn], "left")
         columns = np.searchsorted(azimuths, end[spheres, turn], "right") - first
-        some = columns > 0
-        spheres = spheres[some]
-        return spheres, first_row[spheres], rows[spheres], first[some], columns[some]
+        is_filled = columns > 0
+        spheres = spheres[is_filled]
+        return spheres, first_row[spheres], rows[spheres], first[is_filled], columns[is_filled]
 
 
 def _count_within_runs(counts: Ids) -> Ids:
-    """0, 1, ... for each count, one after the other."""
+    """Return 0, 1, ... up to each count, concatenated."""
     counted: Ids = np.arange(int(counts.sum())) - np.repeat(np.cumsum(counts) - counts, counts)
     return counted
 
 
-def _expand_runs(of: Ids, starts: Ids, counts: Ids) -> Iterator[tuple[Ids, Ids]]:
-    """Runs of rays as pairs of what they belong to and a ray."""
+def _expand_runs(owners: Ids, starts: Ids, counts: Ids) -> Iterator[tuple[Ids, Ids]]:
+    """Yield runs of rays as pairs of an owner and a ray."""
     ends = np.cumsum(counts)
     done = 0
     while done < len(ends):
         before = ends[done - 1] if done else 0
         stop = max(done + 1, int(np.searchsorted(ends, before + _CHUNK, "right")))
-        some = counts[done:stop]
-        yield np.repeat(of[done:stop], some), np.repeat(starts[done:stop], some) + _count_within_runs(some)
+        run_counts = counts[done:stop]
+        rays = np.repeat(starts[done:stop], run_counts) + _count_within_runs(run_counts)
+        yield np.repeat(owners[done:stop], run_counts), rays
         done = stop
 
 
@@ -203,11 +205,11 @@ class Shapes(NamedTuple):
 
     Attributes:
         kinds: geom types, shape (m,).
-        sizes: as MuJoCo has them [m], shape (m, 3).
-        positions: [m], shape (m, 3).
+        sizes: sizes as in MuJoCo [m], shape (m, 3).
+        positions: positions [m], shape (m, 3).
         turns: rotation matrices, shape (m, 3, 3).
-        radii: of the spheres around them [m], shape (m,).
-        geoms: shape (m,).
+        radii: radii of the bounding spheres [m], shape (m,).
+        geoms: geom ids, shape (m,).
     """
 
     kinds: Ids
@@ -221,21 +223,23 @@ class Shapes(NamedTuple):
         return Shapes._make(column[which] for column in self)
 
 
-def in_frame(places: Vector, turns: Vector, origin: Vector, rotation: Vector) -> tuple[Vector, Vector]:
-    """Positions (m, 3) and rotation matrices (m, 3, 3) in the world, in a frame or in one frame each.
+def in_frame(positions: Vector, turns: Vector, origin: Vector, rotation: Vector) -> tuple[Vector, Vector]:
+    """Transform positions (m, 3) and rotation matrices (m, 3, 3) from the world into one frame or into one frame each.
 
-    Number by number, so that the bits do not depend on how many there are.
+    The sums are written out, so that the bits do not depend on the number of shapes.
 
     Args:
-        places, turns: in the world.
-        origin, rotation: of the frame, shapes (3,) and (3, 3), or (m, 3) and (m, 3, 3).
+        positions: positions in the world [m].
+        turns: rotation matrices in the world.
+        origin: origin of the frame in the world [m], shape (3,) or (m, 3).
+        rotation: rotation matrix of the frame in the world, shape (3, 3) or (m, 3, 3).
     """
-    x, y, z = np.moveaxis(places - origin, -1, 0)[..., None]
+    x, y, z = np.moveaxis(positions - origin, -1, 0)[..., None]
     first, second, third = np.moveaxis(rotation, -2, 0)
-    positions: Vector = x * first + y * second + z * third
+    in_frame_positions: Vector = x * first + y * second + z * third
     a, b, c = np.moveaxis(turns, -2, 0)[..., None, :]
     turned_by: Vector = first[..., None] * a + second[..., None] * b + third[..., None] * c
-    return positions, turned_by
+    return in_frame_positions, turned_by
 
 
 def cast_on_shapes(
@@ -247,16 +251,16 @@ def cast_on_shapes(
     hits: npt.NDArray[np.int32],
     firsts: Ids | None = None,
 ) -> None:
-    """Shortens `best` and sets `hits` where a shape is hit first.
+    """Shorten `best` and set `hits` where a shape is hit first.
 
     Args:
-        fan: the rays.
-        shapes: in their frame.
-        reach: what is farther is left out [m].
-        start: where the rays begin [m].
+        fan: directions of the rays.
+        shapes: shapes in the frame of the rays.
+        reach: distance beyond which shapes are ignored [m].
+        start: distance at which the rays start [m].
         best: shortest distances so far [m], shape (n,).
-        hits: the geoms at those distances, shape (n,).
-        firsts: where the rays that may meet a shape begin in `best`, shape (m,), for the same fan from many places.
+        hits: geoms at those distances, shape (n,).
+        firsts: index in `best` of the first ray that may hit a shape, shape (m,), for one fan at several positions.
     """
     if firsts is None:
         firsts = np.zeros(len(shapes.geoms), dtype=np.intp)
@@ -264,51 +268,51 @@ def cast_on_shapes(
     near = (distance - shapes.radii <= reach) & (distance + shapes.radii >= start)
     for kind in np.unique(shapes.kinds[near]).tolist():
         chosen = np.flatnonzero(near & (shapes.kinds == kind))
-        some, begin = shapes.only(chosen), firsts.take(chosen)
-        origins, sizes = -np.einsum("gi,gij->jg", some.positions, some.turns), some.sizes.T
+        selected, begin = shapes.only(chosen), firsts.take(chosen)
+        origins, sizes = -np.einsum("gi,gij->jg", selected.positions, selected.turns), selected.sizes.T
         function = _INTERVALS[kind]
-        for of, rays in fan.pairs(some.positions, some.radii):
-            ways = fan.columns.take(rays, 1)
-            rays = rays + begin.take(of)
-            if len(of) == 1:
-                ways = some.turns[of[0]].T @ ways
+        for owners, rays in fan.pairs(selected.positions, selected.radii):
+            directions = fan.columns.take(rays, 1)
+            rays = rays + begin.take(owners)
+            if len(owners) == 1:
+                directions = selected.turns[owners[0]].T @ directions
             else:
-                ways = np.einsum("in,nij->jn", ways, some.turns.take(of, 0))
+                directions = np.einsum("in,nij->jn", directions, selected.turns.take(owners, 0))
             with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-                enter, leave = function(origins.take(of, 1), ways, sizes.take(of, 1))
+                enter, leave = function(origins.take(owners, 1), directions, sizes.take(owners, 1))
                 found = np.where(enter >= start, enter, leave)
                 is_hit = (enter <= leave) & (found >= start) & (found < best.take(rays))
             keep = np.flatnonzero(is_hit)
             rays, found = rays[keep], found[keep]
-            if len(of) == 1:
-                best[rays], hits[rays] = found, some.geoms[of]
+            if len(owners) == 1:
+                best[rays], hits[rays] = found, selected.geoms[owners]
             else:
                 np.minimum.at(best, rays, found)
                 first = best[rays] == found
-                hits[rays[first]] = some.geoms.take(of[keep[first]])
+                hits[rays[first]] = selected.geoms.take(owners[keep[first]])
 
 
 def cast_on_plane(
     origin: Vector, directions: Vector, position: Vector, turn: Vector, size: Vector, start: float
 ) -> Vector | None:
-    """Distances [m], shape (n,), infinite where a plane or rectangle is not hit from its front; None for no hit."""
+    """Return distances [m], shape (n,), to the front of a plane or rectangle, infinite for misses; None for no hit."""
     normal = turn[:, 2]
     height = float((origin - position) @ normal)
     if height <= 0:
         return None
-    sink = rotate_vectors(directions, normal)
+    descent = rotate_vectors(directions, normal)
     out = np.full(len(directions), np.inf)
-    np.divide(-height, sink, out=out, where=sink < -1e-15)
+    np.divide(-height, descent, out=out, where=descent < -1e-15)
     if start > 0:
         out[out < start] = np.inf
     for axis in (0, 1):
         if size[axis] > 0:
             side = turn[:, axis]
-            at = rotate_vectors(directions, side)
+            offset = rotate_vectors(directions, side)
             with np.errstate(invalid="ignore"):
-                at *= out
-                at += float((origin - position) @ side)
-                np.abs(at, out=at)
-                # where the plane is not hit it is no number, or without end
-                out[~(at <= size[axis])] = np.inf
+                offset *= out
+                offset += float((origin - position) @ side)
+                np.abs(offset, out=offset)
+                # for a ray that misses the plane it is NaN or infinite
+                out[~(offset <= size[axis])] = np.inf
     return out

@@ -1,7 +1,8 @@
-"""Rays from one point, and geoms that they can meet: one that stays above or below all of them is left out.
+"""Culling of geoms that the rays of a fan cannot hit because they stay above or below all rays.
 
-A sensor's own robot is tied to it by joints. What no joint moves against the sensor keeps its place in the fan's frame;
-what hinges and ball joints move stays within a sphere around the first of them, whose radius grows along the chain.
+Joints connect a sensor to its own robot. A body without a joint between it and the sensor has a constant pose in the
+fan's frame. A body behind hinges and ball joints stays within a sphere around the first of them, whose radius grows
+along the chain.
 """
 
 from __future__ import annotations
@@ -17,18 +18,18 @@ import numpy.typing as npt
 from simkit.pose import Pose, Vector
 
 
-@dataclass(slots=True)  # not frozen: that would cost a microsecond for each cast
+@dataclass(slots=True)  # not frozen, which would cost a microsecond per cast
 class RayBundle:
     """Rays from one point.
 
     Attributes:
-        origin: in the world, shape (3,) [m].
-        directions: in the world, unit vectors, shape (n, 3).
-        start: how far from the origin they begin [m].
-        reach: what is farther does not count [m].
-        limit: its bits (see `finite_limit_bits`).
+        origin: origin in the world [m], shape (3,).
+        directions: unit vectors in the world, shape (n, 3).
+        start: distance from the origin at which the rays start [m].
+        reach: distance beyond which hits are ignored [m].
+        limit: bits of the reach (see `finite_limit_bits`).
         axis: unit vector in the world, shape (3,).
-        lowest, highest: angles between which the rays leave the plane across the axis [rad].
+        lowest, highest: elevations between which the rays leave the plane across the axis [rad].
     """
 
     origin: Vector
@@ -42,11 +43,11 @@ class RayBundle:
 
 
 RayHits = tuple[Vector, npt.NDArray[np.int32], npt.NDArray[np.bool_]]
-"""Distances [m], infinite where nothing is hit; geoms, -1 for nothing; and where the distances are infinite."""
+"""Distances [m], infinite for misses; geom ids, -1 for misses; and a mask of the infinite distances."""
 
 
 def reaches_plane(rays: RayBundle, point: Sequence[float], normal: Sequence[float]) -> bool:
-    """Whether a ray may come down on a plane through a point within the reach; never wrongly False."""
+    """Check whether a ray may hit the front of a plane within the reach; a False is always correct."""
     (x, y, z), (ax, ay, az), (nx, ny, nz) = rays.origin.tolist(), rays.axis.tolist(), normal
     height = nx * (x - point[0]) + ny * (y - point[1]) + nz * (z - point[2])
     steepest = max(abs(rays.lowest), abs(rays.highest))
@@ -56,25 +57,27 @@ def reaches_plane(rays: RayBundle, point: Sequence[float], normal: Sequence[floa
 
 
 def finite_limit_bits(reach: float) -> npt.NDArray[np.uint64]:
-    """The bits of the longest finite distance that counts, for comparing many at once."""
+    """Return the bits of the longest finite distance within the reach, for fast comparison of many distances."""
     return np.array(min(reach, float(np.finfo(np.float64).max))).view(np.uint64)
 
 
 _ROTARY_JOINTS = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_BALL))
 _MARGIN = 1e-9  # [m]
 ENDLESS = 1e9
-"""Half size of a plane [m]."""
+"""Half size that replaces the infinite size of a plane [m]."""
 
 
 @dataclass(frozen=True, slots=True)
 class BodyTie:
-    """How a body is tied to the fan.
+    """Constraint on a body's position in the fan's frame.
+
+    The body's pose is constant, or one of its points stays within a sphere.
 
     Attributes:
-        pose: of the body in the fan's frame; None where joints move it.
-        centre: a point of the fan's frame (shape (3,)) ...
-        point: ... from which this point of the body ...
-        slack: ... is never farther than this [m].
+        pose: pose of the body in the fan's frame; None if joints move the body.
+        centre: centre of the sphere in the fan's frame [m], shape (3,).
+        point: point of the body that stays within the sphere [m], in the body's frame, shape (3,).
+        slack: radius of the sphere [m].
     """
 
     pose: Pose | None
@@ -86,11 +89,14 @@ class BodyTie:
 def reaches_between_cones(
     height: Vector, side: Vector, radius: Vector, lowest: float, highest: float
 ) -> npt.NDArray[np.bool_]:
-    """Whether spheres reach between the cones at the ends of a fan.
+    """Check which spheres extend between the cones that bound a fan's elevations.
 
     Args:
-        height, side: of the centres, along the fan's axis and from it [m].
-        lowest, highest: angles of the cones with the plane across the axis [rad].
+        height: distances of the centres along the fan's axis [m].
+        side: distances of the centres from the fan's axis [m].
+        radius: radii of the spheres [m].
+        lowest: elevation of the lower cone above the plane across the axis [rad].
+        highest: elevation of the upper cone above that plane [rad].
     """
     above = height * math.cos(highest) - side * math.sin(highest)
     below = side * math.sin(lowest) - height * math.cos(lowest)
@@ -99,37 +105,37 @@ def reaches_between_cones(
 
 
 def geom_half_sizes(model: mujoco.MjModel, geoms: npt.NDArray[np.intp]) -> Vector:
-    """Of the boxes around geoms, along their own axes [m], shape (m, 3)."""
+    """Return half the sizes of the boxes around geoms, along their own axes [m], shape (m, 3)."""
     is_plane = model.geom_type[geoms] == int(mujoco.mjtGeom.mjGEOM_PLANE)
     halves: Vector = np.where(is_plane[:, None], ENDLESS, model.geom_aabb[geoms, 3:])
     return halves
 
 
 class NearbyGeoms:
-    """Planes and shapes, and which of them a fan may meet where they are now.
+    """Planes and shapes, with a search for those that a fan can hit at their current poses.
 
     Args:
-        model: compiled.
+        model: compiled model.
         which: numbers of the geoms, shape (m,).
-        geoms: theirs, shape (m,).
+        geoms: geom ids, shape (m,).
     """
 
     def __init__(self, model: mujoco.MjModel, which: npt.NDArray[np.intp], geoms: npt.NDArray[np.intp]) -> None:
         self._which, self._geoms = which, geoms
         bounds = model.geom_rbound[geoms]
-        # a plane has no radius: it has no end
+        # MuJoCo gives planes a radius of 0, but a plane is infinite
         self._radii, self._halves = np.where(bounds > 0, bounds, ENDLESS), geom_half_sizes(model, geoms)
 
-    def met(self, data: mujoco.MjData, rays: RayBundle) -> npt.NDArray[np.intp]:
-        """Numbers of those within reach and between the ends of the fan; never one too few."""
-        places = data.geom_xpos.take(self._geoms, 0)
-        places -= rays.origin
-        square = np.einsum("ij,ij->i", places, places)
+    def reached(self, data: mujoco.MjData, rays: RayBundle) -> npt.NDArray[np.intp]:
+        """Return the numbers of the geoms within reach and between the fan's elevations; no such geom is missed."""
+        centres = data.geom_xpos.take(self._geoms, 0)
+        centres -= rays.origin
+        square = np.einsum("ij,ij->i", centres, centres)
         reach = (self._radii + rays.reach) * (1 + 1e-9) + _MARGIN
         near = np.flatnonzero(square <= reach * reach)
         if not near.size:
             return near
-        height, radii = places.take(near, 0) @ rays.axis, self._radii.take(near)
+        height, radii = centres.take(near, 0) @ rays.axis, self._radii.take(near)
         if rays.lowest == rays.highest == 0.0:
             close = np.abs(height) <= radii + _MARGIN
             near, height = near[close], height[close]
@@ -144,39 +150,41 @@ class NearbyGeoms:
         return found
 
 
-def can_meet(
+def can_reach(
     model: mujoco.MjModel, body: int, offset: Pose, geoms: npt.NDArray[np.intp], lowest: float, highest: float
 ) -> npt.NDArray[np.bool_]:
-    """Which geoms rays may ever meet, shape (m,); never wrongly False.
+    """Check which geoms rays can ever hit, shape (m,); a False is always correct.
 
     Args:
-        body: that carries the fan.
-        offset: the fan's frame in it.
-        geoms: shape (m,).
-        lowest, highest: angles between which the rays leave the plane across the frame's z [rad].
+        model: compiled model.
+        body: body that carries the fan.
+        offset: the fan's frame in that body.
+        geoms: geom ids, shape (m,).
+        lowest: lowest elevation of the rays above the plane across the frame's z axis [rad].
+        highest: highest elevation of the rays above that plane [rad].
     """
     ties = _tied_bodies(model, body, offset)
     halves = geom_half_sizes(model, geoms)
-    places, extents = np.zeros((len(geoms), 3)), np.full(len(geoms), np.inf)
+    centres, extents = np.zeros((len(geoms), 3)), np.full(len(geoms), np.inf)
     for i, geom in enumerate(geoms.tolist()):
         tie = ties.get(int(model.geom_bodyid[geom]))
         if tie is None:
             continue
-        at = Pose(model.geom_pos[geom], model.geom_quat[geom]) @ Pose(model.geom_aabb[geom, :3])
+        box = Pose(model.geom_pos[geom], model.geom_quat[geom]) @ Pose(model.geom_aabb[geom, :3])
         size = float(np.linalg.norm(halves[i]))
         if tie.pose is None:
-            places[i] = tie.centre
-            extents[i] = tie.slack + float(np.linalg.norm(at.position - tie.point)) + size
+            centres[i] = tie.centre
+            extents[i] = tie.slack + float(np.linalg.norm(box.position - tie.point)) + size
         else:
-            pose = tie.pose @ at
-            places[i] = pose.position
+            pose = tie.pose @ box
+            centres[i] = pose.position
             extents[i] = np.abs(pose.matrix[2]) @ halves[i] if lowest == highest == 0.0 else size
-    side = np.hypot(places[:, 0], places[:, 1])
-    return reaches_between_cones(places[:, 2], side, extents, lowest, highest)
+    side = np.hypot(centres[:, 0], centres[:, 1])
+    return reaches_between_cones(centres[:, 2], side, extents, lowest, highest)
 
 
 def _tied_bodies(model: mujoco.MjModel, body: int, offset: Pose) -> dict[int, BodyTie]:
-    """Of all bodies that turning joints alone tie to a body, the world left out."""
+    """Return the ties of all bodies that only hinges and ball joints connect to a body, except the world."""
     if body <= 0:
         return {}
     children: dict[int, list[int]] = {}
@@ -184,37 +192,37 @@ def _tied_bodies(model: mujoco.MjModel, body: int, offset: Pose) -> dict[int, Bo
         children.setdefault(parent, []).append(child)
     start = offset.inverse()
     ties = {body: BodyTie(start, start.position, np.zeros(3), 0.0)}
-    waiting = [body]
-    while waiting:
-        here = waiting.pop()
-        parent = int(model.body_parentid[here])
-        for there in (*children.get(here, []), parent):
-            if there == 0 or there in ties:
+    pending = [body]
+    while pending:
+        current = pending.pop()
+        parent = int(model.body_parentid[current])
+        for neighbour in (*children.get(current, []), parent):
+            if neighbour == 0 or neighbour in ties:
                 continue
-            tie = _tie_of_neighbour(model, ties[here], here, there)
+            tie = _tie_of_neighbour(model, ties[current], current, neighbour)
             if tie is not None:
-                ties[there] = tie
-                waiting.append(there)
+                ties[neighbour] = tie
+                pending.append(neighbour)
     return ties
 
 
-def _tie_of_neighbour(model: mujoco.MjModel, tie: BodyTie, here: int, there: int) -> BodyTie | None:
-    """The tie of a neighbour in the tree; None where something else than a turning joint is between them."""
-    child = there if int(model.body_parentid[there]) == here else here
-    step = Pose(model.body_pos[child], model.body_quat[child])  # of the child in its parent
-    to_there = step.inverse() if child == there else step
+def _tie_of_neighbour(model: mujoco.MjModel, tie: BodyTie, current: int, neighbour: int) -> BodyTie | None:
+    """Return the tie of a neighbouring body; None if another joint than a hinge or ball joint is between them."""
+    child = neighbour if int(model.body_parentid[neighbour]) == current else current
+    step = Pose(model.body_pos[child], model.body_quat[child])  # pose of the child in its parent
+    to_neighbour = step.inverse() if child == neighbour else step
     first, count = int(model.body_jntadr[child]), int(model.body_jntnum[child])
     if count == 0:
-        pose = None if tie.pose is None else tie.pose @ to_there.inverse()
-        return BodyTie(pose, tie.centre, to_there.transform(tie.point), tie.slack)
+        pose = None if tie.pose is None else tie.pose @ to_neighbour.inverse()
+        return BodyTie(pose, tie.centre, to_neighbour.transform(tie.point), tie.slack)
     joints = range(first, first + count)
     anchor = model.jnt_pos[first]
     turning = all(int(model.jnt_type[j]) in _ROTARY_JOINTS and np.array_equal(model.jnt_pos[j], anchor) for j in joints)
     if not turning:
         return None
-    # the joint's own point is the same in both bodies, wherever the joint stands
+    # the joint's anchor is the same point in both bodies at any joint position
     in_child, in_parent = np.array(anchor), step.transform(anchor)
-    mine, other = (in_parent, in_child) if child == there else (in_child, in_parent)
+    in_current, in_neighbour = (in_parent, in_child) if child == neighbour else (in_child, in_parent)
     if tie.pose is not None:
-        return BodyTie(None, tie.pose.transform(mine), other, 0.0)
-    return BodyTie(None, tie.centre, other, tie.slack + float(np.linalg.norm(mine - tie.point)))
+        return BodyTie(None, tie.pose.transform(in_current), in_neighbour, 0.0)
+    return BodyTie(None, tie.centre, in_neighbour, tie.slack + float(np.linalg.norm(in_current - tie.point)))

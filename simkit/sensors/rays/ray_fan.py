@@ -1,15 +1,15 @@
-"""Casting a fan of rays from one point.
+"""Casting of a fan of rays from one point.
 
-How is decided by the number of rays and by what the compiled model holds, never by what happened before:
+The number of rays and the content of the compiled model select the method; earlier casts have no influence:
 
-- Without triangles (meshes, heightmaps), fewer than `MANY_RAYS` rays are cast by the engine through planes and shapes
-  alone, more of them in NumPy.
-- Triangles are traced by Embree where `embreex` is installed, what stands still as one scene that all fans share, each
-  moving body by the rays that may meet it. Of many rays, boxes that stand still are traced as triangles too.
-- Without `embreex` a model with triangles is left to the engine whole.
+- Without triangles (meshes, heightmaps), the engine casts fewer than `MANY_RAYS` rays through planes and shapes only.
+  NumPy casts more rays than that.
+- Embree traces triangles if `embreex` is installed. All static triangles form one scene that all fans share. Each
+  moving body is traced with the rays that may hit it. With many rays, static boxes are traced as triangles too.
+- Without `embreex`, the engine casts through the whole model if it has triangles.
 
-All ways agree: shapes and planes are exact everywhere, triangles are met in their own plane, worked out in float64.
-It is only Embree's float32 that says on which side of the edge of a mesh a ray passes.
+All methods agree: shapes and planes are exact, and rays hit a triangle in its own plane, computed in float64. Only
+Embree's float32 decides on which side of a mesh edge a ray passes.
 """
 
 from __future__ import annotations
@@ -31,33 +31,33 @@ from simkit.sensors.rays.numpy_rays import (
     cast_on_shapes,
     rotate_vectors,
 )
-from simkit.sensors.rays.ray_culling import NearbyGeoms, RayBundle, can_meet, finite_limit_bits, reaches_plane
+from simkit.sensors.rays.ray_culling import NearbyGeoms, RayBundle, can_reach, finite_limit_bits, reaches_plane
 from simkit.sensors.rays.ray_targets import MAX_MOVING_BODIES, RayTargets
 
 MANY_RAYS: Final = 2048
-"""From so many rays on NumPy is faster on shapes than the engine."""
+"""Number of rays from which NumPy is faster on shapes than the engine."""
 
-_RAYS_PER_CHUNK = 1 << 18  # rays traced at a time: bounds what is needed besides the result
+_RAYS_PER_CHUNK = 1 << 18  # rays traced at a time, which limits the memory besides the result
 _LARGEST = float(np.finfo(np.float64).max)
 
 
 class RayFan:
-    """Fixed directions in a frame, cast again and again.
+    """Fan of fixed directions in a frame, to be cast repeatedly.
 
     Attributes:
-        distances: of the last cast [m], shape (n,); infinite where nothing is hit within the reach.
-        infinite: where they are, shape (n,).
-        hits: what was hit, shape (n,), as positions in `ids`; -1 for nothing. Each cast makes these arrays anew.
-        ids: geoms of the compiled model; the last is -1.
-        groups: geom groups that are seen, shape (6,), 1 for each.
-        body: that is not hit; 0 for none.
+        distances: distances of the last cast [m], shape (n,); infinite for no hit within the reach.
+        infinite: True where the distance is infinite, shape (n,).
+        hits: indices in `ids` of the geoms that were hit, shape (n,); -1 for no hit. Each cast makes new arrays.
+        ids: geom ids of the compiled model; the last is -1.
+        groups: visible geom groups, shape (6,), 1 for visible.
+        body: body that is not hit; 0 for none.
 
     Args:
         directions: unit vectors in the sensor's frame, shape (n, 3).
-        groups: geom groups that are seen.
+        groups: visible geom groups.
         reach: longest distance [m].
-        grid: elevations and azimuths [rad], ascending, where the directions are all their pairs, layer by layer.
-        use_embree: False leaves triangles to the engine even where `embreex` is installed.
+        grid: ascending elevations and azimuths [rad], if the directions are all their pairs, layer by layer; else None.
+        use_embree: False leaves triangles to the engine even if `embreex` is installed.
     """
 
     def __init__(
@@ -76,7 +76,7 @@ class RayFan:
         self.infinite = np.full(self.count, True)
         self.ids = np.array((-1,), dtype=np.int32)
         self._nearby: NearbyGeoms | None = None
-        self._standing: list[TriangleBody] | None = None
+        self._static: list[TriangleBody] | None = None
         self._movers = MovingBodies([])
         self._rotated = np.empty((self.count, 3))
         self.groups = np.zeros(6, dtype=np.uint8)
@@ -89,7 +89,7 @@ class RayFan:
 
     @property
     def geoms(self) -> npt.NDArray[np.int32]:
-        """What was hit, shape (n,): geoms of the compiled model, -1 for nothing."""
+        """Geoms that were hit, shape (n,): geom ids of the compiled model, -1 for no hit."""
         return self.ids[self.hits]
 
     def bind(
@@ -102,15 +102,15 @@ class RayFan:
         hidden: Sequence[int] = (),
         offset: Pose | None = None,
     ) -> None:
-        """Says in what the rays are cast.
+        """Set the model that the rays are cast in.
 
         Args:
-            model: compiled.
-            names: the compiler's name map of it.
-            body: that carries the rays: it is not hit, where it moves.
-            own_geoms: what is not hit of a body that does not.
-            hidden: other geoms that are not seen.
-            offset: the directions' frame in the body's, where that stays: less has to be looked at then.
+            model: compiled model.
+            names: name map of the compiled model.
+            body: body that carries the rays; a moving one is not hit.
+            own_geoms: geoms of a static carrier that are not hit.
+            hidden: other geoms that are not visible.
+            offset: constant frame of the directions in the body's frame, or None; it excludes geoms out of sight.
         """
         self.body = body if body > 0 else 0
         self._own = [] if body > 0 else list(own_geoms)
@@ -119,9 +119,9 @@ class RayFan:
         if self._carrier < 0 and not self._targets.needs_engine:
             self._targets = self._find_targets(model, names, (*hidden, *self._own))
             self._carrier = 0
-        self._offset, self._standing, self._nearby = offset, None, None
+        self._offset, self._static, self._nearby = offset, None, None
         targets = self._targets
-        # only the reduced model has numbers of its own
+        # only the reduced model has ids of its own
         self.ids = np.append(np.arange(model.ngeom), -1).astype(np.int32)
         self._by_engine = self.count < MANY_RAYS and targets.moving_shapes <= MAX_MOVING_BODIES
         if not self._by_engine and self._fan is None:
@@ -133,21 +133,21 @@ class RayFan:
             seen[list(hidden)] = False
             return RayTargets(model, names, seen, self._use_embree)
 
-        what = f"seen by rays: groups {self.groups.tolist()}, {self._use_embree}, without {sorted(hidden)}"
-        found: RayTargets = names.shared(what, find)
+        key = f"seen by rays: groups {self.groups.tolist()}, {self._use_embree}, without {sorted(hidden)}"
+        found: RayTargets = names.shared(key, find)
         return found
 
     def cast(
         self, model: mujoco.MjModel, data: mujoco.MjData, origin: Vector, rotation: Vector, start: float = 0.0
     ) -> None:
-        """Makes `distances`, `hits` and `infinite` anew.
+        """Cast the rays, and set new arrays `distances`, `hits` and `infinite`.
 
         Args:
-            model: the one that the fan is bound to.
-            data: of that model, with up-to-date places.
-            origin: where distances are counted from, in the world, shape (3,) [m].
-            rotation: of the sensor's frame, shape (3, 3).
-            start: how far from there the rays begin [m].
+            model: model that the fan is bound to.
+            data: data of that model with up-to-date poses.
+            origin: point from which distances are measured, in the world [m], shape (3,).
+            rotation: rotation matrix of the sensor's frame, shape (3, 3).
+            start: distance from the origin at which the rays start [m].
         """
         rays, targets = self._rays(origin, rotation, start), self._targets
         if targets.needs_engine:
@@ -157,8 +157,8 @@ class RayFan:
             shapes = targets.shapes_by_engine
             if shapes is not None:
                 if self._nearby is None:
-                    sight = shapes.sight(self._carrier, self.body, self._offset, *self._bounds)
-                    self._nearby = NearbyGeoms(targets.model, sight, shapes.movers[sight])
+                    movers = shapes.reachable_movers(self._carrier, self.body, self._offset, *self._bounds)
+                    self._nearby = NearbyGeoms(targets.model, movers, shapes.movers[movers])
                 self.distances, self.hits, self.infinite = shapes.cast(data, rays, self._nearby)
                 if not targets.triangles_for_engine:
                     self.ids = shapes.ids
@@ -171,13 +171,13 @@ class RayFan:
             self._clear()
             self._cast_on_planes_and_triangles(data, rays)
             self._cast_on_shapes(data, rays, rotation)
-        self._end()
+        self._finish()
 
     def _rays(self, origin: Vector, rotation: Vector, start: float) -> RayBundle:
         rotate_vectors(self.directions, rotation.T, out=self._rotated)
         return RayBundle(origin, self._rotated, start, self.reach, self._limit, rotation[:, 2], *self._bounds)
 
-    def _end(self) -> None:
+    def _finish(self) -> None:
         self.infinite = self.distances > min(self.reach, _LARGEST)
         np.copyto(self.distances, np.inf, where=self.infinite)
 
@@ -186,7 +186,7 @@ class RayFan:
         self.distances = np.full(self.count, np.inf)
 
     def _cast_on_planes_and_triangles(self, data: mujoco.MjData, rays: RayBundle) -> None:
-        """On all but shapes, in NumPy and by Embree."""
+        """Cast on planes in NumPy and on triangles with Embree."""
         best, targets = self.distances, self._targets
         self._cast_on_triangles(targets.triangles_and_boxes, data, rays)
         for i in targets.planes.tolist():
@@ -209,7 +209,7 @@ class RayFan:
             if self._carrier:
                 which = which[targets.carriers[which] != self._carrier]
             self._nearby = NearbyGeoms(targets.model, which, targets.geoms[which])
-        which = self._nearby.met(data, rays)
+        which = self._nearby.reached(data, rays)
         if not len(which):
             return
         assert self._fan is not None
@@ -217,37 +217,42 @@ class RayFan:
         cast_on_shapes(self._fan, shapes, rays.reach, rays.start, self.distances, self.hits)
 
     def _cast_on_triangles(self, bodies: list[TriangleBody], data: mujoco.MjData, rays: RayBundle) -> None:
-        """First what stands still, then each body by the rays that may meet it."""
-        if self._standing is None:
-            self._standing = [body for body in bodies if not body.carrier]
-            self._movers = MovingBodies([body for body in bodies if body.carrier and self._can_meet(body)])
-        for body in self._standing:
+        """Cast on static triangles, then on each moving body with the rays that may hit it."""
+        if self._static is None:
+            self._static = [body for body in bodies if not body.carrier]
+            self._movers = MovingBodies([body for body in bodies if body.carrier and self._can_reach(body)])
+        for body in self._static:
             for first in range(0, self.count, _RAYS_PER_CHUNK):
                 part = slice(first, first + _RAYS_PER_CHUNK)
                 limit = np.minimum(self.distances[part], rays.reach, dtype=np.float32)
                 found = body.cast(data, rays.origin, rays.directions[part], rays.start, limit)
                 self._shorten(found[0] + first, *found[1:])
-        for body, some in self._movers.met(data, rays):
-            limit = np.minimum(self.distances.take(some), rays.reach, dtype=np.float32)
-            found = body.cast(data, rays.origin, rays.directions.take(some, 0), rays.start, limit)
-            self._shorten(some[found[0]], *found[1:])
+        for body, rays_of_body in self._movers.reached(data, rays):
+            limit = np.minimum(self.distances.take(rays_of_body), rays.reach, dtype=np.float32)
+            found = body.cast(data, rays.origin, rays.directions.take(rays_of_body, 0), rays.start, limit)
+            self._shorten(rays_of_body[found[0]], *found[1:])
 
     def _shorten(self, which: Ids, found: Vector, geoms: npt.NDArray[np.int32]) -> None:
-        """Takes distances of some rays where they are shorter than those so far."""
+        """Replace the distances of some rays where the new ones are shorter."""
         nearer = found < self.distances.take(which)
         which = which[nearer]
         self.distances[which], self.hits[which] = found[nearer], geoms[nearer]
 
-    def _can_meet(self, body: TriangleBody) -> bool:
+    def _can_reach(self, body: TriangleBody) -> bool:
         if body.carrier == self._carrier:
             return False
         if self._offset is None:
             return True
-        return bool(can_meet(self._targets.model, self.body, self._offset, body.geoms, *self._bounds).any())
+        return bool(can_reach(self._targets.model, self.body, self._offset, body.geoms, *self._bounds).any())
 
 
 def fan_directions(azimuths: Vector, elevations: Vector) -> Vector:
-    """Unit vectors, x forward, y left, z up, layer by layer from the first elevation on, shape (m·n, 3)."""
+    """Return unit vectors (x forward, y left, z up), layer by layer from the first elevation, shape (m·n, 3).
+
+    Args:
+        azimuths: angles about z [rad], shape (n,).
+        elevations: angles above the x-y plane [rad], shape (m,).
+    """
     elevation, azimuth = np.meshgrid(elevations, azimuths, indexing="ij")
     directions = np.stack(
         (np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)), axis=-1

@@ -1,4 +1,4 @@
-"""Geoms that rays can hit, sorted by how they are traced."""
+"""Geoms that rays can hit, grouped by the method that traces them."""
 
 from __future__ import annotations
 
@@ -20,21 +20,21 @@ from simkit.sensors.rays.numpy_rays import Shapes, in_frame
 Key = TypeVar("Key")
 
 MAX_MOVING_BODIES: Final = 64
-"""So many moving bodies at most are looked through one after the other for every ray."""
+"""Number of moving bodies above which testing each of them for every ray is too slow."""
 _MANY_BOXES = 24
-"""From so many boxes on that stand still a few rays too are faster on their triangles."""
+"""Number of static boxes from which even few rays are faster on the boxes' triangles."""
 
 
 class RayTargets:
-    """The geoms that are seen, each with its carrier, which is what a sensor may be told not to hit.
+    """Visible geoms, each with its carrier; a sensor does not hit its own carrier.
 
-    Carrier 0 is what stands still for good; each moving body is one, and each static link that has a sensor.
+    Carrier 0 is the static scene. Each moving body is a carrier, and each static link that has a sensor.
 
     Args:
-        model: compiled.
-        names: the compiler's name map of it.
-        seen: whether a geom is seen, shape (ngeom,).
-        use_embree: False traces triangles by the engine alone.
+        model: compiled model.
+        names: name map of the compiled model.
+        seen: True for visible geoms, shape (ngeom,).
+        use_embree: False traces triangles with the engine only.
     """
 
     def __init__(self, model: mujoco.MjModel, names: NameMap, seen: npt.NDArray[np.bool_], use_embree: bool) -> None:
@@ -61,53 +61,53 @@ class RayTargets:
                 if link and names.links[link].scene.sensors:
                     self.carriers[i] = self._carrier(self._carrier_by_link, link, 0)
 
-    def _carrier(self, known: dict[Key, int], key: Key, body: int) -> int:
-        if key not in known:
-            known[key] = len(self.bodies)
+    def _carrier(self, carrier_by_key: dict[Key, int], key: Key, body: int) -> int:
+        if key not in carrier_by_key:
+            carrier_by_key[key] = len(self.bodies)
             self.bodies.append(body)
-        return known[key]
+        return carrier_by_key[key]
 
     def carrier_of(self, body: int, own_geoms: Sequence[int]) -> int:
-        """The carrier of a moving body, or of a static link by its geoms.
+        """Return the carrier of a moving body, or of a static link by its geoms.
 
         Returns:
-            Its number; 0 where nothing of it is seen; -1 where the geoms are no carrier of their own.
+            Number of the carrier; 0 if none of its geoms is visible; -1 if the geoms have no carrier of their own.
         """
         if body > 0:
             return self._carrier_by_body.get(body, 0)
-        mine = {int(c) for c in self.carriers[np.isin(self.geoms, list(own_geoms))]}
-        if not mine:
+        carriers = {int(c) for c in self.carriers[np.isin(self.geoms, list(own_geoms))]}
+        if not carriers:
             return 0
-        return mine.pop() if len(mine) == 1 and 0 not in mine else -1
+        return carriers.pop() if len(carriers) == 1 and 0 not in carriers else -1
 
     @property
     def has_embree(self) -> bool:
-        """Whether Embree may be used; it is loaded where this is asked first."""
+        """True if Embree may be used and can be loaded."""
         return self._use_embree and has_embree()
 
     def shapes_in_frame(self, data: mujoco.MjData, which: Ids, origin: Vector, rotation: Vector) -> Shapes:
-        """Shapes by their positions in `geoms`, in a frame or in one frame each; see `in_frame`."""
+        """Return shapes by their indices in `geoms`, in one frame or in one frame each; see `in_frame`."""
         model, geoms = self.model, self.geoms.take(which)
         turns = data.geom_xmat.take(geoms, 0).reshape(-1, 3, 3)
         placed = in_frame(data.geom_xpos.take(geoms, 0), turns, origin, rotation)
         sizes, radii = model.geom_size.take(geoms, 0), model.geom_rbound.take(geoms)
         return Shapes(self.types.take(which), sizes, *placed, radii, geoms.astype(np.int32))
 
-    # ------------------------------------------------------------------ the ways to trace them, made when first used
+    # ------------------------------------------------------------------ casters, made when first used
 
     @cached_property
     def moving_shapes(self) -> int:
-        """Carriers of shapes that move or have a sensor."""
+        """Number of carriers of shapes that move or have a sensor."""
         return len(np.unique(self.carriers[np.isin(self.types, SHAPES)]))
 
     @cached_property
     def whole(self) -> WholeModelCaster:
-        """Everything, by the engine."""
+        """Caster of all geoms with the engine."""
         return WholeModelCaster(self.model, self.seen)
 
     @cached_property
     def shapes_by_engine(self) -> ReducedModelCaster | None:
-        """Planes and shapes, by the engine; None where there are none."""
+        """Caster of planes and shapes with the engine; None if there are none."""
         which = self._select(lambda t: t in (PLANE, *SHAPES))
         if self._boxes_are_triangles:
             which = np.setdiff1d(which, self._static_boxes)
@@ -118,12 +118,12 @@ class RayTargets:
 
     @cached_property
     def planes(self) -> Ids:
-        """Positions in `geoms` of the planes."""
+        """Indices in `geoms` of the planes."""
         return self._select(lambda t: t == PLANE)
 
     @cached_property
     def shapes(self) -> Ids:
-        """Positions in `geoms` of the shapes that no triangles stand for exactly."""
+        """Indices in `geoms` of the shapes that are not traced as triangles."""
         boxes = self._static_boxes
         found = self._select(lambda t: t in SHAPES)
         return found[~np.isin(found, boxes)]
@@ -136,25 +136,25 @@ class RayTargets:
 
     @cached_property
     def _boxes_are_triangles(self) -> bool:
-        """Whether boxes that stand still are traced with the triangles even by few rays."""
-        stand = self.has_embree and bool((np.isin(self.types, TRIANGLES) & (self.carriers == 0)).any())
-        return stand or len(self._static_boxes) >= _MANY_BOXES
+        """True if static boxes are traced as triangles even with few rays."""
+        has_static_triangles = self.has_embree and bool((np.isin(self.types, TRIANGLES) & (self.carriers == 0)).any())
+        return has_static_triangles or len(self._static_boxes) >= _MANY_BOXES
 
     @cached_property
     def triangles_for_engine(self) -> list[TriangleBody]:
-        """What `shapes_by_engine` leaves out, one entry a carrier."""
+        """Triangles that `shapes_by_engine` leaves out, one entry per carrier."""
         if self._boxes_are_triangles:
             return self.triangles_and_boxes
         return self._triangle_bodies(self._select(lambda t: t in TRIANGLES))
 
     @cached_property
     def triangles_and_boxes(self) -> list[TriangleBody]:
-        """Meshes, heightmaps and the boxes that stand still, one entry a carrier."""
+        """Meshes, heightmaps and static boxes, one entry per carrier."""
         which = np.append(self._select(lambda t: t in TRIANGLES), self._static_boxes)
         return self._triangle_bodies(np.sort(which))
 
-    def _select(self, wanted: Callable[[int], bool]) -> Ids:
-        return np.array([i for i, t in enumerate(self.types.tolist()) if wanted(t)], dtype=np.intp)
+    def _select(self, is_selected: Callable[[int], bool]) -> Ids:
+        return np.array([i for i, t in enumerate(self.types.tolist()) if is_selected(t)], dtype=np.intp)
 
     def _triangle_bodies(self, which: Ids) -> list[TriangleBody]:
         carriers = self.carriers[which]

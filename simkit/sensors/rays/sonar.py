@@ -22,11 +22,11 @@ from simkit.sensors.rays.ray_fan import RayFan
 TYPE = "sensor_msgs/msg/Range"
 ULTRASOUND = 0
 MIN_RAY_ANGLE = math.radians(0.5)
-"""Between the rings of a cone, where that does not take more than `MAX_RINGS` [rad]."""
+"""Angle between the rings of a cone, where that needs at most `MAX_RINGS` rings [rad]."""
 MAX_RINGS = 24
 SPHERE_RAYS = 2000
 _GOLDEN = math.pi * (3.0 - math.sqrt(5.0))  # [rad]
-_MAX_RANGE = 3e38  # of a message's numbers, which have 32 bits
+_MAX_RANGE = 3e38  # messages contain 32-bit floats
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,10 +34,10 @@ class SonarOptions:
     """The `<sonar>` block.
 
     Attributes:
-        half_angle: between the axis and the edge of the cone [rad]; pi for a sphere.
-        axis: of the cone, a unit vector in the sensor's frame.
-        range_min, range_max: [m].
-        noise: of the range [m].
+        half_angle: angle between the axis and the edge of the cone [rad]; pi for a sphere.
+        axis: axis of the cone, a unit vector in the sensor's frame.
+        range_min, range_max: range limits [m].
+        noise: noise of the range [m].
     """
 
     half_angle: float
@@ -49,11 +49,11 @@ class SonarOptions:
 
 @dataclass(frozen=True, slots=True)
 class SonarReading:
-    """The nearest surface.
+    """Nearest surface.
 
     Attributes:
-        range: its distance [m]; `inf` for nothing within the range, `-inf` for what is nearer than the range.
-        hit: scoped name of its collision, empty for nothing.
+        range: distance [m]; `inf` if nothing is within the range, `-inf` if the surface is nearer than the minimum.
+        hit: scoped name of the surface's collision, or empty.
     """
 
     range: float
@@ -70,11 +70,11 @@ def _read_axis(block: Params) -> tuple[float, float, float]:
 
 
 class Sonar(Sensor):
-    """`sonar`: one range, that of the nearest collision in a cone (or all around) whose tip is the sensor's origin.
+    """Sonar, `sonar`: the distance to the nearest collision in a cone (or sphere) from the sensor's origin.
 
-    The cone opens along the sensor's -z, as in Gazebo Classic, or along `<axis>`. Rays stand for it: one on its axis
-    and rings around it, the last one on its edge. A surface counts wherever it turns to; echoes are not modelled. The
-    sensor's own link is never hit.
+    The cone opens along the sensor's -z axis, as in Gazebo Classic, or along `<axis>`. Rays sample the cone: one on
+    its axis and rings around it, the last on its edge. A surface of any orientation is detected; echoes are not
+    modelled. The sensor's own link is never hit.
     """
 
     kinds = ("sonar",)
@@ -127,7 +127,7 @@ class Sonar(Sensor):
 
     @property
     def hit(self) -> str:
-        """Scoped name of the collision that the newest reading is of; empty for none."""
+        """Scoped name of the collision that the newest reading hit; empty for none."""
         reading: SonarReading | None = self._true_reading()
         return reading.hit if reading is not None else ""
 
@@ -164,14 +164,14 @@ class Sonar(Sensor):
 
 
 def cone_directions(half_angle: float, axis: tuple[float, float, float]) -> Vector:
-    """Unit vectors that stand for a cone, shape (n, 3): the axis first.
+    """Return unit vectors that sample a cone, shape (n, 3); the first is the axis.
 
-    Around the axis are k = 1, 2, ... rings of 6k rays, as far from each other along a ring as the rings are, the last
-    on the edge. Every direction in the cone is less than 0.75 of that distance from a ray. From a half angle of pi on
-    (all directions) it is the axis and its opposite, two pairs across, and a Fibonacci spiral.
+    Around the axis are rings k = 1, 2, ... of 6k rays, the last ring on the edge. Rays of a ring are as far apart as
+    the rings. Every direction in the cone is closer to a ray than 0.75 of that distance. From a half angle of pi (all
+    directions), the rays are the axis and its opposite, two perpendicular pairs, and a Fibonacci spiral.
 
     Args:
-        half_angle: [rad].
+        half_angle: angle between axis and edge [rad].
         axis: unit vector.
     """
     if half_angle >= math.pi:
@@ -179,10 +179,10 @@ def cone_directions(half_angle: float, axis: tuple[float, float, float]) -> Vect
     else:
         rings = min(max(math.ceil(half_angle / MIN_RAY_ANGLE), 1), MAX_RINGS) if half_angle > 0 else 0
         number = np.concatenate([np.full(max(6 * k, 1), k) for k in range(rings + 1)])
-        place = np.concatenate([np.arange(max(6 * k, 1)) for k in range(rings + 1)])
+        index = np.concatenate([np.arange(max(6 * k, 1)) for k in range(rings + 1)])
         away = half_angle * number / max(rings, 1)
-        # every second ring is turned by half a gap, so that no straight lines of gaps lead outwards
-        around = 2 * np.pi * (place + 0.5 * (number % 2)) / np.maximum(6 * number, 1)
+        # every second ring is rotated by half a gap, so that the gaps do not form straight lines
+        around = 2 * np.pi * (index + 0.5 * (number % 2)) / np.maximum(6 * number, 1)
         upright = np.stack((np.sin(away) * np.cos(around), np.sin(away) * np.sin(around), np.cos(away)), axis=-1)
     return np.asarray(upright @ _frame_along(axis), dtype=np.float64)
 
@@ -196,7 +196,7 @@ def _spiral_directions(count: int) -> Vector:
 
 
 def _frame_along(axis: tuple[float, float, float]) -> Vector:
-    """Rows are three unit vectors at right angles, the last the axis."""
+    """Return a matrix whose rows are three perpendicular unit vectors, the last along the axis."""
     along = np.array(axis)
     other = np.eye(3)[int(np.argmin(np.abs(along)))]
     first = np.cross(other, along)

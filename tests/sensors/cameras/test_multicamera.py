@@ -192,7 +192,7 @@ def test_cameras_without_a_name_are_numbered_and_a_name_is_given_once() -> None:
     unnamed = scene(camera("x").replace(' name="x"', "") + camera("y").replace(' name="y"', ""))
     with simkit.load(unnamed) as sim:
         assert {"/rig/camera_0/image", "/rig/camera_1/image"} <= set(sim.topics())
-    with pytest.raises(simkit.LoadError, match="named 'x'"):
+    with pytest.raises(simkit.LoadError, match="have the name 'x'"):
         simkit.load(scene(camera("x") + camera("x")))
 
 

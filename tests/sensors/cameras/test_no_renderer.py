@@ -151,7 +151,7 @@ def test_no_command_minds_a_renderer_that_it_does_not_need(command: str, tmp_pat
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
     assert "Traceback" not in done.stderr
-    assert done.stderr.count("MUJOCO_GL=foo: no such renderer") == (command == "run")
+    assert done.stderr.count("MUJOCO_GL=foo: unknown renderer") == (command == "run")
 
 
 def test_what_ails_all_cameras_is_said_once_and_reported_of_each() -> None:

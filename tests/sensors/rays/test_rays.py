@@ -219,7 +219,9 @@ def test_an_arm_is_seen_when_it_is_raised_into_the_fan() -> None:
         sim.run(0.02)
         assert lidar.latest.ranges[1] == math.inf
         shapes = lidar._fan._targets.shapes_by_engine
-        looked_at = lidar._fan._targets.geoms[shapes.sight(lidar._fan._carrier, lidar._fan.body, lidar._offset, 0, 0)]
+        looked_at = lidar._fan._targets.geoms[
+            shapes.reachable_movers(lidar._fan._carrier, lidar._fan.body, lidar._offset, 0, 0)
+        ]
         assert len(looked_at) == 1  # the arm; neither the base nor the head itself
         sim.joint("robot::shoulder").set_position(math.pi / 2 - 1e-9)
         sim.step(20)

@@ -1,5 +1,5 @@
-"""Rendering: draws the visuals of a simulation through the one OpenGL context of the process.
+"""Rendering: draws the visuals of a simulation with the one OpenGL context of the process.
 
-A MuJoCo model, its data and a view enter; arrays of colours, depths and geom ids leave. Nothing here knows sensors,
-messages or noise.
+Inputs are a MuJoCo model, its data and a view. Outputs are arrays of colours, depths and geom ids. This folder does not
+depend on sensors, messages or noise.
 """

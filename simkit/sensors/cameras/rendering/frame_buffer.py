@@ -1,4 +1,4 @@
-"""Read colours and depths from the frame buffer."""
+"""Reading of colours and depths from the frame buffer."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from simkit.sensors.cameras.rendering.view import Colours, Depths
 
-_ROWS = 32  # at once: they fit into a processor's cache, and OpenCV wakes no threads for so few
+_ROWS = 32  # rows at once: they fit into a processor's cache, and OpenCV uses one thread for so few
 
 
 def read(
@@ -22,17 +22,17 @@ def read(
     context: mujoco.MjrContext,
     background: Colours | None = None,
 ) -> None:
-    """Reads the picture, bottom row first; the context is current, and its offscreen buffer is the one drawn to.
+    """Read the drawn image, bottom row first; the context must be current, and its offscreen buffer must be drawn to.
 
-    Where nothing is to be resolved, colours are read as they are kept, in four bytes a pixel: to leave the fourth out
-    afterwards takes a fifth of the time that the graphics library takes for it. The fourth tells what was drawn to.
+    Without multisampling, colours are read in their stored format of four bytes per pixel. Removing the fourth byte
+    afterwards takes a fifth of the time that the graphics library needs for it. The fourth byte marks the drawn pixels.
 
     Args:
-        colours: to be written to, shape (h, w, 3).
-        depths: to be written to, shape (h, w); None where they are not wanted.
-        rectangle: the picture's.
-        context: the engine's.
-        background: colour of what was not drawn to, shape (3,); without it that is as it is. Not with multisampling.
+        colours: output array, shape (h, w, 3).
+        depths: output array, shape (h, w); None reads no depths.
+        rectangle: rectangle of the image.
+        context: MuJoCo's rendering context.
+        background: colour of pixels that were not drawn to, shape (3,); None keeps them. Not for multisampling.
     """
     if context.offSamples:
         mujoco.mjr_readPixels(colours, depths, rectangle, context)
@@ -61,7 +61,7 @@ def read(
 
 @functools.lru_cache(maxsize=4)
 def _rgba_buffer(height: int, width: int) -> npt.NDArray[np.uint8]:
-    """Room for a picture as the library keeps it; whoever reads has the context, so one is enough."""
+    """Return a buffer for an image in its stored format; one is enough, because only one thread has the context."""
     return np.empty((height, width, 4), np.uint8)
 
 
@@ -72,7 +72,7 @@ def _plain_row(width: int, colour: tuple[int, int, int]) -> Colours:
 
 @functools.cache
 def _read_pixels() -> Any:
-    """The library's own function: PyOpenGL's looks closely at the array, which takes as long as reading."""
+    """Return the library's own function, because PyOpenGL's checks the array for as long as the reading takes."""
     from OpenGL.raw.GL.VERSION import GL_1_0
 
     return GL_1_0.glReadPixels

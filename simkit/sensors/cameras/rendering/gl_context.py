@@ -1,4 +1,4 @@
-"""The one OpenGL context of the process; its library is chosen before OpenGL is touched."""
+"""The one OpenGL context of the process; its library is chosen before OpenGL is used."""
 
 from __future__ import annotations
 
@@ -22,39 +22,39 @@ from simkit.errors import RenderError
 from simkit.runtime.engine.step_loop import stop_other_loops
 from simkit.sensors.cameras.rendering import render_thread
 
-_HINT = "on Debian and Ubuntu: apt install libegl1 libgl1-mesa-dri (or libosmesa6); `simkit doctor` says more"
+_HINT = "on Debian and Ubuntu: apt install libegl1 libgl1-mesa-dri (or libosmesa6); run `simkit doctor` for details"
 _OFF = {"disable", "disabled", "off", "false", "0"}
 _ON = {"", "enable", "enabled", "on", "true", "1"}
 _LIBRARIES = {"egl": "egl", "osmesa": "osmesa", "glfw": "glfw", "glx": "glfw", "cgl": "cgl", "wgl": "glfw"}
-"""Library of each renderer that `MUJOCO_GL` may name."""
+"""Library of each renderer that `MUJOCO_GL` accepts."""
 
 _PLATFORM_DEVICE = 0x313F
 
 _FORKED = (
-    "this process was forked from one that had drawn pictures already, and the graphics library does not survive that; "
-    "start it with multiprocessing's 'spawn' or 'forkserver', or fork before the first picture"
+    "this process was forked after its parent had drawn images, which the graphics library does not support; "
+    "start it with multiprocessing's 'spawn' or 'forkserver', or fork before the first image"
 )
 
 
 class GpuMemoryHolder(Protocol):
-    """Something that holds memory of the graphics library, which is given back before the library goes."""
+    """Object that owns graphics memory, which must be freed before the graphics library is closed."""
 
     def uploaded(self) -> Sequence[mujoco.MjrContext]:
-        """Return the MuJoCo contexts that it holds."""
+        """Return the MuJoCo contexts that the object owns."""
 
     def free(self) -> None:
-        """Give the memory back."""
+        """Free the graphics memory."""
 
 
 class _ProcessContext:
-    """The OpenGL context of this process and what depends on it.
+    """OpenGL context of this process and the state that depends on it.
 
     Attributes:
-        context: None before the first picture and after the end.
-        failure: raised at every use from now on.
-        lock: held by the thread whose context it is at the moment.
-        description: of the renderer; empty before the first picture.
-        holders: of memory of the graphics library.
+        context: the context; None before the first image and after the end.
+        failure: error that every use raises from now on; None without an error.
+        lock: lock held by the thread in which the context is current.
+        description: description of the renderer; empty before the first image.
+        holders: owners of graphics memory.
     """
 
     def __init__(self) -> None:
@@ -80,10 +80,10 @@ class _ProcessContext:
                 yield
 
     def close(self) -> None:
-        """Free everything at exit, before the libraries go: a context freed later writes to the terminal."""
-        stop_other_loops()  # or their cameras would find the context gone
+        """Free everything at exit before the libraries are closed; a context freed later writes to the terminal."""
+        stop_other_loops()  # their cameras would otherwise find no context
         render_thread.end()
-        with self.lock:  # a thread that still runs draws to the end, and nothing more
+        with self.lock:  # a thread that is drawing finishes its image first
             if self.context is None:
                 return
             for holder in list(self.holders):
@@ -93,13 +93,13 @@ class _ProcessContext:
             context.free()
 
     def reset_after_fork(self) -> None:
-        """Forbid drawing in a forked child: the threads of the software renderer have stayed behind."""
-        self.lock = threading.RLock()  # another thread may have held it
+        """Forbid drawing in a forked child, because the threads of the software renderer do not exist there."""
+        self.lock = threading.RLock()  # another thread may have held the old one at the fork
         if self.context is None:
             return
-        # nobody may free what is the parent's: not even the interpreter, which would when the child ends
-        for kept in (self.context, *(upload for holder in list(self.holders) for upload in holder.uploaded())):
-            ctypes.pythonapi.Py_IncRef(ctypes.py_object(kept))
+        # these objects belong to the parent; the extra references keep the child's interpreter from freeing them
+        for parent_object in (self.context, *(upload for holder in list(self.holders) for upload in holder.uploaded())):
+            ctypes.pythonapi.Py_IncRef(ctypes.py_object(parent_object))
         terminate = getattr(sys.modules.get(type(self.context).__module__), "_terminate_display", None)
         if terminate is not None:
             atexit.unregister(terminate)
@@ -114,38 +114,38 @@ if hasattr(os, "register_at_fork"):
 
 @contextmanager
 def current() -> Iterator[None]:
-    """Make the context of the process current in this thread; it is opened at the first use.
+    """Make the context of the process current in this thread; the first use opens it.
 
-    Threads take turns; whatever context of somebody else's was current comes back afterwards. An interrupt waits
-    until then.
+    Threads take turns. A context of other code that was current becomes current again afterwards. An interrupt is
+    deferred until then.
 
     Raises:
-        RenderError: no library gives one; the same error at every call, without trying again.
+        RenderError: no library provides a context; every call raises the same error without trying again.
     """
     with _process.current():
         yield
 
 
 def is_open() -> bool:
-    """Whether there is a context (none before the first picture and after the end)."""
+    """Check whether a context exists; there is none before the first image and after the end."""
     return _process.context is not None
 
 
 def describe_renderer() -> str:
-    """`llvmpipe (LLVM 15.0.6, 256 bits) through EGL`; empty before the first picture."""
+    """Return a text such as `llvmpipe (LLVM 15.0.6, 256 bits) through EGL`; empty before the first image."""
     return _process.description
 
 
 def hold_memory(holder: GpuMemoryHolder) -> None:
-    """Have the memory of a holder given back before the context closes; the holder itself is not kept alive."""
+    """Register an owner of graphics memory to be freed before the context closes; the reference to it is weak."""
     _process.holders.add(holder)
 
 
 def find_library() -> str:
-    """Which library would be used: egl, osmesa, glfw or cgl.
+    """Return the library that would be used: egl, osmesa, glfw or cgl.
 
     Raises:
-        RenderError: none is usable; says what was tried and what helps.
+        RenderError: no library is usable; the message lists the problems and a remedy.
     """
     tried = []
     for name in _candidates():
@@ -157,14 +157,14 @@ def find_library() -> str:
 
 
 def _candidates() -> tuple[str, ...]:
-    wanted = os.environ.get("MUJOCO_GL", "").strip().lower()
+    requested = os.environ.get("MUJOCO_GL", "").strip().lower()
     platform = os.environ.get("PYOPENGL_PLATFORM", "").strip().lower()
-    if wanted in _OFF:
-        raise RenderError(f"rendering is switched off by MUJOCO_GL={wanted}; unset it")
-    if wanted not in (*_LIBRARIES, *_ON):
-        raise RenderError(f"MUJOCO_GL={wanted}: no such renderer, allowed is one of {', '.join(_LIBRARIES)}")
-    if wanted in _LIBRARIES:
-        return (_LIBRARIES[wanted],)
+    if requested in _OFF:
+        raise RenderError(f"rendering is switched off by MUJOCO_GL={requested}; run `unset MUJOCO_GL`")
+    if requested not in (*_LIBRARIES, *_ON):
+        raise RenderError(f"MUJOCO_GL={requested}: unknown renderer, allowed is one of {', '.join(_LIBRARIES)}")
+    if requested in _LIBRARIES:
+        return (_LIBRARIES[requested],)
     if sys.platform == "darwin":
         return ("cgl",)
     if sys.platform == "win32":
@@ -173,7 +173,7 @@ def _candidates() -> tuple[str, ...]:
 
 
 def _egl_problem() -> str:
-    """Why EGL gives no display on any device; empty where it does. Asks the library itself, without PyOpenGL."""
+    """Return the reason why EGL provides no display on any device, or ""; the check bypasses PyOpenGL."""
     try:
         egl = ctypes.CDLL(ctypes.util.find_library("EGL") or "libEGL.so.1")
     except OSError:
@@ -183,7 +183,7 @@ def _egl_problem() -> str:
     query = egl.eglGetProcAddress(b"eglQueryDevicesEXT")
     display_of = egl.eglGetProcAddress(b"eglGetPlatformDisplayEXT")
     if not query or not display_of:
-        return "the EGL library knows no devices"
+        return "the EGL library cannot list devices"
     devices, count = (ctypes.c_void_p * 16)(), ctypes.c_int32()
     query_devices = ctypes.CFUNCTYPE(ctypes.c_uint32, ctypes.c_int32, ctypes.c_void_p, ctypes.c_void_p)(query)
     if not query_devices(16, devices, ctypes.byref(count)) or count.value < 1:
@@ -211,7 +211,7 @@ def _glfw_problem() -> str:
     if importlib.util.find_spec("glfw") is None:
         return "the Python package glfw is not installed"
     if sys.platform.startswith("linux") and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
-        return "there is no display, and without one only egl and osmesa draw"
+        return "there is no display; without a display only egl and osmesa work"
     return ""
 
 
@@ -224,31 +224,31 @@ _PROBES: dict[str, Callable[[], str]] = {
 
 
 def _open() -> tuple[Any, str]:
-    """The context, and in words who draws with it."""
+    """Return a new context and the name of its renderer."""
     library = find_library()
     try:
-        logging.getLogger("OpenGL.acceleratesupport").setLevel(logging.WARNING)  # says nothing a user can use
+        logging.getLogger("OpenGL.acceleratesupport").setLevel(logging.WARNING)  # its messages are of no use to a user
         with _platform(library):
             context = importlib.import_module(f"mujoco.{library}").GLContext(16, 16)
             with context.as_current():
                 name = _renderer_name()
     except Exception as error:
-        # drivers fail in their own ways: ImportError, AttributeError, ctypes errors, GLError
+        # drivers raise various errors: ImportError, AttributeError, ctypes errors, GLError
         raise RenderError(f"no renderer for cameras ({library}: {type(error).__name__}: {error}); {_HINT}") from error
     return context, f"{name} through {'EGL' if library == 'egl' else library}"
 
 
 @contextmanager
 def _platform(library: str) -> Iterator[None]:
-    """While it lasts, PyOpenGL is told the library that was chosen: whoever imports it decides for good."""
-    kept = os.environ.get("PYOPENGL_PLATFORM")
+    """Set PyOpenGL's library while the context lasts; PyOpenGL reads the variable once, when it is imported."""
+    previous = os.environ.get("PYOPENGL_PLATFORM")
     if library in ("egl", "osmesa"):
         os.environ["PYOPENGL_PLATFORM"] = library
     try:
         yield
     finally:
-        if kept:
-            os.environ["PYOPENGL_PLATFORM"] = kept
+        if previous:
+            os.environ["PYOPENGL_PLATFORM"] = previous
 
 
 def _renderer_name() -> str:
@@ -256,5 +256,5 @@ def _renderer_name() -> str:
 
     name = GL.glGetString(GL.GL_RENDERER)
     if not name:
-        raise RuntimeError("the context cannot be used")
+        raise RuntimeError("the context returns no renderer name")
     return str(name.decode())

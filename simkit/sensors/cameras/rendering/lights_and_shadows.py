@@ -1,4 +1,4 @@
-"""Lights of a picture, and where their shadow maps are drawn from."""
+"""Lights of an image, and the positions from which their shadow maps are drawn."""
 
 from __future__ import annotations
 
@@ -13,32 +13,32 @@ from simkit.compiler.lights import MOST_LIGHTS
 from simkit.pose import Vector
 from simkit.sensors.temporary_values import temporary_values
 
-_AHEAD: Final = 3.0  # [m]; what a camera looks at lies about there
-_REACH: Final = 15.0  # [m]; shadows around a camera, where the scene is larger
+_AHEAD: Final = 3.0  # [m] typical distance of the objects that a camera sees
+_REACH: Final = 15.0  # [m] radius of shadows around a camera in a larger scene
 _DIRECTIONAL = int(mujoco.mjtLightType.mjLIGHT_DIRECTIONAL)
-_LIGHT_FIELDS: Final = ("light_pos", "light_dir", "light_active")  # what a light's handle writes
+_LIGHT_FIELDS: Final = ("light_pos", "light_dir", "light_active")  # fields that a light's handle modifies
 
 Lights = Sequence[Vector]
-"""How the lights of a model stood and shone at one time."""
+"""Poses and states of the lights of a model at one time."""
 
 
 def read_lights(model: mujoco.MjModel) -> Lights:
-    """How the lights of a model stand and shine now."""
+    """Return the current poses and states of a model's lights."""
     return [getattr(model, field).copy() for field in _LIGHT_FIELDS]
 
 
 @contextmanager
 def use_lights(model: mujoco.MjModel, data: mujoco.MjData, lights: Lights) -> Iterator[None]:
-    """While it lasts, the lights of a model, and of data computed of it, are as they were."""
-    now = read_lights(model)
-    is_same = all(np.array_equal(*pair) for pair in zip(lights, now, strict=True))
+    """Set earlier lights in a model and its data while the context lasts."""
+    current = read_lights(model)
+    is_same = all(np.array_equal(*pair) for pair in zip(lights, current, strict=True))
     if not is_same:
         _write_lights(model, data, lights)
     try:
         yield
     finally:
         if not is_same:
-            _write_lights(model, data, now)
+            _write_lights(model, data, current)
 
 
 def _write_lights(model: mujoco.MjModel, data: mujoco.MjData, lights: Lights) -> None:
@@ -46,7 +46,7 @@ def _write_lights(model: mujoco.MjModel, data: mujoco.MjData, lights: Lights) ->
         getattr(model, field)[:] = values
     options = model.opt
     flags = options.enableflags
-    options.enableflags = flags & ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)  # else those of the world stay
+    options.enableflags = flags & ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)  # lights of sleeping bodies too
     mujoco.mj_camlight(model, data)
     options.enableflags = flags
 
@@ -55,9 +55,9 @@ def _write_lights(model: mujoco.MjModel, data: mujoco.MjData, lights: Lights) ->
 def keep_strongest_lights(
     model: mujoco.MjModel, data: mujoco.MjData, position: Vector, rotation: Vector
 ) -> Iterator[None]:
-    """While it lasts, only so many lights of the model shine as can be drawn: those that a camera gets most of.
+    """Limit the active lights to the number that can be drawn while the context lasts, and keep the strongest ones.
 
-    Suns come first. Lamps follow by what they give a surface at the camera or a little ahead of it.
+    Directional lights come first. Other lights follow by their strength at the camera or a little ahead of it.
     """
     active = model.light_active
     shining = np.flatnonzero(active)
@@ -66,9 +66,9 @@ def keep_strongest_lights(
         return
     strength = np.asarray(model.light_diffuse)[shining].max(axis=1).astype(np.float64)
     constant, linear, quadratic = np.asarray(model.light_attenuation)[shining].T
-    places, best = np.asarray(data.light_xpos)[shining], np.zeros(len(shining))
+    positions, best = np.asarray(data.light_xpos)[shining], np.zeros(len(shining))
     for ahead in (0.0, _AHEAD):
-        far = np.linalg.norm(places - (position + ahead * rotation[:, 0]), axis=1)
+        far = np.linalg.norm(positions - (position + ahead * rotation[:, 0]), axis=1)
         share = 1.0 / np.maximum(constant + far * (linear + far * quadratic), 1e-6)
         best = np.maximum(best, np.where(far <= np.asarray(model.light_range)[shining], share, 1e-6 * share))
     suns = np.asarray(model.light_type)[shining] == _DIRECTIONAL
@@ -78,7 +78,7 @@ def keep_strongest_lights(
 
 
 def convert_point_lights(scene: mujoco.MjvScene) -> None:
-    """Point lights of MuJoCo's own format, which its rasteriser leaves out, as spots that are open all around."""
+    """Convert MuJoCo's point lights, which its rasteriser ignores, into spot lights that shine in all directions."""
     for light in scene.lights[: scene.nlight]:
         if light.type == mujoco.mjtLightType.mjLIGHT_POINT:
             light.type, light.cutoff, light.exponent = mujoco.mjtLightType.mjLIGHT_SPOT, 180.0, 0.0
@@ -93,10 +93,19 @@ def place_directional_lights(
     forward: Vector,
     far: float,
 ) -> None:
-    """Puts directional lights where their shadow maps cover what a view looks at.
+    """Move directional lights so that their shadow maps cover the visible part of the scene.
 
-    The maps are as deep as the view, from the light's place on. A scene that is small enough is covered whole; of a
-    larger one what lies ahead of the camera, moved in whole pixels of the map, so that shadows stand still.
+    The maps are as deep as the view, starting at the light's position. A small scene is covered as a whole. Of a larger
+    one, the part ahead of the camera is covered, and it moves by whole pixels of the map, so that shadows do not
+    flicker.
+
+    Args:
+        scene: scene whose lights are moved.
+        context: MuJoCo's rendering context.
+        model: compiled model.
+        position: position of the camera in the world [m], shape (3,).
+        forward: direction of the view, shape (3,).
+        far: far clip plane [m].
     """
     suns = [li for li in scene.lights[: scene.nlight] if li.type == _DIRECTIONAL and not li.headlight and li.castshadow]
     if not suns:
@@ -110,35 +119,35 @@ def place_directional_lights(
     back = min(far - reach, extent + reach)
     for light in suns:
         direction = np.asarray(light.dir, dtype=np.float64)
-        place = middle if is_whole else _snap_to_pixel_grid(middle, direction, 2.0 * reach / context.shadowSize)
-        light.pos = place - back * direction
+        centre = middle if is_whole else _snap_to_pixel_grid(middle, direction, 2.0 * reach / context.shadowSize)
+        light.pos = centre - back * direction
 
 
 def fit_shadow_maps(context: mujoco.MjrContext) -> None:
-    """Lets the engine read a shadow map where it has drawn it: within a border of one pixel, which it forgets.
+    """Make the engine read a shadow map at the position where it is drawn, which is inside a border of one pixel.
 
-    Without it, what is read lies up to a pixel away from the surface that asks, at the map's border. That is more than
-    the engine allows for: sunlit ground throws dots of shadow on itself.
+    The engine ignores that border when it reads the map. The error is up to a pixel at the edge of the map, which is
+    more than the engine's tolerance, and sunlit ground would show dots of shadow.
     """
     from OpenGL import GL
 
     pixel = 1.0 / context.shadowSize
     inside = 1.0 - 2.0 * pixel
     columns = (inside, 0.0, 0.0, 0.0, 0.0, inside, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, pixel, pixel, 0.0, 1.0)
-    GL.glActiveTexture(GL.GL_TEXTURE1)  # which the engine uses for shadows alone
+    GL.glActiveTexture(GL.GL_TEXTURE1)  # the engine uses this unit for shadows only
     GL.glMatrixMode(GL.GL_TEXTURE)
     GL.glLoadMatrixf(np.array(columns, dtype=np.float32))
     GL.glMatrixMode(GL.GL_MODELVIEW)
     GL.glActiveTexture(GL.GL_TEXTURE0)
 
 
-def _snap_to_pixel_grid(place: Vector, direction: Vector, pixel: float) -> Vector:
-    """The point on a grid [m] fixed in the world, across a direction."""
+def _snap_to_pixel_grid(position: Vector, direction: Vector, pixel: float) -> Vector:
+    """Return a position rounded to a grid [m] that is fixed in the world and perpendicular to a direction."""
     side = np.cross(direction, (0.0, 0.0, 1.0) if abs(direction[2]) < 0.9 else (1.0, 0.0, 0.0))
     side /= np.linalg.norm(side)
     up = np.cross(direction, side)
-    moved: Vector = place.copy()
+    moved: Vector = position.copy()
     for axis in (side, up):
-        at = float(axis @ place)
-        moved += (round(at / pixel) * pixel - at) * axis
+        offset = float(axis @ position)
+        moved += (round(offset / pixel) * pixel - offset) * axis
     return moved

@@ -1,4 +1,4 @@
-"""Picture of a simulation from outside, without a camera of its own."""
+"""Image of a simulation from outside, without a camera sensor."""
 
 from __future__ import annotations
 
@@ -24,14 +24,16 @@ def render_view(
     vertical_fov: float = 0.8,
     decorate: Callable[[mujoco.MjvScene], None] | None = None,
 ) -> Colours:
-    """A picture of the simulation as it is now.
+    """Draw an image of the simulation in its current state.
 
     Args:
-        width, height: [px].
-        eye: where it is seen from, in the world [m]; by default from the side and above, so that all is in view.
-        target: point in the middle of the picture [m]; by default the middle of the scene.
+        sim: simulation to draw.
+        width: width of the image [px].
+        height: height of the image [px].
+        eye: position of the camera in the world [m]; by default to the side and above, so that everything is visible.
+        target: point in the middle of the image [m]; by default the middle of the scene.
         vertical_fov: opening angle [rad].
-        decorate: called with the `MjvScene`, to add geoms.
+        decorate: function that is called with the `MjvScene`, to add geoms.
 
     Returns:
         Colours, rows from the top, shape (height, width, 3).
@@ -42,10 +44,10 @@ def render_view(
     model = sim.mj_model
     extent = float(model.stat.extent)
     middle = np.array(model.stat.center if target is None else target, dtype=np.float64)
-    place = middle + extent * np.array((-1.1, -1.4, 1.1)) if eye is None else np.asarray(eye, dtype=np.float64)
+    position = middle + extent * np.array((-1.1, -1.4, 1.1)) if eye is None else np.asarray(eye, dtype=np.float64)
     half = np.tan(vertical_fov / 2)
     wide = half * width / height
-    distance = max(float(np.linalg.norm(middle - place)), 1e-6)
+    distance = max(float(np.linalg.norm(middle - position)), 1e-6)
     view = View(width, height, -wide, wide, -half, half, min(0.01 * extent, 0.1 * distance), distance + 50.0 * extent)
     is_dark = model.nlight == 0
 
@@ -56,8 +58,9 @@ def render_view(
             decorate(scene)
 
     renderer = renderer_of(sim)
-    composition = renderer.composer.compose(model, sim.engine.physics.fresh(), place, look_at(place, middle), prepare)
-    render_thread.drain()  # what it draws goes through the same buffers
+    data = sim.engine.physics.fresh()
+    composition = renderer.composer.compose(model, data, position, look_at(position, middle), prepare)
+    render_thread.drain()  # the render thread uses the same buffers
     colours = renderer.draw(composition, Shot(view)).colours
     renderer.composer.give_back(composition)
     assert colours is not None
@@ -65,7 +68,7 @@ def render_view(
 
 
 def _add_headlight(scene: mujoco.MjvScene) -> None:
-    """A bare model has no sun: without one, all of its sides look the same."""
+    """Add a headlight; a bare model has no sun, and without light all its sides look the same."""
     for light in scene.lights[: scene.nlight]:
         if light.headlight and not light.diffuse.any():
             light.diffuse = (0.6, 0.6, 0.6)

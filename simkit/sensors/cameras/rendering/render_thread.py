@@ -1,6 +1,4 @@
-"""The thread that draws: one for the process, since there is one OpenGL context; Ctrl-C waits until a picture
-is complete.
-"""
+"""Drawing thread: one per process, because there is one OpenGL context; interrupts wait until an image is complete."""
 
 from __future__ import annotations
 
@@ -20,10 +18,10 @@ ReceivedSignals = list[tuple[int, FrameType | None]]
 
 @contextmanager
 def defer_interrupts() -> Iterator[ReceivedSignals]:
-    """Lets an interrupt wait until the block is left; gives those that have come in.
+    """Defer interrupts until the block ends, and yield the list of received ones.
 
-    Amid a call of the graphics library it would come out as a fault of that, which ctypes makes of every exception
-    there, and amid a wait for a lock as one that nobody holds.
+    Inside a call of the graphics library, ctypes would turn the interrupt into an error of that library. Inside a wait
+    for a lock, an interrupt would appear as an error about a lock that no thread holds.
     """
     received: ReceivedSignals = []
     before = signal.getsignal(signal.SIGINT)
@@ -39,16 +37,16 @@ def defer_interrupts() -> Iterator[ReceivedSignals]:
             before(number, frame)
 
 
-_MAX_WAITING = 8  # a picture is two of them: drawing it, and making messages of it
-_WAIT_INTERVAL = 0.05  # [s] between two looks whether there was an interrupt
+_MAX_WAITING = 8  # an image needs two jobs: drawing it, and making its messages
+_WAIT_INTERVAL = 0.05  # [s] interval of the checks for an interrupt
 
 
 class RenderJob:
-    """Something that is done on another thread, or was done at once.
+    """Job that another thread runs, or that was run at once.
 
     Args:
-        do: gives the result, or raises.
-        is_at_once: whether it is done where it is asked for.
+        do: function that returns the result or raises.
+        is_at_once: True if the submitting thread runs the job.
     """
 
     __slots__ = ("_do", "_done", "_error", "_owner", "_result", "is_at_once")
@@ -65,58 +63,58 @@ class RenderJob:
         return self._done.is_set()
 
     def wait(self) -> None:
-        """Until it is done, whether it went well or not; not where the thread that does it asks itself."""
+        """Wait until the job is done, successfully or not; return at once in the thread that runs jobs."""
         if not self._done.is_set() and threading.get_ident() != _thread.number:
             if self._owner is not _thread:
-                raise RenderError("this process was forked while the picture was being drawn", "SK-RENDER-011")
+                raise RenderError("this process was forked while the image was being drawn", "SK-RENDER-011")
             while not self._done.is_set():
                 with defer_interrupts() as received:
                     while not received and not self._done.wait(_WAIT_INTERVAL):
                         pass
 
     def result(self) -> Any:
-        """What it gave, once it is done; raises what it raised."""
+        """Wait for the job and return its result, or raise its error."""
         self.wait()
         if self._error is not None:
             raise self._error
         return self._result
 
     def run(self) -> None:
-        """Does it, here and now."""
+        """Run the job in this thread."""
         do, self._do = self._do, None
         assert do is not None
         try:
             self._result = do()
-        except BaseException as error:  # raised where the result is asked for
+        except BaseException as error:  # raised again in `result`
             self._error = error
             if not isinstance(error, Exception) and threading.get_ident() != _thread.number:
-                raise  # an interrupt is heard where it comes
+                raise  # an interrupt is also raised where it occurs
         finally:
             self._done.set()
 
 
 class _RenderThread:
-    """The thread and what waits for it.
+    """Render thread and its queue of jobs.
 
     Attributes:
-        number: of the thread; None while there is none.
+        number: identifier of the thread; None while there is none.
     """
 
     def __init__(self) -> None:
         self.number: int | None = None
-        self._waiting: deque[RenderJob] = deque()
+        self._queue: deque[RenderJob] = deque()
         self._changed = threading.Condition()
         self._thread: threading.Thread | None = None
         self._is_busy = self._is_ended = False
 
     def submit(self, work: RenderJob) -> None:
         if threading.get_ident() == self.number:
-            work.run()  # who draws must not wait for room
+            work.run()  # the render thread must not wait for a place in its own queue
             return
-        self._wait_while(lambda: len(self._waiting) >= _MAX_WAITING and not self._is_ended)
+        self._wait_while(lambda: len(self._queue) >= _MAX_WAITING and not self._is_ended)
         with defer_interrupts(), self._changed:
             if not self._is_ended:
-                self._waiting.append(work)
+                self._queue.append(work)
                 if self._thread is None:
                     self._start()
                 self._changed.notify_all()
@@ -126,18 +124,18 @@ class _RenderThread:
     def drain(self) -> None:
         if threading.get_ident() == self.number or self._thread is None:
             return
-        self._wait_while(lambda: bool(self._waiting) or self._is_busy)
+        self._wait_while(lambda: bool(self._queue) or self._is_busy)
 
-    def _wait_while(self, is_so: Callable[[], bool]) -> None:
-        """Until something is no more; an interrupt is heard meanwhile."""
-        goes_on = True
-        while goes_on:
+    def _wait_while(self, condition: Callable[[], bool]) -> None:
+        """Wait while a condition holds; interrupts are handled in between."""
+        must_wait = True
+        while must_wait:
             with defer_interrupts() as received, self._changed:
-                while (goes_on := is_so()) and not received:
+                while (must_wait := condition()) and not received:
                     self._changed.wait(_WAIT_INTERVAL)
 
     def end(self) -> None:
-        """Does what waits, then stops; later work is done where it is asked for."""
+        """Finish the queued jobs and stop the thread; later jobs run where they are submitted."""
         with self._changed:
             self._is_ended = True
             self._changed.notify_all()
@@ -145,7 +143,7 @@ class _RenderThread:
             self._thread.join()
 
     def _start(self) -> None:
-        # a daemon: at exit the interpreter waits for all others before anybody could tell them to stop
+        # a daemon thread, because at exit the interpreter waits for all others before they could be stopped
         self._thread = threading.Thread(target=self._work, name="simkit-render", daemon=True)
         self._thread.start()
 
@@ -155,29 +153,29 @@ class _RenderThread:
             with self._changed:
                 self._is_busy = False
                 self._changed.notify_all()
-                while not self._waiting:
+                while not self._queue:
                     if self._is_ended:
                         return
                     self._changed.wait()
-                work = self._waiting.popleft()
+                work = self._queue.popleft()
                 self._is_busy = True
                 self._changed.notify_all()
             work.run()
-            del work  # what it was made of is not held while nothing is to be done
+            del work  # free the job's data while the thread is idle
 
 
 _thread = _RenderThread()
 
 
 def submit(do: Callable[[], object]) -> RenderJob:
-    """Has the render thread do something after all that was submitted before; waits while too much is waiting."""
+    """Run a function on the render thread after all earlier jobs; wait while the queue is full."""
     work = RenderJob(do)
     _thread.submit(work)
     return work
 
 
 def run_now(do: Callable[[], object]) -> RenderJob:
-    """Does something here, after all that was submitted before."""
+    """Run a function in this thread after all submitted jobs."""
     _thread.drain()
     work = RenderJob(do, is_at_once=True)
     work.run()
@@ -186,24 +184,24 @@ def run_now(do: Callable[[], object]) -> RenderJob:
 
 
 def drain() -> None:
-    """Waits until all that was submitted is done; not on the render thread itself."""
+    """Wait until all submitted jobs are done; return at once on the render thread itself."""
     _thread.drain()
 
 
 def end() -> None:
-    """Lets the render thread finish, and starts none again."""
+    """Finish the render thread, and never start another one."""
     _thread.end()
 
 
 def usable_cores() -> int:
-    """Processor cores that this process may run on."""
+    """Return the number of processor cores that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
 
 
 def _after_fork() -> None:
-    """A forked child has no render thread; what waited for it there is not to be drawn."""
+    """Replace the render thread in a forked child, where neither the thread nor its jobs exist."""
     global _thread
     _thread = _RenderThread()
 

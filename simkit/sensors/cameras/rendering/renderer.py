@@ -1,4 +1,4 @@
-"""Pictures of a simulation, in one pass each: colour and depth are read together, or the geom at each pixel."""
+"""Images of a simulation, drawn in one pass each: colours and depths together, or the geom at each pixel."""
 
 from __future__ import annotations
 
@@ -34,12 +34,12 @@ from simkit.sensors.environment.illumination import LEAST_OPACITY
 
 @dataclass(frozen=True, slots=True)
 class Quality:
-    """What is spent on a picture.
+    """Quality settings of images.
 
     Attributes:
-        samples: of each pixel, which smooth edges; 0 takes one. A driver has a highest number of its own.
-        shadow_map: width of the picture that a light has of what it falls on [px]; 0 draws no shadows.
-        slices: sides of what is round.
+        samples: samples per pixel, which smooth edges; 0 takes one. Drivers limit the number.
+        shadow_map: width of a light's shadow map [px]; 0 draws no shadows.
+        slices: number of sides of round shapes.
     """
 
     name: str
@@ -48,7 +48,7 @@ class Quality:
     slices: int
 
     def missing_features(self) -> str:
-        """In words: what Gazebo would draw."""
+        """Return the features that Gazebo draws and this quality does not, as a text."""
         parts = [word for word, there in (("shadows", self.shadow_map), ("smooth edges", self.samples)) if not there]
         return " and ".join(parts)
 
@@ -62,21 +62,22 @@ QUALITIES: Final[Mapping[str, Quality]] = {
 
 @dataclass(frozen=True, slots=True)
 class Appearance:
-    """The look of one world."""
+    """Visual appearance of one world."""
 
     surroundings: Surroundings
     quality: Quality
 
     @classmethod
     def of(cls, world: SceneWorld) -> Appearance:
-        """What the file says."""
+        """Return the appearance that the file of a world defines."""
         return cls(world.surroundings, QUALITIES[world.quality])
 
 
 class GpuModel:
-    """What the graphics library holds of the newest model: smooth, and sharp for what must not be blended.
+    """Graphics memory of the newest model, with one context for smoothed edges and one without multisampling.
 
-    All methods but `reserve` need the context; a second of these is only made when it is asked for.
+    All methods except `reserve` and `contexts` need a current OpenGL context. Each of the two contexts is made at its
+    first use.
     """
 
     def __init__(self, quality: Quality) -> None:
@@ -86,7 +87,7 @@ class GpuModel:
         self._width = self._height = 16
 
     def reserve(self, width: int, height: int) -> None:
-        """Makes room for pictures of this size [px]."""
+        """Enlarge the buffers for images of this size [px]."""
         if width > self._width or height > self._height:
             self._width, self._height = max(width, self._width), max(height, self._height)
             if self._contexts:
@@ -95,7 +96,7 @@ class GpuModel:
                         mujoco.mjr_resizeOffscreen(self._width, self._height, context)
 
     def context_of(self, model: mujoco.MjModel, smooth: bool) -> mujoco.MjrContext:
-        """The engine's handle of the model; uploads one that is not the last one."""
+        """Return the engine's context of the model; a model that differs from the last one is uploaded first."""
         if model is not self._model:
             self.free()
             self._model = model
@@ -107,11 +108,11 @@ class GpuModel:
         return self._contexts[smooth]
 
     def contexts(self) -> list[mujoco.MjrContext]:
-        """The engine's handles that are there; needs no context."""
+        """Return the existing contexts of the engine; no OpenGL context is needed."""
         return list(self._contexts.values())
 
     def free(self) -> None:
-        """Gives the memory back."""
+        """Free the graphics memory."""
         contexts, self._contexts, self._model = list(self._contexts.values()), {}, None
         for context in contexts:
             context.free()
@@ -127,7 +128,7 @@ def _upload(model: mujoco.MjModel, quality: Quality, smooth: bool) -> mujoco.Mjr
     finally:
         own.offsamples, own.shadowsize, own.numslices, own.numstacks = kept
     context.readDepthMap = mujoco.mjtDepthMap.mjDEPTH_ZEROFAR
-    context.shadowScale = 1.0  # the whole cone of a spot
+    context.shadowScale = 1.0  # the map covers the whole cone of a spot light
     return context
 
 
@@ -142,11 +143,14 @@ def draw_ids(
     colours: Colours,
     depths: Depths,
 ) -> Film:
-    """Which geom is seen at each pixel: edges must not be blended, so the context is one without multisampling."""
+    """Draw the geom id at each pixel.
+
+    Ids must not be blended at edges, so the context must have no multisampling.
+    """
     with draw_plain_colours(scene):
         mujoco.mjr_render(rectangle, scene, context)
         mujoco.mjr_readPixels(colours, depths if shot.depth else None, rectangle, context)
-    names = np.full(scene.ngeom + 1, -1, np.int32)  # the engine draws a shape's number in the list, from 1
+    names = np.full(scene.ngeom + 1, -1, np.int32)  # the engine draws the index of a shape in the list, from 1
     for geom in scene.geoms[: scene.ngeom]:
         if geom.objtype == mujoco.mjtObj.mjOBJ_GEOM and 0 <= geom.segid < scene.ngeom:
             names[geom.segid + 1] = geom.objid
@@ -155,7 +159,7 @@ def draw_ids(
 
 
 def _colours_to_numbers(colours: Colours) -> Ids:
-    """Red, green and blue as the bytes of one number, from the lowest; ten times as fast as a product of matrices."""
+    """Return red, green and blue as the bytes of one number, lowest first; ten times as fast as a matrix product."""
     import cv2
 
     numbers: Ids = cv2.cvtColor(colours, cv2.COLOR_RGB2RGBA).view(np.int32)[..., 0]
@@ -167,16 +171,16 @@ _FLAGS = mujoco.mjtRndFlag
 
 
 class Renderer:
-    """Draws the visuals of one simulation; follows it to a new model after a change of structure.
+    """Renderer of the visuals of one simulation, including new models after a change of structure.
 
-    What is composed in one thread may be drawn in another.
+    A composition of one thread may be drawn by another thread.
 
     Args:
-        appearance: how the pictures look.
+        appearance: appearance of the images.
 
     Attributes:
-        composer: takes what is drawn.
-        uploads: what the graphics library holds of the model.
+        composer: composer of the scenes.
+        uploads: graphics memory of the model.
     """
 
     def __init__(self, appearance: Appearance) -> None:
@@ -193,9 +197,9 @@ class Renderer:
         gl_context.hold_memory(self)
 
     def films(self, composition: Composition, shots: Sequence[Shot]) -> Generator[Film, None, None]:
-        """Draws the shots of a composition in turn; each film is good until the next is asked for.
+        """Draw the shots of a composition one by one; each film is valid until the next one is requested.
 
-        At the end, or when it is closed before, the composition is given back.
+        At the end of the generator, the composition is returned to the composer.
 
         Raises:
             RenderError: there is no renderer, or it failed.
@@ -207,7 +211,7 @@ class Renderer:
             self.composer.give_back(composition)
 
     def draw(self, composition: Composition, shot: Shot) -> Film:
-        """One picture.
+        """Draw one image.
 
         Raises:
             RenderError: there is no renderer, or it failed.
@@ -215,12 +219,12 @@ class Renderer:
         view, scene = shot.view, composition.scene
         with gl_context.current():
             try:
-                # with the buffers in the turn: another thread may draw for the same simulation
+                # inside the lock, because another thread may draw for the same simulation
                 rectangle, colours, depths = self._buffer(view.width, view.height)
                 self.uploads.reserve(view.width, view.height)
                 smooth = composition.smooth and not (shot.ids or shot.sharp)
                 context = self.uploads.context_of(composition.model, smooth)
-                # another simulation may have drawn, or have taken its buffers with it when it was closed
+                # another simulation may have selected or freed a buffer since
                 mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN, context)
                 position, rotation = composition.pose_of(shot)
                 aim(scene, position, rotation, view)
@@ -240,7 +244,7 @@ class Renderer:
                     fit_shadow_maps(context)
                 self._render(scene, context, rectangle, hidden, glassy)
                 is_masked = not glassy and self._can_paint_background(composition.model)
-                # glass colours what is behind it and leaves its depth: that is not the background's colour
+                # a transparent shape colours the background and leaves its depth, so that colour must not be learned
                 learns = not (is_masked or glassy) and self._backdrop.is_plain and self._background_colour is None
                 if not is_masked:
                     self._backdrop.draw()
@@ -251,21 +255,21 @@ class Renderer:
                 if learns:
                     self._learn_background_colour(colours, depths)
             except mujoco.FatalError as error:
-                raise RenderError(f"drawing a picture failed: {error}", "SK-RENDER-002") from error
+                raise RenderError(f"drawing an image failed: {error}", "SK-RENDER-002") from error
         return Film(view, colours[::-1], depths[::-1] if shot.depth else None)
 
     def uploaded(self) -> list[mujoco.MjrContext]:
-        """What it holds in the memory of the graphics library."""
+        """Return the contexts in graphics memory."""
         return self.uploads.contexts()
 
     def free(self) -> None:
-        """Gives the graphics memory back; a later picture takes it anew."""
+        """Free the graphics memory; a later image allocates it again."""
         if gl_context.is_open():
             with gl_context.current():
                 self.uploads.free()
                 self._backdrop.free()
 
-    # ------------------------------------------------------------------ within
+    # ------------------------------------------------------------------ helpers
 
     def _render(
         self,
@@ -275,20 +279,20 @@ class Renderer:
         hidden: list[int],
         glassy: list[int],
     ) -> None:
-        """Draws what is opaque; nothing of the places in `hidden`, and of those in `glassy` only shadows."""
+        """Draw the opaque shapes, without those at the indices `hidden`, and only the shadows of those at `glassy`."""
         if self._appearance.surroundings.fog is not None:
             enable_fog(self._appearance.surroundings.fog, scene, context)
-        # what lets less than half of the light through throws a shadow all the same: it is there, but invisible
+        # shapes with more than half opacity cast shadows, so they are drawn with an opacity of 0
         shadows = bool(scene.flags[_FLAGS.mjRND_SHADOW])
         dark = [i for i in glassy if shadows and scene.geoms[i].rgba[3] >= LEAST_OPACITY]
         with hide_shapes(scene, [*hidden, *(i for i in glassy if i not in dark)]), make_transparent(scene, dark):
             mujoco.mjr_render(rectangle, scene, context)
 
     def _can_paint_background(self, model: mujoco.MjModel) -> bool:
-        """Whether the background can be painted as the picture is read, where nothing has covered the empty buffer.
+        """Check whether the background can be painted while the image is read, because empty pixels are marked.
 
-        That is five times as fast as a renderer in software, where there are no edges to blend and no holes in what is
-        drawn.
+        This is five times as fast as painting with a software renderer. It needs plain colour, no blended edges, and no
+        textures with transparency.
         """
         is_plain = (
             self._backdrop.is_plain and not self._appearance.quality.samples and self._background_colour is not None
@@ -296,7 +300,7 @@ class Renderer:
         return is_plain and not (model.tex_nchannel == 4).any()
 
     def _learn_background_colour(self, colours: Colours, depths: Depths) -> None:
-        """Remembers how the driver rounds the background's colour."""
+        """Save the background's colour as rounded by the driver."""
         empty = int(depths.argmin())
         if depths.flat[empty] == 0:
             self._background_colour = colours.reshape(-1, 3)[empty].copy()
@@ -309,7 +313,7 @@ class Renderer:
         return self._buffers[size]
 
     def _log_renderer(self) -> None:
-        """Once for each simulation: who draws, and what is left out."""
+        """Log the renderer and the missing features, once per simulation."""
         if self._is_logged:
             return
         self._is_logged = True
@@ -321,14 +325,14 @@ class Renderer:
         )
 
 
-# ---------------------------------------------------------------------- one for each simulation
+# ---------------------------------------------------------------------- one renderer per simulation
 
 
 _renderers: weakref.WeakKeyDictionary[Simulation, Renderer] = weakref.WeakKeyDictionary()
 
 
 def renderer_of(sim: Simulation) -> Renderer:
-    """Return the one renderer of a simulation, for all its cameras."""
+    """Return the renderer of a simulation, which all its cameras share."""
     found = _renderers.get(sim)
     if found is None:
         found = _renderers[sim] = Renderer(Appearance.of(sim.world))
@@ -337,7 +341,7 @@ def renderer_of(sim: Simulation) -> Renderer:
 
 
 def free_renderer(sim: Simulation) -> None:
-    """Give back the graphics memory of a simulation that closes."""
+    """Free the graphics memory of a simulation that closes."""
     found = _renderers.pop(sim, None)
     if found is not None:
         _free_quietly(found)

@@ -1,4 +1,4 @@
-"""Scene of one physics state, taken from MuJoCo without OpenGL, so that another thread can draw it later."""
+"""Scene of one physics state, composed by MuJoCo without OpenGL, so that another thread can draw it later."""
 
 from __future__ import annotations
 
@@ -20,28 +20,28 @@ from simkit.sensors.cameras.rendering.view_culling import Bounds, bounds_of
 from simkit.sensors.temporary_values import temporary_values
 
 SOLID: Final = 0.995
-"""The engine draws what is less opaque than this as something to be seen through."""
+"""Opacity below which the engine draws a shape as transparent."""
 
 _ALL: Final = int(mujoco.mjtCatBit.mjCAT_ALL)
-_MAX_SCENES: Final = 8  # kept to be filled again
-_SPARE: Final = 16  # shapes beside those of the model
+_MAX_SCENES: Final = 8  # scenes kept for reuse
+_SPARE: Final = 16  # places for shapes besides those of the model
 _DECORATIONS: Final = 10_000
 _NOWHERE: Final = 0  # a group that is never drawn
 _GEOM: Final = int(mujoco.mjtObj.mjOBJ_GEOM)
-_PLANE: Final = int(mujoco.mjtGeom.mjGEOM_PLANE)  # an array is compared with a plain number a hundred times as fast
+_PLANE: Final = int(mujoco.mjtGeom.mjGEOM_PLANE)  # an int: an enum compares 100 times as slowly
 _POINT: Final = int(mujoco.mjtLightType.mjLIGHT_POINT)
 
 
 class Composition:
-    """What is drawn of one state of a simulation: the engine's list of shapes and lights, and where the sensor is.
+    """Scene of one state of a simulation: the engine's list of shapes and lights, and the sensor's pose.
 
     Attributes:
-        position: of the sensor in the world [m], shape (3,).
-        rotation: of the sensor's frame (x forward, y left, z up), shape (3, 3).
-        smooth: whether edges may be smoothed.
-        glassy: places in the list of what can be seen through.
-        planes: places in the list of planes, which have no other side.
-        bounds: around the shapes; None where they are not known, or where what is out of sight throws shadows.
+        position: position of the sensor in the world [m], shape (3,).
+        rotation: rotation matrix of the sensor's frame (x forward, y left, z up), shape (3, 3).
+        smooth: True if edges may be smoothed.
+        glassy: indices of transparent shapes in the list.
+        planes: indices of planes in the list, which are invisible from behind.
+        bounds: bounds of the shapes; None if they are unknown, or if invisible shapes cast shadows.
     """
 
     __slots__ = ("bounds", "glassy", "is_spare", "model", "planes", "position", "rotation", "scene", "smooth")
@@ -54,20 +54,20 @@ class Composition:
         self.planes: list[int] = []
 
     def pose_of(self, shot: Shot) -> tuple[Vector, Vector]:
-        """Position (3,) [m] and rotation (3, 3) of a shot in the world."""
+        """Return the position (3,) [m] and rotation (3, 3) of a shot in the world."""
         position = self.position if shot.position is None else self.position + self.rotation @ shot.position
         return position, self.rotation if shot.rotation is None else self.rotation @ shot.rotation
 
 
 class Composer:
-    """Takes compositions; lists of shapes are used again. Safe to be used by several threads."""
+    """Maker of compositions from reused lists of shapes. The class is thread-safe."""
 
     def __init__(self, flags: Sequence[mujoco.mjtRndFlag]) -> None:
         self._flags = [int(flag) for flag in flags]
         self._culls = mujoco.mjtRndFlag.mjRND_SHADOW not in flags
         self._option = visuals_only_options()
         self._aside = mujoco.MjvCamera()
-        self._turn = threading.Lock()
+        self._lock = threading.Lock()
         self._scenes: list[mujoco.MjvScene] = []
         self._scenes_model: mujoco.MjModel | None = None
 
@@ -82,15 +82,16 @@ class Composer:
         unseen: Sequence[int] = (),
         smooth: bool = True,
     ) -> Composition:
-        """Takes what is to be drawn of a state; touches no OpenGL, and what it gives needs `data` no more.
+        """Compose the scene of a state without OpenGL; the result does not depend on `data`.
 
         Args:
-            model, data: with everything computed.
-            position: of the sensor in the world [m], shape (3,).
-            rotation: of the sensor's frame (x forward, y left, z up), shape (3, 3).
-            decorate: called with the `MjvScene`, to add geoms.
-            unseen: ids of geoms that are left out.
-            smooth: whether edges may be smoothed, where the quality does that.
+            model: compiled model.
+            data: data of the model with everything computed.
+            position: position of the sensor in the world [m], shape (3,).
+            rotation: rotation matrix of the sensor's frame (x forward, y left, z up), shape (3, 3).
+            decorate: function that is called with the `MjvScene`, to add geoms.
+            unseen: ids of geoms that are not drawn.
+            smooth: True if edges may be smoothed, where the quality does so.
         """
         scene = self._spare_scene(model) if decorate is None else self._fresh_scene(model, _DECORATIONS)
         hidden = temporary_values(model.geom_group, unseen, _NOWHERE)
@@ -110,8 +111,8 @@ class Composer:
         return found
 
     def give_back(self, composition: Composition) -> None:
-        """Says that nothing more is drawn of it."""
-        with self._turn:
+        """Return a composition that will not be drawn again, so that its list is reused."""
+        with self._lock:
             if (
                 composition.is_spare
                 and composition.model is self._scenes_model
@@ -121,8 +122,8 @@ class Composer:
                 self._scenes.append(composition.scene)
 
     def _spare_scene(self, model: mujoco.MjModel) -> mujoco.MjvScene:
-        """A list of shapes to be filled."""
-        with self._turn:
+        """Return a list of shapes to be filled."""
+        with self._lock:
             if model is not self._scenes_model:
                 self._scenes, self._scenes_model = [], model
             if self._scenes:
@@ -141,15 +142,15 @@ def _has_transparent_geoms(model: mujoco.MjModel) -> bool:
 
 
 def _scene_index(scene: mujoco.MjvScene, geom: int) -> list[int]:
-    """Where a geom of the model is in the list, whose first part is in their order; empty where it is not."""
+    """Return the index of a geom in the list, whose beginning is sorted by geom id; empty if it is not there."""
     geoms = scene.geoms
-    place = bisect_left(range(min(geom, scene.ngeom)), geom, key=lambda i: geoms[i].objid)
-    is_there = place < scene.ngeom and geoms[place].objid == geom and geoms[place].objtype == _GEOM
-    return [place] if is_there else []
+    index = bisect_left(range(min(geom, scene.ngeom)), geom, key=lambda i: geoms[i].objid)
+    is_listed = index < scene.ngeom and geoms[index].objid == geom and geoms[index].objtype == _GEOM
+    return [index] if is_listed else []
 
 
 def visuals_only_options() -> mujoco.MjvOption:
-    """Options of the engine that draw what cameras see, and nothing else."""
+    """Return the engine's options that draw what cameras see, and nothing else."""
     option = mujoco.MjvOption()
     option.flags[:] = 0
     flags = mujoco.mjtVisFlag
@@ -157,7 +158,7 @@ def visuals_only_options() -> mujoco.MjvOption:
     option.flags[list(map(int, shown))] = 1
     for groups in (option.geomgroup, option.sitegroup, option.jointgroup, option.tendongroup, option.actuatorgroup):
         groups[:] = 0
-    for groups in (option.flexgroup, option.skingroup):  # only MuJoCo's own format has them; these are its defaults
+    for groups in (option.flexgroup, option.skingroup):  # defaults of MJCF, the only format with them
         groups[:] = 0
         groups[:3] = 1
     option.geomgroup[[DRAWN_COLLISION, VISUAL]] = 1
@@ -169,56 +170,56 @@ _NOTHING = int(mujoco.mjtGeom.mjGEOM_NONE)
 
 
 def shapes_out_of_sight(composition: Composition, eye: Vector, rotation: Vector, view: View) -> list[int]:
-    """Places of what need not be drawn for a view: what lies outside it, and planes seen from behind."""
+    """Return the indices of shapes that a view need not draw: those outside it, and planes seen from behind."""
     bounds = composition.bounds
     outside = [] if bounds is None else bounds.outside(eye, rotation, view)
     return [*outside, *(i for i in _from_behind(composition, eye) if i not in outside)]
 
 
 def _from_behind(composition: Composition, eye: Vector) -> list[int]:
-    """Places of planes that are seen from behind, where they have nothing to be seen."""
+    """Return the indices of planes seen from behind, where they are invisible."""
     geoms, found = composition.scene.geoms, []
-    for place in composition.planes:
-        plane = geoms[place]
+    for index in composition.planes:
+        plane = geoms[index]
         if (eye - plane.pos) @ np.asarray(plane.mat).reshape(3, 3)[:, 2] < 0.0:
-            found.append(place)
+            found.append(index)
     return found
 
 
 def transparent_shapes(composition: Composition) -> list[int]:
-    """Places of what can be seen through and is drawn last; it has no depth."""
+    """Return the indices of transparent shapes, which are drawn last and without depth."""
     geoms = composition.scene.geoms
     return [i for i in composition.glassy if int(geoms[i].type) in DRAWN_HERE]
 
 
 def draw_plain_colours(scene: mujoco.MjvScene) -> AbstractContextManager[None]:
-    """While it lasts, shapes are drawn in plain colours, without light and shadow."""
+    """Draw shapes in plain colours, without light and shadow, while the context lasts."""
     return temporary_values(scene.flags, (_FLAGS.mjRND_SHADOW, _FLAGS.mjRND_SEGMENT, _FLAGS.mjRND_IDCOLOR), (0, 1, 1))
 
 
 @contextmanager
-def hide_shapes(scene: mujoco.MjvScene, places: Sequence[int]) -> Iterator[None]:
-    """While it lasts, these shapes of the list are not drawn."""
-    geoms = scene.geoms if places else ()
-    kinds = [geoms[i].type for i in places]
-    for i in places:
+def hide_shapes(scene: mujoco.MjvScene, indices: Sequence[int]) -> Iterator[None]:
+    """Exclude shapes of the list from drawing while the context lasts."""
+    geoms = scene.geoms if indices else ()
+    kinds = [geoms[i].type for i in indices]
+    for i in indices:
         geoms[i].type = _NOTHING
     try:
         yield
     finally:
-        for i, kind in zip(places, kinds, strict=True):
+        for i, kind in zip(indices, kinds, strict=True):
             geoms[i].type = kind
 
 
 @contextmanager
-def make_transparent(scene: mujoco.MjvScene, places: Sequence[int]) -> Iterator[None]:
-    """While it lasts, these shapes of the list can be seen through altogether."""
-    geoms = scene.geoms if places else ()
-    opacities = [float(geoms[i].rgba[3]) for i in places]
-    for i in places:
+def make_transparent(scene: mujoco.MjvScene, indices: Sequence[int]) -> Iterator[None]:
+    """Make shapes of the list fully transparent while the context lasts."""
+    geoms = scene.geoms if indices else ()
+    opacities = [float(geoms[i].rgba[3]) for i in indices]
+    for i in indices:
         geoms[i].rgba[3] = 0.0
     try:
         yield
     finally:
-        for i, opacity in zip(places, opacities, strict=True):
+        for i, opacity in zip(indices, opacities, strict=True):
             geoms[i].rgba[3] = opacity

@@ -1,4 +1,4 @@
-"""Background of a picture, which is a colour or a sky, and fog."""
+"""Background of an image, which is a colour or a sky, and fog."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from simkit.scene.world import Fog
 _ZENITH: Final = (0.26, 0.47, 0.80)
 _HORIZON: Final = (0.78, 0.87, 0.95)
 _BELOW: Final = (0.55, 0.58, 0.60)
-_AROUND: Final = 24  # sides of the sky
-_RISES: Final = (-90.0, -12.0, -2.0, 0.0, 4.0, 10.0, 20.0, 35.0, 60.0, 90.0)  # [degrees] of its rings
+_AROUND: Final = 24  # number of sides of the sky
+_RISES: Final = (-90.0, -12.0, -2.0, 0.0, 4.0, 10.0, 20.0, 35.0, 60.0, 90.0)  # [degrees] elevations of its rings
 
 
 class Background:
-    """Colours whatever is still empty. The engine clears to black, and knows no sky but a picture of one.
+    """Painter of the empty pixels. The engine clears to black, and its only sky is a texture.
 
-    As a display list: painting empty pixels on the processor costs as much as the picture.
+    The background is a display list, because painting empty pixels on the processor takes as long as the whole image.
     """
 
     def __init__(self, surroundings: Surroundings) -> None:
@@ -30,11 +30,11 @@ class Background:
 
     @property
     def is_plain(self) -> bool:
-        """Whether it has one colour."""
+        """True if the background has one colour."""
         return not self._is_sky
 
     def draw(self) -> None:
-        """To be called after `mjr_render`, whose view it takes."""
+        """Draw the background after `mjr_render`, with the view of that call."""
         from OpenGL import GL
 
         if not self._list:
@@ -42,7 +42,7 @@ class Background:
         GL.glCallList(self._list)
 
     def free(self) -> None:
-        """Gives its display list back; needs the context."""
+        """Free the display list; a current context is needed."""
         from OpenGL import GL
 
         number, self._list = self._list, 0
@@ -51,11 +51,11 @@ class Background:
 
 
 def enable_fog(fog: Fog, scene: mujoco.MjvScene, context: mujoco.MjrContext) -> None:
-    """Lets the next `mjr_render` draw fog."""
+    """Make the next `mjr_render` draw fog."""
     from OpenGL import GL
 
     scene.flags[mujoco.mjtRndFlag.mjRND_FOG] = 1
-    context.fogRGBA[:] = fog.colour  # what the engine goes back to after drawing shadows
+    context.fogRGBA[:] = fog.colour  # the engine restores this colour after drawing shadows
     GL.glFogi(GL.GL_FOG_MODE, {"linear": GL.GL_LINEAR, "exp": GL.GL_EXP, "exp2": GL.GL_EXP2}[fog.type])
     GL.glFogfv(GL.GL_FOG_COLOR, fog.colour)
     GL.glFogf(GL.GL_FOG_START, fog.start)
@@ -64,7 +64,7 @@ def enable_fog(fog: Fog, scene: mujoco.MjvScene, context: mujoco.MjrContext) -> 
 
 
 def _begin() -> int:
-    """Begins a list whose drawing changes only colours, and only where nothing has been drawn."""
+    """Begin a display list that changes only colours, and only of pixels that were not drawn to."""
     from OpenGL import GL
 
     number = int(GL.glGenLists(1))
@@ -80,7 +80,7 @@ def _begin() -> int:
 def _end() -> None:
     from OpenGL import GL
 
-    # what shapes drawn after it need; saving and restoring all of it confuses Mesa's colours
+    # state that later shapes need; saving and restoring all state breaks colours in Mesa
     for switch in (GL.GL_LIGHTING, GL.GL_CULL_FACE):
         GL.glEnable(switch)
     GL.glDisable(GL.GL_DEPTH_CLAMP)
@@ -89,7 +89,7 @@ def _end() -> None:
 
 
 def _plain(colour: tuple[float, float, float]) -> int:
-    """One triangle over the whole picture, at the far end of the depths."""
+    """Return a display list with one triangle over the whole image, at the far end of the depths."""
     from OpenGL import GL
 
     number = _begin()
@@ -110,7 +110,7 @@ def _plain(colour: tuple[float, float, float]) -> int:
 
 
 def _sky() -> int:
-    """Rings of colours from below to the zenith, infinitely far away (points with w = 0 fall on the last depth)."""
+    """Return a display list with coloured rings from below to the zenith, at infinity (w = 0 gives the last depth)."""
     from OpenGL import GL
 
     number = _begin()
@@ -130,7 +130,7 @@ def _sky() -> int:
 
 
 def _colour(rise: float) -> tuple[float, float, float]:
-    """Of the sky [degrees] above the horizon: paler towards the horizon, haze below."""
+    """Return the sky's colour at an elevation [degrees]: paler towards the horizon, haze below."""
     if rise < 0.0:
         share, ends = min(1.0, -rise / 12.0), (_HORIZON, _BELOW)
     else:

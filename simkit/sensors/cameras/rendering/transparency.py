@@ -1,7 +1,7 @@
-"""Draw transparent shapes after everything else, from the back to the front, each once.
+"""Drawing of transparent shapes after everything else, from the back to the front, each once.
 
-The engine draws such shapes twice, from the front and from the back, so that what is half opaque hides three quarters;
-and before anything is behind them where there is only background.
+The engine draws such shapes twice, from the front and from the back, so that a half opaque shape hides three quarters.
+It also draws them before the background, which is then missing behind them.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import numpy as np
 from simkit.pose import Vector
 
 _SPHERE, _TOP, _BOTTOM, _CYLINDER, _TUBE, _BOX = 0, 1, 2, 3, 4, 6
-"""The engine's own shapes, by their place in its display lists."""
+"""Indices of the engine's built-in shapes in its display lists."""
 
 _KINDS = mujoco.mjtGeom
 _BUILTIN: Final = {
@@ -28,19 +28,21 @@ _BUILTIN: Final = {
 DRAWN_HERE: Final = frozenset(
     {*_BUILTIN, *map(int, (_KINDS.mjGEOM_CAPSULE, _KINDS.mjGEOM_PLANE, _KINDS.mjGEOM_MESH, _KINDS.mjGEOM_HFIELD))}
 )
-"""Kinds of shapes that `draw_transparent` knows; the engine draws the others in its own way."""
+"""Types of shapes that `draw_transparent` draws; the engine draws the other types."""
 
 
-def draw_transparent(scene: mujoco.MjvScene, context: mujoco.MjrContext, places: Sequence[int], eye: Vector) -> None:
-    """Draws shapes of a list with the view, lights and fog of the `mjr_render` before.
+def draw_transparent(scene: mujoco.MjvScene, context: mujoco.MjrContext, indices: Sequence[int], eye: Vector) -> None:
+    """Draw shapes of a list with the view, lights and fog of the last `mjr_render`.
 
     Args:
-        places: in the list, of kinds in `DRAWN_HERE`.
-        eye: [m], shape (3,); the shape whose middle is farther away comes first, planes before all.
+        scene: scene with the shapes.
+        context: MuJoCo's rendering context.
+        indices: indices of shapes in the list, of types in `DRAWN_HERE`.
+        eye: position of the camera [m], shape (3,). Planes are drawn first, then shapes by falling distance.
     """
     from OpenGL import GL
 
-    geoms = [scene.geoms[i] for i in places]
+    geoms = [scene.geoms[i] for i in indices]
     plane = _KINDS.mjGEOM_PLANE
     geoms.sort(key=lambda g: -1e9 if g.type == plane else -float(np.linalg.norm(np.asarray(g.pos) - eye)))
     if scene.flags[mujoco.mjtRndFlag.mjRND_FOG]:
@@ -76,7 +78,7 @@ def _draw(gl: ModuleType, geom: mujoco.MjvGeom, context: mujoco.MjrContext) -> N
 
 
 def _call(gl: ModuleType, geom: mujoco.MjvGeom, context: mujoco.MjrContext) -> None:
-    """The shape itself, in its own frame."""
+    """Draw the shape in its own frame."""
     kind, size, builtin = int(geom.type), [float(s) for s in geom.size], int(context.baseBuiltin)
     if kind == _KINDS.mjGEOM_PLANE:
         if geom.dataid < 0:
@@ -101,7 +103,7 @@ def _call(gl: ModuleType, geom: mujoco.MjvGeom, context: mujoco.MjrContext) -> N
 
 
 def _bind_texture(gl: ModuleType, geom: mujoco.MjvGeom, context: mujoco.MjrContext) -> tuple[int, ...]:
-    """Lets the shape wear its material's picture; what has to be switched off again."""
+    """Apply the texture of the shape's material, and return the switches to disable afterwards."""
     role = int(mujoco.mjtTextureRole.mjTEXROLE_RGB)
     number = int(context.mat_texid.reshape(-1, int(mujoco.mjtTextureRole.mjNTEXROLE))[geom.matid, role])
     if geom.matid < 0 or number < 0 or context.textureType[number] != mujoco.mjtTexture.mjTEXTURE_2D:

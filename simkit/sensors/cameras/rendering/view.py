@@ -1,4 +1,4 @@
-"""View frustum, shot and film: what a picture shows and what is read from it."""
+"""View, shot and film: what an image shows, how it is requested, and what was drawn."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Ids = npt.NDArray[np.int32]
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """What a camera looks through: image size [px] and the frustum's edges at a distance of 1.
+    """Frustum and image size [px] of an image.
 
     Attributes:
         left, right, bottom, top: edges on the plane at distance 1 in front of the camera.
@@ -36,16 +36,17 @@ class View:
 
 @dataclass(frozen=True, slots=True)
 class Shot:
-    """One of the views that a sample of a camera is made of.
+    """Request for one drawn view; a camera's sample needs one or several of them.
 
     Attributes:
         view: image size and frustum.
-        depth: whether depths are read beside the colours.
-        ids: whether, instead of colours, each pixel tells which geom is seen there.
-        sharp: whether depths are all that is wanted: they are of each pixel's middle then, also where the quality has
-            several samples of a pixel, of which a depth is but one.
-        position: of the view in the sensor's frame [m], shape (3,); None is its origin.
-        rotation: of the view (x forward, y left, z up) in the sensor's frame, shape (3, 3); None is the sensor's own.
+        depth: True reads depths besides the colours.
+        ids: True draws geom ids instead of colours.
+        sharp: True draws depths only, at each pixel's middle. With several samples per pixel, a depth would be that of
+            one sample.
+        position: position of the view in the sensor's frame [m], shape (3,); None is the origin.
+        rotation: rotation matrix of the view (x forward, y left, z up) in the sensor's frame, shape (3, 3); None is
+            none.
     """
 
     view: View
@@ -58,14 +59,14 @@ class Shot:
 
 @dataclass(frozen=True, slots=True)
 class Film:
-    """What was drawn of one shot, rows from the top; views of buffers that the next shot overwrites.
+    """Drawn result of one shot, rows from the top, as views of buffers that the next shot overwrites.
 
     Attributes:
-        view: that it was drawn through.
-        colours: (height, width, 3); None for a shot of ids, or of depths alone.
-        depths: raw, (height, width): 0 is the far plane or nothing, 1 the near plane, `metres` converts; None where
-            they were not asked for.
-        ids: (height, width): the model's geom at each pixel, -1 where there is none; None for a shot of colours.
+        view: view that it was drawn through.
+        colours: colours, shape (height, width, 3); None for a shot of ids, or of depths only.
+        depths: raw depths, shape (height, width), which `DepthRange.metres` converts: 0 is the far plane or nothing, 1
+            the near plane; None if not requested.
+        ids: geom id at each pixel, shape (height, width), -1 for none; None for a shot of colours.
     """
 
     view: View
@@ -75,7 +76,7 @@ class Film:
 
 
 def look_at(eye: Vector, target: Vector) -> Vector:
-    """Rotation (3, 3) of a camera frame (x forward, y left, z up) at `eye` that looks at `target`, upright."""
+    """Return the rotation (3, 3) of an upright camera frame (x forward, y left, z up) at `eye` that faces `target`."""
     forward = np.asarray(target, dtype=np.float64) - eye
     forward /= max(float(np.linalg.norm(forward)), 1e-12)
     up = np.array((0.0, 0.0, 1.0)) if abs(forward[2]) < 0.999 else np.array((1.0, 0.0, 0.0))
@@ -85,7 +86,7 @@ def look_at(eye: Vector, target: Vector) -> Vector:
 
 
 def aim(scene: mujoco.MjvScene, position: Vector, rotation: Vector, view: View) -> None:
-    """Sets both eyes of the scene's camera; their mean is what is drawn."""
+    """Set both eyes of the scene's camera, because the engine draws their mean."""
     near = view.near
     for camera in scene.camera:
         camera.pos = position

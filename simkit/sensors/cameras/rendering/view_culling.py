@@ -1,4 +1,4 @@
-"""Find shapes outside a view, which MuJoCo would send through the whole of OpenGL."""
+"""Search for shapes outside a view, which MuJoCo would pass through the whole of OpenGL."""
 
 from __future__ import annotations
 
@@ -14,43 +14,44 @@ from simkit.pose import Vector
 from simkit.sensors.cameras.rendering.view import View
 
 _LEAST: Final = 8
-"""With fewer shapes it is not worth looking."""
+"""Smallest number of shapes for which the search pays."""
 
 _SLACK: Final = 1e-3
-"""Added to the radius of a shape, in parts of it: corners are rounded to single precision."""
+"""Relative margin of a shape's radius, because its corners are rounded to single precision."""
 
 
 @dataclass(frozen=True, slots=True)
 class Bounds:
-    """Balls around the shapes at the beginning of a scene's list.
+    """Bounding spheres of the shapes at the beginning of a scene's list.
 
     Attributes:
-        centres: in the world [m], shape (n, 3).
-        radii: [m], shape (n,); infinite where a shape has no end.
+        centres: centres in the world [m], shape (n, 3).
+        radii: radii [m], shape (n,); infinite for infinite shapes.
     """
 
     centres: Vector
     radii: Vector
 
     def outside(self, position: Vector, rotation: Vector, view: View) -> list[int]:
-        """Places in the list of shapes that are wholly outside a view.
+        """Return the indices of shapes that are completely outside a view.
 
         Args:
-            position: of the view in the world [m], shape (3,).
-            rotation: of the view (x forward, y left, z up), shape (3, 3).
+            position: position of the view in the world [m], shape (3,).
+            rotation: rotation matrix of the view (x forward, y left, z up), shape (3, 3).
+            view: frustum of the view.
         """
         normals, distances = _planes(view)
-        # in few calls: after a picture was drawn, a processor knows nothing of Python's ways any more
-        turned = normals @ rotation.T
-        beyond = self.centres @ turned.T - (distances + turned @ position)
+        # few NumPy calls, because after drawing an image the processor's cache no longer contains Python's code
+        rotated = normals @ rotation.T
+        beyond = self.centres @ rotated.T - (distances + rotated @ position)
         found: list[int] = np.flatnonzero((beyond > self.radii[:, None]).any(axis=1)).tolist()
         return found
 
 
 @functools.lru_cache(maxsize=64)
 def _planes(view: View) -> tuple[Vector, Vector]:
-    """Six planes around what is in view: unit normals outwards (6, 3) in its frame, distances from its eye (6,) [m]."""
-    # `left` and `right` of a view are to the right of its axis, which is the frame's -y
+    """Return the six planes of a frustum: outward unit normals (6, 3), and distances from its eye (6,) [m]."""
+    # `left` and `right` of a view increase to the right of its axis, which is the frame's -y
     edges = ((-view.right, -1, 0), (view.left, 1, 0), (-view.top, 0, 1), (view.bottom, 0, -1))
     normals = np.array(((-1, 0, 0), (1, 0, 0), *edges), dtype=np.float64)
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
@@ -60,10 +61,13 @@ def _planes(view: View) -> tuple[Vector, Vector]:
 def bounds_of(
     model: mujoco.MjModel, data: mujoco.MjData, scene: mujoco.MjvScene, groups: npt.NDArray[np.uint8]
 ) -> Bounds | None:
-    """Balls around the shapes of a scene that was made of a state; None where it is not worth it.
+    """Return bounding spheres of the shapes of a scene that was composed from a state; None if culling does not pay.
 
     Args:
-        groups: which groups of geoms are drawn, shape (6,).
+        model: compiled model.
+        data: data of the state.
+        scene: scene composed from the state.
+        groups: 1 for each group of geoms that is drawn, shape (6,).
     """
     if model.nflex or model.nskin or scene.ngeom < _LEAST:
         return None
@@ -71,7 +75,7 @@ def bounds_of(
     geoms, geom = scene.geoms, int(mujoco.mjtObj.mjOBJ_GEOM)
     last = len(ids) - 1
     if last < 0 or scene.ngeom <= last:
-        return None  # something is invisible for another reason, and the places are not known
+        return None  # other geoms are invisible too, so the indices in the list are unknown
     if any(geoms[i].objid != ids[i] or geoms[i].objtype != geom for i in (0, last)):
         return None
     radii = model.geom_rbound[ids]

@@ -210,7 +210,7 @@ def test_a_picture_that_fails_switches_its_camera_off_and_is_said_once(
     def failing(self: Any, films: Any, notes: Any) -> Any:
         made[0] += 1
         if made[0] == 3:
-            raise RenderError("drawing a picture failed: out of memory", "SK-RENDER-002")
+            raise RenderError("drawing an image failed: out of memory", "SK-RENDER-002")
         return develop(self, films, notes)
 
     monkeypatch.setattr(Camera, "develop", failing)
