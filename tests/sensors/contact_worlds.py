@@ -1,4 +1,4 @@
-"""Small worlds of things that touch, and sums over what contact sensors say of them."""
+"""Small worlds with touching models, and sums over the messages of contact sensors."""
 
 from __future__ import annotations
 

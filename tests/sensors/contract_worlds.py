@@ -81,12 +81,12 @@ _WORLD = """<sdf version="1.9"><world name="w">
 
 
 def is_rendered(kind: str) -> bool:
-    """Whether the kind draws pictures."""
+    """Check whether a kind draws images."""
     return issubclass(sensor_kinds()[kind], RenderedCamera)
 
 
 def source(kind: str, *, noisy: bool = False, extra: str = "") -> str:
-    """A two-link thing that falls, tumbles and hits the ground, with a sensor of a kind on it."""
+    """Return a two-link model with a sensor that falls, tumbles and hits the ground."""
     cls = sensor_kinds()[kind]
     block = NOISY.get(kind, NOISELESS.get(kind, cls.example)).replace("N</", f"{_NOISE if noisy else ''}</")
     if not noisy:
@@ -114,12 +114,12 @@ def sensor_of(sim: Any) -> Any:
 
 
 def digest(message: Any) -> str:
-    """Of every bit of a message, stamp included."""
+    """Return a digest of every bit of a message, stamp included."""
     return "" if message is None else hashlib.blake2b(msgs.serialize(message), digest_size=8).hexdigest()
 
 
 def plain(message: Any) -> Any:
-    """What a message says of the world: its fields without stamps, and without what is said of the noise."""
+    """Return the measured fields of a message: without stamps, and without fields about the noise."""
     if dataclasses.is_dataclass(message):
         skip = ("header", "stamp", "variance")
         names = [f.name for f in dataclasses.fields(message) if f.name not in skip and "covariance" not in f.name]
@@ -131,7 +131,7 @@ def plain(message: Any) -> Any:
     return message
 
 
-def heard(sim: Any, duration: float = DURATION) -> list[tuple[int, str, str]]:
+def published_digests(sim: Any, duration: float = DURATION) -> list[tuple[int, str, str]]:
     """(tick of arrival, topic, digest) of everything that a sensor publishes."""
     out: list[tuple[int, str, str]] = []
     taps = [
@@ -148,5 +148,5 @@ if __name__ == "__main__":
     found = {}
     for kind in sys.argv[1:]:
         with load(kind, noisy=True) as sim:
-            found[kind] = heard(sim)
+            found[kind] = published_digests(sim)
     sys.stdout.write(json.dumps(found))

@@ -1,4 +1,4 @@
-"""Small worlds with a camera of depths in them, and what it told."""
+"""Small worlds with a depth camera, and its messages."""
 
 from __future__ import annotations
 
@@ -48,12 +48,12 @@ def loaded(text: str, *topics: str) -> tuple[Any, list[Any]]:
         return sim, [sub.messages[0] for sub in subs]
 
 
-def taken(text: str, *topics: str) -> list[Any]:
+def first_messages(text: str, *topics: str) -> list[Any]:
     return loaded(text, *topics)[1]
 
 
 def depth_of(text: str) -> npt.NDArray[np.float32]:
-    (message,) = taken(text, "/c/depth_image")
+    (message,) = first_messages(text, "/c/depth_image")
     return depths(message)
 
 
@@ -80,7 +80,7 @@ def seen_at(points: npt.NDArray[Any], info: Any) -> npt.NDArray[Any]:
 
 
 def looks_at(pixels: npt.NDArray[Any], info: Any) -> npt.NDArray[Any]:
-    """Where pixels (n, 2) look, x to the right and y down at distance 1, by K and D as `CameraInfo` defines them."""
+    """Return the directions of pixels (n, 2), x to the right and y down at distance 1, by K and D of `CameraInfo`."""
     k, (k1, k2, p1, p2, k3) = info.k.reshape(3, 3), info.d
     down = (pixels[:, 1] - k[1, 2]) / k[1, 1]
     right = (pixels[:, 0] - k[0, 2] - k[0, 1] * down) / k[0, 0]

@@ -1,4 +1,4 @@
-"""Small worlds of labelled things for the cameras that tell labels."""
+"""Small worlds of labelled models for the cameras that publish labels."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def cube(edge: float = 1.0) -> str:
     return f"<box><size>{edge} {edge} {edge}</size></box>"
 
 
-def thing(name: str, pose: str, content: str, number: int | None = None, *, static: bool = True) -> str:
+def labelled_model(name: str, pose: str, content: str, number: int | None = None, *, static: bool = True) -> str:
     """A model with one link that has `content`, a visual or several."""
     plugin = "" if number is None else label(number)
     fixed = str(static).lower()
@@ -41,9 +41,9 @@ def camera(kind: str, block: str = "", *, size: tuple[int, int] = (WIDTH, HEIGHT
     return sensor_worlds.sensor(kind, inner, rate=10, pose=pose)
 
 
-def load(kind: str, things: str, block: str = "", *, top: str = "", **how: Any) -> Any:
-    """A camera at the origin that looks along x, and things."""
-    return simkit.load(sensor_worlds.world(camera(kind, block, **how), others=things, pose="0 0 0 0 0 0", top=top))
+def load(kind: str, models: str, block: str = "", *, top: str = "", **how: Any) -> Any:
+    """Load a camera at the origin that looks along x, and models."""
+    return simkit.load(sensor_worlds.world(camera(kind, block, **how), others=models, pose="0 0 0 0 0 0", top=top))
 
 
 def bare(content: str) -> Any:
@@ -64,7 +64,7 @@ def labels(sim: Any) -> npt.NDArray[np.uint8]:
 
 
 def counts(image: npt.NDArray[np.uint8]) -> dict[tuple[int, ...], int]:
-    """How many pixels there are of each colour."""
+    """Return the number of pixels of each colour."""
     found, number = np.unique(image.reshape(-1, image.shape[-1]), axis=0, return_counts=True)
     return {tuple(c): n for c, n in zip(found.tolist(), number.tolist(), strict=True)}
 

@@ -1,4 +1,4 @@
-"""Whether pictures can be drawn here, for tests that need some."""
+"""Availability of a renderer, for tests that need images."""
 
 from __future__ import annotations
 

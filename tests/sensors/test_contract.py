@@ -1,4 +1,4 @@
-"""What every kind of sensor keeps, whatever it measures; runs over whatever is registered."""
+"""Properties of every kind of sensor, tested for every registered kind."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from typing import Any, get_type_hints
 
 import contract_worlds as worlds
 import pytest
-from contract_worlds import digest, heard, load, plain, sensor_of
+from contract_worlds import digest, load, plain, published_digests, sensor_of
 from renderer import RENDERS
 
 import simkit
@@ -44,7 +44,7 @@ kinds = pytest.mark.parametrize("kind", KINDS)
 @functools.cache
 def first_run(kind: str) -> list[tuple[int, str, str]]:
     with load(kind, noisy=True) as sim:
-        found = heard(sim)
+        found = published_digests(sim)
         assert found, "nothing was published"
         return found
 
@@ -52,14 +52,14 @@ def first_run(kind: str) -> list[tuple[int, str, str]]:
 @kinds
 def test_a_reset_repeats(kind: str) -> None:
     with load(kind, noisy=True) as sim:
-        assert heard(sim) == first_run(kind)
+        assert published_digests(sim) == first_run(kind)
         sim.reset()
         assert sensor_of(sim).latest is None
         sim.model("m").set_velocity((0.5, 0.2, -1.0), (1.0, -0.5, 0.7))
-        assert heard(sim) == first_run(kind)
+        assert published_digests(sim) == first_run(kind)
 
 
-def test_another_process_says_the_same_bits() -> None:
+def test_another_process_gives_the_same_bits() -> None:
     script = Path(worlds.__file__)
     path = os.pathsep.join([str(ROOT), str(script.parent)])
     environment = {**os.environ, "PYTHONHASHSEED": "4711", "PYTHONPATH": path}
@@ -94,17 +94,17 @@ def test_a_restored_run_repeats(kind: str) -> None:
         sim.run(0.1)
         state = sim.snapshot()
         before = digest(sensor_of(sim).latest)
-        first = heard(sim, 0.15)
+        first = published_digests(sim, 0.15)
         sim.restore(state)
         assert digest(sensor_of(sim).latest) == before
-        assert heard(sim, 0.15) == first
+        assert published_digests(sim, 0.15) == first
 
 
 @kinds
-def test_who_listens_and_from_when_changes_nothing(kind: str) -> None:
+def test_the_time_of_subscription_changes_no_reading(kind: str) -> None:
     with load(kind, noisy=True) as late, load(kind, noisy=True) as unread, load(kind, noisy=True) as kept:
         late.run(0.1)
-        assert heard(late, worlds.DURATION - 0.1) == [m for m in first_run(kind) if m[0] > 100]
+        assert published_digests(late, worlds.DURATION - 0.1) == [m for m in first_run(kind) if m[0] > 100]
         unread.run(worlds.DURATION)
         assert digest(sensor_of(unread).latest) == digest(sensor_of(late).latest)
         assert digest(sensor_of(unread).truth) == digest(sensor_of(late).truth)
@@ -151,7 +151,7 @@ def stamp_of(message: Any) -> Any:
 def test_latency_shifts_the_arrival_and_not_the_content(kind: str) -> None:
     with load(kind, noisy=True, extra="<latency>0.0555</latency>") as sim:
         expected = [(tick + 56, topic, d) for tick, topic, d in first_run(kind)]
-        assert heard(sim) == [m for m in expected if m[0] <= worlds.DURATION * 1000]
+        assert published_digests(sim) == [m for m in expected if m[0] <= worlds.DURATION * 1000]
 
 
 # ---------------------------------------------------------------------- documents
@@ -165,7 +165,7 @@ def test_a_kind_has_a_page_that_names_it(kind: str) -> None:
 
 
 def numeric(hint: Any) -> bool:
-    """Whether a field holds what has a unit: a number with a point, or the noise of one."""
+    """Check whether a field has a unit: a number with a point, or its noise."""
     parts = getattr(hint, "__args__", ())
     return hint in (float, NoiseModel) or any(numeric(p) for p in parts if p is not Ellipsis)
 

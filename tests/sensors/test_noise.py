@@ -81,7 +81,7 @@ def test_noise_on_one_channel_leaves_anothers_draw_alone() -> None:
     assert second[1] == both[1]
 
 
-def test_no_deviation_draws_nothing() -> None:
+def test_noise_without_deviation_draws_no_numbers() -> None:
     class NoDraws:
         def stream(self, *_: object) -> object:
             raise AssertionError("drawn")
@@ -141,7 +141,7 @@ def test_without_a_type_it_is_none_and_said_unless_in_a_data_sheets_words() -> N
     assert read("noise_density=0.1", "") == (NoiseModel(noise_density=0.1), [])
 
 
-def test_a_data_sheet_stands_where_gazebos_elements_say_the_same() -> None:
+def test_data_sheet_elements_replace_gazebos_duplicates() -> None:
     model, codes = read("stddev=2 noise_density=0.1 mean=1 bias_mean=3 precision=0.5")
     assert (model.stddev, model.noise_density, model.mean, model.bias_mean, model.precision) == (0, 0.1, 1, 3, 0.5)
     assert codes == ["SK-SENSOR-021"]
@@ -338,7 +338,7 @@ def test_gazebo_ignores_a_dynamic_bias_where_it_passes_no_time(kind: str, wander
     assert np.ptp(values("")) > 1e-9
 
 
-def test_gazebo_takes_a_precision_of_a_millionth_for_none() -> None:
+def test_gazebo_ignores_a_precision_of_a_millionth() -> None:
     fine = NoiseModel(precision=5e-7, dynamic_bias_stddev=1.0)
     assert fine.as_gazebo(True).precision == 0.0
     assert fine.as_gazebo(False).dynamic_bias_stddev == 0.0
@@ -394,7 +394,7 @@ def test_image_noise_depends_on_seed_name_and_frame_alone() -> None:
     assert not np.array_equal(image_noise(1.0, seed=2).on_depths(flat, 7), late)
 
 
-def test_without_a_type_it_is_what_sdf_says_for_the_kind() -> None:
+def test_without_a_type_the_kind_has_sdfs_default() -> None:
     """None, but gaussian on rays (and on cameras)."""
     wall = box("wall", "3.5 0 1 0 0 0", "1 4 4")
     biased = "<noise><mean>1</mean></noise>"

@@ -34,8 +34,8 @@ def stamp(message: Any) -> int:
     return int(message.header.stamp.sec) * 10**9 + int(message.header.stamp.nanosec)
 
 
-class Heard:
-    """What arrived on a topic, with the tick of arrival."""
+class Arrivals:
+    """Messages of a topic, each with its tick of arrival."""
 
     def __init__(self, sim: Any, topic: str = "/i") -> None:
         self.sim, self.messages, self.ticks = sim, [], []
@@ -73,9 +73,9 @@ def test_many_sensors_at_odd_rates_keep_exactly_to_their_grids(step: float) -> N
     )
     physics = f'<physics name="p" type="ode"><max_step_size>{step}</max_step_size></physics>'
     with simkit.load(world(parts, top=physics)) as sim:
-        heard = [Heard(sim, f"/t{i}") for i in range(len(rates))]
+        arrivals = [Arrivals(sim, f"/t{i}") for i in range(len(rates))]
         sim.run(7)
-        for text, found in zip(rates, heard, strict=True):
+        for text, found in zip(rates, arrivals, strict=True):
             period = 1 / (Fraction(1, 3) if text.startswith("0.333") else Fraction(text)) / Fraction(str(step))
             expected = [1] + [math.ceil(k * period) for k in range(1, 2000) if k * period <= 7 / Fraction(str(step))]
             assert found.ticks == expected, text
@@ -84,29 +84,29 @@ def test_many_sensors_at_odd_rates_keep_exactly_to_their_grids(step: float) -> N
 
 def test_gazebo_cuts_the_period_to_whole_milliseconds() -> None:
     with load(rate=30, top="<gazebo_quirks>true</gazebo_quirks>") as sim:
-        heard = Heard(sim)
+        arrivals = Arrivals(sim)
         sim.run(0.2)
-        assert heard.stamps == [1, 33, 66, 99, 132, 165, 198]
+        assert arrivals.stamps == [1, 33, 66, 99, 132, 165, 198]
     with load(rate=5000, top="<gazebo_quirks>true</gazebo_quirks>") as sim:  # cut to nothing: Gazebo would hang
-        heard = Heard(sim)
+        arrivals = Arrivals(sim)
         sim.run(0.003)
-        assert heard.stamps == [1, 2, 3]
+        assert arrivals.stamps == [1, 2, 3]
 
 
 def test_a_phase_shifts_the_grid_and_the_first_sample() -> None:
     with load("<phase>0.0305</phase>") as sim:
-        heard = Heard(sim)
+        arrivals = Arrivals(sim)
         assert sim.sensor("m::l::s").latest is None
         sim.run(0.35)
-        assert heard.stamps == [31, 131, 231, 331]
+        assert arrivals.stamps == [31, 131, 231, 331]
     with load("<phase>0.25</phase>") as sim:  # longer than a period: it begins later
-        heard = Heard(sim)
+        arrivals = Arrivals(sim)
         sim.run(0.5)
-        assert heard.stamps == [250, 350, 450]
+        assert arrivals.stamps == [250, 350, 450]
     with load("<phase>0.25</phase>", rate=0) as sim:
-        heard = Heard(sim)
+        arrivals = Arrivals(sim)
         sim.run(0.252)
-        assert heard.stamps == [250, 251, 252]
+        assert arrivals.stamps == [250, 251, 252]
 
 
 # ---------------------------------------------------------------------- jitter
@@ -114,9 +114,9 @@ def test_a_phase_shifts_the_grid_and_the_first_sample() -> None:
 
 def test_jitter_scatters_samples_evenly_around_the_grid_and_keeps_their_number() -> None:
     with load("<jitter>0.04</jitter>", seed=3) as sim:
-        heard = Heard(sim)
+        arrivals = Arrivals(sim)
         sim.run(60)
-    stamps = np.array(heard.stamps)
+    stamps = np.array(arrivals.stamps)
     assert np.all(np.diff(stamps) > 0)
     assert len(stamps) in (600, 601)
     off = stamps[1:] - 100 * np.arange(1, len(stamps))
@@ -143,16 +143,16 @@ def test_the_jitter_of_any_sample_can_be_had_without_those_before() -> None:
 def test_jitter_of_nearly_half_a_short_period_never_loses_a_sample(steps: int) -> None:
     rate = 1000 / steps
     with load(f"<jitter>{0.4999 * steps / 1000}</jitter>", rate=rate) as sim:
-        heard = Heard(sim)
+        arrivals = Arrivals(sim)
         sim.run(2)
-        assert len(heard.stamps) == pytest.approx(2000 / steps, abs=1)
+        assert len(arrivals.stamps) == pytest.approx(2000 / steps, abs=1)
 
 
 def test_jitter_repeats_with_the_seed_and_after_reset_and_restore() -> None:
     def stamps(sim: Any) -> list[int]:
-        heard = Heard(sim)
+        arrivals = Arrivals(sim)
         sim.run(3)
-        return heard.stamps
+        return arrivals.stamps
 
     with load("<jitter>0.03</jitter>", seed=1) as sim, load("<jitter>0.03</jitter>", seed=2) as other:
         first = stamps(sim)
@@ -171,9 +171,9 @@ def test_jitter_repeats_with_the_seed_and_after_reset_and_restore() -> None:
 # ---------------------------------------------------------------------- latency
 
 
-def test_latency_delays_the_arrival_and_changes_nothing_of_the_content() -> None:
+def test_latency_delays_the_arrival_and_changes_no_content() -> None:
     with load("<latency>0.2503</latency>", noise=NOISE) as late, load(noise=NOISE) as early:
-        after, before = Heard(late), Heard(early)
+        after, before = Arrivals(late), Arrivals(early)
         late.run(2)
         early.run(2)
         assert after.stamps == before.stamps[: len(after.stamps)]
@@ -187,17 +187,17 @@ def test_latency_delays_the_arrival_and_changes_nothing_of_the_content() -> None
 def test_it_is_measured_when_it_is_due_and_not_when_it_arrives() -> None:
     source = world(imu("<latency>0.1</latency>", rate=0), static=False, top="<gravity>0 0 0</gravity>")
     with simkit.load(source) as sim:
-        heard, unread = Heard(sim), sim.sensor("m::l::s")
+        arrivals, unread = Arrivals(sim), sim.sensor("m::l::s")
         sim.run(0.05)
         sim.model("m").set_velocity((0, 0, 0), (0.7, 0, 0))
         sim.run(0.1)
         assert unread.latest.angular_velocity.x == 0.0
         sim.run(0.001)
         assert unread.latest.angular_velocity.x == pytest.approx(0.7)
-        assert [t for t, x in zip(heard.stamps, heard.rates, strict=True) if x] == [51]
+        assert [t for t, x in zip(arrivals.stamps, arrivals.rates, strict=True) if x] == [51]
 
 
-def test_who_listens_and_from_when_changes_no_late_reading() -> None:
+def test_the_time_of_subscription_changes_no_late_reading() -> None:
     def values(listen: tuple[float, float]) -> list[Any]:
         out, (begin, end) = [], listen
         with load(
@@ -221,46 +221,46 @@ def test_who_listens_and_from_when_changes_no_late_reading() -> None:
 
 def test_late_readings_keep_their_order_when_latency_varies() -> None:
     with load("<latency>0.3</latency><latency_jitter>0.3</latency_jitter>", rate=20) as sim:
-        heard = Heard(sim)
+        arrivals = Arrivals(sim)
         sim.run(20)
-        assert heard.stamps == sorted(heard.stamps)
-        delays = np.array(heard.ticks) - np.array(heard.stamps)
+        assert arrivals.stamps == sorted(arrivals.stamps)
+        delays = np.array(arrivals.ticks) - np.array(arrivals.stamps)
         assert delays.min() >= 0 and delays.max() <= 600
         assert np.ptp(delays) > 300
 
 
 def test_readings_on_their_way_survive_a_restore_and_not_a_reset() -> None:
     with load("<latency>0.55</latency><latency_jitter>0.1</latency_jitter>", noise=NOISE) as sim:
-        heard = Heard(sim)
+        arrivals = Arrivals(sim)
         sim.run(1.03)
         state = sim.snapshot()
-        count = len(heard.stamps)
+        count = len(arrivals.stamps)
         sim.run(2)
-        first = heard.ticks[count:], heard.stamps[count:], heard.rates[count:]
+        first = arrivals.ticks[count:], arrivals.stamps[count:], arrivals.rates[count:]
         assert first[1][0] < 1000
         sim.restore(state)
-        count = len(heard.stamps)
+        count = len(arrivals.stamps)
         sim.run(2)
-        assert (heard.ticks[count:], heard.stamps[count:], heard.rates[count:]) == first
+        assert (arrivals.ticks[count:], arrivals.stamps[count:], arrivals.rates[count:]) == first
         sim.reset()
         assert sim.sensor("m::l::s").latest is None
-        count = len(heard.stamps)
+        count = len(arrivals.stamps)
         sim.run(0.7)
-        assert heard.stamps[count] == 1
+        assert arrivals.stamps[count] == 1
 
 
 def test_readings_on_their_way_survive_a_spawn_and_a_new_rate() -> None:
     with load("<latency>0.25</latency>", noise=NOISE) as sim, load("<latency>0.25</latency>", noise=NOISE) as plain:
-        heard, other = Heard(sim), Heard(plain)
+        arrivals, other = Arrivals(sim), Arrivals(plain)
         sim.run(0.52)
         sim.spawn('<sdf version="1.9"><model name="new"><static>true</static><link name="l"/></model></sdf>')
         sim.run(0.01)
         sim.sensor("m::l::s").set_rate(4)
         sim.run(1)
         plain.run(1.53)
-        assert heard.stamps == [1, 100, 200, 300, 400, 500, 750, 1000, 1250]
-        assert heard.rates[:6] == other.rates[:6]
-        assert [t - s for t, s in zip(heard.ticks, heard.stamps, strict=True)] == [250] * 9
+        assert arrivals.stamps == [1, 100, 200, 300, 400, 500, 750, 1000, 1250]
+        assert arrivals.rates[:6] == other.rates[:6]
+        assert [t - s for t, s in zip(arrivals.ticks, arrivals.stamps, strict=True)] == [250] * 9
 
 
 # ---------------------------------------------------------------------- rates that change
@@ -268,23 +268,23 @@ def test_readings_on_their_way_survive_a_spawn_and_a_new_rate() -> None:
 
 def test_a_new_rate_stays_on_the_grid_of_the_beginning() -> None:
     with load("<phase>0.013</phase>", rate=100) as sim:
-        heard = Heard(sim)
+        arrivals = Arrivals(sim)
         sim.run(0.0405)
         sim.sensor("m::l::s").set_rate(20)
         sim.run(0.16)
         sim.sensor("m::l::s").set_rate(1 / 3)
         sim.run(6)
-        assert heard.stamps == [13, 23, 33, 63, 113, 163, 3013, 6013]
+        assert arrivals.stamps == [13, 23, 33, 63, 113, 163, 3013, 6013]
 
 
 def test_a_rate_may_come_from_a_topic() -> None:
     with load("<set_rate_topic>rate</set_rate_topic>") as sim:
         assert sim.topics()["/rate"] == "std_msgs/msg/Float64"
-        heard = Heard(sim)
+        arrivals = Arrivals(sim)
         sim.run(0.25)
         sim.publish("/rate", {"data": 20.0})
         sim.run(0.25)
-        assert heard.stamps == [1, 100, 200, 300, 350, 400, 450, 500]
+        assert arrivals.stamps == [1, 100, 200, 300, 350, 400, 450, 500]
         for wrong in (-1.0, math.nan):
             sim.publish("/rate", {"data": wrong})
         sim.run(0.01)
@@ -305,24 +305,24 @@ def test_a_restore_brings_the_rate_back() -> None:
         state = sim.snapshot()
         sim.sensor("m::l::s").set_rate(50)
         sim.restore(state)
-        heard = Heard(sim)
+        arrivals = Arrivals(sim)
         sim.run(0.3)
-        assert heard.stamps == [1, 100, 200, 300]
+        assert arrivals.stamps == [1, 100, 200, 300]
 
 
 def test_a_snapshot_remembers_the_seed() -> None:
     with load(noise=NOISE, seed=4) as sim:
-        heard = Heard(sim)
+        arrivals = Arrivals(sim)
         sim.run(0.55)
         state = sim.snapshot()
         sim.run(1)
-        expected = heard.rates[6:]
+        expected = arrivals.rates[6:]
         sim.reset(seed=9)
         sim.run(0.3)
         sim.restore(state)
-        count = len(heard.rates)
+        count = len(arrivals.rates)
         sim.run(1)
-        assert heard.rates[count:] == expected
+        assert arrivals.rates[count:] == expected
         assert sim.engine.streams.seed == 4
 
 
@@ -359,7 +359,7 @@ def test_impossible_timing_is_an_error(extra: str, rate: float, code: str) -> No
         ("", 30, []),
     ],
 )
-def test_what_has_no_effect_is_told(extra: str, rate: float, expected: list[str]) -> None:
+def test_options_without_effect_are_reported(extra: str, rate: float, expected: list[str]) -> None:
     with load(extra, rate) as sim:
         assert codes(sim) == expected
 
@@ -369,7 +369,7 @@ JOINT = """<sdf version="1.9"><model name="m"><link name="a">{link}</link><link 
 
 
 @pytest.mark.parametrize("place", ["link", "joint"])
-def test_a_sensor_in_the_wrong_place_is_left_out_with_a_warning_that_says_where_it_belongs(place: str) -> None:
+def test_a_sensor_under_the_wrong_parent_is_left_out_with_a_warning(place: str) -> None:
     kind = {"link": "force_torque", "joint": "imu"}[place]
     parts = {"link": "", "joint": "", "child": "b", place: f'<sensor name="s" type="{kind}"/>'}
     with simkit.load(JOINT.format(**parts)) as sim:

@@ -18,7 +18,7 @@ def camera(name: str, topic: str, more: str = "") -> str:
     return f'<sensor name="{name}" type="camera"><topic>{topic}</topic>{CAMERA.format(more)}</sensor>'
 
 
-def test_two_sensors_on_one_topic_are_told_once() -> None:
+def test_two_sensors_on_one_topic_are_reported_once() -> None:
     two = imu("a") + imu("b") + imu("c", "other")
     with simkit.load(world(two)) as sim:
         (found,) = [d for d in sim.diagnostics if d.code == "SK-SENSOR-027"]
@@ -44,7 +44,7 @@ def test_only_a_shared_camera_info_is_no_warning(sensors: str, expected: list[st
 
 
 @pytest.mark.parametrize("element", ["topic", "set_rate_topic", "camera><trigger_topic", "camera><camera_info_topic"])
-def test_what_may_not_stand_in_a_topics_name_is_told(element: str) -> None:
+def test_invalid_characters_of_a_topic_are_reported(element: str) -> None:
     parents = element.split("><")
     end = "".join(f"</{parent}>" for parent in reversed(parents))
 

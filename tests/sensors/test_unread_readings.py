@@ -1,4 +1,4 @@
-"""Readings that nobody looks at until the model is another one: they are of their own time."""
+"""Readings that are read after the model has changed: they have the values of their own time."""
 
 from __future__ import annotations
 

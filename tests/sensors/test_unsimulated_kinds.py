@@ -39,12 +39,12 @@ def sensor(kind: str, block: str) -> str:
 
 
 @pytest.mark.parametrize("kind", UNSIMULATED_READERS)
-def test_it_is_said_once_and_nothing_else_is_wrong(kind: str) -> None:
+def test_there_is_exactly_one_report(kind: str) -> None:
     with simkit.load(sensor(kind, BLOCKS[kind])) as sim:
-        said = [d for d in sim.diagnostics if d.code.startswith(("SK-SENSOR", "SK-PARAM"))]
-        assert [(d.code, d.severity) for d in said] == [("SK-SENSOR-052", "warning")]
-        assert kind in said[0].message
-        assert said[0].line
+        found = [d for d in sim.diagnostics if d.code.startswith(("SK-SENSOR", "SK-PARAM"))]
+        assert [(d.code, d.severity) for d in found] == [("SK-SENSOR-052", "warning")]
+        assert kind in found[0].message
+        assert found[0].line
         sim.step(10)
         assert "/t" not in sim.topics()
         assert not sim.contents.sensors
@@ -77,7 +77,7 @@ def test_a_value_that_is_not_allowed_is_an_error(kind: str, block: str) -> None:
         simkit.load(sensor(kind, block))
 
 
-def test_what_is_read_is_what_stands_there() -> None:
+def test_all_values_of_the_file_are_read() -> None:
     radio = read_transceiver(Params.from_dict({"transceiver": {"essid": "osrf", "gain": 2.6}}))
     assert (radio.essid, radio.frequency, radio.band, radio.gain) == ("osrf", 2442.0, (2412.0, 2484.0), 2.6)
     assert (radio.power, radio.sensitivity) == (14.5, -90.0)

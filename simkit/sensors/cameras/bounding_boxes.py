@@ -66,10 +66,10 @@ class LabelledShapes:
         structure: models of the world.
 
     Attributes:
-        place: number of each geom that has a label, by geom id.
+        number_by_geom: number of each geom that has a label, by geom id.
         corners: corners of each of these geoms, by number.
-        alone: boxes of items with one visual, by index in `items`: number of a geom, pose of the visual in that geom's
-            frame, lowest and highest corner in the visual's frame.
+        single_boxes: boxes of items with one visual, by index in `items`. A box has the number of a geom, the pose of
+            the visual in that geom's frame, and the lowest and highest corner in the visual's frame.
     """
 
     def __init__(self, items: LabelledObjects, structure: WorldStructure) -> None:
@@ -77,13 +77,13 @@ class LabelledShapes:
         names, model = compiled.names, compiled.model
         self.items = items
         self._geoms = [g for item in items.items for visual in item.visuals for g in visual.geoms]
-        self.place = {geom: i for i, geom in enumerate(self._geoms)}
+        self.number_by_geom = {geom: i for i, geom in enumerate(self._geoms)}
         cache: dict[int, Corners] = names.shared("corners of drawn shapes", dict)
         self.corners: list[Corners] = [_cached(cache, model, g) for g in self._geoms]
         frames = (names.model_frame(structure.models[item.model]) for item in items.items)
         self._frames = [(body, frame.matrix) for body, frame in frames]
         scenes = {v.scoped: v for m in structure.models.values() for link in m.all_links() for v in link.visuals}
-        self.alone = {
+        self.single_boxes = {
             position: self._own_box(item.visuals[0], model, names.link(item.visuals[0].link), scenes)
             for position, item in enumerate(items.items)
             if len(item.visuals) == 1
@@ -105,10 +105,11 @@ class LabelledShapes:
         low, high = np.full(3, np.inf), np.full(3, -np.inf)
         for geom in visual.geoms:
             own = in_body.inverse() @ Pose(model.geom_pos[geom], model.geom_quat[geom])
-            points = self.corners[self.place[geom]].points @ own.matrix.T + own.position
+            points = self.corners[self.number_by_geom[geom]].points @ own.matrix.T + own.position
             low, high = np.minimum(low, points.min(axis=0)), np.maximum(high, points.max(axis=0))
         first = visual.geoms[0]
-        return self.place[first], Pose(model.geom_pos[first], model.geom_quat[first]).inverse() @ in_body, low, high
+        pose = Pose(model.geom_pos[first], model.geom_quat[first]).inverse() @ in_body
+        return self.number_by_geom[first], pose, low, high
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -129,7 +130,7 @@ class PosedShapes:
     def points(self, visuals: Sequence[DrawnVisual]) -> tuple[Vector, npt.NDArray[np.int32]]:
         """Return the corners (n, 3) in the sensor's frame and the edges (m, 2) of some visuals of an item."""
         shapes = self.shapes
-        numbers = [shapes.place[g] for visual in visuals for g in visual.geoms]
+        numbers = [shapes.number_by_geom[g] for visual in visuals for g in visual.geoms]
         points = [shapes.corners[i].points @ self.rotations[i].T + self.positions[i] for i in numbers]
         starts = np.cumsum([0, *(len(p) for p in points)])
         edges = [shapes.corners[i].edges + start for i, start in zip(numbers, starts, strict=False)]
@@ -138,24 +139,24 @@ class PosedShapes:
     def box_3d(self, position: int) -> Box3D:
         """Return the box of an item along the axes of its only visual, or of its model if it has several visuals."""
         item = self.shapes.items.items[position]
-        if position in self.shapes.alone:
-            return self._box_alone(item, position)
+        if position in self.shapes.single_boxes:
+            return self._single_box(item, position)
         points, _ = self.points(item.visuals)
         return _box_around(item, points, self.axes[position])
 
     def box_of_cloud(self, position: int, visuals: Sequence[DrawnVisual]) -> Box3D:
         """Return the box along the principal axes of some visuals' corners, as Gazebo does for several visuals."""
         item = self.shapes.items.items[position]
-        if len(visuals) == 1 and position in self.shapes.alone:
-            return self._box_alone(item, position)
+        if len(visuals) == 1 and position in self.shapes.single_boxes:
+            return self._single_box(item, position)
         points, _ = self.points(visuals)
         _, axes = np.linalg.eigh(np.cov(points.T, bias=True))
         axes = axes * np.where(axes[np.abs(axes).argmax(axis=0), range(3)] < 0, -1.0, 1.0)
         axes[:, 2] = np.cross(axes[:, 0], axes[:, 1])
         return _box_around(item, points, axes)
 
-    def _box_alone(self, item: LabelledObject, position: int) -> Box3D:
-        number, pose, low, high = self.shapes.alone[position]
+    def _single_box(self, item: LabelledObject, position: int) -> Box3D:
+        number, pose, low, high = self.shapes.single_boxes[position]
         turn = self.rotations[number]
         rotation = turn @ pose.matrix
         centre = self.positions[number] + turn @ pose.position + rotation @ ((low + high) / 2)

@@ -29,7 +29,7 @@ from simkit.sensors.cameras.bounding_boxes import (
 from simkit.sensors.cameras.camera_options import CameraOptions, extend_options
 from simkit.sensors.cameras.label_camera import LabelCamera, read_keyword
 from simkit.sensors.cameras.labelled_objects import LabelledObjects
-from simkit.sensors.cameras.rendering.view import Film, Ids, Shot
+from simkit.sensors.cameras.rendering.view import DrawnView, Ids, Shot
 
 _VISIBLE, _FULL, _SPACE = "visible_2d", "full_2d", "3d"
 _BOX_TYPES: Final = {
@@ -115,7 +115,7 @@ class BoundingBoxCamera(LabelCamera):
         view = self._drawn_view()
         return Shot(view), Shot(view, ids=True)
 
-    def take_notes(self, model: mujoco.MjModel, data: mujoco.MjData) -> tuple[LabelledObjects, PosedShapes | None]:
+    def capture_context(self, model: mujoco.MjModel, data: mujoco.MjData) -> tuple[LabelledObjects, PosedShapes | None]:
         items = self.items
         if self.options.type == _VISIBLE:
             return items, None
@@ -123,10 +123,12 @@ class BoundingBoxCamera(LabelCamera):
             self._shapes = LabelledShapes(items, self.structure)
         return items, self._shapes.pose_shapes(data, *self._frame_in_world(data))
 
-    def develop(self, films: Iterator[Film], notes: tuple[LabelledObjects, PosedShapes | None]) -> Boxes:
-        colours = self._picture(next(films))
-        geoms = self.seen(next(films))
-        items, shapes = notes
+    def make_reading(
+        self, drawn_views: Iterator[DrawnView], context: tuple[LabelledObjects, PosedShapes | None]
+    ) -> Boxes:
+        colours = self._picture(next(drawn_views))
+        geoms = self.seen(next(drawn_views))
+        items, shapes = context
         if self._is_gazebos:
             return Boxes(gazebo_boxes(self.options.type, geoms, items, shapes, self._projection()), colours)
         if shapes is None:

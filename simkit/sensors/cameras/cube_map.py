@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.pose import Vector
-from simkit.sensors.cameras.rendering.view import Colours, Film, Shot, View
+from simkit.sensors.cameras.rendering.view import Colours, DrawnView, Shot, View
 from simkit.sensors.cameras.wide_angle_lens import WideAngleModel
 
 _FORWARD, _LEFT, _UP = np.eye(3)
@@ -84,18 +84,18 @@ class CubeMap:
         self._sheet = np.zeros((max(first, 1), max(widest, 1), 3), np.uint8)
         self._maps = cv2.convertMaps(column, row, cv2.CV_16SC2)
 
-    def develop(self, films: Iterator[Film], out: Colours) -> Colours:
+    def assemble(self, drawn_views: Iterator[DrawnView], out: Colours) -> Colours:
         """Return the image, shape (height, width, 3); black where the lens shows nothing.
 
         Args:
-            films: one film of each of `shots`, in their order.
+            drawn_views: one drawn view of each of `shots`, in their order.
             out: contiguous output array.
         """
         import cv2
 
-        for film, (first, height, width) in zip(films, self._places, strict=True):
-            assert film.colours is not None
-            np.copyto(self._sheet[first : first + height, :width], film.colours)
+        for drawn_view, (first, height, width) in zip(drawn_views, self._places, strict=True):
+            assert drawn_view.colours is not None
+            np.copyto(self._sheet[first : first + height, :width], drawn_view.colours)
         border = cv2.BORDER_REPLICATE if self._is_full else cv2.BORDER_CONSTANT
         cv2.remap(self._sheet, *self._maps, cv2.INTER_LINEAR, dst=out, borderMode=border)
         if self._rim is not None:

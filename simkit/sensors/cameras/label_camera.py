@@ -18,7 +18,7 @@ from simkit.scene import SceneSensor
 from simkit.sensors.cameras.bounding_box_messages import TYPE_2D, TYPE_3D, boxes_as_csv
 from simkit.sensors.cameras.labelled_objects import LabelledObjects, find_labelled_objects
 from simkit.sensors.cameras.rendered_camera import RenderedCamera
-from simkit.sensors.cameras.rendering.view import Film, Ids
+from simkit.sensors.cameras.rendering.view import DrawnView, Ids
 from simkit.sensors.cameras.saved_images import ImageSaver, encode_png
 
 IMAGE, COLOURS, LABELS, BOXES = "image", "colored", "labels", "boxes"
@@ -104,12 +104,12 @@ class LabelCamera(RenderedCamera):
         super().leave()
         self._items, self._items_of = None, (None, None)
 
-    def seen(self, film: Film) -> Ids:
+    def seen(self, drawn_view: DrawnView) -> Ids:
         """Return the geom at each pixel of the camera's image, -1 where there is none."""
-        assert film.ids is not None
+        assert drawn_view.ids is not None
         if self._pictures.distorter:
-            return self._pictures.distorter.distort_ids(film.ids)
-        return film.ids
+            return self._pictures.distorter.distort_ids(drawn_view.ids)
+        return drawn_view.ids
 
     def attach(self, sim: Simulation) -> None:
         super().attach(sim)
@@ -118,13 +118,13 @@ class LabelCamera(RenderedCamera):
     def _make_image_saver(self, folder: Path, name: str) -> ImageSaver:
         return DatasetSaver(self.sim, self.scene, folder, name)
 
-    def _picture(self, film: Film) -> npt.NDArray[np.uint8]:
-        """Return the colours of a film through the lens."""
-        assert film.colours is not None
+    def _picture(self, drawn_view: DrawnView) -> npt.NDArray[np.uint8]:
+        """Return the colours of a drawn view through the lens."""
+        assert drawn_view.colours is not None
         picture = self._pictures.spares.take()
         if self._pictures.distorter:
-            return self._pictures.distorter.distort(film.colours, picture)
-        np.copyto(picture, film.colours)
+            return self._pictures.distorter.distort(drawn_view.colours, picture)
+        np.copyto(picture, drawn_view.colours)
         return picture
 
     def perturb(self, reading: object, index: int) -> object:

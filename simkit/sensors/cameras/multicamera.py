@@ -25,7 +25,7 @@ from simkit.sensors.cameras.image_messages import CameraInfoMaker
 from simkit.sensors.cameras.image_noise import CameraReading
 from simkit.sensors.cameras.rendered_camera import PictureMaker, RenderedCamera
 from simkit.sensors.cameras.rendering.renderer import renderer_of
-from simkit.sensors.cameras.rendering.view import Film, Shot
+from simkit.sensors.cameras.rendering.view import DrawnView, Shot
 from simkit.sensors.sample import Reading
 from simkit.sensors.topics_and_frames import OPTICAL_POSE, sibling_topic
 
@@ -65,10 +65,10 @@ class CameraUnit:
         pose = self.options.pose
         return Shot(self._pictures.view, position=np.asarray(pose.position), rotation=pose.matrix)
 
-    def develop(self, film: Film) -> CameraReading:
+    def make_reading(self, drawn_view: DrawnView) -> CameraReading:
         """Return the image without noise, in arrays of its own."""
-        assert film.colours is not None
-        return CameraReading(self._pictures.develop(film.colours), None)
+        assert drawn_view.colours is not None
+        return CameraReading(self._pictures.process(drawn_view.colours), None)
 
     def perturb(self, picture: CameraReading, index: int) -> object:
         """Return the image with the noise of a sample."""
@@ -189,8 +189,8 @@ class MultiCamera(RenderedCamera):
     def shots(self) -> Sequence[Shot]:
         return tuple(eye.shot for eye in self.eyes)
 
-    def develop(self, films: Iterator[Film], notes: object) -> tuple[CameraReading, ...]:
-        return tuple(eye.develop(next(films)) for eye in self.eyes)
+    def make_reading(self, drawn_views: Iterator[DrawnView], context: object) -> tuple[CameraReading, ...]:
+        return tuple(eye.make_reading(next(drawn_views)) for eye in self.eyes)
 
     def perturb(self, reading: Reading, index: int) -> tuple[object, ...]:
         return tuple(eye.perturb(picture, index) for eye, picture in zip(self.eyes, reading, strict=True))

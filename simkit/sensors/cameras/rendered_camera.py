@@ -31,7 +31,7 @@ from simkit.sensors.cameras.image_noise import CameraReading, ImageNoise, NoisyC
 from simkit.sensors.cameras.rendered_sampler import RenderedSampler
 from simkit.sensors.cameras.rendering import render_thread
 from simkit.sensors.cameras.rendering.renderer import renderer_of
-from simkit.sensors.cameras.rendering.view import Film, Shot, View
+from simkit.sensors.cameras.rendering.view import DrawnView, Shot, View
 from simkit.sensors.cameras.saved_images import ImageSaver
 from simkit.sensors.sample import Memory, Reading
 from simkit.sensors.topics_and_frames import OPTICAL_POSE, sibling_topic
@@ -89,7 +89,7 @@ class PictureMaker:
         """View that is drawn."""
         return self.distorter.view() if self.distorter else self._model.view()
 
-    def develop(self, colours: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
+    def process(self, colours: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
         """Return drawn colours (h, w, 3) through the lens, in memory of their own; brightness (h, w) for grey."""
         if self.distorter:
             colours = self.distorter.distort(colours)
@@ -215,10 +215,10 @@ class RenderedCamera(RenderedSampler):
         self._hidden_geoms = hidden_geoms(self.options.visibility_mask, compiled.names)
         renderer_of(self.sim).uploads.reserve(self.options.model.width, self.options.model.height)
 
-    def develop(self, films: Iterator[Film], notes: Memory) -> object:
-        colours = next(films).colours
+    def make_reading(self, drawn_views: Iterator[DrawnView], context: Memory) -> object:
+        colours = next(drawn_views).colours
         assert colours is not None
-        return CameraReading(self._pictures.develop(colours), None)
+        return CameraReading(self._pictures.process(colours), None)
 
     def perturb(self, reading: Reading, index: int) -> object:
         return self._pictures.perturb(reading, index)

@@ -19,7 +19,7 @@ from simkit.sensors.cameras.camera_options import CameraOptions
 from simkit.sensors.cameras.rendering import gl_context, render_thread
 from simkit.sensors.cameras.rendering.lights_and_shadows import read_lights, use_lights
 from simkit.sensors.cameras.rendering.renderer import Composition, Renderer, free_renderer, renderer_of
-from simkit.sensors.cameras.rendering.view import Film, Shot
+from simkit.sensors.cameras.rendering.view import DrawnView, Shot
 from simkit.sensors.sample import Memory, Reading
 
 
@@ -90,20 +90,20 @@ class RenderedSampler(Sensor):
         composition = renderer.composer.compose(
             model, data, *self._frame_in_world(data), unseen=self._hidden_geoms, smooth=smooth
         )
-        return functools.partial(self._expose, renderer, composition, self.shots(), self.take_notes(model, data))
+        return functools.partial(self._expose, renderer, composition, self.shots(), self.capture_context(model, data))
 
-    def _expose(self, renderer: Renderer, composition: Composition, shots: Sequence[Shot], notes: Memory) -> Reading:
-        films = renderer.films(composition, shots)
+    def _expose(self, renderer: Renderer, composition: Composition, shots: Sequence[Shot], context: Memory) -> Reading:
+        drawn_views = renderer.draw_all(composition, shots)
         try:
-            return self.develop(films, notes)
+            return self.make_reading(drawn_views, context)
         except RenderError as error:
             self._picture_error = error
             raise
         finally:
-            films.close()
+            drawn_views.close()
 
     def capture_surroundings(self) -> Memory:
-        """Return the state besides the physics that a sample depends on; `take_notes` reads it from `surroundings`."""
+        """Return the state besides the physics that a sample depends on; `capture_context` reads `surroundings`."""
         return None
 
     def _begin_sample(self, tick: int) -> Sample:
@@ -112,17 +112,17 @@ class RenderedSampler(Sensor):
         sample.surroundings = self.surroundings, read_lights(self.sim.mj_model)
         return sample
 
-    def take_notes(self, model: mujoco.MjModel, data: mujoco.MjData) -> Memory:
-        """Return the values of the state that `develop` needs besides images."""
+    def capture_context(self, model: mujoco.MjModel, data: mujoco.MjData) -> Memory:
+        """Return the values of the state that `make_reading` needs besides images."""
         return None
 
     @abc.abstractmethod
-    def develop(self, films: Iterator[Film], notes: Memory) -> object:
+    def make_reading(self, drawn_views: Iterator[DrawnView], context: Memory) -> object:
         """Return the reading without noise, made from the drawn images.
 
         Args:
-            films: one film of each shot, in their order, drawn one by one as they are read.
-            notes: result of `take_notes`.
+            drawn_views: one drawn view of each shot, in their order, drawn one by one as they are read.
+            context: result of `capture_context`.
         """
 
     def close(self) -> None:

@@ -25,7 +25,7 @@ from simkit.sensors.cameras.disparity_noise import DisparityNoise, read_disparit
 from simkit.sensors.cameras.image_noise import CameraReading, ImageNoise, NoisyCameraReading
 from simkit.sensors.cameras.rendered_camera import RenderedCamera
 from simkit.sensors.cameras.rendering.renderer import Appearance
-from simkit.sensors.cameras.rendering.view import Colours, Depths, Film, Shot, View
+from simkit.sensors.cameras.rendering.view import Colours, Depths, DrawnView, Shot, View
 from simkit.sensors.sample import Reading
 from simkit.sensors.topics_and_frames import OPTICAL_POSE
 
@@ -120,16 +120,16 @@ class RgbdCamera(RenderedCamera):
             return Shot(view), Shot(view, depth=True, sharp=True)
         return (Shot(view, depth=True),)
 
-    def develop(self, films: Iterator[Film], notes: object) -> object:
-        film = next(films)
-        colours = _NO_COLOURS if film.colours is None else self._pictures.develop(film.colours)
-        if film.depths is None:
-            film = next(films)
-        raw = film.depths
+    def make_reading(self, drawn_views: Iterator[DrawnView], context: object) -> object:
+        drawn_view = next(drawn_views)
+        colours = _NO_COLOURS if drawn_view.colours is None else self._pictures.process(drawn_view.colours)
+        if drawn_view.depths is None:
+            drawn_view = next(drawn_views)
+        raw = drawn_view.depths
         assert raw is not None
         if self._pictures.distorter:
             raw = self._pictures.distorter.distort_depths(raw)
-        return CameraReading(colours, self._range.metres(raw, film.view, self._spare_depths.take()))
+        return CameraReading(colours, self._range.metres(raw, drawn_view.view, self._spare_depths.take()))
 
     def products(self) -> dict[str, Product]:
         return {

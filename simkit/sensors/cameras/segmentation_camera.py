@@ -22,7 +22,7 @@ from simkit.sensors.cameras import image_messages, label_camera
 from simkit.sensors.cameras.camera_options import CameraOptions, extend_options
 from simkit.sensors.cameras.label_camera import LabelCamera, read_keyword
 from simkit.sensors.cameras.labelled_objects import LabelledObjects
-from simkit.sensors.cameras.rendering.view import Film, Ids, Shot
+from simkit.sensors.cameras.rendering.view import DrawnView, Ids, Shot
 
 Colour = tuple[int, int, int]
 
@@ -159,15 +159,15 @@ class SegmentationCamera(LabelCamera):
             "labels_map": label_camera.LABELS,
         }
 
-    def take_notes(self, model: mujoco.MjModel, data: mujoco.MjData) -> Palette:
+    def capture_context(self, model: mujoco.MjModel, data: mujoco.MjData) -> Palette:
         items = self.items
         if self._palette is None or items is not self._palette_of:
             self._palette, self._palette_of = make_palette(items, self.options.type), items
         return self._palette
 
-    def develop(self, films: Iterator[Film], notes: Palette) -> Segmentation:
-        colours = self._picture(next(films)) if self.options.save is not None else None
-        return Segmentation(np.array(self.seen(next(films))), notes, colours)
+    def make_reading(self, drawn_views: Iterator[DrawnView], context: Palette) -> Segmentation:
+        colours = self._picture(next(drawn_views)) if self.options.save is not None else None
+        return Segmentation(np.array(self.seen(next(drawn_views))), context, colours)
 
     def _labels_message(self, reading: Segmentation, time_ns: int) -> msgs.Image:
         return image_messages.image_message(self._image_header(time_ns), reading.labels, "rgb8")

@@ -20,7 +20,7 @@ from simkit.sensors.base import Product
 from simkit.sensors.cameras import image_messages
 from simkit.sensors.cameras.camera_options import CameraOptions, extend_options
 from simkit.sensors.cameras.rendered_camera import RenderedCamera
-from simkit.sensors.cameras.rendering.view import Film, Shot, View
+from simkit.sensors.cameras.rendering.view import DrawnView, Shot, View
 from simkit.sensors.cameras.temperature_map import Kelvins, TemperatureMap, make_temperature_map
 from simkit.sensors.sample import Reading
 
@@ -142,7 +142,7 @@ class ThermalCamera(RenderedCamera):
                 table[self._heat.is_source] = self._quantise_as_gazebo(table[self._heat.is_source])
         return self._heat
 
-    def take_notes(self, model: mujoco.MjModel, data: mujoco.MjData) -> ThermalState:
+    def capture_context(self, model: mujoco.MjModel, data: mujoco.MjData) -> ThermalState:
         heat: TemperatureMap = self.surroundings
         views = []
         if heat.surfaces:
@@ -153,27 +153,27 @@ class ThermalCamera(RenderedCamera):
                 views.append((turn.T @ (position - origin), turn.T @ rotation))
         return ThermalState(heat, tuple(views))
 
-    def develop(self, films: Iterator[Film], notes: ThermalState) -> Kelvins:
+    def make_reading(self, drawn_views: Iterator[DrawnView], context: ThermalState) -> Kelvins:
         """Return the temperatures [K], shape (height, width)."""
-        film = next(films)
-        assert film.ids is not None
-        ids = self._pictures.distorter.distort_ids(film.ids) if self._pictures.distorter else film.ids
-        kelvins = notes.heat.table.take(ids, mode="wrap")
-        if notes.views:
-            self._apply_heat_textures(kelvins, ids, notes)
+        drawn_view = next(drawn_views)
+        assert drawn_view.ids is not None
+        ids = self._pictures.distorter.distort_ids(drawn_view.ids) if self._pictures.distorter else drawn_view.ids
+        kelvins = context.heat.table.take(ids, mode="wrap")
+        if context.views:
+            self._apply_heat_textures(kelvins, ids, context)
         options = self.options
         np.clip(kelvins, options.coldest, options.hottest, out=kelvins)
         return kelvins
 
-    def _apply_heat_textures(self, kelvins: Kelvins, ids: npt.NDArray[np.int32], notes: ThermalState) -> None:
+    def _apply_heat_textures(self, kelvins: Kelvins, ids: npt.NDArray[np.int32], context: ThermalState) -> None:
         """Replace the temperatures of pixels on surfaces that have a heat texture."""
         if self._directions is None:
             x, y = self.options.model.directions()
             directions = np.stack((np.ones_like(x), -x, -y), axis=-1).reshape(-1, 3)
             self._directions = directions / np.linalg.norm(directions, axis=1, keepdims=True)
         flat = kelvins.reshape(-1)
-        for index, pixels in notes.heat.seen(ids):
-            found = notes.heat.surfaces[index].temperatures(*notes.views[index], self._directions[pixels])
+        for index, pixels in context.heat.seen(ids):
+            found = context.heat.surfaces[index].temperatures(*context.views[index], self._directions[pixels])
             flat[pixels] = self._quantise_as_gazebo(found) if self._quirks else found
 
     def _quantise_as_gazebo(self, kelvins: Kelvins) -> Kelvins:

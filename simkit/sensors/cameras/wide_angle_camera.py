@@ -10,7 +10,7 @@ from simkit.sensors.cameras import image_messages
 from simkit.sensors.cameras.camera import Camera
 from simkit.sensors.cameras.cube_map import CubeMap
 from simkit.sensors.cameras.image_noise import CameraReading
-from simkit.sensors.cameras.rendering.view import Film, Shot
+from simkit.sensors.cameras.rendering.view import DrawnView, Shot
 from simkit.sensors.cameras.wide_angle_lens import WideAngleModel, read_wide_angle_model
 
 
@@ -40,9 +40,9 @@ class WideAngleCamera(Camera):
             self._cube = CubeMap(model)
         return self._cube.shots
 
-    def develop(self, films: Iterator[Film], notes: object) -> CameraReading:
+    def make_reading(self, drawn_views: Iterator[DrawnView], context: object) -> CameraReading:
         assert self._cube is not None
-        colours = self._cube.develop(films, self._pictures.spares.take())
+        colours = self._cube.assemble(drawn_views, self._pictures.spares.take())
         return CameraReading(
             image_messages.grey(colours) if image_messages.is_grey(self.options.encoding) else colours, None
         )

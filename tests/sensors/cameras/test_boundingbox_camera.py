@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from label_worlds import FOCAL, HEIGHT, WIDTH, cube, edges, eye, label, load, thing, visual
+from label_worlds import FOCAL, HEIGHT, WIDTH, cube, edges, eye, label, labelled_model, load, visual
 from renderer import NEEDS_RENDERER
 from sensor_worlds import colours
 
@@ -21,15 +21,15 @@ QUIRKS = "<gazebo_quirks>true</gazebo_quirks>"
 VISIBLE, FULL, SPACE = ("2d", "full_2d", "3d")
 
 
-def boxes(things: str, kind: str, block: str = "", **how: Any) -> list[tuple[str, int, Any]]:
+def boxes(models: str, kind: str, block: str = "", **how: Any) -> list[tuple[str, int, Any]]:
     """(model, label, bbox) of what is detected."""
-    with load("boundingbox_camera", things, f"<box_type>{kind}</box_type>{block}", **how) as sim:
+    with load("boundingbox_camera", models, f"<box_type>{kind}</box_type>{block}", **how) as sim:
         sim.run(0.01)
         return [(d.id, int(d.results[0].hypothesis.class_id), d.bbox) for d in eye(sim).latest.detections]
 
 
-def flat(things: str, kind: str, block: str = "", **how: Any) -> dict[tuple[str, int], tuple[float, ...]]:
-    return {(model, number): edges(box) for model, number, box in boxes(things, kind, block, **how)}
+def flat(models: str, kind: str, block: str = "", **how: Any) -> dict[tuple[str, int], tuple[float, ...]]:
+    return {(model, number): edges(box) for model, number, box in boxes(models, kind, block, **how)}
 
 
 def plate_at(distance: float, y: float = 0.0, z: float = 0.0, wide: float = 1.0, high: float = 0.5) -> np.ndarray:
@@ -45,7 +45,7 @@ def plate_at(distance: float, y: float = 0.0, z: float = 0.0, wide: float = 1.0,
     )
 
 
-def place(box: Any) -> np.ndarray:
+def centre_of(box: Any) -> np.ndarray:
     p = box.center.position
     return np.array((p.x, p.y, p.z))
 
@@ -64,21 +64,23 @@ def turn(box: Any) -> Pose:
 
 @pytest.mark.parametrize("name", ["2d", "visible_2d", "visible_box_2d", "full_2d", "full_box_2d"])
 def test_a_box_is_around_what_is_seen_of_a_plate(name: str) -> None:
-    found = flat(thing("a", "3 0.2 -0.1 0 0 0", visual(PLATE), 7), name)
+    found = flat(labelled_model("a", "3 0.2 -0.1 0 0 0", visual(PLATE), 7), name)
     assert set(found) == {("a", 7)}
     bound = 0.51 if "full" not in name else 0.05
     np.testing.assert_allclose(found["a", 7], plate_at(2.995, 0.2, -0.1), atol=bound)
 
 
 def test_a_visible_box_covers_its_pixels_and_gazebos_ends_at_the_number_of_the_last() -> None:
-    plate = thing("a", "3 0.2 -0.1 0 0 0", visual(PLATE), 7)
+    plate = labelled_model("a", "3 0.2 -0.1 0 0 0", visual(PLATE), 7)
     own, gazebos = flat(plate, VISIBLE)["a", 7], flat(plate, VISIBLE, top=QUIRKS)["a", 7]
     np.testing.assert_array_equal(np.subtract(own, gazebos), (0, 0, 1, 1))
 
 
 def test_what_is_half_hidden_has_a_smaller_visible_box_and_the_same_full_one() -> None:
-    things = thing("a", "4 0 0 0 0 0", visual(PLATE), 7) + thing("wall", "2 -1 0 0 0 0", visual(cube(2)))
-    seen, full = flat(things, VISIBLE)["a", 7], flat(things, FULL)["a", 7]
+    models = labelled_model("a", "4 0 0 0 0 0", visual(PLATE), 7) + labelled_model(
+        "wall", "2 -1 0 0 0 0", visual(cube(2))
+    )
+    seen, full = flat(models, VISIBLE)["a", 7], flat(models, FULL)["a", 7]
     np.testing.assert_allclose(full, plate_at(3.995), atol=0.05)
     assert seen[0] == pytest.approx(full[0], abs=0.51)
     assert seen[2] == pytest.approx(WIDTH / 2, abs=0.51)
@@ -86,21 +88,21 @@ def test_what_is_half_hidden_has_a_smaller_visible_box_and_the_same_full_one() -
 
 @pytest.mark.parametrize("kind", [VISIBLE, FULL, SPACE])
 def test_what_is_hidden_or_behind_or_beside_or_without_a_label_has_no_box(kind: str) -> None:
-    things = (
-        thing("hidden", "6 0 0 0 0 0", visual(PLATE), 1)
-        + thing("wall", "3 0 0 0 0 0", visual(cube(2)))
-        + thing("behind", "-3 0 0 0 0 0", visual(cube()), 2)
-        + thing("beside", "3 9 0 0 0 0", visual(cube()), 3)
-        + thing("far", "200 0 60 0 0 0", visual(cube(20)), 4)
+    models = (
+        labelled_model("hidden", "6 0 0 0 0 0", visual(PLATE), 1)
+        + labelled_model("wall", "3 0 0 0 0 0", visual(cube(2)))
+        + labelled_model("behind", "-3 0 0 0 0 0", visual(cube()), 2)
+        + labelled_model("beside", "3 9 0 0 0 0", visual(cube()), 3)
+        + labelled_model("far", "200 0 60 0 0 0", visual(cube(20)), 4)
     )
-    assert boxes(things, kind) == []
+    assert boxes(models, kind) == []
 
 
-def test_a_full_box_ends_at_the_edges_of_the_picture() -> None:
+def test_a_full_box_ends_at_the_edges_of_the_image() -> None:
     # it reaches beyond the left edge, and a wall beyond both
-    side = flat(thing("a", "2 1 0 0 0 0", visual(PLATE), 7), FULL)["a", 7]
+    side = flat(labelled_model("a", "2 1 0 0 0 0", visual(PLATE), 7), FULL)["a", 7]
     np.testing.assert_allclose(side, np.maximum(plate_at(1.995, 1), 0), atol=0.1)
-    wall = thing("wall", "2 0 0 0 0 0", visual("<box><size>0.01 9 0.5</size></box>"), 8)
+    wall = labelled_model("wall", "2 0 0 0 0 0", visual("<box><size>0.01 9 0.5</size></box>"), 8)
     np.testing.assert_allclose(
         flat(wall, FULL)["wall", 8], (0, plate_at(1.995)[1], WIDTH, plate_at(1.995)[3]), atol=0.05
     )
@@ -109,7 +111,7 @@ def test_a_full_box_ends_at_the_edges_of_the_picture() -> None:
 
 def test_what_reaches_behind_the_camera_is_cut_at_the_near_plane() -> None:
     # a floor from 5 m behind to 5 m ahead, 1 m below: its far edge is the upper one of its box
-    floor = thing("floor", "0 0 -1 0 0 0", visual("<box><size>10 2 0.02</size></box>"), 5)
+    floor = labelled_model("floor", "0 0 -1 0 0 0", visual("<box><size>10 2 0.02</size></box>"), 5)
     found = flat(floor, FULL)["floor", 5]
     expected = (0, HEIGHT / 2 + 0.99 * FOCAL / 5, WIDTH, HEIGHT)
     np.testing.assert_allclose(found, expected, atol=0.05)
@@ -128,15 +130,15 @@ SHAPES = {
 
 
 @pytest.mark.parametrize("shape", SHAPES)
-def test_of_what_nothing_hides_both_boxes_are_the_same(shape: str) -> None:
-    things = thing("a", "3 0.2 0.1 0.4 0.5 0.6", visual(SHAPES[shape]), 7)
+def test_both_boxes_of_an_unhidden_object_are_equal(shape: str) -> None:
+    models = labelled_model("a", "3 0.2 0.1 0.4 0.5 0.6", visual(SHAPES[shape]), 7)
     image = {"size": (320, 240)}
-    np.testing.assert_allclose(flat(things, VISIBLE, **image)["a", 7], flat(things, FULL, **image)["a", 7], atol=1.0)
+    np.testing.assert_allclose(flat(models, VISIBLE, **image)["a", 7], flat(models, FULL, **image)["a", 7], atol=1.0)
 
 
 def test_a_ball_has_the_box_of_its_cone() -> None:
     # 0.4 m at (3, 0.5): edges at the angle of the middle plus and minus asin(r/d)
-    found = flat(thing("a", "3 0.5 0 0 0 0", visual(SHAPES["ball"]), 7), FULL, size=(640, 480))["a", 7]
+    found = flat(labelled_model("a", "3 0.5 0 0 0 0", visual(SHAPES["ball"]), 7), FULL, size=(640, 480))["a", 7]
     focal = FOCAL * 10
     middle, half = np.arctan2(0.5, 3), np.arcsin(0.4 / np.hypot(0.5, 3))
     expected = 320 - focal * np.tan(middle + half), 320 - focal * np.tan(middle - half)
@@ -150,35 +152,41 @@ def test_a_model_of_several_links_has_one_box_and_two_labels_have_two() -> None:
         found = flat(whole, kind)
         np.testing.assert_allclose(found["a", 7], plate_at(3.995, wide=2), atol=0.51)
     visuals = visual(PLATE, "v", "0 1 0 0 0 0", label(7)) + visual(PLATE, "w", "0 -1 0 0 0 0")
-    model = thing("b", "5 0 0 0 0 0", visuals, 8)
+    model = labelled_model("b", "5 0 0 0 0 0", visuals, 8)
     assert set(flat(model, VISIBLE)) == {("b", 7), ("b", 8)}
     assert set(flat(model, VISIBLE, top=QUIRKS)) == {("b", 7)}, "one for the model, with its first label"
     np.testing.assert_allclose(flat(model, FULL, top=QUIRKS)["b", 7], plate_at(4.995, wide=3), atol=0.51)
 
 
 def test_boxes_come_from_the_end_of_the_alphabet_as_in_gazebo() -> None:
-    things = "".join(thing(n, f"5 {y} 0 0 0 0", visual(PLATE), 7) for n, y in (("a", 1.5), ("c", -1.5), ("b", 0)))
-    assert [name for name, _, _ in boxes(things, VISIBLE)] == ["c", "b", "a"]
+    models = "".join(
+        labelled_model(n, f"5 {y} 0 0 0 0", visual(PLATE), 7) for n, y in (("a", 1.5), ("c", -1.5), ("b", 0))
+    )
+    assert [name for name, _, _ in boxes(models, VISIBLE)] == ["c", "b", "a"]
 
 
 def test_the_label_255_has_a_box_except_with_gazebos_quirks() -> None:
-    things = thing("a", "3 0 0 0 0 0", visual(PLATE), 255) + thing("b", "3 0 0.6 0 0 0", visual(PLATE), 0)
-    assert set(flat(things, VISIBLE)) == {("a", 255), ("b", 0)}
-    assert set(flat(things, VISIBLE, top=QUIRKS)) == {("b", 0)}
+    models = labelled_model("a", "3 0 0 0 0 0", visual(PLATE), 255) + labelled_model(
+        "b", "3 0 0.6 0 0 0", visual(PLATE), 0
+    )
+    assert set(flat(models, VISIBLE)) == {("a", 255), ("b", 0)}
+    assert set(flat(models, VISIBLE, top=QUIRKS)) == {("b", 0)}
 
 
 def test_through_a_lens_boxes_are_around_what_the_lens_shows() -> None:
     lens = "<distortion><k1>-0.25</k1><k2>0.05</k2><p1>0.002</p1></distortion>"
-    things = thing("a", "1.5 0.3 0 0 0.3 0.4", visual(cube(0.8)), 7) + thing("b", "4 -1 -1 0 0 0", visual(cube()), 8)
+    models = labelled_model("a", "1.5 0.3 0 0 0.3 0.4", visual(cube(0.8)), 7) + labelled_model(
+        "b", "4 -1 -1 0 0 0", visual(cube()), 8
+    )
     image = {"size": (320, 240)}
-    seen, full = flat(things, VISIBLE, lens, **image), flat(things, FULL, lens, **image)
+    seen, full = flat(models, VISIBLE, lens, **image), flat(models, FULL, lens, **image)
     for key, box in seen.items():
         np.testing.assert_allclose(box, full[key], atol=1.5)
-    assert np.abs(np.subtract(seen["a", 7], flat(things, VISIBLE, **image)["a", 7])).max() > 5
+    assert np.abs(np.subtract(seen["a", 7], flat(models, VISIBLE, **image)["a", 7])).max() > 5
 
 
-def test_a_thing_that_moves_is_where_it_was_when_the_picture_was_taken() -> None:
-    ball = thing(
+def test_a_object_that_moves_is_where_it_was_when_the_image_was_taken() -> None:
+    ball = labelled_model(
         "a",
         "3 0 0.4 0 0 0",
         visual(PLATE) + f'<collision name="c"><geometry>{PLATE}</geometry></collision>',
@@ -195,13 +203,13 @@ def test_a_thing_that_moves_is_where_it_was_when_the_picture_was_taken() -> None
 # ---------------------------------------------------------------------- in space
 
 
-def test_a_box_in_space_is_the_things_own_in_the_frame_of_the_sensor() -> None:
+def test_a_box_in_space_is_the_objects_own_in_the_frame_of_the_sensor() -> None:
     stands = Pose.from_rpy(3, 0.4, -0.2, 0.3, 0.2, 0.5)
-    things = thing("a", "3 0.4 -0.2 0.3 0.2 0.5", visual("<box><size>0.3 0.5 0.8</size></box>"), 7)
+    models = labelled_model("a", "3 0.4 -0.2 0.3 0.2 0.5", visual("<box><size>0.3 0.5 0.8</size></box>"), 7)
     looks = Pose.from_rpy(0.1, 0.2, 0.3, 0.1, -0.05, 0.2)
-    ((_, _, box),) = boxes(things, SPACE, pose="0.1 0.2 0.3 0.1 -0.05 0.2")
+    ((_, _, box),) = boxes(models, SPACE, pose="0.1 0.2 0.3 0.1 -0.05 0.2")
     seen = looks.inverse() @ stands
-    np.testing.assert_allclose(place(box), seen.position, atol=1e-6)
+    np.testing.assert_allclose(centre_of(box), seen.position, atol=1e-6)
     np.testing.assert_allclose(turn(box).matrix, seen.matrix, atol=1e-6)
     np.testing.assert_allclose(size(box), (0.3, 0.5, 0.8), atol=1e-6)
 
@@ -217,10 +225,12 @@ def test_a_box_in_space_is_the_things_own_in_the_frame_of_the_sensor() -> None:
     ],
 )
 def test_a_box_in_space_has_the_size_of_the_shape(shape: str, expected: tuple[float, float, float]) -> None:
-    ((_, _, box),) = boxes(thing("a", "3 0 0 0.4 0.5 0.6", visual(SHAPES[shape], pose="0 0.1 0 0 0 0.3"), 7), SPACE)
+    ((_, _, box),) = boxes(
+        labelled_model("a", "3 0 0 0.4 0.5 0.6", visual(SHAPES[shape], pose="0 0.1 0 0 0 0.3"), 7), SPACE
+    )
     np.testing.assert_allclose(size(box), expected, atol=1e-3)
     at = Pose.from_rpy(3, 0, 0, 0.4, 0.5, 0.6) @ Pose.from_rpy(0, 0.1, 0, 0, 0, 0.3)
-    np.testing.assert_allclose(place(box), at.position, atol=1e-3)
+    np.testing.assert_allclose(centre_of(box), at.position, atol=1e-3)
     np.testing.assert_allclose(turn(box).matrix, at.matrix, atol=1e-6)
 
 
@@ -228,21 +238,21 @@ def test_of_several_visuals_the_box_has_the_axes_of_their_model() -> None:
     parts = visual(cube(0.2), "v", "0 0.4 0 0 0 0.7") + visual(
         "<box><size>0.2 0.2 0.6</size></box>", "w", "0 -0.4 0 0 0 0"
     )
-    ((_, _, box),) = boxes(thing("a", "3 0 0 0 0 0.5", parts, 7), SPACE)
+    ((_, _, box),) = boxes(labelled_model("a", "3 0 0 0 0 0.5", parts, 7), SPACE)
     half = 0.1 * (np.cos(0.7) + np.sin(0.7))  # of the turned cube
     wide = 0.4 + half + 0.5
     np.testing.assert_allclose(size(box), (2 * half, wide, 0.6), atol=1e-6)
     np.testing.assert_allclose(turn(box).matrix, Pose.from_rpy(0, 0, 0, 0, 0, 0.5).matrix, atol=1e-9)
     middle = Pose.from_rpy(3, 0, 0, 0, 0, 0.5).transform((0, (0.4 + half - 0.5) / 2, 0))
-    np.testing.assert_allclose(place(box), middle, atol=1e-6)
+    np.testing.assert_allclose(centre_of(box), middle, atol=1e-6)
 
 
 def test_with_gazebos_quirks_boxes_in_space_have_the_axes_of_its_renderer() -> None:
-    one = thing("a", "3 0.5 0.2 0 0 0", visual("<box><size>0.3 0.5 0.8</size></box>"), 7)
+    one = labelled_model("a", "3 0.5 0.2 0 0 0", visual("<box><size>0.3 0.5 0.8</size></box>"), 7)
     ((_, _, box),) = boxes(one, SPACE, top=QUIRKS)
-    np.testing.assert_allclose(place(box), (-0.5, 0.2, -3), atol=1e-6)  # right, up, backward
+    np.testing.assert_allclose(centre_of(box), (-0.5, 0.2, -3), atol=1e-6)  # right, up, backward
     np.testing.assert_allclose(turn(box).rotate((0, 0, 1)), (0, 1, 0), atol=1e-9)
-    two = thing(
+    two = labelled_model(
         "a", "3 0 0 0 0 0.5", visual(cube(0.2), "v", "0 0.4 0 0 0 0") + visual(cube(0.2), "w", "0 -0.4 0 0 0 0"), 7
     )
     ((_, _, box),) = boxes(two, SPACE, top=QUIRKS)
@@ -253,8 +263,8 @@ def test_with_gazebos_quirks_boxes_in_space_have_the_axes_of_its_renderer() -> N
 
 
 def test_its_topics_and_messages_are_those_of_the_bridge() -> None:
-    things = thing("a", "3 0 0 0 0 0", visual(PLATE), 7)
-    with load("boundingbox", things) as sim:
+    models = labelled_model("a", "3 0 0 0 0 0", visual(PLATE), 7)
+    with load("boundingbox", models) as sim:
         topics = sim.topics()
         assert topics["/eye"] == "vision_msgs/msg/Detection2DArray"
         assert topics["/eye_image"] == "sensor_msgs/msg/Image"
@@ -267,14 +277,14 @@ def test_its_topics_and_messages_are_those_of_the_bridge() -> None:
         assert one.results[0].hypothesis.class_id == "7"
         assert one.results[0].hypothesis.score == 1.0
         assert one.id == "a"
-    with load("boundingbox", things, "<box_type>3d</box_type>") as sim:
+    with load("boundingbox", models, "<box_type>3d</box_type>") as sim:
         assert sim.topics()["/eye"] == "vision_msgs/msg/Detection3DArray"
 
 
 @pytest.mark.parametrize("kind", [VISIBLE, FULL, SPACE])
-def test_the_boxes_are_drawn_in_green_into_a_picture_of_their_own(kind: str) -> None:
-    things = thing("a", "3 0 0 0 0 0", visual(PLATE), 7)
-    with load("boundingbox", things, f"<box_type>{kind}</box_type>") as sim:
+def test_the_boxes_are_drawn_in_green_into_a_image_of_their_own(kind: str) -> None:
+    models = labelled_model("a", "3 0 0 0 0 0", visual(PLATE), 7)
+    with load("boundingbox", models, f"<box_type>{kind}</box_type>") as sim:
         images = sim.subscribe("/eye_image")
         sim.run(0.01)
         image = colours(images.messages[-1])
@@ -293,10 +303,10 @@ def test_samples_for_a_data_set_are_saved_as_gazebo_lays_them_out(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    things = thing("a", "3 0.5 0 0 0 0.25", visual(PLATE), 7)
+    models = labelled_model("a", "3 0.5 0 0 0 0.25", visual(PLATE), 7)
     for kind in (FULL, SPACE):
         save = f'<box_type>{kind}</box_type><save enabled="true"><path>data</path></save>'
-        with load("boundingbox", things, save) as sim:
+        with load("boundingbox", models, save) as sim:
             sim.run(0.01)
     assert (tmp_path / "data/images/image_0000001.png").is_file()
     (row,) = csv.DictReader((tmp_path / "data/boxes/boxes_0000000.csv").read_text().splitlines())

@@ -35,7 +35,7 @@ def scene(sensors: str, others: str = "", **more: Any) -> str:
     return world(sensors, others=others, top=SCENE, **more)
 
 
-def taken(text: str, topics: tuple[str, ...]) -> list[Any]:
+def first_messages(text: str, topics: tuple[str, ...]) -> list[Any]:
     """The first message of each topic."""
     with simkit.load(text) as sim:
         subs = [sim.subscribe(t) for t in topics]
@@ -56,7 +56,7 @@ def test_left_right_up_and_down_are_where_they_should_be() -> None:
         + box("right", "3 -1 1 0 0 0", "0.2 0.4 0.4", colour="0 1 0")
         + box("up", "3 0 1.7 0 0 0", "0.2 0.4 0.4", colour="0 0 1")
     )
-    (image,) = taken(scene(sensor("camera", camera(), extra="<topic>c</topic>"), others), ("/c",))
+    (image,) = first_messages(scene(sensor("camera", camera(), extra="<topic>c</topic>"), others), ("/c",))
     pixels = colours(image)
     f = 64 / (2 * math.tan(0.6))
     off, rise = round(1.0 / 2.9 * f), round(0.7 / 2.9 * f)
@@ -66,20 +66,20 @@ def test_left_right_up_and_down_are_where_they_should_be() -> None:
     np.testing.assert_array_equal(pixels[46, 32], BACKGROUND)
 
 
-def test_the_first_picture_is_not_black_and_the_background_is_the_scenes() -> None:
-    (image,) = taken(scene(sensor("camera", camera(), extra="<topic>c</topic>")), ("/c",))
+def test_the_first_image_is_not_black_and_the_background_is_the_scenes() -> None:
+    (image,) = first_messages(scene(sensor("camera", camera(), extra="<topic>c</topic>")), ("/c",))
     np.testing.assert_array_equal(colours(image), np.broadcast_to(BACKGROUND, (48, 64, 3)))
 
 
 def test_depth_is_along_the_optical_axis_to_a_tenth_of_a_millimetre() -> None:
-    (message,) = taken(scene(rgbd(), WALL), ("/cam/depth_image",))
+    (message,) = first_messages(scene(rgbd(), WALL), ("/cam/depth_image",))
     np.testing.assert_allclose(depths(message), 3.0, atol=1e-4)
 
 
 @pytest.mark.parametrize("far", [4.0, 100.0])
 def test_depth_of_a_floor_follows_the_pixels(far: float) -> None:
     floor = box("floor", "0 0 -0.5 0 0 0", "400 400 1")
-    (message,) = taken(scene(rgbd(clip=f"<near>0.1</near><far>{far}</far>"), floor), ("/cam/depth_image",))
+    (message,) = first_messages(scene(rgbd(clip=f"<near>0.1</near><far>{far}</far>"), floor), ("/cam/depth_image",))
     found = depths(message)
     f = 64 / (2 * math.tan(0.6))
     rows = np.arange(25, 48)
@@ -92,7 +92,7 @@ def test_depth_of_a_floor_follows_the_pixels(far: float) -> None:
 
 def test_too_near_is_minus_infinity_and_too_far_plus_infinity() -> None:
     others = box("near", "0.3 0 1 0 0 0", "0.1 0.1 0.1") + box("far", "8 -1 1 0 0 0", "1 2 2")
-    (message,) = taken(scene(rgbd(clip="<near>0.5</near><far>5</far>"), others), ("/cam/depth_image",))
+    (message,) = first_messages(scene(rgbd(clip="<near>0.5</near><far>5</far>"), others), ("/cam/depth_image",))
     found = depths(message)
     assert (found == -math.inf).any()
     assert set(np.unique(found)) == {-math.inf, math.inf}
@@ -100,13 +100,13 @@ def test_too_near_is_minus_infinity_and_too_far_plus_infinity() -> None:
 
 def test_a_depth_cameras_own_clip_bounds_depths_alone() -> None:
     more = "<depth_camera><clip><near>0.2</near><far>2</far></clip></depth_camera>"
-    image, depth = taken(scene(rgbd(more), WALL), ("/cam/image", "/cam/depth_image"))
+    image, depth = first_messages(scene(rgbd(more), WALL), ("/cam/image", "/cam/depth_image"))
     assert (depths(depth) == math.inf).all()
     assert colours(image)[24, 32].argmax() == 0
 
 
 def test_the_cloud_lies_on_the_wall_and_has_its_colour() -> None:
-    (message, info) = taken(
+    (message, info) = first_messages(
         scene(rgbd(), box("wall", "3.5 1 1 0 0 0", "1 2 9", colour="1 0 0")), ("/cam/points", "/cam/camera_info")
     )
     found = cloud(message)
@@ -124,16 +124,16 @@ def test_the_cloud_lies_on_the_wall_and_has_its_colour() -> None:
     assert blue == green < 50
 
 
-def test_given_intrinsics_are_drawn_and_told() -> None:
+def test_intrinsics_of_the_file_are_drawn_and_published() -> None:
     lens = "<lens><intrinsics><fx>100</fx><fy>80</fy><cx>20</cx><cy>30</cy></intrinsics></lens>"
     dot = box("dot", "5 0 1 0 0 0", "0.02 0.1 0.1")
-    info, depth = taken(scene(rgbd(lens), dot), ("/cam/camera_info", "/cam/depth_image"))
+    info, depth = first_messages(scene(rgbd(lens), dot), ("/cam/camera_info", "/cam/depth_image"))
     assert info.k.tolist() == [100, 0, 20, 0, 80, 30, 0, 0, 1]
     rows, columns = np.nonzero(np.isfinite(depths(depth)))
     assert (columns.mean() + 0.5, rows.mean() + 0.5) == pytest.approx((20, 30), abs=0.51)
 
 
-def test_a_moving_cameras_picture_is_of_the_state_at_its_stamp() -> None:
+def test_a_moving_cameras_image_is_of_the_state_at_its_stamp() -> None:
     falling = sensor(
         "depth_camera",
         camera(width=16, height=16),
@@ -162,7 +162,7 @@ def test_a_moving_cameras_picture_is_of_the_state_at_its_stamp() -> None:
 )
 def test_formats(given: str, encoding: str, step: int) -> None:
     block = camera().replace("<image>", f"<image><format>{given}</format>")
-    (image,) = taken(scene(sensor("camera", block, extra="<topic>c</topic>"), WALL), ("/c",))
+    (image,) = first_messages(scene(sensor("camera", block, extra="<topic>c</topic>"), WALL), ("/c",))
     assert (image.encoding, image.step, image.is_bigendian, len(image.data)) == (encoding, step, 0, 48 * step)
     if encoding == "bgr8":
         assert colours(image)[24, 32].argmax() == 2
@@ -188,12 +188,12 @@ def test_topics_of_every_kind() -> None:
 def test_camera_info_alone_draws_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     with simkit.load(scene(sensor("camera", camera(), extra="<topic>a/b</topic>"))) as sim:
         sub = sim.subscribe("/a/camera_info")
-        monkeypatch.setattr(type(sim.sensor("m::l::s")), "develop", lambda *_: pytest.fail("drawn"))
+        monkeypatch.setattr(type(sim.sensor("m::l::s")), "make_reading", lambda *_: pytest.fail("drawn"))
         sim.run(0.02)
         assert sub.latest.width == 64
 
 
-def test_reading_later_gives_the_same_picture() -> None:
+def test_reading_later_gives_the_same_image() -> None:
     text = scene(rgbd(noise(0.02)), WALL)
     with simkit.load(text) as early, simkit.load(text) as late:
         early.subscribe("/cam/image")
@@ -204,7 +204,7 @@ def test_reading_later_gives_the_same_picture() -> None:
         assert a.header.stamp == b.header.stamp
 
 
-def test_noise_is_on_the_picture_and_not_on_its_truth() -> None:
+def test_noise_is_on_the_image_and_not_on_its_truth() -> None:
     with simkit.load(scene(rgbd(noise(0.02), width=320, height=240), WALL)) as sim:
         sub = sim.subscribe("/cam/depth_image")
         sim.run(0.02)
@@ -216,12 +216,12 @@ def test_noise_is_on_the_picture_and_not_on_its_truth() -> None:
         assert (depths(sub.latest) - 3.0).std() == pytest.approx(0.02, rel=0.03)
 
 
-def test_a_bent_picture_follows_browns_model() -> None:
+def test_a_bent_image_follows_browns_model() -> None:
     lens = "<distortion><k1>-0.2</k1><k2>0.03</k2><p1>0.001</p1></distortion>"
     spot = box("spot", "4.05 1 1.6 0 0 0", "0.1 0.06 0.06", colour="1 1 1")
     optics = {"width": 640, "height": 480}
-    (straight,) = taken(scene(sensor("camera", camera(**optics), extra="<topic>c</topic>"), spot), ("/c",))
-    bent, info = taken(
+    (straight,) = first_messages(scene(sensor("camera", camera(**optics), extra="<topic>c</topic>"), spot), ("/c",))
+    bent, info = first_messages(
         scene(sensor("camera", camera(lens, **optics), extra="<topic>cam/c</topic>"), spot),
         ("/cam/c", "/cam/camera_info"),
     )
@@ -241,7 +241,7 @@ def test_a_bent_picture_follows_browns_model() -> None:
     assert colours(bent)[[0, 0, -1, -1], [0, -1, 0, -1]].min() > 0  # no black corners
 
 
-def test_a_triggered_camera_takes_one_picture_per_trigger() -> None:
+def test_a_triggered_camera_takes_one_image_per_trigger() -> None:
     with simkit.load(scene(sensor("camera", camera("<triggered>true</triggered>"), extra="<topic>c</topic>"))) as sim:
         sub = sim.subscribe("/c")
         sim.run(0.05)
@@ -278,7 +278,7 @@ def test_classics_depth_camera_has_colour_depth_and_points() -> None:
 # ---------------------------------------------------------------------- life
 
 
-def test_pictures_follow_what_is_spawned_removed_and_restored() -> None:
+def test_images_follow_what_is_spawned_removed_and_restored() -> None:
     with simkit.load(scene(sensor("depth_camera", camera(width=8, height=8), extra="<topic>d</topic>"), WALL)) as sim:
         sub = sim.subscribe("/d")
 

@@ -18,12 +18,12 @@ from depth_worlds import (
     WALL,
     camera,
     depth_of,
+    first_messages,
     loaded,
     looks_at,
     points_of,
     scene,
     seen_at,
-    taken,
 )
 from renderer import NEEDS_RENDERER
 from sensor_worlds import box, cloud, colours, depths, noise, world
@@ -48,7 +48,7 @@ def test_depth_is_exact_near_and_far_away_whatever_the_clip_planes(near: float, 
     np.testing.assert_allclose(seen, distance, rtol=4e-7)
 
 
-def test_the_planes_to_draw_with_are_exact_and_cut_nothing_away() -> None:
+def test_drawn_clip_planes_are_exact_and_clip_nothing_visible() -> None:
     for near, far in ((0.1, 100.0), (1e-6, 1e30), (0.3, 0.31), (0.05, 8.0), (5.0, 4321.1)):
         drawn_near, drawn_far = clip_planes(near, far)
         ratio = drawn_far / drawn_near
@@ -79,7 +79,7 @@ def tilted(turn: str) -> str:
 def test_a_tilted_plane_reprojects_onto_a_plane_by_k_and_d(lens: str, turn: str, quality: str) -> None:
     """Within 1 mm at 3 m, and within 0.01 mm where nothing is bent; multisampling is no matter of depths."""
     look = f"<scene><quality>{quality}</quality></scene>"
-    depth, info = taken(
+    depth, info = first_messages(
         world(camera(lens, width=160, height=120), others=tilted(turn), top=look), "/c/depth_image", "/c/camera_info"
     )
     z = depths(depth)
@@ -126,7 +126,7 @@ def test_far_is_a_distance_and_near_a_depth() -> None:
 def test_an_rgbd_cameras_own_clip_bounds_depths_along_the_axis(own: str, expected: float) -> None:
     """An end that is not given is the camera's."""
     more = f"<depth_camera><clip>{own}</clip></depth_camera>"
-    image, depth, points = taken(scene(camera(more), WALL), "/c/image", "/c/depth_image", "/c/points")
+    image, depth, points = first_messages(scene(camera(more), WALL), "/c/image", "/c/depth_image", "/c/points")
     np.testing.assert_allclose(depths(depth), expected, rtol=1e-6)
     assert colours(image)[..., 0].min() > 100
     np.testing.assert_allclose(cloud(points)["x"], expected, rtol=1e-6)
@@ -138,7 +138,7 @@ def test_a_depth_cameras_own_clip_counts_here_and_not_with_gazebos_quirks() -> N
     sim, (depth,) = loaded(text, "/c")
     assert (depths(depth) == math.inf).all()
     assert "SK-SENSOR-110" in {d.code for d in sim.diagnostics}
-    (depth,) = taken(text.replace("<scene>", "<gazebo_quirks>true</gazebo_quirks><scene>"), "/c")
+    (depth,) = first_messages(text.replace("<scene>", "<gazebo_quirks>true</gazebo_quirks><scene>"), "/c")
     np.testing.assert_allclose(depths(depth), 3.0, rtol=1e-6)
 
 
@@ -175,7 +175,7 @@ def test_a_corner_in_the_colours_is_at_its_own_point_of_the_cloud(lens: str, qua
     others, corner = plates()
     look = f"<scene><ambient>1 1 1 1</ambient><quality>{quality}</quality></scene>"
     eye = camera(lens + OPTICAL, width=160, height=120)
-    image, points, info = taken(world(eye, others=others, top=look), "/c/image", "/c/points", "/c/camera_info")
+    image, points, info = first_messages(world(eye, others=others, top=look), "/c/image", "/c/points", "/c/camera_info")
     optical = np.array((-corner[1], -corner[2], corner[0]))
     expected = seen_at(optical[None], info)[0]
     grey = cv2.cvtColor(colours(image), cv2.COLOR_RGB2GRAY)
@@ -257,7 +257,7 @@ def test_disparities_come_in_steps_and_a_focal_length_of_their_own() -> None:
     np.testing.assert_allclose(steps, 400 * 0.05 / true / 0.125, atol=0.501)
 
 
-def test_a_disparity_of_nothing_is_infinitely_far() -> None:
+def test_a_disparity_of_zero_is_infinitely_far() -> None:
     with simkit.load(scene(camera(disparity("<stddev>1</stddev>"), clip="<near>0.1</near><far>30</far>"), WALL)) as sim:
         sim.run(0.02)
         found = sim.sensor("m::l::s").depth
@@ -298,5 +298,5 @@ def test_a_depth_camera_draws_no_colours_unless_they_are_asked_for() -> None:
 def test_what_can_be_seen_through_has_no_depth() -> None:
     pane = box("pane", "1.5 0 1 0 0 0", "0.1 9 9").replace("</material>", "</material><transparency>0.5</transparency>")
     for kind, topic in (("rgbd_camera", "/c/depth_image"), ("depth_camera", "/c")):
-        (depth,) = taken(scene(camera(kind=kind), WALL + pane), topic)
+        (depth,) = first_messages(scene(camera(kind=kind), WALL + pane), topic)
         np.testing.assert_allclose(depths(depth), 3.0, rtol=1e-6)

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from depth_worlds import CLASSIC, OPTICAL, WALL, camera, loaded, points_of, scene, taken
+from depth_worlds import CLASSIC, OPTICAL, WALL, camera, first_messages, loaded, points_of, scene
 from renderer import NEEDS_RENDERER
 from sensor_worlds import box, cloud, depths, noise
 
@@ -20,7 +20,7 @@ pytestmark = NEEDS_RENDERER
 
 def test_a_cloud_is_laid_out_as_gazebos() -> None:
     half = box("half", "3.5 2 1 0 0 0", "1 4 9", colour="1 0 0")
-    (message,) = taken(scene(camera(), half), "/c/points")
+    (message,) = first_messages(scene(camera(), half), "/c/points")
     assert [(f.name, f.offset, f.datatype, f.count) for f in message.fields] == [
         ("x", 0, 7, 1), ("y", 4, 7, 1), ("z", 8, 7, 1), ("rgb", 16, 7, 1),
     ]  # fmt: skip
@@ -34,13 +34,13 @@ def test_a_cloud_is_laid_out_as_gazebos() -> None:
     points = points_of(message)
     assert np.isfinite(points[:, :31]).all()
     assert (points[:, 33:] == math.inf).all()
-    (whole,) = taken(scene(camera(), WALL), "/c/points")
+    (whole,) = first_messages(scene(camera(), WALL), "/c/points")
     assert whole.is_dense
 
 
 def test_a_depth_cameras_cloud_is_bright_near_and_black_far() -> None:
     others = box("near", "1.5 0.5 1 0 0 0", "1 1 9") + box("far", "4.5 -2 1 0 0 0", "1 4 9")
-    (message,) = taken(scene(camera(kind="depth_camera"), others), "/c/points")
+    (message,) = first_messages(scene(camera(kind="depth_camera"), others), "/c/points")
     found = cloud(message)
     shades = np.ascontiguousarray(found["rgb"]).view(np.uint8).reshape(48, 64, 4)[..., 0]
     assert shades[24, 50] == 0
@@ -149,7 +149,7 @@ def test_a_static_model_takes_no_frame_from_a_robot() -> None:
 
 def test_with_gazebos_quirks_an_optical_frame_is_passed_over() -> None:
     text = scene(camera(OPTICAL), WALL, top="<gazebo_quirks>true</gazebo_quirks>")
-    (points,) = taken(text, "/c/points")
+    (points,) = first_messages(text, "/c/points")
     assert points.header.frame_id == "m::l::s"
     np.testing.assert_allclose(cloud(points)["x"], 3.0, rtol=1e-6)
 
@@ -198,7 +198,9 @@ def test_a_cloud_may_have_a_frame_of_its_own_and_axes_of_ros(kind: str, more: st
 
 def test_axes_of_ros_are_for_a_frame_that_the_file_turns_itself() -> None:
     extra = "<topic>c</topic><gz_frame_id>turned</gz_frame_id>"
-    (points,) = taken(scene(camera("<gz:use_ros_convention>1</gz:use_ros_convention>", extra=extra), WALL), "/c/points")
+    (points,) = first_messages(
+        scene(camera("<gz:use_ros_convention>1</gz:use_ros_convention>", extra=extra), WALL), "/c/points"
+    )
     assert points.header.frame_id == "turned"
     np.testing.assert_allclose(cloud(points)["z"], 3.0, rtol=1e-6)
     assert cloud(points)["x"][0, 0] < 0 > cloud(points)["y"][0, 0]  # left and above

@@ -1,4 +1,4 @@
-"""What a camera's messages hold and when they come: formats, triggers, saved pictures, topics, frames."""
+"""Content and time of a camera's messages: formats, triggers, saved images, topics, frames."""
 
 from __future__ import annotations
 
@@ -35,12 +35,12 @@ def scene(sensors: str, **more: Any) -> str:
     return world(sensors, others=RED + GREEN, top=SCENE, **more)
 
 
-def one(block: str, kind: str = "camera", **more: Any) -> str:
+def camera_world(block: str, kind: str = "camera", **more: Any) -> str:
     return scene(sensor(kind, block, extra="<topic>cam/image</topic>", **more))
 
 
 def picture(fmt: str, kind: str = "camera") -> Any:
-    with simkit.load(one(camera(fmt=fmt), kind)) as sim:
+    with simkit.load(camera_world(camera(fmt=fmt), kind)) as sim:
         sim.run(0.02)
         return sim.sensor("m::l::s").latest
 
@@ -90,7 +90,7 @@ def pixels(fmt: str) -> np.ndarray:
     return image_messages.pixels_of(picture(fmt))
 
 
-def test_every_format_holds_the_same_picture(colours: np.ndarray) -> None:
+def test_every_format_holds_the_same_image(colours: np.ndarray) -> None:
     bgr, wide = colours[..., ::-1], colours.astype(np.uint16) * 257
     np.testing.assert_array_equal(pixels("B8G8R8"), bgr)
     np.testing.assert_array_equal(pixels("RGBA_INT8")[..., :3], colours)
@@ -119,7 +119,7 @@ def test_brightness_is_rec_601s_and_white_is_the_whole_range(colours: np.ndarray
         ("BAYER_GRBG8", cv2.COLOR_BayerGB2RGB),
     ],
 )
-def test_a_bayer_picture_demosaics_to_the_colours(fmt: str, code: int, colours: np.ndarray) -> None:
+def test_a_bayer_image_demosaics_to_the_colours(fmt: str, code: int, colours: np.ndarray) -> None:
     found = cv2.cvtColor(pixels(fmt), code).astype(int)
     flat = np.ptp(cv2.blur(colours, (1, 1)).astype(int), axis=2) >= 0
     for shift in ((0, 3), (3, 0), (0, -3), (-3, 0)):  # away from edges
@@ -130,9 +130,9 @@ def test_a_bayer_picture_demosaics_to_the_colours(fmt: str, code: int, colours: 
     np.testing.assert_allclose(found[flat], colours[flat], atol=1)
 
 
-def test_noise_is_in_the_picture_of_every_format() -> None:
+def test_noise_is_in_the_image_of_every_format() -> None:
     for fmt in ("L16", "BAYER_GRBG8", "R_FLOAT32"):
-        text = one(camera('<noise type="gaussian"><stddev>0.1</stddev></noise>', fmt))
+        text = camera_world(camera('<noise type="gaussian"><stddev>0.1</stddev></noise>', fmt))
         with simkit.load(text) as sim:
             sim.run(0.02)
             eye = sim.sensor("m::l::s")
@@ -142,14 +142,14 @@ def test_noise_is_in_the_picture_of_every_format() -> None:
 
 def test_a_depth_cameras_float_format_is_of_its_depths() -> None:
     for kind in ("depth_camera", "rgbd_camera"):
-        with simkit.load(one(camera(fmt="R_FLOAT32"), kind)) as sim:
+        with simkit.load(camera_world(camera(fmt="R_FLOAT32"), kind)) as sim:
             assert not [d for d in sim.diagnostics if d.code.startswith(("SK-SENSOR", "SK-PARAM"))]
             assert sim.sensor("m::l::s").options.encoding == "rgb8"
 
 
 @pytest.mark.parametrize("fmt", image_messages.WITHOUT_ENCODING)
 def test_what_no_message_can_hold_is_said_and_drawn_in_colours(fmt: str) -> None:
-    with simkit.load(one(camera(fmt=fmt))) as sim:
+    with simkit.load(camera_world(camera(fmt=fmt))) as sim:
         (found,) = [d for d in sim.diagnostics if d.code == "SK-SENSOR-120"]
         assert fmt in found.message
         assert found.line
@@ -159,7 +159,7 @@ def test_what_no_message_can_hold_is_said_and_drawn_in_colours(fmt: str) -> None
 
 def test_an_unknown_format_is_an_error_with_the_closest_and_all_there_are() -> None:
     with pytest.raises(simkit.LoadError) as caught:
-        simkit.load(one(camera(fmt="R8G8B9")))
+        simkit.load(camera_world(camera(fmt="R8G8B9")))
     (found,) = caught.value.diagnostics
     assert found.code == "SK-PARAM-002"
     assert "R8G8B9" in str(found)
@@ -170,8 +170,8 @@ def test_an_unknown_format_is_an_error_with_the_closest_and_all_there_are() -> N
 # ---------------------------------------------------------------------- triggers
 
 
-def test_a_trigger_gives_one_picture_at_the_next_due_time() -> None:
-    with simkit.load(one(camera("<triggered>true</triggered>"), rate=20)) as sim:
+def test_a_trigger_gives_one_image_at_the_next_due_time() -> None:
+    with simkit.load(camera_world(camera("<triggered>true</triggered>"), rate=20)) as sim:
         assert sim.topics()["/cam/image/trigger"] == "std_msgs/msg/Bool"
         image, info = sim.subscribe("/cam/image"), sim.subscribe("/cam/camera_info")
         sim.run(0.2)
@@ -187,7 +187,7 @@ def test_a_trigger_gives_one_picture_at_the_next_due_time() -> None:
 
 def test_the_trigger_topic_of_the_file() -> None:
     block = camera("<triggered>1</triggered><trigger_topic>go now</trigger_topic>")
-    with simkit.load(one(block)) as sim:
+    with simkit.load(camera_world(block)) as sim:
         image = sim.subscribe("/cam/image")
         sim.publish("/go_now", {"data": False})  # what it says does not matter
         sim.run(0.05)
@@ -195,7 +195,7 @@ def test_the_trigger_topic_of_the_file() -> None:
 
 
 def test_a_waiting_trigger_is_remembered_and_forgotten() -> None:
-    with simkit.load(one(camera("<triggered>true</triggered>"), rate=10)) as sim:
+    with simkit.load(camera_world(camera("<triggered>true</triggered>"), rate=10)) as sim:
         image = sim.subscribe("/cam/image")
         sim.run(0.01)
         sim.publish("/cam/image/trigger", {"data": True})
@@ -213,7 +213,7 @@ def test_a_waiting_trigger_is_remembered_and_forgotten() -> None:
 
 
 def test_a_triggered_camera_follows_a_change_of_its_rate() -> None:
-    with simkit.load(one(camera("<triggered>true</triggered>"), rate=1)) as sim:
+    with simkit.load(camera_world(camera("<triggered>true</triggered>"), rate=1)) as sim:
         image = sim.subscribe("/cam/image")
         sim.run(0.01)
         sim.publish("/cam/image/trigger", {"data": True})
@@ -228,27 +228,27 @@ def test_a_triggered_camera_follows_a_change_of_its_rate() -> None:
 
 
 @pytest.fixture
-def there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def save_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv(SAVE_PATH_VARIABLE, raising=False)
     return tmp_path
 
 
 def saving(path: str, fmt: str = "", kind: str = "camera", **more: Any) -> str:
-    return one(camera(f'<save enabled="true"><path>{path}</path></save>', fmt), kind, **more)
+    return camera_world(camera(f'<save enabled="true"><path>{path}</path></save>', fmt), kind, **more)
 
 
-def test_each_picture_is_saved_whether_anybody_listens_or_not(there: Path) -> None:
+def test_each_image_is_saved_with_and_without_subscribers(save_folder: Path) -> None:
     with simkit.load(saving("seen/here", rate=50)) as sim:
-        assert not (there / "seen").exists()
+        assert not (save_folder / "seen").exists()
         sim.run(0.081)  # at 1, 20, 40, 60 and 80 ms
-        names = sorted(p.name for p in (there / "seen/here").iterdir())
+        names = sorted(p.name for p in (save_folder / "seen/here").iterdir())
         assert names == [f"m::l::s_{i}.png" for i in range(5)]
         latest = image_messages.pixels_of(sim.sensor("m::l::s").latest)
-        np.testing.assert_array_equal(read(there / "seen/here/m::l::s_4.png")[..., ::-1], latest)
+        np.testing.assert_array_equal(read(save_folder / "seen/here/m::l::s_4.png")[..., ::-1], latest)
         sim.reset()
         sim.run(0.02)
-        assert (there / "seen/here/m::l::s_5.png").exists()
+        assert (save_folder / "seen/here/m::l::s_5.png").exists()
 
 
 def read(path: Path) -> np.ndarray:
@@ -258,63 +258,63 @@ def read(path: Path) -> np.ndarray:
 
 
 @pytest.mark.parametrize(("fmt", "dtype"), [("L16", np.uint16), ("BAYER_RGGB8", np.uint8), ("BGR_INT8", np.uint8)])
-def test_a_saved_picture_holds_what_the_message_holds(fmt: str, dtype: type, there: Path) -> None:
+def test_a_saved_image_has_the_content_of_the_message(fmt: str, dtype: type, save_folder: Path) -> None:
     with simkit.load(saving("seen", fmt)) as sim:
         sim.run(0.01)
-        found = read(there / "seen/m::l::s_0.png")
+        found = read(save_folder / "seen/m::l::s_0.png")
         assert found.dtype == dtype
         np.testing.assert_array_equal(found, image_messages.pixels_of(sim.sensor("m::l::s").latest))
 
 
-def test_depths_are_saved_as_shades(there: Path) -> None:
+def test_depths_are_saved_as_shades(save_folder: Path) -> None:
     with simkit.load(saving("seen", kind="depth_camera")) as sim:
         sim.run(0.01)
-    found = read(there / "seen/m::l::s_0.png")
+    found = read(save_folder / "seen/m::l::s_0.png")
     assert found[24, 16] == round(255 * (1 - 3.0 / 100))
     assert found[24, 32] == 0  # nothing is there
 
 
 @pytest.mark.parametrize("path", ["/somewhere/else", "../beside", "in/../../beside", "link/out", "a/../../../x"])
-def test_a_world_writes_nowhere_else(path: str, there: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (there / "work").mkdir()
-    (there / "elsewhere").mkdir()
-    (there / "work/link").symlink_to(there / "elsewhere")
-    monkeypatch.chdir(there / "work")
+def test_a_world_writes_nowhere_else(path: str, save_folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (save_folder / "work").mkdir()
+    (save_folder / "elsewhere").mkdir()
+    (save_folder / "work/link").symlink_to(save_folder / "elsewhere")
+    monkeypatch.chdir(save_folder / "work")
     with simkit.load(saving(path)) as sim:
         (found,) = [d for d in sim.diagnostics if d.code == "SK-SENSOR-009"]
         assert SAVE_PATH_VARIABLE in str(found)
         sim.run(0.02)
-    assert sorted(p.name for p in there.rglob("*")) == ["elsewhere", "link", "work"]
+    assert sorted(p.name for p in save_folder.rglob("*")) == ["elsewhere", "link", "work"]
 
 
-def test_the_user_may_allow_another_folder(there: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (there / "work").mkdir()
-    (there / "kept").mkdir()
-    monkeypatch.chdir(there / "work")
-    monkeypatch.setenv(SAVE_PATH_VARIABLE, str(there / "kept"))
-    with simkit.load(saving(str(there / "kept/today"))) as sim:
+def test_the_user_may_allow_another_folder(save_folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (save_folder / "work").mkdir()
+    (save_folder / "kept").mkdir()
+    monkeypatch.chdir(save_folder / "work")
+    monkeypatch.setenv(SAVE_PATH_VARIABLE, str(save_folder / "kept"))
+    with simkit.load(saving(str(save_folder / "kept/today"))) as sim:
         sim.step()
-    assert [p.name for p in (there / "kept/today").iterdir()] == ["m::l::s_0.png"]
+    assert [p.name for p in (save_folder / "kept/today").iterdir()] == ["m::l::s_0.png"]
 
 
-def test_what_cannot_be_written_is_said_once_and_the_run_goes_on(there: Path) -> None:
-    (there / "seen").write_text("a file where the folder should be")
+def test_what_cannot_be_written_is_said_once_and_the_run_goes_on(save_folder: Path) -> None:
+    (save_folder / "seen").write_text("a file where the folder should be")
     with simkit.load(saving("seen")) as sim:
         sim.run(0.1)
         assert len([d for d in sim.diagnostics if d.code == "SK-SENSOR-121"]) == 1
         assert sim.time == pytest.approx(0.1)
-    assert [p.name for p in there.iterdir()] == ["seen"]
+    assert [p.name for p in save_folder.iterdir()] == ["seen"]
 
 
-def test_saving_needs_a_path_and_a_word_that_is_one(there: Path) -> None:
+def test_saving_needs_a_path_and_a_word_that_is_one(save_folder: Path) -> None:
     for block in ('<save enabled="true"/>', '<save enabled="perhaps"><path>x</path></save>'):
         with pytest.raises(simkit.LoadError) as caught:
-            simkit.load(one(camera(block)))
+            simkit.load(camera_world(camera(block)))
         assert {d.code for d in caught.value.diagnostics} <= {"SK-PARAM-001", "SK-PARAM-002"}
-    with simkit.load(one(camera('<save enabled="false"><path>/x</path></save>'))) as sim:
+    with simkit.load(camera_world(camera('<save enabled="false"><path>/x</path></save>'))) as sim:
         assert not [d for d in sim.diagnostics if d.code.startswith("SK-SENSOR")]
         sim.run(0.02)
-    assert list(there.iterdir()) == []
+    assert list(save_folder.iterdir()) == []
 
 
 def test_every_encoding_becomes_a_png() -> None:
@@ -328,7 +328,7 @@ def test_every_encoding_becomes_a_png() -> None:
 # ---------------------------------------------------------------------- topics and frames
 
 
-def test_the_info_is_beside_the_image_or_where_the_file_says() -> None:
+def test_the_info_topic_is_the_images_sibling_or_the_files_topic() -> None:
     with simkit.load(scene(sensor("camera", camera(), extra="<topic>a/b/c</topic>"))) as sim:
         assert "/a/b/camera_info" in sim.topics()
     block = camera("<camera_info_topic>told/here</camera_info_topic>")
@@ -339,16 +339,16 @@ def test_the_info_is_beside_the_image_or_where_the_file_says() -> None:
 
 def test_an_optical_frame_is_named_by_image_and_info() -> None:
     for more, expected in (("", "m::l::s"), ("<optical_frame_id>eye_optical</optical_frame_id>", "eye_optical")):
-        with simkit.load(one(camera(more))) as sim:
+        with simkit.load(camera_world(camera(more))) as sim:
             image, info = sim.subscribe("/cam/image"), sim.subscribe("/cam/camera_info")
             sim.run(0.02)
             assert image.latest.header.frame_id == info.latest.header.frame_id == expected
 
 
 def test_a_camera_block_has_a_name_and_a_place() -> None:
-    """As in Classic: the camera stands at `<pose>` in its sensor."""
+    """The camera is at `<pose>` in its sensor, as in Classic."""
     turned = camera("<pose>0 0 0 0 0 0.4</pose>", attributes=' name="eye"')
-    with simkit.load(one(turned)) as sim, simkit.load(one(camera(), pose="0 0 0 0 0 0.4")) as same:
+    with simkit.load(camera_world(turned)) as sim, simkit.load(camera_world(camera(), pose="0 0 0 0 0 0.4")) as same:
         assert not [d for d in sim.diagnostics if d.code.startswith("SK-PARAM")]
         assert sim.sensor("m::l::s").pose.rpy[2] == pytest.approx(0.4)
         sim.run(0.02)

@@ -22,12 +22,12 @@ SIZE = (120, 160)
 FRAMES = 12
 
 
-def made(stddev: float, mean: float = 0.0, name: str = "m::l::s", *, seed: int = 1, **how: Any) -> ImageNoise:
+def new_noise(stddev: float, mean: float = 0.0, name: str = "m::l::s", *, seed: int = 1, **how: Any) -> ImageNoise:
     return ImageNoise(NoiseModel(mean=mean, stddev=stddev), RandomStreams(seed), name, **how)
 
 
 def on_grey(of: ImageNoise, level: int = 128, frames: int = FRAMES) -> npt.NDArray[np.float64]:
-    """What is added to plain grey pictures, shape (frames, h, w), in units of white."""
+    """Return the noise of plain grey images, shape (frames, h, w), in units of white."""
     plain = np.full((*SIZE, 3), level, np.uint8)
     found = np.stack([of.on_colours(plain, i).astype(np.float64) for i in range(1, frames + 1)])
     assert (found == found[..., :1]).all()  # one draw for the three channels
@@ -45,7 +45,7 @@ def correlation(a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> float
     return float(np.corrcoef(a.ravel(), b.ravel())[0, 1]) * math.sqrt(a.size)
 
 
-BOTH = pytest.mark.parametrize("added", [on_grey(made(0.1)), on_depth(made(0.1))], ids=["colours", "depths"])
+BOTH = pytest.mark.parametrize("added", [on_grey(new_noise(0.1)), on_depth(new_noise(0.1))], ids=["colours", "depths"])
 
 
 # ---------------------------------------------------------------------- no pattern
@@ -79,14 +79,14 @@ def test_no_pixel_and_no_frame_is_special(added: npt.NDArray[np.float64]) -> Non
 
 
 def test_cameras_channels_and_seeds_have_noise_of_their_own() -> None:
-    of_one = on_grey(made(0.1))
-    for other in (on_grey(made(0.1, name="m::l::t")), on_grey(made(0.1, seed=2)), on_depth(made(0.1))):
+    of_one = on_grey(new_noise(0.1))
+    for other in (on_grey(new_noise(0.1, name="m::l::t")), on_grey(new_noise(0.1, seed=2)), on_depth(new_noise(0.1))):
         assert abs(correlation(of_one, other)) < 4
         assert abs(correlation(of_one[1:], other[:-1])) < 4
 
 
 def test_a_frames_noise_is_its_own_whatever_was_drawn_before() -> None:
-    one, other = made(0.1), made(0.1)
+    one, other = new_noise(0.1), new_noise(0.1)
     plain = np.full((*SIZE, 3), 90, np.uint8)
     for i in (1, 2, 3):
         one.on_colours(plain, i)
@@ -95,7 +95,7 @@ def test_a_frames_noise_is_its_own_whatever_was_drawn_before() -> None:
 
 @pytest.mark.parametrize("size", [(1, 1), (3, 5), (7, 1), (1, 300), (481, 641)])
 def test_every_size_has_its_noise(size: tuple[int, int]) -> None:
-    found = made(0.1).on_colours(np.full((*size, 3), 128, np.uint8), 1).astype(float)
+    found = new_noise(0.1).on_colours(np.full((*size, 3), 128, np.uint8), 1).astype(float)
     assert found.shape == (*size, 3)
     if found.size > 10_000:
         rows = (found[..., 0] - 128) / 255
@@ -109,7 +109,7 @@ def test_every_size_has_its_noise(size: tuple[int, int]) -> None:
 @pytest.mark.parametrize("stddev", [0.004, 0.02, 0.1])
 @pytest.mark.parametrize("mean", [0.0, 0.05, -0.1])
 def test_mean_and_deviation_are_those_of_the_file(mean: float, stddev: float) -> None:
-    added, lengths = on_grey(made(stddev, mean)), on_depth(made(stddev, mean))
+    added, lengths = on_grey(new_noise(stddev, mean)), on_depth(new_noise(stddev, mean))
     rounded = math.hypot(stddev, 1 / 255 / math.sqrt(12))
     error = 4 * stddev / math.sqrt(added.size)
     assert added.std() == pytest.approx(rounded if stddev > 0.005 else added.std(), rel=0.01)
@@ -119,7 +119,7 @@ def test_mean_and_deviation_are_those_of_the_file(mean: float, stddev: float) ->
 
 
 def test_it_is_normally_distributed() -> None:
-    lengths = on_depth(made(0.1)).ravel() / 0.1
+    lengths = on_depth(new_noise(0.1)).ravel() / 0.1
     for bound, share in ((1, 0.317311), (2, 0.045500), (3, 0.0026998)):
         found = (np.abs(lengths) > bound).mean()
         assert found == pytest.approx(share, abs=4 * math.sqrt(share / lengths.size))
@@ -130,7 +130,7 @@ def test_it_is_normally_distributed() -> None:
 def test_large_noise_is_cut_off_at_black_and_white(stddev: float, mean: float) -> None:
     """Shares of black, of white, and the mean between, by the normal distribution."""
     level = 100
-    added = on_grey(made(stddev, mean), level)
+    added = on_grey(new_noise(stddev, mean), level)
     found = np.rint(added * 255 + level)
 
     def below(value: float) -> float:
@@ -142,27 +142,27 @@ def test_large_noise_is_cut_off_at_black_and_white(stddev: float, mean: float) -
 
 
 def test_a_mean_alone_shifts_everything_and_draws_nothing() -> None:
-    assert (on_grey(made(0.0, 0.1)) == 26 / 255).all()
-    assert (on_grey(made(0.0, -0.9)) == -128 / 255).all()
-    np.testing.assert_allclose(on_depth(made(0.0, 0.25)), 0.25, atol=1e-6)
-    assert made(0.0).is_silent
+    assert (on_grey(new_noise(0.0, 0.1)) == 26 / 255).all()
+    assert (on_grey(new_noise(0.0, -0.9)) == -128 / 255).all()
+    np.testing.assert_allclose(on_depth(new_noise(0.0, 0.25)), 0.25, atol=1e-6)
+    assert new_noise(0.0).is_silent
 
 
 def test_infinite_depths_stay() -> None:
     plain = np.array([[math.inf, -math.inf, 1.0, 2.0]], np.float32)
-    assert made(0.1).on_depths(plain, 1)[0, :2].tolist() == [math.inf, -math.inf]
+    assert new_noise(0.1).on_depths(plain, 1)[0, :2].tolist() == [math.inf, -math.inf]
 
 
 def test_gazebos_own_rule_bends_what_is_added() -> None:
-    straight, bent = on_depth(made(0.3)), on_grey(made(0.3, as_ogre=True))
+    straight, bent = on_depth(new_noise(0.3)), on_grey(new_noise(0.3, as_ogre=True))
     expected = np.sort(np.sign(straight) * np.abs(straight) ** 2.1, axis=None)
     quarters = [round(q * bent.size) for q in (0.05, 0.25, 0.75, 0.95)]
     np.testing.assert_allclose(np.sort(bent, axis=None)[quarters], expected[quarters], atol=0.006)
-    assert np.abs(on_grey(made(0.007, as_ogre=True))).max() == 0  # Gazebo's ordinary noise is none
+    assert np.abs(on_grey(new_noise(0.007, as_ogre=True))).max() == 0  # Gazebo's ordinary noise is none
 
 
-def test_grey_pictures_have_the_same_noise() -> None:
-    of = made(0.1)
+def test_grey_images_have_the_same_noise() -> None:
+    of = new_noise(0.1)
     wide = of.on_colours(np.full((*SIZE, 3), 128, np.uint8), 3)
     np.testing.assert_array_equal(of.on_colours(np.full(SIZE, 128, np.uint8), 3), wide[..., 0])
 

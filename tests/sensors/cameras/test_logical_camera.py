@@ -1,4 +1,4 @@
-"""Logical cameras: what is in the frustum, where it is, and in which order it is told."""
+"""Logical cameras: the models in the frustum, their poses and their order."""
 
 from __future__ import annotations
 
@@ -17,23 +17,23 @@ IMAGE = "ros_gz_interfaces/msg/LogicalCameraImage"
 FRUSTUM = "<near>0.55</near><far>5</far><horizontal_fov>1.04719755</horizontal_fov><aspect_ratio>1.778</aspect_ratio>"
 
 
-def thing(name: str, pose: str, more: str = "") -> str:
+def ball_model(name: str, pose: str, more: str = "") -> str:
     return (
         f'<model name="{name}"><pose>{pose}</pose><link name="l"><collision name="c"><geometry><sphere><radius>0.1'
         f"</radius></sphere></geometry></collision></link>{more}</model>"
     )
 
 
-def world(things: str, block: str = FRUSTUM, *, pose: str = "0.25 0 0.5 0 0 0", top: str = "", extra: str = "") -> str:
+def world(models: str, block: str = FRUSTUM, *, pose: str = "0.25 0 0.5 0 0 0", top: str = "", extra: str = "") -> str:
     return f"""<sdf version="1.9" xmlns:simkit="https://simkit.invalid"><world name="w">
       {top or "<gravity>0 0 0</gravity>"}
       <model name="eye"><static>true</static><link name="l">
         <sensor name="s" type="logical_camera"><pose>{pose}</pose><update_rate>20</update_rate>{extra}
         <logical_camera>{block}</logical_camera></sensor></link></model>
-      {things}</world></sdf>"""
+      {models}</world></sdf>"""
 
 
-def seen(sim: Any) -> dict[str, Any]:
+def poses_by_name(sim: Any) -> dict[str, Any]:
     return {m.name: m.pose for m in sim.sensor("eye::l::s").latest.model}
 
 
@@ -45,7 +45,7 @@ def numbers(pose: Any) -> list[float]:
 def first(text: str) -> list[str]:
     with simkit.load(text) as sim:
         sim.run(0.05)
-        return list(seen(sim))
+        return list(poses_by_name(sim))
 
 
 # ---------------------------------------------------------------------- the frustum
@@ -87,12 +87,12 @@ def test_random_points_are_inside_when_their_angles_and_depth_say_so() -> None:
 
 
 def test_defaults_are_those_of_sdf() -> None:
-    text = world(thing("in", "0.9 0 0 0 0 0") + thing("far", "1.1 0 0 0 0 0"), "", pose="0 0 0 0 0 0")
+    text = world(ball_model("in", "0.9 0 0 0 0 0") + ball_model("far", "1.1 0 0 0 0 0"), "", pose="0 0 0 0 0 0")
     with simkit.load(text) as sim:
         options = sim.sensor("eye::l::s").options
         assert (options.near, options.far, options.horizontal_fov, options.aspect_ratio) == (0, 1, 1, 1)
         sim.run(0.05)
-        assert list(seen(sim)) == ["eye", "in"]
+        assert list(poses_by_name(sim)) == ["eye", "in"]
 
 
 @pytest.mark.parametrize(
@@ -118,7 +118,7 @@ def test_a_frustum_that_is_none_is_an_error(block: str) -> None:
 def test_the_pose_is_that_of_the_model_in_the_sensors_frame() -> None:
     """The box of gz-sensors' own test, and the sensor turned about to look at it from the side."""
     for place in ((0.25, 0, 0.5, 0, 0, 0), (2, 2, 0.5, 0, 0, -1.57), (2.1, -0.1, 3, 0.3, math.pi / 2, 0.2)):
-        text = world(thing("box", "2 0 0.5 0.1 0.2 1.57"), pose=" ".join(map(str, place)))
+        text = world(ball_model("box", "2 0 0.5 0.1 0.2 1.57"), pose=" ".join(map(str, place)))
         with simkit.load(text) as sim:
             sim.run(0.05)
             message = sim.sensor("eye::l::s").latest
@@ -132,8 +132,8 @@ def test_the_pose_is_that_of_the_model_in_the_sensors_frame() -> None:
             np.testing.assert_allclose(np.array(numbers(found.pose)[3:]) * turn, expected.quaternion, atol=1e-12)
 
 
-def test_models_are_told_by_name_whatever_the_order_of_the_file() -> None:
-    a, b, c = thing("a", "2 0 0.5 0 0 0"), thing("b", "3 0 0.5 0 0 0"), thing("B", "2 0.3 0.5 0 0 0")
+def test_models_are_sorted_by_name_in_any_order_of_the_file() -> None:
+    a, b, c = ball_model("a", "2 0 0.5 0 0 0"), ball_model("b", "3 0 0.5 0 0 0"), ball_model("B", "2 0.3 0.5 0 0 0")
     assert first(world(a + b + c)) == first(world(c + b + a)) == ["B", "a", "b"]
 
 
@@ -142,14 +142,14 @@ def test_nothing_hides_anything_and_size_does_not_matter() -> None:
       <geometry><box><size>0.1 9 9</size></box></geometry></collision></link></model>
       <model name="beside"><static>true</static><pose>2 4 0.5 0 0 0</pose><link name="l"><collision name="c">
       <geometry><box><size>0.1 20 9</size></box></geometry></collision></link></model>"""
-    assert first(world(big + thing("behind", "3 0 0.5 0 0 0"))) == ["behind", "wall"]
+    assert first(world(big + ball_model("behind", "3 0 0.5 0 0 0"))) == ["behind", "wall"]
 
 
-def test_nested_models_are_told_by_their_scoped_names_with_their_own_poses() -> None:
+def test_nested_models_have_their_scoped_names_and_their_own_poses() -> None:
     inner = '<model name="in"><pose>1 0.2 0 0 0 0.5</pose><link name="l"/></model>'
-    with simkit.load(world(thing("out", "2 0 0.5 0 0 0", inner))) as sim:
+    with simkit.load(world(ball_model("out", "2 0 0.5 0 0 0", inner))) as sim:
         sim.run(0.05)
-        found = seen(sim)
+        found = poses_by_name(sim)
         assert list(found) == ["out", "out::in"]
         expected = [2.75, 0.2, 0, math.cos(0.25), 0, 0, math.sin(0.25)]
         np.testing.assert_allclose(numbers(found["out::in"]), expected, atol=1e-12)
@@ -160,7 +160,7 @@ def test_the_origin_counts_and_not_the_canonical_link() -> None:
     far = '<model name="far"><pose>2 0 0.5 0 0 0</pose><link name="l"><pose>0 9 0 0 0 0</pose></link></model>'
     with simkit.load(world(far)) as sim:
         sim.run(0.05)
-        np.testing.assert_allclose(numbers(seen(sim)["far"]), [1.75, 0, 0, 1, 0, 0, 0], atol=1e-12)
+        np.testing.assert_allclose(numbers(poses_by_name(sim)["far"]), [1.75, 0, 0, 1, 0, 0, 0], atol=1e-12)
 
 
 def test_its_own_model_counts_where_its_origin_is_in_view() -> None:
@@ -183,7 +183,7 @@ def test_an_image_without_models_is_published_too() -> None:
 def test_a_model_that_passes_is_seen_while_it_is_inside() -> None:
     """At 1 m/s across a frustum that is 2·2·tan(0.5) m wide at 2 m."""
     block = "<near>0.1</near><far>5</far><horizontal_fov>1</horizontal_fov>"
-    with simkit.load(world(thing("ball", "2 -2 0.5 0 0 0"), block, pose="0 0 0.5 0 0 0")) as sim:
+    with simkit.load(world(ball_model("ball", "2 -2 0.5 0 0 0"), block, pose="0 0 0.5 0 0 0")) as sim:
         sim.model("ball").set_velocity((0, 1, 0))
         sub = sim.subscribe(TOPIC)
         sim.run(4)
@@ -195,38 +195,38 @@ def test_a_model_that_passes_is_seen_while_it_is_inside() -> None:
 
 
 def test_an_image_that_is_looked_at_later_shows_the_state_of_its_time() -> None:
-    with simkit.load(world(thing("ball", "2 0 0.5 0 0 0"))) as sim:
+    with simkit.load(world(ball_model("ball", "2 0 0.5 0 0 0"))) as sim:
         sim.model("ball").set_velocity((1, 0, 0))
         sim.run(0.07)
-        assert numbers(seen(sim)["ball"])[0] == pytest.approx(1.75 + 0.05, abs=1e-9)
+        assert numbers(poses_by_name(sim)["ball"])[0] == pytest.approx(1.75 + 0.05, abs=1e-9)
 
 
 def test_what_is_spawned_removed_or_set_shows_in_the_next_image() -> None:
-    with simkit.load(world(thing("a", "2 0 0.5 0 0 0"))) as sim:
+    with simkit.load(world(ball_model("a", "2 0 0.5 0 0 0"))) as sim:
         sim.run(0.05)
-        sim.spawn(f'<sdf version="1.9">{thing("c", "3 0 0.5 0 0 0")}</sdf>', name="b")
-        assert list(seen(sim)) == ["a"]
+        sim.spawn(f'<sdf version="1.9">{ball_model("c", "3 0 0.5 0 0 0")}</sdf>', name="b")
+        assert list(poses_by_name(sim)) == ["a"]
         sim.run(0.05)
-        assert list(seen(sim)) == ["a", "b"]
+        assert list(poses_by_name(sim)) == ["a", "b"]
         sim.remove("a")
         sim.run(0.05)
-        assert list(seen(sim)) == ["b"]
+        assert list(poses_by_name(sim)) == ["b"]
         sim.model("b").set_pose(Pose((9, 0, 0)))
         sim.run(0.05)
-        assert list(seen(sim)) == []
+        assert list(poses_by_name(sim)) == []
         sim.reset()
         sim.run(0.05)
-        assert list(seen(sim)) == ["a"]
+        assert list(poses_by_name(sim)) == ["a"]
 
 
 def test_a_static_model_that_is_moved_is_where_it_was_put() -> None:
     post = '<model name="post"><static>true</static><pose>9 0 0 0 0 0</pose><link name="l"/></model>'
     with simkit.load(world(post)) as sim:
         sim.run(0.05)
-        assert list(seen(sim)) == []
+        assert list(poses_by_name(sim)) == []
         sim.model("post").set_pose(Pose((2, 0, 0.5)))
         sim.run(0.05)
-        np.testing.assert_allclose(numbers(seen(sim)["post"])[:3], (1.75, 0, 0), atol=1e-12)
+        np.testing.assert_allclose(numbers(poses_by_name(sim)["post"])[:3], (1.75, 0, 0), atol=1e-12)
 
 
 def test_what_sleeps_is_seen_as_well() -> None:
@@ -236,7 +236,7 @@ def test_what_sleeps_is_seen_as_well() -> None:
     block = "<near>0.1</near><far>5</far><horizontal_fov>1</horizontal_fov>"
     with simkit.load(world(ground + box, block, pose="0 0 0.5 0 0 0", top="<gravity>0 0 -9.8</gravity>")) as sim:
         sim.run(3)
-        np.testing.assert_allclose(numbers(seen(sim)["box"])[:3], (2, 0, 0), atol=2e-3)
+        np.testing.assert_allclose(numbers(poses_by_name(sim)["box"])[:3], (2, 0, 0), atol=2e-3)
 
 
 # ---------------------------------------------------------------------- topics
@@ -266,21 +266,23 @@ def test_gazebos_system_may_be_named() -> None:
 # ---------------------------------------------------------------------- Gazebo's quirks
 
 
-def quirky(things: str, block: str, pose: str = "0 0 0 0 0 0") -> list[str]:
-    return first(world(things, block, pose=pose, top="<simkit:gazebo_quirks>true</simkit:gazebo_quirks>"))
+def quirky(models: str, block: str, pose: str = "0 0 0 0 0 0") -> list[str]:
+    return first(world(models, block, pose=pose, top="<simkit:gazebo_quirks>true</simkit:gazebo_quirks>"))
 
 
 def test_gazebo_sees_left_right_behind_and_above_with_a_frustum_that_begins_at_its_tip() -> None:
-    """Of six planes, four are made of two corners that are one when <near> is 0, and so have no direction."""
-    things = thing("behind", "-3 0.1 0 0 0 0") + thing("left", "1 9 0 0 0 0") + thing("above", "1 0 9 0 0 0")
-    things += thing("right", "1 -9 0 0 0 0") + thing("far", "6 0 0 0 0 0")
-    assert quirky(things, "<far>5</far>") == ["above", "eye", "left"]
-    assert quirky(things + thing("b2", "-3 9 0 0 0 0"), "<far>5</far>") == ["above", "b2", "eye", "left"]
-    assert quirky(things, "<near>0.01</near><far>5</far>") == []
+    """Four of six planes are defined by two equal corners if <near> is 0, and so have no direction."""
+    models = (
+        ball_model("behind", "-3 0.1 0 0 0 0") + ball_model("left", "1 9 0 0 0 0") + ball_model("above", "1 0 9 0 0 0")
+    )
+    models += ball_model("right", "1 -9 0 0 0 0") + ball_model("far", "6 0 0 0 0 0")
+    assert quirky(models, "<far>5</far>") == ["above", "eye", "left"]
+    assert quirky(models + ball_model("b2", "-3 9 0 0 0 0"), "<far>5</far>") == ["above", "b2", "eye", "left"]
+    assert quirky(models, "<near>0.01</near><far>5</far>") == []
 
 
 def test_gazebo_takes_a_nested_model_for_a_top_level_one() -> None:
     inner = '<model name="in"><pose>1 0.2 0 0 0 0</pose><link name="l"/></model>'
-    things = thing("out", "20 0 0.5 0 0 0", inner)
-    assert quirky(things, "<near>0.1</near><far>5</far>") == ["in"]
-    assert first(world(things, "<near>0.1</near><far>5</far>")) == []
+    models = ball_model("out", "20 0 0.5 0 0 0", inner)
+    assert quirky(models, "<near>0.1</near><far>5</far>") == ["in"]
+    assert first(world(models, "<near>0.1</near><far>5</far>")) == []

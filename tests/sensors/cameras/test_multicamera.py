@@ -30,7 +30,7 @@ def scene(cameras: str, **more: Any) -> str:
     return world(sensor("multicamera", cameras, extra="<topic>rig</topic>"), others=SPOT, top=SCENE, **more)
 
 
-def heard(text: str, *topics: str) -> list[Any]:
+def latest_messages(text: str, *topics: str) -> list[Any]:
     with simkit.load(text) as sim:
         subs = [sim.subscribe(t) for t in topics]
         sim.run(0.015)
@@ -48,34 +48,34 @@ def middle(message: Any) -> float:
 
 def test_disparity_is_focal_length_times_baseline_over_depth() -> None:
     pair = camera("left", LEFT, width=320) + camera("right", RIGHT, width=320)
-    left, right, info = heard(scene(pair), "/rig/left/image", "/rig/right/image", "/rig/right/camera_info")
+    left, right, info = latest_messages(scene(pair), "/rig/left/image", "/rig/right/image", "/rig/right/camera_info")
     disparity = middle(left) - middle(right)
     assert disparity == pytest.approx(info.p[0] * BASELINE / DISTANCE, abs=0.5)
     assert -info.p[3] / disparity == pytest.approx(DISTANCE, rel=0.06)
 
 
-def test_the_right_cameras_p_tells_the_baseline_and_the_lefts_none() -> None:
+def test_only_the_right_cameras_p_contains_the_baseline() -> None:
     focal = 64 / (2 * math.tan(0.6))
     for names in (("left", "right"), ("front_right", "front_left")):  # whichever comes first
         poses = {name: LEFT if "left" in name else RIGHT for name in names}
         text = scene("".join(camera(name, pose) for name, pose in poses.items()))
-        infos = dict(zip(names, heard(text, *(f"/rig/{name}/camera_info" for name in names)), strict=True))
+        infos = dict(zip(names, latest_messages(text, *(f"/rig/{name}/camera_info" for name in names)), strict=True))
         for name, info in infos.items():
             expected = 0.0 if "left" in name else -focal * BASELINE
             assert info.p[3] == pytest.approx(expected, abs=1e-9)
             assert info.p[7] == 0
 
 
-def test_a_camera_below_another_tells_ty() -> None:
-    _, info = heard(
+def test_p_of_a_camera_below_another_contains_ty() -> None:
+    _, info = latest_messages(
         scene(camera("top") + camera("bottom", "0 0 -0.1 0 0 0")), "/rig/top/camera_info", "/rig/bottom/camera_info"
     )
     assert (info.p[3], info.p[7]) == pytest.approx((0, -0.1 * info.p[5]))
 
 
-def test_a_projection_of_the_file_is_told_as_it_is() -> None:
+def test_a_projection_of_the_file_is_published_unchanged() -> None:
     lens = "<lens><projection><tx>-7</tx></projection></lens>"
-    (info,) = heard(scene(camera("left", LEFT) + camera("right", RIGHT, lens)), "/rig/right/camera_info")
+    (info,) = latest_messages(scene(camera("left", LEFT) + camera("right", RIGHT, lens)), "/rig/right/camera_info")
     assert info.p[3] == -7
 
 
@@ -91,7 +91,7 @@ def test_cameras_that_are_no_rectified_pair_tell_no_baseline_which_is_noted(pose
 # ---------------------------------------------------------------------- each camera its own
 
 
-def test_all_pictures_are_of_one_instant() -> None:
+def test_all_images_are_of_one_instant() -> None:
     text = scene(camera("a") + camera("b") + camera("c"))
     topics = [f"/rig/{name}/{what}" for name in "abc" for what in ("image", "camera_info")]
     with simkit.load(text) as sim:
@@ -111,8 +111,8 @@ def test_cameras_have_their_own_size_lens_format_and_place() -> None:
         + camera("back", "0 0 0 0 0 3.14159")
     )
     names = ("ahead", "grey", "bent", "back")
-    images = heard(text, *(f"/rig/{name}/image" for name in names))
-    infos = heard(text, *(f"/rig/{name}/camera_info" for name in names))
+    images = latest_messages(text, *(f"/rig/{name}/image" for name in names))
+    infos = latest_messages(text, *(f"/rig/{name}/camera_info" for name in names))
     assert [(m.width, m.encoding) for m in images] == [(64, "rgb8"), (32, "mono16"), (64, "rgb8"), (64, "rgb8")]
     assert [m.width for m in infos] == [64, 32, 64, 64]
     assert [m.d[0] for m in infos] == pytest.approx([0, 0, -0.1, 0])
@@ -130,12 +130,12 @@ def test_a_rig_sees_what_single_cameras_in_its_places_see() -> None:
         others=SPOT,
         top=SCENE,
     )
-    (of_rig,), (of_one,) = heard(rig, "/rig/b/image"), heard(alone, "/alone")
+    (of_rig,), (of_one,) = latest_messages(rig, "/rig/b/image"), latest_messages(alone, "/alone")
     assert colours(of_one)[..., 0].any()
     np.testing.assert_array_equal(of_rig.data, of_one.data)
 
 
-def test_noise_differs_from_camera_to_camera_and_from_picture_to_picture() -> None:
+def test_noise_differs_from_camera_to_camera_and_from_image_to_image() -> None:
     noisy = noise(0.05)
     text = scene(camera("a", more=noisy) + camera("b", more=noisy) + camera("c"))
     with simkit.load(text.replace("0 0 0 1</background>", "0.5 0.5 0.5 1</background>"), seed=3) as sim:
@@ -148,7 +148,7 @@ def test_noise_differs_from_camera_to_camera_and_from_picture_to_picture() -> No
         assert abs(np.corrcoef(first, other)[0, 1]) < 0.06  # 3 / sqrt(64·48) is 0.054
 
 
-def test_latest_and_truth_are_the_first_cameras_picture() -> None:
+def test_latest_and_truth_are_the_first_cameras_image() -> None:
     text = scene(camera("a", more=noise(0.05)) + camera("b"))
     with simkit.load(text) as sim:
         sub = sim.subscribe("/rig/a/image")
@@ -234,7 +234,7 @@ def test_a_rig_is_the_same_after_reset_and_restore() -> None:
         ('<save enabled="1"><path>a</path></save>', '<save enabled="1"><path>b</path></save>', "path"),
     ],
 )
-def test_what_is_one_for_all_cameras_and_differs_is_told(left: str, right: str, element: str) -> None:
+def test_differing_options_shared_by_all_cameras_are_reported(left: str, right: str, element: str) -> None:
     with simkit.load(scene(camera("left", LEFT, left) + camera("right", RIGHT, right))) as sim:
         (found,) = sim.diagnostics
     assert found.code == "SK-SENSOR-125"

@@ -35,7 +35,7 @@ def run(script: str, broken: bool) -> subprocess.CompletedProcess[str]:
     )
 
 
-def test_other_sensors_go_on_and_the_camera_says_what_is_missing() -> None:
+def test_other_sensors_continue_and_the_camera_reports_the_missing_renderer() -> None:
     done = run(
         """
         import os, time, simkit
@@ -85,7 +85,7 @@ def test_rendering_can_be_switched_off() -> None:
     assert "MUJOCO_GL=disabled" in done.stdout
 
 
-def test_nothing_is_said_at_the_end_of_the_process() -> None:
+def test_nothing_is_printed_at_the_end_of_the_process() -> None:
     done = run(
         """
         import os, simkit
@@ -104,7 +104,7 @@ def test_nothing_is_said_at_the_end_of_the_process() -> None:
     assert not said
 
 
-def test_nothing_touches_opengl_before_the_first_picture() -> None:
+def test_nothing_touches_opengl_before_the_first_image() -> None:
     done = run(
         """
         import os, sys, simkit

@@ -116,7 +116,7 @@ def test_an_opening_angle_of_a_fisheye_names_the_sensor_for_it() -> None:
 
 @draws
 @pytest.mark.parametrize("hfov", [0.02, 3.0])
-def test_very_narrow_and_very_wide_pictures_are_in_place(hfov: float) -> None:
+def test_very_narrow_and_very_wide_images_are_in_place(hfov: float) -> None:
     f = 80 / math.tan(hfov / 2)
     place = (20 / f, -15 / f)
     with load(camera(hfov=hfov), spots([place], size=12 / f)) as sim:
@@ -148,7 +148,7 @@ def test_a_skewed_view_is_wide_enough() -> None:
 
 
 @draws
-def test_projection_is_told_in_p_and_the_picture_follows_k() -> None:
+def test_p_contains_the_projection_and_the_image_follows_k() -> None:
     projection = "<projection><p_fx>100</p_fx><p_cy>55</p_cy><tx>-8</tx><ty>2</ty></projection>"
     with load(camera(f"<lens>{INTRINSICS.format(0)}{projection}</lens>"), spots(PLACES)) as sim:
         image, info = shown(sim, "image", "camera_info")
@@ -158,7 +158,7 @@ def test_projection_is_told_in_p_and_the_picture_follows_k() -> None:
 
 
 @draws
-def test_with_gazebos_quirks_projection_draws_the_picture() -> None:
+def test_with_gazebos_quirks_projection_draws_the_image() -> None:
     projection = "<projection><p_fx>100</p_fx><p_fy>90</p_fy><p_cx>70</p_cx><p_cy>55</p_cy></projection>"
     block = camera(f"<lens>{INTRINSICS.format(20)}{projection}</lens>")
     with load(block, spots(PLACES), top=DARK + QUIRKS) as sim:
@@ -169,7 +169,7 @@ def test_with_gazebos_quirks_projection_draws_the_picture() -> None:
 
 
 @draws
-def test_with_gazebos_quirks_pixels_lean_the_other_way_and_nothing_is_bent() -> None:
+def test_with_gazebos_quirks_skew_is_opposite_and_there_is_no_distortion() -> None:
     block = camera(f"<lens>{INTRINSICS.format(25)}</lens>{distortion(LENSES[0])}")
     with load(block, spots(PLACES), top=DARK + QUIRKS) as sim:
         image, info = shown(sim, "image", "camera_info")
@@ -209,7 +209,7 @@ def test_beyond_the_fold_there_is_no_answer() -> None:
 
 @draws
 @ALL_LENSES
-def test_a_bent_picture_is_where_opencv_projects_it(lens: Distortion) -> None:
+def test_a_bent_image_is_where_opencv_projects_it(lens: Distortion) -> None:
     places = [(-0.6, -0.4), (-0.3, 0.1), (0.02, -0.25), (0.25, 0.42), (0.6, -0.1)]
     block = camera(distortion(lens), width=320, height=240, hfov=1.5)
     with load(block, spots(places, size=0.05)) as sim:
@@ -220,7 +220,7 @@ def test_a_bent_picture_is_where_opencv_projects_it(lens: Distortion) -> None:
 
 @draws
 @ALL_LENSES
-def test_a_bent_picture_has_no_black_corners(lens: Distortion) -> None:
+def test_a_bent_image_has_no_black_corners(lens: Distortion) -> None:
     with load(camera(distortion(lens), hfov=1.0), top=BRIGHT) as sim:
         (image,) = shown(sim, "image")
     assert colours(image).min() > 100
@@ -282,7 +282,7 @@ def test_what_a_strong_lens_crowds_is_averaged() -> None:
 
 @draws
 @pytest.mark.parametrize("size", [(1, 1), (1, 7), (7, 1)])
-def test_the_smallest_pictures_are_bent_too(size: tuple[int, int]) -> None:
+def test_the_smallest_images_are_bent_too(size: tuple[int, int]) -> None:
     block = camera(distortion(LENSES[0]), width=size[0], height=size[1])
     with load(block, top=BRIGHT) as sim:
         (image,) = shown(sim, "image")

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from label_worlds import FOCAL, HEIGHT, WIDTH, bare, counts, cube, eye, label, labels, load, thing, visual
+from label_worlds import FOCAL, HEIGHT, WIDTH, bare, counts, cube, eye, label, labelled_model, labels, load, visual
 from renderer import NEEDS_RENDERER
 from sensor_worlds import colours
 
@@ -18,8 +18,8 @@ PLATE = "<box><size>0.01 1 0.5</size></box>"
 PANOPTIC = "<segmentation_type>panoptic</segmentation_type>"
 
 
-def map_of(things: str, block: str = "", **how: object) -> np.ndarray:
-    with load("segmentation_camera", things, block, **how) as sim:
+def map_of(models: str, block: str = "", **how: object) -> np.ndarray:
+    with load("segmentation_camera", models, block, **how) as sim:
         sim.run(0.01)
         return labels(sim)
 
@@ -35,41 +35,45 @@ def pixels_of_plate(distance: float, width: float = 1.0, height: float = 0.5) ->
 
 
 def test_a_labelled_plate_covers_the_pixels_that_it_should() -> None:
-    found = counts(map_of(thing("a", "2 0 0 0 0 0", visual(PLATE), 40)))
+    found = counts(map_of(labelled_model("a", "2 0 0 0 0 0", visual(PLATE), 40)))
     seen = pixels_of_plate(1.995)
     assert found == {(40, 40, 40): seen, (0, 0, 0): WIDTH * HEIGHT - seen}
 
 
 def test_what_has_no_label_is_background_and_hides_what_is_behind_it() -> None:
-    behind = thing("a", "4 0 0 0 0 0", visual(PLATE), 40)
+    behind = labelled_model("a", "4 0 0 0 0 0", visual(PLATE), 40)
     assert (40, 40, 40) in counts(map_of(behind))
-    assert counts(map_of(behind + thing("b", "2 0 0 0 0 0", visual(PLATE)))) == {(0, 0, 0): WIDTH * HEIGHT}
+    assert counts(map_of(behind + labelled_model("b", "2 0 0 0 0 0", visual(PLATE)))) == {(0, 0, 0): WIDTH * HEIGHT}
 
 
 def test_a_visual_and_the_rest_of_its_model_have_each_their_own_label() -> None:
     parts = visual(PLATE, "v", "0 1 0 0 0 0", label(7)) + visual(PLATE, "w", "0 -1 0 0 0 0")
-    image = map_of(thing("a", "3 0 0 0 0 0", parts, 8))[HEIGHT // 2, :, 0]
+    image = map_of(labelled_model("a", "3 0 0 0 0 0", parts, 8))[HEIGHT // 2, :, 0]
     assert image[WIDTH // 2 - 20] == 7
     assert image[WIDTH // 2 + 20] == 8
     assert image[WIDTH // 2] == 0
 
 
-def test_transparent_things_are_seen_as_what_they_are() -> None:
+def test_transparent_objects_have_their_own_labels() -> None:
     glass = visual(PLATE, more="<transparency>0.6</transparency>")
-    things = thing("glass", "2 0 0 0 0 0", glass, 5) + thing("wall", "3 0 0 0 0 0", visual(cube(2)), 6)
-    assert counts(map_of(things))[(5, 5, 5)] == pixels_of_plate(1.995)
+    models = labelled_model("glass", "2 0 0 0 0 0", glass, 5) + labelled_model(
+        "wall", "3 0 0 0 0 0", visual(cube(2)), 6
+    )
+    assert counts(map_of(models))[(5, 5, 5)] == pixels_of_plate(1.995)
 
 
 @pytest.mark.parametrize("quality", ["fast", "gazebo"])
 def test_no_edge_is_blended(quality: str) -> None:
     top = f"<scene><quality>{quality}</quality></scene>"
-    things = thing("a", "3 0.3 0 0.3 0.4 0.5", visual(cube()), 200) + thing("b", "4 -0.5 0 0 0 0", visual(cube()), 100)
-    found = counts(map_of(things, top=top))
+    models = labelled_model("a", "3 0.3 0 0.3 0.4 0.5", visual(cube()), 200) + labelled_model(
+        "b", "4 -0.5 0 0 0 0", visual(cube()), 100
+    )
+    found = counts(map_of(models, top=top))
     assert set(found) == {(0, 0, 0), (100, 100, 100), (200, 200, 200)}
 
 
-def test_a_mesh_of_several_materials_and_a_round_thing_have_one_label() -> None:
-    ball = thing("ball", "3 0 0 0 0 0", visual("<sphere><radius>0.5</radius></sphere>"), 9)
+def test_a_mesh_of_several_materials_and_a_round_object_have_one_label() -> None:
+    ball = labelled_model("ball", "3 0 0 0 0 0", visual("<sphere><radius>0.5</radius></sphere>"), 9)
     seen = counts(map_of(ball))[(9, 9, 9)]
     radius = FOCAL * 0.5 / np.sqrt(9 - 0.25)  # of the circle in which a ball is seen
     assert seen == pytest.approx(np.pi * radius**2, rel=0.05)
@@ -78,7 +82,7 @@ def test_a_mesh_of_several_materials_and_a_round_thing_have_one_label() -> None:
 def test_the_colour_of_a_label_is_gazebos() -> None:
     # Lehmer's numbers with the factor 16807 begin 16807, 282475249, 1622650073; 2147483645 // 256 = 8388607
     assert label_colours([1])[1] == (16806 // 8388607, 282475248 // 8388607, 1622650072 // 8388607) == (0, 33, 193)
-    with load("segmentation", thing("a", "2 0 0 0 0 0", visual(PLATE), 1)) as sim:
+    with load("segmentation", labelled_model("a", "2 0 0 0 0 0", visual(PLATE), 1)) as sim:
         coloured = sim.subscribe("/eye/colored_map")
         sim.run(0.01)
         assert counts(colours(coloured.messages[-1]))[(0, 33, 193)] == pixels_of_plate(1.995)
@@ -94,23 +98,25 @@ def test_no_two_numbers_have_one_colour() -> None:
 
 
 @pytest.mark.parametrize("kind", ["panoptic", "instance", "Panoptic"])
-def test_things_of_one_label_are_counted_from_the_end_of_the_alphabet(kind: str) -> None:
-    things = "".join(thing(n, f"4 {y} 0 0 0 0", visual(PLATE), 12) for n, y in (("a", 1.5), ("b", 0), ("c", -1.5)))
-    things += thing("z", "4 0 1 0 0 0", visual(PLATE), 13)
-    image = map_of(things, f"<segmentation_type>{kind}</segmentation_type>")
+def test_objects_of_one_label_are_counted_from_the_end_of_the_alphabet(kind: str) -> None:
+    models = "".join(
+        labelled_model(n, f"4 {y} 0 0 0 0", visual(PLATE), 12) for n, y in (("a", 1.5), ("b", 0), ("c", -1.5))
+    )
+    models += labelled_model("z", "4 0 1 0 0 0", visual(PLATE), 13)
+    image = map_of(models, f"<segmentation_type>{kind}</segmentation_type>")
     row = image[HEIGHT // 2]
     assert [tuple(row[c]) for c in (10, 32, 54)] == [(3, 0, 12), (2, 0, 12), (1, 0, 12)]
     assert (1, 0, 13) in counts(image)
     assert set(counts(image)) == {(0, 0, 0), (1, 0, 12), (2, 0, 12), (3, 0, 12), (1, 0, 13)}
 
 
-def test_the_number_of_a_thing_has_two_bytes() -> None:
-    hidden = "".join(thing(f"n{i:03}", "-5 0 0 0 0 0", visual(PLATE), 3) for i in range(300))
-    image = map_of(thing("a", "2 0 0 0 0 0", visual(PLATE), 3) + hidden, PANOPTIC)
+def test_the_number_of_a_object_has_two_bytes() -> None:
+    hidden = "".join(labelled_model(f"n{i:03}", "-5 0 0 0 0 0", visual(PLATE), 3) for i in range(300))
+    image = map_of(labelled_model("a", "2 0 0 0 0 0", visual(PLATE), 3) + hidden, PANOPTIC)
     assert (301 & 255, 301 >> 8, 3) in counts(image)
 
 
-def test_a_model_of_several_links_is_one_thing() -> None:
+def test_a_model_of_several_links_is_one_object() -> None:
     links = "".join(f'<link name="l{i}"><pose>0 {i - 1} 0 0 0 0</pose>{visual(PLATE)}</link>' for i in range(3))
     model = f'<model name="a"><static>true</static><pose>4 0 0 0 0 0</pose>{links}{label(12)}</model>'
     assert set(counts(map_of(model, PANOPTIC))) == {(0, 0, 0), (1, 0, 12)}
@@ -118,15 +124,17 @@ def test_a_model_of_several_links_is_one_thing() -> None:
 
 def test_two_labels_of_one_model_are_counted_each_for_itself_and_in_gazebo_not() -> None:
     parts = visual(PLATE, "v", "0 1 0 0 0 0", label(7)) + visual(PLATE, "w", "0 -1 0 0 0 0", label(8))
-    model = thing("a", "3 0 0 0 0 0", parts)
+    model = labelled_model("a", "3 0 0 0 0 0", parts)
     assert set(counts(map_of(model, PANOPTIC))) == {(0, 0, 0), (1, 0, 7), (1, 0, 8)}
     quirks = "<gazebo_quirks>true</gazebo_quirks>"
     assert set(counts(map_of(model, PANOPTIC, top=quirks))) == {(0, 0, 0), (0, 0, 7), (1, 0, 8)}
 
 
-def test_a_colour_is_that_of_one_thing() -> None:
-    things = "".join(thing(n, f"4 {y} 0 0 0 0", visual(PLATE), 12) for n, y in (("a", 1.5), ("b", 0), ("c", -1.5)))
-    with load("segmentation", things, PANOPTIC) as sim:
+def test_a_colour_is_that_of_one_object() -> None:
+    models = "".join(
+        labelled_model(n, f"4 {y} 0 0 0 0", visual(PLATE), 12) for n, y in (("a", 1.5), ("b", 0), ("c", -1.5))
+    )
+    with load("segmentation", models, PANOPTIC) as sim:
         sim.run(0.01)
         reading = eye(sim)._true_reading()
         told, coloured = reading.labels.reshape(-1, 3), reading.coloured.reshape(-1, 3)
@@ -140,14 +148,14 @@ def test_a_colour_is_that_of_one_thing() -> None:
 
 def test_through_a_lens_only_labels_are_seen_and_the_plate_shrinks() -> None:
     lens = "<distortion><k1>-0.3</k1><k2>0.05</k2></distortion>"
-    plate = thing("a", "1.2 0 0 0 0 0", visual(PLATE), 40)
+    plate = labelled_model("a", "1.2 0 0 0 0 0", visual(PLATE), 40)
     straight, bent = counts(map_of(plate)), counts(map_of(plate, lens))
     assert set(bent) == {(0, 0, 0), (40, 40, 40)}
     assert 0.6 < bent[(40, 40, 40)] / straight[(40, 40, 40)] < 0.97
 
 
-def test_it_sees_things_where_they_are_when_it_looks() -> None:
-    falling = thing(
+def test_objects_are_at_their_poses_at_the_time_of_the_sample() -> None:
+    falling = labelled_model(
         "a",
         "3 0 0 0 0 0",
         visual(cube(0.4)) + f'<collision name="c"><geometry>{cube(0.4)}</geometry></collision>',
@@ -164,7 +172,7 @@ def test_it_sees_things_where_they_are_when_it_looks() -> None:
 
 
 def test_a_label_counts_from_when_it_was_changed() -> None:
-    with load("segmentation", thing("a", "2 0 0 0 0 0", visual(PLATE), 40)) as sim:
+    with load("segmentation", labelled_model("a", "2 0 0 0 0 0", visual(PLATE), 40)) as sim:
         sim.run(0.15)
         sim.contents.labels["a"] = 41
         assert (40, 40, 40) in counts(labels(sim)), "it was taken before"
@@ -178,28 +186,28 @@ def test_a_label_counts_from_when_it_was_changed() -> None:
         assert (40, 40, 40) in counts(labels(sim))
 
 
-def test_a_picture_that_nobody_looked_at_has_the_labels_of_its_time_whatever_comes_or_goes_later() -> None:
-    with load("segmentation", thing("a", "2 0 0 0 0 0", visual(PLATE), 40)) as sim:
+def test_an_unread_image_has_the_labels_of_its_time() -> None:
+    with load("segmentation", labelled_model("a", "2 0 0 0 0 0", visual(PLATE), 40)) as sim:
         sim.run(0.15)
         sim.remove("a")
         assert counts(labels(sim))[(40, 40, 40)] == pixels_of_plate(1.995)
-        sim.spawn(f'<sdf version="1.9">{thing("b", "2 0 0 0 0 0", visual(PLATE), 50)}</sdf>')
+        sim.spawn(f'<sdf version="1.9">{labelled_model("b", "2 0 0 0 0 0", visual(PLATE), 50)}</sdf>')
         assert (40, 40, 40) in counts(labels(sim))
         sim.run(0.1)
         assert counts(labels(sim))[(50, 50, 50)] == pixels_of_plate(1.995)
 
 
-def test_a_visibility_mask_hides_things() -> None:
+def test_a_visibility_mask_hides_objects() -> None:
     flagged = visual(PLATE, more="<visibility_flags>2</visibility_flags>")
-    things = thing("a", "2 0 0 0 0 0", flagged, 40) + thing("b", "3 0 0 0 0 0", visual(cube(3)), 50)
-    assert set(counts(map_of(things, "<visibility_mask>1</visibility_mask>"))) == {(50, 50, 50)}
+    models = labelled_model("a", "2 0 0 0 0 0", flagged, 40) + labelled_model("b", "3 0 0 0 0 0", visual(cube(3)), 50)
+    assert set(counts(map_of(models, "<visibility_mask>1</visibility_mask>"))) == {(50, 50, 50)}
 
 
 # ---------------------------------------------------------------------- topics and files
 
 
 def test_its_topics_and_messages_are_gazebos() -> None:
-    with load("segmentation", thing("a", "2 0 0 0 0 0", visual(PLATE), 40)) as sim:
+    with load("segmentation", labelled_model("a", "2 0 0 0 0 0", visual(PLATE), 40)) as sim:
         topics = sim.topics()
         assert topics["/eye/labels_map"] == topics["/eye/colored_map"] == "sensor_msgs/msg/Image"
         assert topics["/eye/camera_info"] == "sensor_msgs/msg/CameraInfo"
@@ -215,7 +223,7 @@ def test_without_a_topic_it_has_gazebos() -> None:
         assert "/world/w/model/m/link/l/sensor/s/segmentation/labels_map" in sim.topics()
 
 
-def test_an_older_file_says_the_type_in_the_sensor_itself() -> None:
+def test_an_older_file_has_the_type_in_the_sensor_itself() -> None:
     text = '<sensor name="s" type="segmentation"><segmentation_type>panoptic</segmentation_type><camera/></sensor>'
     with bare(text) as sim:
         assert sim.sensor("m::l::s").describe()["segmentation_type"] == "panoptic"
@@ -227,13 +235,13 @@ def test_an_unknown_type_is_an_error_that_lists_the_known_ones() -> None:
         load("segmentation", "", "<segmentation_type>semantik</segmentation_type>")
 
 
-def test_a_world_without_labels_is_told_so() -> None:
-    def said(things: str) -> list[str]:
-        with load("segmentation", things) as sim:
+def test_a_world_without_labels_is_reported() -> None:
+    def severities(models: str) -> list[str]:
+        with load("segmentation", models) as sim:
             return [d.severity for d in sim.diagnostics if d.code == "SK-SENSOR-132"]
 
-    assert said("") == ["warning"]
-    assert said(thing("a", "2 0 0 0 0 0", visual(PLATE), 40)) == []
+    assert severities("") == ["warning"]
+    assert severities(labelled_model("a", "2 0 0 0 0 0", visual(PLATE), 40)) == []
 
 
 def test_samples_for_a_data_set_are_saved_as_gazebo_lays_them_out(
@@ -244,7 +252,7 @@ def test_samples_for_a_data_set_are_saved_as_gazebo_lays_them_out(
     monkeypatch.chdir(tmp_path)
     save = '<save enabled="true"><path>data</path></save>'
     for _ in range(2):  # the second run goes on counting
-        with load("segmentation", thing("a", "2 0 0 0 0 0", visual(PLATE), 40), save) as sim:
+        with load("segmentation", labelled_model("a", "2 0 0 0 0 0", visual(PLATE), 40), save) as sim:
             sim.run(0.15)
     names = sorted(str(p.relative_to(tmp_path / "data")) for p in (tmp_path / "data").rglob("*.png"))
     parts = [("colored_maps", "colored"), ("images", "image"), ("labels_maps", "labels")]

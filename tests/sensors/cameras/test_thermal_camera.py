@@ -27,7 +27,7 @@ def warm(content: str) -> str:
     return f'<plugin filename="gz-sim-thermal-system" name="gz::sim::systems::Thermal">{content}</plugin>'
 
 
-def thing(name: str, place: str, more: str = "", shape: str = BOX) -> str:
+def box_model(name: str, place: str, more: str = "", shape: str = BOX) -> str:
     return (
         f'<model name="{name}"><static>true</static><pose>{place}</pose><link name="l">'
         f'<visual name="v"><geometry>{shape}</geometry>{more}</visual></link></model>'
@@ -39,7 +39,7 @@ def paint(colour: str) -> str:
 
 
 def world(
-    things: str = "",
+    models: str = "",
     *,
     fmt: str = "L16",
     more: str = "",
@@ -54,7 +54,7 @@ def world(
       <model name="eye"><static>true</static><link name="l"><sensor name="s" type="{kind}"><update_rate>20</update_rate>
         <camera><horizontal_fov>{HFOV}</horizontal_fov><image><width>{WIDTH}</width><height>{HEIGHT}</height>{fmt}</image>
         <clip>{clip}</clip>{more}</camera>{set_up if plugin else ""}</sensor></link></model>
-      {things}</world></sdf>"""
+      {models}</world></sdf>"""
 
 
 def atmosphere(kelvins: float, gradient: float = 0.0) -> str:
@@ -67,7 +67,7 @@ def pixels(message: Any) -> Any:
     return np.asarray(message.data).view(kind).reshape(message.height, message.width).astype(int)
 
 
-def taken(text: str) -> Any:
+def first_image(text: str) -> Any:
     with simkit.load(text) as sim:
         sim.run(0.001)
         return pixels(sim.sensor("eye::l::s").latest)
@@ -81,8 +81,8 @@ MIDDLE = (HEIGHT // 2, WIDTH // 2)
 
 def test_a_warm_box_shows_its_temperature_and_all_around_it_the_airs() -> None:
     """The scene of gz-sensors' own test: a box of 310 K, 3 m ahead, in air of 296 K."""
-    box = thing("box", "3 0 0 0 0 0", warm("<temperature>310</temperature>"))
-    picture = taken(world(box, top=atmosphere(296)))
+    box = box_model("box", "3 0 0 0 0 0", warm("<temperature>310</temperature>"))
+    picture = first_image(world(box, top=atmosphere(296)))
     half = 0.5 / 2.5 * WIDTH / 2 / math.tan(HFOV / 2)
     columns = np.flatnonzero(picture[MIDDLE[0]] == 31000)
     assert len(columns) == pytest.approx(2 * half, abs=1)
@@ -92,43 +92,45 @@ def test_a_warm_box_shows_its_temperature_and_all_around_it_the_airs() -> None:
 
 
 def test_without_an_atmosphere_the_air_is_the_standard_one() -> None:
-    assert set(np.unique(taken(world()))) == {28815}
+    assert set(np.unique(first_image(world()))) == {28815}
 
 
 @pytest.mark.parametrize(("colour", "brightness"), [("0 0 0", 0), ("1 1 1", 1), ("1 0 0", 0.299), ("0 0 1", 0.114)])
-def test_things_without_a_temperature_vary_a_little_with_their_colour(colour: str, brightness: float) -> None:
-    picture = taken(world(thing("box", "3 0 0 0 0 0", paint(colour))))
+def test_objects_without_a_temperature_vary_a_little_with_their_colour(colour: str, brightness: float) -> None:
+    picture = first_image(world(box_model("box", "3 0 0 0 0 0", paint(colour))))
     assert picture[MIDDLE] == pytest.approx((AIR + (brightness - 0.5) * SPAN) * 100, abs=1)
     assert picture[0, 0] == 28815
 
 
 def test_the_span_of_that_is_the_gradient_over_the_height_of_the_view() -> None:
-    white, black = thing("a", "3 0.7 0 0 0 0", paint("1 1 1")), thing("b", "3 -0.7 0 0 0 0", paint("0 0 0"))
-    row = taken(world(white + black, top=atmosphere(300, 0.1)))[MIDDLE[0]]
+    white, black = box_model("a", "3 0.7 0 0 0 0", paint("1 1 1")), box_model("b", "3 -0.7 0 0 0 0", paint("0 0 0"))
+    row = first_image(world(white + black, top=atmosphere(300, 0.1)))[MIDDLE[0]]
     assert row.max() - row.min() == pytest.approx(0.1 / 0.0065 * SPAN * 100, abs=2)
     assert (row.max() + row.min()) / 2 == pytest.approx(30000, abs=1)
 
 
 def test_light_and_shadow_do_not_warm() -> None:
     lamp = '<light name="sun" type="directional"><direction>0.3 0.5 -1</direction></light>'
-    box = thing("box", "3 0 -1 0 0 0.5", paint("1 1 1"))
-    assert set(np.unique(taken(world(box)))) == set(np.unique(taken(world(box, top=lamp))))
+    box = box_model("box", "3 0 -1 0 0 0.5", paint("1 1 1"))
+    assert set(np.unique(first_image(world(box)))) == set(np.unique(first_image(world(box, top=lamp))))
 
 
 def test_what_is_in_front_hides_what_is_behind() -> None:
-    hot = thing("hot", "4 0 0 0 0 0", warm("<temperature>400</temperature>"))
-    cold = thing("cold", "2 0 0 0 0 0", warm("<temperature>250</temperature>"), "<sphere><radius>0.1</radius></sphere>")
-    picture = taken(world(hot + cold))
+    hot = box_model("hot", "4 0 0 0 0 0", warm("<temperature>400</temperature>"))
+    cold = box_model(
+        "cold", "2 0 0 0 0 0", warm("<temperature>250</temperature>"), "<sphere><radius>0.1</radius></sphere>"
+    )
+    picture = first_image(world(hot + cold))
     assert picture[MIDDLE] == 25000
     assert (picture == 40000).sum() > (picture == 25000).sum() > 10
 
 
 def test_what_is_nearer_than_the_near_plane_is_seen_and_what_is_beyond_the_far_one_is_not() -> None:
-    """As gz-sensors tests it: a box whose face is halfway to the near plane, and one beyond the far plane."""
+    """Same test as in gz-sensors: a box with its face halfway to the near plane, and one beyond the far plane."""
     clip = "<near>0.2</near><far>10</far>"
     hot = warm("<temperature>310</temperature>")
-    assert taken(world(thing("box", "0.6 0 0 0 0 0", hot), clip=clip))[MIDDLE] == 31000
-    assert taken(world(thing("box", "15.5 0 0 0 0 0", hot), clip=clip, top=atmosphere(296)))[MIDDLE] == 29600
+    assert first_image(world(box_model("box", "0.6 0 0 0 0 0", hot), clip=clip))[MIDDLE] == 31000
+    assert first_image(world(box_model("box", "15.5 0 0 0 0 0", hot), clip=clip, top=atmosphere(296)))[MIDDLE] == 29600
 
 
 # ---------------------------------------------------------------------- formats and range
@@ -138,12 +140,12 @@ def test_eight_bits_come_in_steps_of_three_kelvin() -> None:
     """The values of gz-sim's own test: 600 K is 200 steps, 800 K more than the last one, -10 K is 0."""
     temperatures = {600: 200, 800: 255, -10: 0, 310: 103}
     for kelvins, steps in temperatures.items():
-        box = thing("box", "3 0 0 0 0 0", warm(f"<temperature>{kelvins}</temperature>"))
-        assert taken(world(box, fmt="L8"))[MIDDLE] == steps
+        box = box_model("box", "3 0 0 0 0 0", warm(f"<temperature>{kelvins}</temperature>"))
+        assert first_image(world(box, fmt="L8"))[MIDDLE] == steps
 
 
 def test_what_no_pixel_can_tell_is_the_largest_it_can() -> None:
-    assert taken(world(thing("box", "3 0 0 0 0 0", warm("<temperature>900</temperature>"))))[MIDDLE] == 65535
+    assert first_image(world(box_model("box", "3 0 0 0 0 0", warm("<temperature>900</temperature>"))))[MIDDLE] == 65535
 
 
 def test_the_message_is_an_image_of_sixteen_bits() -> None:
@@ -178,22 +180,22 @@ def test_a_format_without_temperatures_is_said() -> None:
 
 def test_range_and_resolution_are_set_by_a_plugin() -> None:
     hot, cold = (warm(f"<temperature>{t}</temperature>") for t in (700, 200))
-    things = thing("hot", "3 0.6 0 0 0 0", hot) + thing("cold", "3 -0.6 0 0 0 0", cold)
+    models = box_model("hot", "3 0.6 0 0 0 0", hot) + box_model("cold", "3 -0.6 0 0 0 0", cold)
     plugin = "<min_temp>253.15</min_temp><max_temp>673.15</max_temp><resolution>0.05</resolution>"
-    row = taken(world(things, plugin=plugin))[MIDDLE[0]]
+    row = first_image(world(models, plugin=plugin))[MIDDLE[0]]
     assert (row.max(), row.min()) == (round(673.15 / 0.05), round(253.15 / 0.05))
 
 
 def test_one_end_of_the_range_leaves_the_other_open() -> None:
-    hot = thing("hot", "3 0 0 0 0 0", warm("<temperature>600</temperature>"))
-    assert taken(world(hot, plugin="<min_temp>300</min_temp>"))[MIDDLE] == 60000
-    picture = taken(world(hot, plugin="<max_temp>500</max_temp>"))
+    hot = box_model("hot", "3 0 0 0 0 0", warm("<temperature>600</temperature>"))
+    assert first_image(world(hot, plugin="<min_temp>300</min_temp>"))[MIDDLE] == 60000
+    picture = first_image(world(hot, plugin="<max_temp>500</max_temp>"))
     assert (picture[MIDDLE], picture[0, 0]) == (50000, 28815)
 
 
 def test_a_range_upside_down_and_no_resolution_are_warnings_and_the_defaults_count() -> None:
     """gz-sim's own test of it."""
-    hot = thing("hot", "3 0 0 0 0 0", warm("<temperature>600</temperature>"))
+    hot = box_model("hot", "3 0 0 0 0 0", warm("<temperature>600</temperature>"))
     plugin = "<min_temp>999</min_temp><max_temp>-590</max_temp><resolution>0</resolution>"
     with simkit.load(world(hot, fmt="L8", plugin=plugin)) as sim:
         assert [d.code for d in sim.diagnostics if d.severity != "note"] == ["SK-SENSOR-141"] * 2
@@ -214,7 +216,7 @@ def test_topics_are_gazebos_and_camera_info_is_beside() -> None:
 # ---------------------------------------------------------------------- noise
 
 
-def test_noise_is_a_part_of_the_full_range_and_fresh_in_each_picture() -> None:
+def test_noise_is_a_part_of_the_full_range_and_fresh_in_each_image() -> None:
     noisy = world(more='<noise type="gaussian"><mean>0.001</mean><stddev>0.002</stddev></noise>')
     with simkit.load(noisy, seed=1) as sim:
         sensor, found = sim.sensor("eye::l::s"), []
@@ -256,7 +258,7 @@ def shown(folder: Path, text: str) -> Any:
 
 def test_an_even_signature_is_between_the_coldest_and_the_hottest(tmp_path: Path) -> None:
     grey = picture_of(tmp_path / "grey.png", np.full((8, 8), 102))
-    box = thing("box", "3 0 0 0 0 0", signature(grey, "<min_temp>100</min_temp><max_temp>200</max_temp>"))
+    box = box_model("box", "3 0 0 0 0 0", signature(grey, "<min_temp>100</min_temp><max_temp>200</max_temp>"))
     assert shown(tmp_path, world(box))[MIDDLE] == 14000
 
 
@@ -265,7 +267,7 @@ def test_a_signature_lies_on_the_surface_as_a_texture_does(tmp_path: Path) -> No
     red = np.zeros((64, 64))
     red[:32, :32], red[:32, 32:], red[32:, :32], red[32:, 32:] = 0, 51, 102, 255
     path = picture_of(tmp_path / "quarters.png", red)
-    box = thing("box", "3 0 0 0 0 0", signature(path, "<min_temp>200</min_temp><max_temp>300</max_temp>"))
+    box = box_model("box", "3 0 0 0 0 0", signature(path, "<min_temp>200</min_temp><max_temp>300</max_temp>"))
     picture = shown(tmp_path, world(box))
     (row, column), d = MIDDLE, 4
     corners = [picture[row + a, column + b] for a in (-d, d) for b in (-d, d)]
@@ -277,7 +279,9 @@ def test_a_signature_is_looked_up_exactly_where_a_ray_hits(tmp_path: Path) -> No
     slope = np.tile(np.linspace(0, 255, 256).round(), (4, 1))
     path = picture_of(tmp_path / "slope.png", slope)
     shape = "<box><size>0.2 2 2</size></box>"
-    plate = thing("p", "3 0 0 0 0.4 0.3", signature(path, "<min_temp>250</min_temp><max_temp>350</max_temp>"), shape)
+    plate = box_model(
+        "p", "3 0 0 0 0.4 0.3", signature(path, "<min_temp>250</min_temp><max_temp>350</max_temp>"), shape
+    )
     picture = shown(tmp_path, world(plate))
     from simkit.pose import Pose
 
@@ -305,7 +309,7 @@ def test_every_shape_wears_its_signature_upright(shape: str, tmp_path: Path) -> 
     red[16:] = 255
     path = picture_of(tmp_path / "halves.png", red)
     hot = signature(path, "<min_temp>200</min_temp><max_temp>400</max_temp>")
-    column = shown(tmp_path, world(thing("thing", "3 0 0 0 0 0", hot, shape)))[:, WIDTH // 2]
+    column = shown(tmp_path, world(box_model("thing", "3 0 0 0 0 0", hot, shape)))[:, WIDTH // 2]
     found = column[(column < 25000) | (column > 35000)]
     assert len(found) >= 10
     assert (np.diff(found) >= 0).all()
@@ -318,7 +322,7 @@ def test_a_plane_wears_its_signature_once_over_its_size(tmp_path: Path) -> None:
     red[:, 16:] = 255  # at +x of the plane
     path = picture_of(tmp_path / "halves.png", red)
     hot = signature(path, "<min_temp>200</min_temp><max_temp>400</max_temp>")
-    floor = thing("floor", "3 0 -1 0 0 0", hot, "<plane><normal>0 0 1</normal><size>2 2</size></plane>")
+    floor = box_model("floor", "3 0 -1 0 0 0", hot, "<plane><normal>0 0 1</normal><size>2 2</size></plane>")
     column = shown(tmp_path, world(floor))[:, WIDTH // 2]
     f = WIDTH / 2 / math.tan(HFOV / 2)
     depth = f / (np.arange(HEIGHT) + 0.5 - HEIGHT / 2)
@@ -339,7 +343,7 @@ def test_a_mesh_wears_its_signature_by_its_own_coordinates_and_one_without_them_
     found = {}
     for name in ("worn", "bare"):
         shape = f"<mesh><uri>{name}.obj</uri><scale>1 2 2</scale></mesh>"
-        picture = shown(tmp_path, world(thing("square", "3 0 0 0 0 0", hot, shape)))
+        picture = shown(tmp_path, world(box_model("square", "3 0 0 0 0 0", hot, shape)))
         found[name] = picture[MIDDLE[0] - 6, MIDDLE[1]], picture[MIDDLE[0] + 6, MIDDLE[1]]
     assert found["worn"] == (22000, 20000)
     assert found["bare"] == (25500, 25500)
@@ -349,7 +353,9 @@ def test_ends_that_are_not_given_are_the_airs(tmp_path: Path) -> None:
     red = picture_of(tmp_path / "red.png", np.full((8, 8), 255))
     top = atmosphere(300)
     for ends, expected in (("", 30000), ("<max_temp>310</max_temp>", 31000), ("<max_temp>290</max_temp>", 30000)):
-        assert shown(tmp_path, world(thing("box", "3 0 0 0 0 0", signature(red, ends)), top=top))[MIDDLE] == expected
+        assert (
+            shown(tmp_path, world(box_model("box", "3 0 0 0 0 0", signature(red, ends)), top=top))[MIDDLE] == expected
+        )
 
 
 def test_a_signature_that_moves_turns_with_its_body(tmp_path: Path) -> None:
@@ -373,9 +379,9 @@ def test_a_signature_that_moves_turns_with_its_body(tmp_path: Path) -> None:
 
 def test_gazebo_hands_temperatures_on_in_eight_bits_and_has_a_cold_sky() -> None:
     quirks = "<simkit:gazebo_quirks>true</simkit:gazebo_quirks>"
-    box = thing("box", "3 0 0 0 0 0", warm("<temperature>310</temperature>"))
+    box = box_model("box", "3 0 0 0 0 0", warm("<temperature>310</temperature>"))
     noise = '<noise type="gaussian"><stddev>0.01</stddev></noise>'
-    picture = taken(world(box, more=noise, top=quirks + atmosphere(296, 0.1)))
+    picture = first_image(world(box, more=noise, top=quirks + atmosphere(296, 0.1)))
     assert picture[MIDDLE] == round(round(310 / 655.35 * 255) * 257)
     # width over height, 4:3, is 1 in whole numbers
     assert picture[0, 0] == pytest.approx((296 - 0.1 * FAR * math.tan(HFOV / 2)) * 100, abs=1)
@@ -384,7 +390,7 @@ def test_gazebo_hands_temperatures_on_in_eight_bits_and_has_a_cold_sky() -> None
 
 def test_temperatures_may_change_as_it_runs(tmp_path: Path) -> None:
     red = picture_of(tmp_path / "red.png", np.full((8, 8), 255))
-    with simkit.load(world(thing("box", "3 0 0 0 0 0", warm("<temperature>310</temperature>")))) as sim:
+    with simkit.load(world(box_model("box", "3 0 0 0 0 0", warm("<temperature>310</temperature>")))) as sim:
         sensor = sim.sensor("eye::l::s")
         sim.run(0.05)
         sim.contents.temperatures["box::l::v"] = 350

@@ -1,4 +1,4 @@
-"""Pictures that nobody looks at until the world is another one: they show what was there when they were taken."""
+"""Images that are read after the world has changed: they show the world at the time of their samples."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
-from label_worlds import cube, thing, visual
+from label_worlds import cube, labelled_model, visual
 from renderer import RENDERS
 from sensor_worlds import sensor, world
 
@@ -19,7 +19,7 @@ pytestmark = pytest.mark.skipif(not RENDERS, reason="no renderer")
 WARM = """<plugin filename="gz-sim-thermal-system" name="gz::sim::systems::Thermal">
   <temperature>350</temperature></plugin>"""
 LAMP = """<light name="lamp" type="point"><pose>1 0 2 0 0 0</pose><diffuse>1 0.5 0 1</diffuse></light>"""
-CRATE = f'<sdf version="1.9">{thing("a_crate", "2 0.8 1 0 0 0", visual(cube(0.5), more=WARM), 77)}</sdf>'
+CRATE = f'<sdf version="1.9">{labelled_model("a_crate", "2 0.8 1 0 0 0", visual(cube(0.5), more=WARM), 77)}</sdf>'
 
 
 def cameras() -> str:
@@ -37,17 +37,19 @@ def cameras() -> str:
     )
 
 
-def things() -> str:
-    """What is drawn before the crate and after it, so that the engine's numbers of things shift."""
+def surrounding_models() -> str:
+    """Return models drawn before and after the crate, so that the engine's geom ids shift."""
     ball = "<sphere><radius>0.3</radius></sphere>"
     return (
-        LAMP + thing("ball", "3 0 1 0 0 0", visual(ball, more=WARM), 5) + thing("wall", "5 0 1 0 0 0", visual(cube(2)))
+        LAMP
+        + labelled_model("ball", "3 0 1 0 0 0", visual(ball, more=WARM), 5)
+        + labelled_model("wall", "5 0 1 0 0 0", visual(cube(2)))
     )
 
 
-def seen(script: Callable[[Any], None], is_read: bool) -> dict[str, bytes]:
-    """What the newest picture of each camera is after a script, read at once or only then."""
-    with simkit.load(world(cameras(), others=things())) as sim:
+def latest_bytes(script: Callable[[Any], None], is_read: bool) -> dict[str, bytes]:
+    """Return the newest image of each camera after a script, read at once or only then."""
+    with simkit.load(world(cameras(), others=surrounding_models())) as sim:
         subs = [
             sim.subscribe(topic)
             for sensor in sim.contents.sensors.values()
@@ -116,12 +118,12 @@ SCRIPTS = (
 
 
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.__name__)
-def test_a_picture_that_is_looked_at_later_is_the_same(script: Callable[[Any], None]) -> None:
-    at_once, later = seen(script, True), seen(script, False)
+def test_a_image_that_is_looked_at_later_is_the_same(script: Callable[[Any], None]) -> None:
+    at_once, later = latest_bytes(script, True), latest_bytes(script, False)
     assert [name for name in at_once if at_once[name] != later[name]] == []
 
 
-def test_each_of_these_changes_what_the_next_picture_shows() -> None:
+def test_each_of_these_changes_the_next_image() -> None:
     def moved(sim: Any) -> None:
         a_lamp_moves(sim)
         sim.run(0.1)
@@ -132,6 +134,10 @@ def test_each_of_these_changes_what_the_next_picture_shows() -> None:
         sim.contents.labels["ball"] = 9
         sim.run(0.1)
 
-    plain, lit, others = seen(lambda sim: sim.run(0.2), True), seen(moved, True), seen(labelled, True)
+    plain, lit, others = (
+        latest_bytes(lambda sim: sim.run(0.2), True),
+        latest_bytes(moved, True),
+        latest_bytes(labelled, True),
+    )
     assert [name for name in plain if plain[name] != lit[name]] == ["m::l::rgbd"]
     assert [name for name in plain if plain[name] == others[name]] == []

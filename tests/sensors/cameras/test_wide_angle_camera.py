@@ -103,7 +103,7 @@ def test_without_scale_to_hfov_the_focal_length_decides() -> None:
 
 @draws
 @pytest.mark.parametrize("size", [(1, 1), (1, 7), (7, 1)])
-def test_the_smallest_pictures_are_drawn(size: tuple[int, int]) -> None:
+def test_the_smallest_images_are_drawn(size: tuple[int, int]) -> None:
     block = camera("<type>equidistant</type>", 0.5, width=size[0], height=size[1])
     with load(block, box("wall", "2 0 0 0 0 0", "0.1 90 90")) as sim:
         (image,) = shown(sim, "image")

@@ -1,4 +1,4 @@
-"""Contact sensors: forces against what mechanics says, what they are told of, and when."""
+"""Contact sensors: forces against mechanics, reported contacts, and their times."""
 
 from __future__ import annotations
 
@@ -127,7 +127,7 @@ def test_a_collision_in_convex_pieces_is_one_collision() -> None:
         np.testing.assert_allclose(total_force(sub.latest), (0, 0, G), atol=1e-3)
 
 
-def test_a_pair_is_told_once_in_the_order_of_the_sensors_collisions() -> None:
+def test_a_pair_is_published_once_in_the_order_of_the_sensors_collisions() -> None:
     feet = "".join(
         f'<collision name="{name}"><pose>{x} 0 -0.1 0 0 0</pose><geometry><sphere><radius>0.05</radius></sphere>'
         "</geometry></collision>"
@@ -154,7 +154,7 @@ def test_a_link_of_a_nested_model_is_known_by_its_whole_name() -> None:
 
 
 @pytest.mark.parametrize("held", ["static", "joint"])
-def test_what_cannot_move_feels_what_rests_on_it_for_good(held: str) -> None:
+def test_a_static_link_keeps_detecting_resting_bodies(held: str) -> None:
     """Boxes at rest would fall asleep, and the contacts of a sleeper are not there."""
     fixed = '<joint name="j" type="fixed"><parent>world</parent><child>l</child></joint>'
     stand = table(contact(rate=10), "<static>true</static>" if held == "static" else fixed)
@@ -177,7 +177,7 @@ def test_what_a_sensor_does_not_watch_may_sleep() -> None:
         assert (sim.mj_data.tree_asleep >= 0).tolist() == [False, True]
 
 
-def test_a_plane_and_a_heightmap_feel_and_are_felt(tmp_path: Any) -> None:
+def test_planes_and_heightmaps_detect_and_are_detected(tmp_path: Any) -> None:
     from PIL import Image
 
     Image.fromarray(np.full((17, 17), 255, np.uint8)).save(tmp_path / "flat.png")

@@ -1,4 +1,4 @@
-"""Joint encoders: counts, starts, velocities told from counts, noise, joints of every kind."""
+"""Joint encoders: counts, starts, velocities from counts, noise, joints of every kind."""
 
 from __future__ import annotations
 

@@ -137,7 +137,7 @@ def test_tilted_frames_see_the_same_wrench_in_their_own_axes(frame: str, directi
 
 
 def test_the_parents_axes_turn_with_the_parent() -> None:
-    """The whole thing swings by a right angle: in the parent's axes the weight points along -y then."""
+    """The whole model swings by a right angle, so in the parent's axes the weight points along -y."""
     parent = link("arm") + joint("revolute", "world", "arm", axis="1 0 0", name="hinge")
     text = world(parent, link("load", mass=2), joint("fixed", "arm", "load", ft("parent")))
     with simkit.load(text) as sim:
@@ -322,7 +322,7 @@ def test_a_urdf_robot_names_it_in_an_extension_of_the_joint() -> None:
     np.testing.assert_allclose(torque, (0, -G, 0), atol=1e-6)
 
 
-def test_a_static_model_s_joint_reads_zero_and_says_so() -> None:
+def test_a_sensor_on_a_static_models_joint_reads_zero_and_warns() -> None:
     text = world(link("a"), link("b"), joint("fixed", "a", "b", ft()), model="<static>true</static>")
     with simkit.load(text) as sim:
         sim.step()

@@ -43,14 +43,14 @@ def test_the_height_is_that_of_the_sensor_not_of_its_link() -> None:
     assert pascal(barometer(z=10, pose="0 0 2.5 0 0 0")) == pytest.approx(standard(12.5), rel=1e-12)
 
 
-def test_the_origins_height_is_what_the_sensor_says_and_the_worlds_elevation_does_not_count_as_in_gazebo() -> None:
+def test_the_origins_height_is_the_sensors_and_the_worlds_elevation_is_ignored_as_in_gazebo() -> None:
     given = "<reference_altitude>1000</reference_altitude>"
     assert pascal(barometer(given, z=20)) == pytest.approx(standard(1020), rel=1e-12)
     assert pascal(barometer(top=ZURICH, z=20)) == pytest.approx(standard(20), rel=1e-12)
     assert pascal(barometer(given, top=ZURICH, z=20)) == pytest.approx(standard(1020), rel=1e-12)
 
 
-def test_a_world_has_the_air_it_says() -> None:
+def test_a_world_has_its_own_atmosphere() -> None:
     air = (
         "<atmosphere><temperature>210</temperature><temperature_gradient>0</temperature_gradient>"
         "<pressure>610</pressure></atmosphere>"
@@ -79,7 +79,7 @@ def test_the_variance_is_the_square_of_the_deviation_and_gazebos_its_root() -> N
             assert sim.sensor("m::l::s").truth.fluid_pressure == pytest.approx(101325.0)
 
 
-def test_it_falls_with_what_it_stands_on() -> None:
+def test_the_pressure_follows_the_height_of_a_falling_sensor() -> None:
     text = sensor("air_pressure", "<air_pressure/>", rate=0)
     with simkit.load(world(text, static=False, pose="0 0 100 0 0 0")) as sim:
         sim.run(1.0)

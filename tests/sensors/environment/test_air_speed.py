@@ -50,7 +50,7 @@ def test_a_turning_wing_meets_more_air_at_its_tip() -> None:
         assert sim.sensor("m::l::s").latest.diff_pressure == pytest.approx(0.5 * DENSITY * 16**2, rel=1e-4)
 
 
-def test_wind_from_ahead_adds_and_gazebo_knows_none() -> None:
+def test_headwind_adds_and_gazebo_ignores_wind() -> None:
     with read(pitot(top=CALM + WIND), (10.0, 0.0, 0.0)) as sim:
         assert sim.sensor("m::l::s").latest.diff_pressure == pytest.approx(0.5 * DENSITY * 16**2, rel=1e-5)
     with read(pitot(top=CALM + WIND + QUIRKS), (10.0, 0.0, 0.0)) as sim:

@@ -49,7 +49,7 @@ def test_pressure_falls_by_the_weight_of_the_air(gradient: float) -> None:
         assert slope == pytest.approx(-column.at(height).density * gravity, rel=1e-6)
 
 
-def test_a_world_says_its_own_sea_level() -> None:
+def test_a_world_has_its_own_sea_level() -> None:
     column = AirColumn(250.0, 0.0, 600.0)
     assert column.at(0.0) == (250.0, 600.0, pytest.approx(600 * 28.9644 / (8314.32 * 250)))
     assert column.at(1000.0).pressure == pytest.approx(

@@ -16,7 +16,9 @@ CALM = "<gravity>0 0 0</gravity>"
 RADIUS = 6378137.0
 
 
-def place(latitude: float, longitude: float, elevation: float = 0.0, heading: float = 0.0, surface: str = "") -> str:
+def spherical_coordinates(
+    latitude: float, longitude: float, elevation: float = 0.0, heading: float = 0.0, surface: str = ""
+) -> str:
     """Degrees, metres, rad."""
     return f"""<spherical_coordinates>{surface}<latitude_deg>{latitude}</latitude_deg>
       <longitude_deg>{longitude}</longitude_deg><elevation>{elevation}</elevation>
@@ -56,7 +58,7 @@ def cartesian(latitude: float, longitude: float, height: float) -> np.ndarray:
 
 
 def test_at_the_origin_it_is_the_place_of_the_world() -> None:
-    assert fix(receiver(top=place(43.5, 1.5, 200))) == (
+    assert fix(receiver(top=spherical_coordinates(43.5, 1.5, 200))) == (
         pytest.approx(43.5, abs=1e-12),
         pytest.approx(1.5, abs=1e-12),
         pytest.approx(200, abs=1e-8),
@@ -65,12 +67,14 @@ def test_at_the_origin_it_is_the_place_of_the_world() -> None:
 
 @pytest.mark.parametrize("origin", [(43.5, 1.5, 200), (-33.9, 179.99, 10), (89.99, -120, 0), (-90, 0, 2800), (0, 0, 0)])
 @pytest.mark.parametrize("heading", [0.0, 0.7])
-def test_kilometres_away_the_straight_line_back_is_what_the_world_says(
+def test_a_position_kilometres_away_converts_back_to_the_world_position(
     origin: tuple[float, float, float], heading: float
 ) -> None:
     """From the fix to Earth-centred coordinates and back to east, north, up at the origin: the displacement."""
     x, y, z = 3000.0, -20000.0, 150.0
-    latitude, longitude, altitude = fix(receiver(top=place(*origin, heading), pose=f"{x} {y} {z} 0 0 1.1"))
+    latitude, longitude, altitude = fix(
+        receiver(top=spherical_coordinates(*origin, heading), pose=f"{x} {y} {z} 0 0 1.1")
+    )
     apart = cartesian(latitude, longitude, altitude) - cartesian(*origin)
     phi, lam = math.radians(origin[0]), math.radians(origin[1])
     east = np.array((-math.sin(lam), math.cos(lam), 0))
@@ -83,32 +87,34 @@ def test_kilometres_away_the_straight_line_back_is_what_the_world_says(
 
 
 def test_over_the_antimeridian_the_longitude_changes_its_sign() -> None:
-    assert fix(receiver(top=place(0, 179.999), pose="1000 0 0 0 0 0"))[1] == pytest.approx(-179.992017, abs=1e-6)
+    assert fix(receiver(top=spherical_coordinates(0, 179.999), pose="1000 0 0 0 0 0"))[1] == pytest.approx(
+        -179.992017, abs=1e-6
+    )
 
 
 def test_at_the_pole_any_step_is_south() -> None:
-    latitude, longitude, _ = fix(receiver(top=place(90, 0), pose="0 1000 0 0 0 0"))
+    latitude, longitude, _ = fix(receiver(top=spherical_coordinates(90, 0), pose="0 1000 0 0 0 0"))
     assert latitude == pytest.approx(90 - math.degrees(1000 / 6399593.6), abs=1e-8)
     assert abs(longitude) == pytest.approx(180.0)  # the world's y points over the pole
 
 
 def test_the_moon_and_a_surface_of_ones_own_are_surfaces_too() -> None:
     moon = "<surface_model>MOON_SCS</surface_model>"
-    assert fix(receiver(top=place(0, 0, 0, 0, moon), pose="0 1737.4 0 0 0 0"))[0] == pytest.approx(
+    assert fix(receiver(top=spherical_coordinates(0, 0, 0, 0, moon), pose="0 1737.4 0 0 0 0"))[0] == pytest.approx(
         math.degrees(1e-3), rel=1e-6
     )
     own = (
         "<surface_model>CUSTOM_SURFACE</surface_model><surface_axis_equatorial>1000</surface_axis_equatorial>"
         "<surface_axis_polar>1000</surface_axis_polar>"
     )
-    latitude, longitude, altitude = fix(receiver(top=place(0, 0, 0, 0, own), pose="1000 0 0 0 0 0"))
+    latitude, longitude, altitude = fix(receiver(top=spherical_coordinates(0, 0, 0, 0, own), pose="1000 0 0 0 0 0"))
     assert (latitude, longitude) == (0.0, pytest.approx(45.0))
     assert altitude == pytest.approx(1000 * (math.sqrt(2) - 1))
 
 
 def test_the_velocity_is_to_east_north_and_up_of_the_sensors_own_place() -> None:
     """Heading 0.7; the sensor is 2 m ahead on a body that turns: the lever's part is added."""
-    top = CALM + place(10, 20, 0, 0.7)
+    top = CALM + spherical_coordinates(10, 20, 0, 0.7)
     with simkit.load(receiver(top=top, static=False, mounted="2 0 0 0 0 0")) as sim:
         velocity = sim.subscribe("/fix/velocity")
         gps = sim.subscribe("/fix/gps_fix")
@@ -129,7 +135,7 @@ def test_the_velocity_is_to_east_north_and_up_of_the_sensors_own_place() -> None
 
 def test_the_velocity_is_the_change_of_the_fix() -> None:
     """Far from the origin too, where east and up are no longer the world's."""
-    top = CALM + place(50, 20, 0, 0.3)
+    top = CALM + spherical_coordinates(50, 20, 0, 0.3)
     with simkit.load(receiver(top=top, static=False, pose="400000 200000 0 0 0 0", rate=0)) as sim:
         sub, velocity = sim.subscribe("/fix"), sim.subscribe("/fix/velocity")
         sim.model("m").set_velocity((200.0, 100.0, 0.0), (0, 0, 0))
@@ -143,7 +149,7 @@ def test_the_velocity_is_the_change_of_the_fix() -> None:
 
 
 def test_gazebos_velocity_is_along_the_worlds_axes() -> None:
-    top = CALM + QUIRKS + place(50, 20, 0, 0.7)
+    top = CALM + QUIRKS + spherical_coordinates(50, 20, 0, 0.7)
     with simkit.load(receiver(top=top, static=False)) as sim:
         velocity = sim.subscribe("/fix/velocity")
         sim.model("m").set_velocity((3.0, -4.0, 0.5), (0, 0, 0))
@@ -153,7 +159,7 @@ def test_gazebos_velocity_is_along_the_worlds_axes() -> None:
 
 @pytest.mark.parametrize("latitude", [0.0, 60.0, 89.999, 90.0])
 def test_noise_of_the_position_is_in_metres_wherever_it_is(latitude: float) -> None:
-    with simkit.load(receiver(sensing(2.5, 4.0), top=place(latitude, 30), rate=0), seed=3) as sim:
+    with simkit.load(receiver(sensing(2.5, 4.0), top=spherical_coordinates(latitude, 30), rate=0), seed=3) as sim:
         sub = sim.subscribe("/fix")
         sim.step(2000)
         here = cartesian(latitude, 30, 0)
@@ -168,7 +174,7 @@ def test_noise_of_the_position_is_in_metres_wherever_it_is(latitude: float) -> N
 
 
 def test_gazebos_noise_is_in_degrees_and_it_knows_no_covariance() -> None:
-    with simkit.load(receiver(sensing(0.01), top=QUIRKS + place(60, 30), rate=0), seed=3) as sim:
+    with simkit.load(receiver(sensing(0.01), top=QUIRKS + spherical_coordinates(60, 30), rate=0), seed=3) as sim:
         sub = sim.subscribe("/fix")
         sim.step(2000)
         for name, middle in (("latitude", 60), ("longitude", 30)):
@@ -180,7 +186,7 @@ def test_gazebos_noise_is_in_degrees_and_it_knows_no_covariance() -> None:
 
 
 def test_velocity_has_its_noise_and_gps_its_uncertainties() -> None:
-    with simkit.load(receiver(sensing(2, 3, 0.1, 0.2), top=place(60, 30), rate=0), seed=3) as sim:
+    with simkit.load(receiver(sensing(2, 3, 0.1, 0.2), top=spherical_coordinates(60, 30), rate=0), seed=3) as sim:
         sub, gps = sim.subscribe("/fix/velocity"), sim.subscribe("/fix/gps_fix")
         sim.step(2000)
         values = np.array([xyz(m.vector) for m in sub.messages])
@@ -193,7 +199,7 @@ def test_velocity_has_its_noise_and_gps_its_uncertainties() -> None:
 def test_a_wandering_position_is_metres_too() -> None:
     time = "<dynamic_bias_correlation_time>50</dynamic_bias_correlation_time>"
     more = f"<dynamic_bias_stddev>1</dynamic_bias_stddev>{time}"
-    with simkit.load(receiver(sensing(0, more=more), top=place(45, 0), rate=10), seed=1) as sim:
+    with simkit.load(receiver(sensing(0, more=more), top=spherical_coordinates(45, 0), rate=10), seed=1) as sim:
         sub = sim.subscribe("/fix")
         sim.run(100.0)
         north = np.radians([m.latitude - 45 for m in sub.messages]) * 6367e3
@@ -201,7 +207,7 @@ def test_a_wandering_position_is_metres_too() -> None:
         assert 0.5 < np.abs(north).max() < 20
 
 
-def test_without_a_place_it_says_so_and_is_silent() -> None:
+def test_without_spherical_coordinates_it_warns_and_publishes_nothing() -> None:
     with simkit.load(receiver()) as sim:
         sub = sim.subscribe("/fix")
         sim.run(0.1)
@@ -213,7 +219,7 @@ def test_without_a_place_it_says_so_and_is_silent() -> None:
 
 
 def test_names_are_gazebos_and_gps_is_another_word_for_it() -> None:
-    text = world(sensor("gps", f"<gps>{sensing(1.5)}</gps>"), top=place(1, 2))
+    text = world(sensor("gps", f"<gps>{sensing(1.5)}</gps>"), top=spherical_coordinates(1, 2))
     with simkit.load(text) as sim:
         sim.step(1)
         eye = sim.sensor("m::l::s")
@@ -224,16 +230,16 @@ def test_names_are_gazebos_and_gps_is_another_word_for_it() -> None:
 
 def test_latitude_91_is_an_error_with_what_is_allowed() -> None:
     with pytest.raises(simkit.LoadError) as caught:
-        simkit.load(receiver(top=place(91, 2)))
+        simkit.load(receiver(top=spherical_coordinates(91, 2)))
     assert ["-90 to 90" in d.message for d in caught.value.diagnostics] == [True]
 
 
 @pytest.mark.parametrize("text", [
-    receiver(sensing(1e100, 1e100, 1e100, 1e100), top=place(50, 20)),
-    receiver(sensing(1e100, 1e100, 1e100, 1e100), top=QUIRKS + place(50, 20)),
-    receiver(top=place(50, 20, 1e9)),
-    receiver(top=place(50, 20, -6356752.3)),
-    receiver(top=place(50, 20), pose="1e14 -1e14 1e14 0 0 0"),
+    receiver(sensing(1e100, 1e100, 1e100, 1e100), top=spherical_coordinates(50, 20)),
+    receiver(sensing(1e100, 1e100, 1e100, 1e100), top=QUIRKS + spherical_coordinates(50, 20)),
+    receiver(top=spherical_coordinates(50, 20, 1e9)),
+    receiver(top=spherical_coordinates(50, 20, -6356752.3)),
+    receiver(top=spherical_coordinates(50, 20), pose="1e14 -1e14 1e14 0 0 0"),
 ], ids=["noise", "noise in degrees", "high", "the centre", "far"])  # fmt: skip
 def test_whatever_is_asked_the_fix_is_a_number(text: str) -> None:
     latitude, longitude, altitude = fix(text)
@@ -245,7 +251,8 @@ def test_whatever_is_asked_the_fix_is_a_number(text: str) -> None:
 def test_spawned_receivers_know_the_place_and_a_restored_run_repeats() -> None:
     eye = sensor("navsat", f"<navsat>{sensing(1)}</navsat>")
     model = f'<sdf version="1.9"><model name="d"><static>true</static><link name="l">{eye}</link></model></sdf>'
-    with simkit.load(f'<sdf version="1.9"><world name="w">{place(50, 20)}</world></sdf>', seed=4) as sim:
+    on_earth = f'<world name="w">{spherical_coordinates(50, 20)}</world>'
+    with simkit.load(f'<sdf version="1.9">{on_earth}</sdf>', seed=4) as sim:
         sim.spawn(model)
         sub = sim.subscribe("/world/w/model/d/link/l/sensor/s/navsat")
         sim.run(0.1)

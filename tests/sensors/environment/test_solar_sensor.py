@@ -173,7 +173,7 @@ def test_a_panels_power_is_light_times_area_times_efficiency() -> None:
         assert values(sim, "power")[0] == pytest.approx(900 * math.cos(math.pi / 4 + 0.3) * 0.5 * 0.2)
 
 
-def test_the_light_says_its_irradiance_and_the_sensor_has_the_last_word() -> None:
+def test_the_sensors_irradiance_overrides_the_lights() -> None:
     own = SUN.replace("</light>", "<simkit:irradiance>600</simkit:irradiance></light>")
     namespaced = 'xmlns:simkit="https://simkit" version="1.9"'
     for block, lights, facing in (
@@ -260,7 +260,7 @@ def test_what_casts_no_shadow_lets_light_through() -> None:
         assert shadow_of(tower.replace('<visual name="v">', glass)) == name
 
 
-def test_collisions_count_only_where_nothing_is_drawn() -> None:
+def test_collisions_count_only_on_links_without_visuals() -> None:
     assert shadow_of(box("tower", "3 0 4 0 0 0", "1 1 1", visual=False)) == "tower::l::c"
     # the visual is small and not in the way, the collision is
     drawn = '<visual name="v"><geometry><sphere><radius>0.1</radius></sphere></geometry></visual></link>'
@@ -295,7 +295,7 @@ def test_the_lamps_own_link_is_its_housing() -> None:
 
 
 def test_a_box_that_falls_through_the_ray_casts_its_shadow_for_the_time_it_takes() -> None:
-    """Its edges pass the ray after 0.5 g t² = 1 m and 3 m of its fall; whoever reads later reads the same."""
+    """The box's edges pass the ray after 0.5 g t² = 1 m and 3 m of its fall; late readers get the same values."""
     falling = box("m2", "3 0 6 0 0 0", "1 1 1", collision=False).replace("<static>true</static>", "")
     found: dict[bool, list[str]] = {True: [], False: []}
     for listens in found:
@@ -387,7 +387,7 @@ def test_the_covariance_is_that_of_the_errors() -> None:
     np.testing.assert_allclose(read, told, atol=4 * 2 * sigma * sigma**2)
 
 
-def test_noise_repeats_with_the_seed_whoever_listened_before() -> None:
+def test_noise_repeats_with_the_seed_for_any_earlier_readers() -> None:
     block = "<angular_noise>0.01</angular_noise>"
     with opened(block, rate=0, run=0) as early, opened(block, rate=0, run=0.05) as late:
         first = errors(early, 100)
@@ -412,7 +412,7 @@ def test_precision_rounds_pitch_and_yaw() -> None:
 # ------------------------------------------------------------------ what is said
 
 
-def said(block: str, *others: str, lights: str = SUN) -> dict[str, str]:
+def messages_by_code(block: str, *others: str, lights: str = SUN) -> dict[str, str]:
     text = world(solar(block), *others, lights=lights)
     try:
         with simkit.load(text) as sim:
@@ -433,16 +433,16 @@ def test_bad_options_are_all_said_in_one_pass() -> None:
 
 
 def test_an_unknown_light_is_an_error_that_lists_the_lights() -> None:
-    found = said("<light_name>son</light_name>")
+    found = messages_by_code("<light_name>son</light_name>")
     assert "lights are: 'sun'" in found["SK-SENSOR-080"] and "did you mean 'sun'" in found["SK-SENSOR-080"]
-    assert "SK-SENSOR-082" in said("", lights=lamp())
-    assert said("") == {}
+    assert "SK-SENSOR-082" in messages_by_code("", lights=lamp())
+    assert messages_by_code("") == {}
 
 
 def test_an_option_without_effect_is_said() -> None:
-    assert "falloff" in said("<falloff>inverse_square</falloff>")["SK-SENSOR-083"]
+    assert "falloff" in messages_by_code("<falloff>inverse_square</falloff>")["SK-SENSOR-083"]
     block = "<light_name>lamp</light_name><towards>position</towards>"
-    assert "towards" in said(block, lights=lamp())["SK-SENSOR-083"]
+    assert "towards" in messages_by_code(block, lights=lamp())["SK-SENSOR-083"]
 
 
 def test_a_bare_model_waits_for_a_light() -> None:

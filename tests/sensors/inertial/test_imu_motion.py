@@ -1,4 +1,4 @@
-"""What an IMU feels on bodies that move: against formulas."""
+"""Readings of an IMU on moving bodies, against formulas."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the IMU's orientation is measured against, and Classic's options; every case against its rotation matrix."""
+"""Reference of the IMU's orientation, and Classic's options; every case against its rotation matrix."""
 
 from __future__ import annotations
 

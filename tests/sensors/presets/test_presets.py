@@ -102,7 +102,7 @@ def test_what_is_unconfirmed_is_an_element_and_is_marked_wherever_a_preset_is_sh
     assert (mark in describe_preset(preset)) is bool(preset.unconfirmed)
 
 
-def test_the_page_says_where_a_band_is_taken_for_a_deviation() -> None:
+def test_the_page_marks_bands_used_as_deviations() -> None:
     """An accuracy of ±x is no deviation: who takes it for one says that it is our choice."""
     for preset in presets():
         if "deviation: " in preset.remark:
@@ -211,7 +211,7 @@ def test_a_wrong_name_is_an_error_with_the_closest(preset: str, kind: str, code:
     assert hint in error.hint
 
 
-def test_elements_that_nobody_reads_are_still_reported() -> None:
+def test_unread_elements_are_still_reported() -> None:
     with load(world(named("BMI088", "imu", "<imu><angular_velocty/></imu>"))) as sim:
         (warning,) = [d for d in sim.diagnostics if d.code == "SK-PARAM-003"]
         assert "angular_velocty" in warning.message
@@ -272,7 +272,7 @@ def test_a_urdf_names_one_in_its_gazebo_block() -> None:
 
 
 def test_the_settings_are_the_elements_of_a_file() -> None:
-    """As `Params.from_dict` would read them, so that they can be passed on."""
+    """Settings have the form that `Params.from_dict` reads, so that they can be passed on."""
     elements = find("LDS-01")["lidar"].elements
     block = Params.from_dict(dict(elements)).block("lidar").block("range")
     assert block.number("max") == 3.5

@@ -134,7 +134,7 @@ def test_rays_without_a_reading_keep_their_place_in_the_cloud() -> None:
     ("output", "type_name"),
     [("LaserScan", "LaserScan"), ("PointCloud2", "PointCloud2"), ("PointCloud", "PointCloud"), ("Range", "Range")],
 )
-def test_classic_gives_what_output_type_asks_for(output: str, type_name: str) -> None:
+def test_classic_publishes_the_requested_output_type(output: str, type_name: str) -> None:
     plugin = f"""<plugin name="node" filename="libgazebo_ros_ray_sensor.so">
       <ros><remapping>~/out:=scan</remapping></ros><output_type>sensor_msgs/{output}</output_type><min_intensity>5</min_intensity></plugin>"""
     with simkit.load(world(sensor("ray", block(), extra=plugin), others=AHEAD)) as sim:
@@ -187,7 +187,7 @@ def test_a_spawned_box_is_seen_and_a_removed_one_is_not() -> None:
         assert sim.sensor("m::l::s").latest.ranges[1] == pytest.approx(3.0)
 
 
-def test_it_tells_what_each_ray_hit() -> None:
+def test_hits_names_the_object_of_each_ray() -> None:
     scene = AHEAD + box("left", "0 3.5 1 0 0 0", "1 1 1")
     for kind, part in (("lidar", "c"), ("gpu_lidar", "v")):
         with simkit.load(world(sensor(kind, block(rng=(0.1, 10))), others=scene)) as sim:
@@ -271,7 +271,7 @@ def test_gazebos_quirks_limit_reflectance_and_drop_quantised_noise() -> None:
             assert (lidar.latest.ranges[1] == lidar.truth.ranges[1]) == quirks
 
 
-def test_who_reads_changes_nothing() -> None:
+def test_readers_change_no_reading() -> None:
     moving = box("loose", "3.5 0 1 0 0 0", "1 1 1").replace("<static>true</static>", "")
     text = world(sensor("lidar", block(samples=30, more=noise(0.01)), rate=20), others=moving)
     with simkit.load(text, seed=3) as read, simkit.load(text, seed=3) as unread:

@@ -212,7 +212,7 @@ SCAN = """<lidar><scan><horizontal>
 
 
 def test_an_arm_is_seen_when_it_is_raised_into_the_fan() -> None:
-    """What can never meet the fan is left out once and for all; an arm that can is not."""
+    """Geoms that can never meet the fan are left out at once; an arm that can is not."""
     text = f'<sdf version="1.9"><world name="w">{ARM.format(sensor=sensor("lidar", SCAN))}</world></sdf>'
     with simkit.load(text) as sim:
         lidar = sim.sensor("robot::head::s")
@@ -238,7 +238,7 @@ def test_other_links_of_the_robot_are_seen_and_the_own_one_is_not() -> None:
         assert lidar.latest.ranges[1] == pytest.approx(0.3, abs=1e-6)
 
 
-def test_a_static_housing_hides_nothing_else_of_the_world() -> None:
+def test_a_static_housing_hides_no_other_object() -> None:
     """One static model among others: its own link alone is not hit, in a scan and in a dense cloud."""
     dense = SCAN.replace("<samples>3</samples>", f"<samples>{MANY_RAYS + 1}</samples>")
     can = "<geometry><cylinder><radius>0.2</radius><length>0.4</length></cylinder></geometry>"

@@ -28,7 +28,7 @@ from simkit.sensors.cameras.rendering.scene_composition import (
 )
 from simkit.sensors.cameras.rendering.sky_and_fog import Background, enable_fog
 from simkit.sensors.cameras.rendering.transparency import draw_transparent
-from simkit.sensors.cameras.rendering.view import Colours, Depths, Film, Ids, Shot, aim
+from simkit.sensors.cameras.rendering.view import Colours, Depths, DrawnView, Ids, Shot, aim
 from simkit.sensors.environment.illumination import LEAST_OPACITY
 
 
@@ -142,7 +142,7 @@ def draw_ids(
     rectangle: mujoco.MjrRect,
     colours: Colours,
     depths: Depths,
-) -> Film:
+) -> DrawnView:
     """Draw the geom id at each pixel.
 
     Ids must not be blended at edges, so the context must have no multisampling.
@@ -155,7 +155,7 @@ def draw_ids(
         if geom.objtype == mujoco.mjtObj.mjOBJ_GEOM and 0 <= geom.segid < scene.ngeom:
             names[geom.segid + 1] = geom.objid
     ids = names.take(_colours_to_numbers(colours), mode="clip")
-    return Film(shot.view, None, depths[::-1] if shot.depth else None, ids[::-1])
+    return DrawnView(shot.view, None, depths[::-1] if shot.depth else None, ids[::-1])
 
 
 def _colours_to_numbers(colours: Colours) -> Ids:
@@ -196,8 +196,8 @@ class Renderer:
         self._is_logged = False
         gl_context.hold_memory(self)
 
-    def films(self, composition: Composition, shots: Sequence[Shot]) -> Generator[Film, None, None]:
-        """Draw the shots of a composition one by one; each film is valid until the next one is requested.
+    def draw_all(self, composition: Composition, shots: Sequence[Shot]) -> Generator[DrawnView, None, None]:
+        """Draw the shots of a composition one by one; each result is valid until the next one is requested.
 
         At the end of the generator, the composition is returned to the composer.
 
@@ -210,7 +210,7 @@ class Renderer:
         finally:
             self.composer.give_back(composition)
 
-    def draw(self, composition: Composition, shot: Shot) -> Film:
+    def draw(self, composition: Composition, shot: Shot) -> DrawnView:
         """Draw one image.
 
         Raises:
@@ -238,7 +238,7 @@ class Renderer:
                     with hide_shapes(scene, [*hidden, *glassy]), draw_plain_colours(scene):
                         mujoco.mjr_render(rectangle, scene, context)
                         mujoco.mjr_readPixels(None, depths, rectangle, context)
-                    return Film(view, None, depths[::-1])
+                    return DrawnView(view, None, depths[::-1])
                 if self._appearance.quality.shadow_map:
                     place_directional_lights(scene, context, composition.model, position, rotation[:, 0], view.far)
                     fit_shadow_maps(context)
@@ -256,7 +256,7 @@ class Renderer:
                     self._learn_background_colour(colours, depths)
             except mujoco.FatalError as error:
                 raise RenderError(f"drawing an image failed: {error}", "SK-RENDER-002") from error
-        return Film(view, colours[::-1], depths[::-1] if shot.depth else None)
+        return DrawnView(view, colours[::-1], depths[::-1] if shot.depth else None)
 
     def uploaded(self) -> list[mujoco.MjrContext]:
         """Return the contexts in graphics memory."""

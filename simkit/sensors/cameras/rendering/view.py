@@ -1,4 +1,4 @@
-"""View, shot and film: what an image shows, how it is requested, and what was drawn."""
+"""View, shot and drawn view: the content of an image, its request and its result."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class Shot:
 
 
 @dataclass(frozen=True, slots=True)
-class Film:
+class DrawnView:
     """Drawn result of one shot, rows from the top, as views of buffers that the next shot overwrites.
 
     Attributes:

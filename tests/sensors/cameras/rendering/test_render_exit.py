@@ -1,4 +1,4 @@
-"""How a process that has drawn ends, forks and spawns: without a word, and without hanging."""
+"""Exit, fork and spawn of a process that has drawn: no output and no hang."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def needs_a_renderer(done: subprocess.CompletedProcess[str]) -> None:
         pytest.skip("no renderer")
 
 
-def test_an_interrupt_after_pictures_from_several_threads_is_all_that_is_said() -> None:
+def test_an_interrupt_after_images_from_several_threads_is_the_only_message() -> None:
     done = run(
         """
         kept = [draw()]
@@ -65,7 +65,7 @@ def test_an_interrupt_after_pictures_from_several_threads_is_all_that_is_said() 
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork")
-def test_a_forked_child_says_that_it_cannot_draw_and_all_else_goes_on() -> None:
+def test_a_forked_child_reports_that_it_cannot_draw_and_continues() -> None:
     done = run(
         """
         sim, found = draw()
@@ -86,7 +86,7 @@ def test_a_forked_child_says_that_it_cannot_draw_and_all_else_goes_on() -> None:
     assert done.stdout.splitlines()[1:] == ["SK-RENDER-011 True", "0"]
 
 
-def test_a_child_that_is_forked_before_the_first_picture_draws_whatever_pyopengl_is_told() -> None:
+def test_a_child_forked_before_the_first_image_draws_with_any_pyopengl_platform() -> None:
     done = run(
         """
         child = os.fork()

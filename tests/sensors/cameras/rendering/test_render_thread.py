@@ -58,7 +58,7 @@ def as_bytes(messages: list[Any]) -> list[bytes]:
 
 
 def on_both(script: Callable[[Any], Any], text: str = "") -> tuple[Any, Any]:
-    """What a script gives of a simulation without the render thread, and of one with it."""
+    """Return the results of a script for a simulation without the render thread and for one with it."""
     found = []
     for is_on in (False, True):
         with simkit.load(text or two_cameras(), render_thread=is_on) as sim:
@@ -100,7 +100,7 @@ def test_a_recorded_bag_is_the_same_byte_for_byte(tmp_path: Path, latency: str) 
     assert alone == beside
 
 
-def test_a_reset_and_a_restore_find_pictures_on_their_way() -> None:
+def test_reset_and_restore_while_images_are_being_drawn() -> None:
     def script(sim: Any) -> list[list[bytes]]:
         subs = [sim.subscribe(topic) for topic in TOPICS]
         sim.run(0.1)
@@ -116,7 +116,7 @@ def test_a_reset_and_a_restore_find_pictures_on_their_way() -> None:
     assert alone == beside
 
 
-def test_who_is_called_back_who_looks_later_and_who_reads_latest_see_the_same() -> None:
+def test_callbacks_late_readers_and_latest_get_the_same_images() -> None:
     called: list[Any] = []
 
     def script(sim: Any) -> list[bytes]:
@@ -134,7 +134,7 @@ def test_who_is_called_back_who_looks_later_and_who_reads_latest_see_the_same() 
     assert alone[-2] == alone[-3] == alone[-4]
 
 
-def test_a_thread_that_is_switched_on_and_off_changes_nothing() -> None:
+def test_switching_the_thread_on_and_off_changes_no_image() -> None:
     def script(sim: Any) -> list[bytes]:
         sub = sim.subscribe("/a/points")
         for _ in range(4):
@@ -146,17 +146,17 @@ def test_a_thread_that_is_switched_on_and_off_changes_nothing() -> None:
     assert alone == beside
 
 
-def test_the_thread_draws_where_nobody_waits() -> None:
+def test_the_thread_draws_where_no_callback_waits() -> None:
     drawn: list[bool] = []
     with simkit.load(two_cameras(), render_thread=True) as sim:
         camera = sim.sensor("m::l::b")
-        develop = camera.develop
+        make_reading = camera.make_reading
 
-        def noticed(films: Any, notes: Any) -> Any:
+        def noticed(drawn_views: Any, context: Any) -> Any:
             drawn.append(threading.current_thread() is threading.main_thread())
-            return develop(films, notes)
+            return make_reading(drawn_views, context)
 
-        camera.develop = noticed
+        camera.make_reading = noticed
         sub = sim.subscribe("/b/image")
         sim.run(0.1)
         assert len(sub.messages) == 6
@@ -185,7 +185,7 @@ def counted(monkeypatch: pytest.MonkeyPatch, kind: type, method: str) -> list[in
 
 @pytest.mark.parametrize("is_on", [False, True])
 def test_only_what_is_read_is_made_and_only_once(monkeypatch: pytest.MonkeyPatch, is_on: bool) -> None:
-    pictures, clouds = counted(monkeypatch, RgbdCamera, "develop"), counted(monkeypatch, RgbdCamera, "_cloud")
+    pictures, clouds = counted(monkeypatch, RgbdCamera, "make_reading"), counted(monkeypatch, RgbdCamera, "_cloud")
     images = counted(monkeypatch, RgbdCamera, "_colour_message")
     with simkit.load(two_cameras(), render_thread=is_on) as sim:
         sim.subscribe("/a/camera_info")
@@ -202,18 +202,16 @@ def test_only_what_is_read_is_made_and_only_once(monkeypatch: pytest.MonkeyPatch
 
 
 @pytest.mark.parametrize("is_on", [False, True])
-def test_a_picture_that_fails_switches_its_camera_off_and_is_said_once(
-    monkeypatch: pytest.MonkeyPatch, is_on: bool
-) -> None:
-    develop, made = Camera.develop, [0]
+def test_a_failed_image_switches_its_camera_off_with_one_report(monkeypatch: pytest.MonkeyPatch, is_on: bool) -> None:
+    make_reading, made = Camera.make_reading, [0]
 
-    def failing(self: Any, films: Any, notes: Any) -> Any:
+    def failing(self: Any, drawn_views: Any, context: Any) -> Any:
         made[0] += 1
         if made[0] == 3:
             raise RenderError("drawing an image failed: out of memory", "SK-RENDER-002")
-        return develop(self, films, notes)
+        return make_reading(self, drawn_views, context)
 
-    monkeypatch.setattr(Camera, "develop", failing)
+    monkeypatch.setattr(Camera, "make_reading", failing)
     with simkit.load(two_cameras(), render_thread=is_on) as sim:
         image, depth = sim.subscribe("/b/image"), sim.subscribe("/a/depth_image")
         sim.run(0.2)
@@ -228,11 +226,11 @@ def test_a_picture_that_fails_switches_its_camera_off_and_is_said_once(
             sim.sensor("m::l::b").latest  # noqa: B018
 
 
-def test_a_mistake_in_a_kind_comes_out_where_the_picture_is_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_error_in_a_kind_is_raised_where_the_image_is_read(monkeypatch: pytest.MonkeyPatch) -> None:
     with simkit.load(two_cameras(), render_thread=True) as sim:
         sub = sim.subscribe("/b/image")
         sim.run(0.05)
-        monkeypatch.setattr(Camera, "develop", lambda *_: 1 / 0)
+        monkeypatch.setattr(Camera, "make_reading", lambda *_: 1 / 0)
         sim.run(0.05)
         with pytest.raises(ZeroDivisionError):
             sub.messages  # noqa: B018
@@ -273,7 +271,7 @@ def run(script: str) -> subprocess.CompletedProcess[str]:
 
 
 @pytest.mark.parametrize("end", ["sys.exit(3)", "raise KeyboardInterrupt", "threading.Thread(target=more).start()"])
-def test_the_interpreter_ends_with_pictures_on_their_way(end: str) -> None:
+def test_the_interpreter_ends_while_images_are_being_drawn(end: str) -> None:
     done = run(
         f"""
         import os, sys, threading, simkit
@@ -290,7 +288,7 @@ def test_the_interpreter_ends_with_pictures_on_their_way(end: str) -> None:
     assert done.stderr == "" or "KeyboardInterrupt" in done.stderr
 
 
-def test_an_interrupt_is_heard_and_the_run_can_go_on() -> None:
+def test_an_interrupt_is_raised_and_the_run_can_continue() -> None:
     before = signal.signal(signal.SIGALRM, lambda *_: signal.raise_signal(signal.SIGINT))
     try:
         with simkit.load(two_cameras(), render_thread=True) as sim:
@@ -312,7 +310,7 @@ def test_an_interrupt_is_heard_and_the_run_can_go_on() -> None:
         signal.signal(signal.SIGALRM, before)
 
 
-def test_an_interrupt_amid_a_picture_waits_for_its_end_and_is_no_fault_of_the_renderer() -> None:
+def test_an_interrupt_while_drawing_waits_for_the_image_and_is_no_render_error() -> None:
     reached = []
 
     def draw() -> None:
@@ -330,7 +328,7 @@ def test_an_interrupt_amid_a_picture_waits_for_its_end_and_is_no_fault_of_the_re
 @pytest.mark.parametrize(
     "wait", [render_thread.RenderJob.wait, lambda _: render_thread.drain()], ids=["for_one", "for_all"]
 )
-def test_who_waits_for_pictures_hears_an_interrupt_at_once(wait: Callable[[render_thread.RenderJob], None]) -> None:
+def test_waiting_for_images_is_interrupted_at_once(wait: Callable[[render_thread.RenderJob], None]) -> None:
     gate = threading.Event()
 
     def interrupt() -> None:

@@ -1,4 +1,4 @@
-"""What is in a picture: who is seen, fog, sky, glass, shadows, lights; quality, and what it costs nobody else."""
+"""Content of images: visuals, fog, sky, glass, shadows and lights; quality and its cost."""
 
 from __future__ import annotations
 
@@ -95,7 +95,7 @@ def test_a_plane_has_no_other_side_unless_it_is_double_sided() -> None:
         np.testing.assert_array_equal(seen[16, 16], expected)
 
 
-def test_what_lies_outside_a_view_is_found_and_nothing_else() -> None:
+def test_only_shapes_outside_a_view_are_found() -> None:
     view = View(10, 10, -0.5, 0.5, -0.25, 0.25, 0.1, 20.0)
     centres = np.array(
         ((5.0, 0.0, 0.0), (-3.0, 0.0, 0.0), (25.0, 0.0, 0.0), (4.0, 2.5, 0.0), (4.0, 3.5, 0.0), (4.0, 0.0, 2.4))
@@ -105,7 +105,7 @@ def test_what_lies_outside_a_view_is_found_and_nothing_else() -> None:
     assert bounds.outside(np.zeros(3), np.eye(3), view) == [1, 2, 4, 5]
 
 
-def test_pictures_are_the_same_with_and_without_what_is_out_of_sight() -> None:
+def test_images_are_the_same_with_and_without_invisible_shapes() -> None:
     around = "".join(
         box(
             f"b{i}",
@@ -124,8 +124,8 @@ def test_pictures_are_the_same_with_and_without_what_is_out_of_sight() -> None:
             assert composition.bounds is not None
             if not culled:
                 composition.bounds = None
-            film = renderer.draw(composition, shot)
-            taken.append((film.colours.copy(), film.depths.copy()))
+            drawn_view = renderer.draw(composition, shot)
+            taken.append((drawn_view.colours.copy(), drawn_view.depths.copy()))
     np.testing.assert_array_equal(taken[0][0], taken[1][0])
     np.testing.assert_array_equal(taken[0][1], taken[1][1])
 
@@ -140,7 +140,7 @@ def test_half_opaque_is_half_before_a_wall_and_before_the_background() -> None:
         np.testing.assert_allclose(seen[16, 16], 0.5 * np.array((0, 255, 0)) + 0.5 * np.array(behind), atol=2)
 
 
-def test_the_background_behind_glass_in_one_picture_does_not_colour_the_background_of_the_next() -> None:
+def test_the_background_behind_glass_in_one_image_does_not_colour_the_background_of_the_next() -> None:
     pane = slab("pane", 1.2, "0 1 0 1", 0.5, before="<visibility_flags>2</visibility_flags>")
     eyes = camera(name="through") + camera("<visibility_mask>1</visibility_mask>", name="blind_to_it")
     with simkit.load(world(eyes, others=pane, top=scene())) as sim:
@@ -190,7 +190,7 @@ def test_every_shape_of_glass_lies_where_the_same_shape_lies_when_it_is_opaque(s
     ],
 )
 @pytest.mark.parametrize("quality", ["fast", "gazebo"])
-def test_fog_thickens_with_depth_as_the_format_says(fog: str, share: float, quality: str) -> None:
+def test_fog_thickens_with_depth_by_its_type(fog: str, share: float, quality: str) -> None:
     text = world(camera(), others=slab("w", 3.0, "1 0 0 1"), top=scene(f"<fog><color>0 0 1 1</color>{fog}</fog>"))
     seen = picture(text, f"scene.quality={quality}")
     np.testing.assert_allclose(seen[16, 16], (255 * (1 - share), 0, 255 * share), atol=2)
@@ -218,7 +218,7 @@ def shadowed(quality: str, more: str = "", light: str = DOWN, hat: str = "", box
     return int(picture(text, f"scene.quality={quality}")[16, 16, 0])
 
 
-def test_shadows_are_drawn_when_the_quality_has_them_and_the_file_wants_them() -> None:
+def test_shadows_are_drawn_if_quality_and_file_enable_them() -> None:
     assert shadowed("fast") == 255
     assert shadowed("gazebo") == pytest.approx(76, abs=2)
     assert shadowed("high") == pytest.approx(76, abs=2)
@@ -341,27 +341,27 @@ def test_cameras_of_many_sizes_share_one_world() -> None:
 
 
 @pytest.mark.parametrize("quality", ["fast", "gazebo"])
-def test_pictures_follow_spawn_remove_set_pose_and_restore(quality: str) -> None:
+def test_images_follow_spawn_remove_set_pose_and_restore(quality: str) -> None:
     text = world(camera(), others=WALL, top=scene(light=DOWN))
     with simkit.load(text, overrides=[f"scene.quality={quality}"]) as sim:
         images = sim.subscribe("/c")
 
-        def now() -> Any:
+        def next_colour() -> Any:
             sim.run(0.02)
             return tuple(int(v) for v in colours(images.messages[-1])[16, 16])
 
-        red = now()
+        red = next_colour()
         kept = sim.snapshot()
         sim.spawn(f'<sdf version="1.9">{slab("g", 2.0, "0 1 0 1")}</sdf>')
-        green = now()
+        green = next_colour()
         sim.model("g").set_pose(simkit.Pose((-5, 0, 1)))
-        moved = now()
+        moved = next_colour()
         sim.model("g").set_pose(simkit.Pose((2, 0, 1)))
-        back = now()
+        back = next_colour()
         sim.remove("g")
-        gone = now()
+        gone = next_colour()
         sim.restore(kept)
-        restored = now()
+        restored = next_colour()
     assert red[0] > 200 and green[1] > 200
     assert (moved, back, gone, restored) == (red, green, red, red)
 
