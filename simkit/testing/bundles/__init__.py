@@ -1,10 +1,10 @@
-"""Bundles: a run in one file, to be repeated elsewhere bit for bit.
+"""Bundles: a run in one file that can be repeated bit for bit on another machine.
 
-A running simulation enters, a file with its world, its inputs and its last seconds leaves; a file enters, the result of
-its replay leaves. A bundle may come from anywhere: it is checked as a whole before anything of it is used, and code in
-it runs only where that is allowed.
+A bundle is written from a running simulation. It holds the world, the inputs and the last seconds of messages. A replay
+reads a bundle, repeats the run and compares the result. A bundle may come from an untrusted source. Therefore the whole
+archive is validated before any file in it is used. Python code in a bundle runs only if the caller allows it.
 
-with simkit.testing.bundles.keep(sim, "bundles"):  # written where something is raised within
+with simkit.testing.bundles.keep(sim, "bundles"):  # an exception in this block writes a bundle
     sim.run(10.0)
 
 simkit.testing.bundles.write_bundle(sim, "run.zip")  # or at any time

@@ -1,6 +1,6 @@
-"""Opens a bundle that may come from anywhere: everything in it is looked at before anything of it is used.
+"""Reader for bundles from untrusted sources: the whole archive is validated before any file in it is used.
 
-Opening reads; it runs nothing, and writes nothing but where it is told to extract.
+Opening a bundle runs none of its code. Files are written only by `Bundle.extract`, and only below the given folder.
 """
 
 from __future__ import annotations
@@ -23,10 +23,11 @@ from simkit.testing.bundles.manifest import BAG, BROKEN, COMMANDS, PAGE, Manifes
 
 MAX_FILES: Final = 20_000
 MAX_BYTES: Final = 2 << 30
-_MOST_PAGE: Final = 64 << 20  # of bundle.json
-_MOST_INDEX: Final = 16 << 20  # of the archive's own table
-_MOST_LINE: Final = 256 << 20  # of one entry of the journal
-_HARMLESS, _MOST_RATIO = 64 << 20, 200  # bytes that may come of anything; what is more, of so many times its size
+_MAX_PAGE_BYTES: Final = 64 << 20  # bundle.json
+_MAX_INDEX_BYTES: Final = 16 << 20  # the archive's own table
+_MAX_LINE_BYTES: Final = 256 << 20  # one entry of the journal
+# An archive may unpack to 64 MiB in any case, and beyond that to at most 200 times its size on disk.
+_ALWAYS_ALLOWED_BYTES, _MAX_RATIO = 64 << 20, 200
 FOLDERS: Final = ("world", "spawn", "models", "params", "code")
 _BAD_NAME, _TOO_LARGE = "SK-BUNDLE-003", "SK-BUNDLE-004"
 _NAME: Final = re.compile(r"[^\x00-\x1f\x7f\\:*?\"<>|]+")
@@ -34,31 +35,31 @@ _END: Final = struct.Struct("<4s4H2LH")
 
 
 def name_fault(name: str) -> str:
-    """Why a name may not be that of a file in a bundle; empty where it may."""
+    """Return the reason why a bundle must not contain a file of this name; empty if the name is allowed."""
     parts = name.split("/")
     if name.startswith("/") or not name:
         return "is an absolute path" if name else "is empty"
     if not _NAME.fullmatch(name):
-        return "has characters that a file of a bundle may not have"
+        return "has characters that a bundle does not allow in file names"
     if any(part in ("", ".", "..") for part in parts):
-        return "leaves its folder"
+        return "leads out of its folder"
     if len(name) > 1000 or any(len(part.encode(errors="replace")) > 240 for part in parts):
         return "is too long"
     if name not in (PAGE, COMMANDS, BAG, "error.txt") and (parts[0] not in FOLDERS or len(parts) < 2):
-        return "is no part of a bundle"
+        return "is not a file that a bundle can contain"
     return ""
 
 
 class Bundle:
-    """An open bundle; a context manager.
+    """Open bundle; a context manager.
 
     Attributes:
-        path: what was opened.
-        manifest: what it says of itself.
+        path: File that was opened.
+        manifest: Contents of the file `bundle.json`.
 
     Raises:
-        InputError: SK-BUNDLE-001 it is none or is damaged, SK-BUNDLE-002 a later simkit made it, SK-BUNDLE-003 a file
-            in it has a name that is refused, SK-BUNDLE-004 it is too large.
+        InputError: SK-BUNDLE-001 the file is not a bundle or is damaged; SK-BUNDLE-002 a newer simkit wrote the bundle;
+            SK-BUNDLE-003 a file in the bundle has a name that is not allowed; SK-BUNDLE-004 the bundle is too large.
     """
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
@@ -70,7 +71,7 @@ class Bundle:
             raise self._broken(str(error)) from None
         try:
             self._check_files()
-            self.manifest: Manifest = read_manifest(self._whole(PAGE, _MOST_PAGE), str(self.path))
+            self.manifest: Manifest = read_manifest(self._whole(PAGE, _MAX_PAGE_BYTES), str(self.path))
             self._check_manifest()
         except BaseException:
             self._zip.close()
@@ -83,19 +84,19 @@ class Bundle:
         self.close()
 
     def close(self) -> None:
-        """Closes the file."""
+        """Close the archive."""
         self._zip.close()
 
     @property
     def brings_code(self) -> bool:
-        """Whether there is code of plugins in it."""
+        """True if the bundle contains Python code of plugins."""
         return bool(self.manifest.code)
 
     def read(self, name: str) -> bytes:
-        """One of its files, whole.
+        """Return the content of one file in the bundle.
 
         Raises:
-            InputError: SK-BUNDLE-001 it is damaged, or there is none of that name.
+            InputError: SK-BUNDLE-001 the file is damaged or missing.
         """
         if name not in self.manifest.files:
             raise self._broken(f"there is no {name}")
@@ -104,21 +105,22 @@ class Bundle:
         return data
 
     def commands(self) -> Iterator[JsonObject]:
-        """The entries of its journal, in order.
+        """Iterate over the journal entries in their recorded order.
 
         Raises:
-            InputError: SK-BUNDLE-001 it is damaged.
+            InputError: SK-BUNDLE-001 the journal is damaged.
         """
         yield from map(self._entry, self._pieces(COMMANDS, lines=True))
 
     def extract(self, folder: Path, *, with_code: bool = False) -> None:
-        """Writes its files below a folder, which has to be there and empty.
+        """Write the files of the bundle below a folder.
 
         Args:
-            with_code: whether code of plugins is written too; nothing runs it here.
+            folder: Existing, empty folder.
+            with_code: Include the code of plugins. This method does not run the code.
 
         Raises:
-            InputError: SK-BUNDLE-001 it is damaged.
+            InputError: SK-BUNDLE-001 a file is damaged.
         """
         for name in self.manifest.files:
             if name.startswith("code/") and not with_code:
@@ -128,52 +130,52 @@ class Bundle:
             with target.open("xb") as file:
                 file.writelines(self._pieces(name))
 
-    # ------------------------------------------------------------------ what is looked at before
+    # ------------------------------------------------------------------ validation
 
     def _check_files(self) -> None:
         infos = self._zip.infolist()
         total = sum(info.file_size for info in infos)
         if len(infos) > MAX_FILES:
-            raise self._too_large(f"has {len(infos)} files, allowed are {MAX_FILES}")
+            raise self._too_large(f"has {len(infos)} files; the limit is {MAX_FILES}")
         if total > MAX_BYTES:
-            raise self._too_large(f"would become {total >> 20} MiB, allowed are {MAX_BYTES >> 20}")
-        if total > max(_HARMLESS, _MOST_RATIO * self.path.stat().st_size):
-            raise self._too_large(f"would become {total >> 20} MiB, more than {_MOST_RATIO} times its size")
+            raise self._too_large(f"would unpack to {total >> 20} MiB; the limit is {MAX_BYTES >> 20} MiB")
+        if total > max(_ALWAYS_ALLOWED_BYTES, _MAX_RATIO * self.path.stat().st_size):
+            raise self._too_large(f"would unpack to {total >> 20} MiB, more than {_MAX_RATIO} times its size")
         seen: dict[str, str] = {}
         folders: set[str] = set()
         for info in infos:
-            why = name_fault(info.filename) or _kind_fault(info)
+            problem = name_fault(info.filename) or _kind_fault(info)
             folded = info.filename.casefold()
-            if not why and folded in seen:
-                why = f"is there twice (as {seen[folded]!r:.80})"
-            if why:
-                raise InputError(f"{_BAD_NAME} {self.path}: the file {info.filename!r:.80} {why}", _BAD_NAME)
+            if not problem and folded in seen:
+                problem = f"is a duplicate (of {seen[folded]!r:.80})"
+            if problem:
+                raise InputError(f"{_BAD_NAME} {self.path}: the file {info.filename!r:.80} {problem}", _BAD_NAME)
             seen[folded] = info.filename
             folders.update(str(parent).casefold() for parent in PurePosixPath(info.filename).parents)
         both = sorted(folders & seen.keys())
         if both:
-            raise InputError(f"{_BAD_NAME} {self.path}: {both[0]!r:.80} is a file and a folder", _BAD_NAME)
+            raise InputError(f"{_BAD_NAME} {self.path}: {both[0]!r:.80} is both a file and a folder", _BAD_NAME)
 
     def _check_manifest(self) -> None:
-        said, there = self.manifest, {info.filename for info in self._zip.infolist()} - {PAGE}
-        if there != said.files.keys():
-            other = sorted(there ^ said.files.keys())[0]
-            raise self._broken(f"{other!r:.80} is in the archive or in {PAGE}, and not in both")
+        manifest, there = self.manifest, {info.filename for info in self._zip.infolist()} - {PAGE}
+        if there != manifest.files.keys():
+            unmatched = sorted(there ^ manifest.files.keys())[0]
+            raise self._broken(f"{unmatched!r:.80} is in only one of the archive and {PAGE}, not in both")
         named: dict[str, Iterable[str]] = {
-            "world": [said.world],
-            "spawn": {one.file for one in said.spawn},
-            "params": {file for _, file in said.params},
-            "models": said.models.values(),
-            "code": said.code,
+            "world": [manifest.world],
+            "spawn": {model.file for model in manifest.spawn},
+            "params": {file for _, file in manifest.params},
+            "models": manifest.models.values(),
+            "code": manifest.code,
         }
         for folder, files in named.items():
             for file in files:
                 if file not in there or not file.startswith(f"{folder}/"):
-                    raise self._broken(f"{PAGE} names {file!r:.80}, which is not among its files in {folder}/")
-        if {f for f in there if f.startswith("code/")} != set(said.code):
-            raise self._broken(f"{PAGE} does not name all code that is in it")
+                    raise self._broken(f"{PAGE} names {file!r:.80}, which is not a file in {folder}/")
+        if {f for f in there if f.startswith("code/")} != set(manifest.code):
+            raise self._broken(f"{PAGE} does not list all files in code/")
         if not {COMMANDS, BAG} <= there:
-            raise self._broken(f"{COMMANDS} or {BAG} is not in it")
+            raise self._broken(f"{COMMANDS} or {BAG} is missing")
 
     # ------------------------------------------------------------------ reading
 
@@ -184,10 +186,10 @@ class Bundle:
             raise self._broken(str(error)) from None
 
     def _pieces(self, name: str, *, lines: bool = False) -> Iterator[bytes]:
-        """A file piece by piece, or line by line; at its end it is compared with what the manifest says of it."""
+        """Read a file in pieces or lines, then compare its size and hash with the manifest."""
         digest, size = hashlib.sha256(), 0
         with self._opened(name) as file:
-            while piece := self._piece(file.readline, _MOST_LINE) if lines else self._piece(file.read, 1 << 20):
+            while piece := self._piece(file.readline, _MAX_LINE_BYTES) if lines else self._piece(file.read, 1 << 20):
                 digest.update(piece)
                 size += len(piece)
                 yield piece
@@ -213,50 +215,50 @@ class Bundle:
             raise self._broken(f"{COMMANDS}: {error}") from None
         is_entry = isinstance(entry, dict) and isinstance(entry.get("do"), str)
         if not is_entry or type(entry.get("steps")) is not int or not 0 <= entry["steps"] < 1 << 62:
-            raise self._broken(f"{COMMANDS}: found {entry!r:.80}, allowed is a mapping with 'steps' and 'do'")
+            raise self._broken(f"{COMMANDS}: {entry!r:.80} is not a mapping with 'steps' and 'do'")
         place, numbers = entry.get("in", [0, 0]), [entry.get("number", 0), entry.get("goal", 0)]
         if entry["do"] == "send_goal":
             numbers = [0]
         if not isinstance(place, list) or len(place) != 2 or not all(type(n) is int for n in (*place, *numbers)):
-            raise self._broken(f"{COMMANDS}: the numbers of {entry!r:.80} are none")
+            raise self._broken(f"{COMMANDS}: {entry!r:.80} has an invalid number")
         found: JsonObject = entry
         return found
 
     def _compare(self, name: str, size: int, digest: str) -> None:
-        said = self.manifest.files[name]
-        if (said["size"], said["sha256"]) != (size, digest):
-            raise self._broken(f"{name} is not what {PAGE} says of it")
+        listed = self.manifest.files[name]
+        if (listed["size"], listed["sha256"]) != (size, digest):
+            raise self._broken(f"{name} does not have the size and hash that {PAGE} lists")
 
-    def _broken(self, why: str) -> InputError:
-        return InputError(f"{BROKEN} {self.path} is no bundle of simkit, or is damaged: {why}", BROKEN)
+    def _broken(self, reason: str) -> InputError:
+        return InputError(f"{BROKEN} {self.path} is not a simkit bundle or is damaged: {reason}", BROKEN)
 
-    def _too_large(self, why: str) -> InputError:
-        return InputError(f"{_TOO_LARGE} {self.path} {why}", _TOO_LARGE)
+    def _too_large(self, reason: str) -> InputError:
+        return InputError(f"{_TOO_LARGE} {self.path} {reason}", _TOO_LARGE)
 
 
 def open_bundle(path: str | os.PathLike[str]) -> Bundle:
-    """Opens a bundle; nothing in it is run.
+    """Open a bundle without running anything in it.
 
     Raises:
-        InputError: SK-BUNDLE-001 to SK-BUNDLE-004, as of `Bundle`.
+        InputError: SK-BUNDLE-001 to SK-BUNDLE-004, see `Bundle`.
     """
     return Bundle(path)
 
 
 def _kind_fault(info: zipfile.ZipInfo) -> str:
-    """Why an entry may not be in a bundle, whatever its name; empty where it may."""
+    """Return the reason why a bundle must not contain an entry of this kind; empty if the kind is allowed."""
     kind = stat.S_IFMT(info.external_attr >> 16)
     if kind not in (0, stat.S_IFREG):
-        return "is a link, or no plain file"
+        return "is a link or not a regular file"
     if info.flag_bits & 1:
         return "is encrypted"
     if info.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
-        return "is packed in a way that a bundle's files are not"
+        return "uses an unsupported compression method"
     return ""
 
 
 def _check_index(path: Path) -> None:
-    """Looks at how large the archive's own table is, before it is read as a whole.
+    """Check the size of the archive's own table before the table is read.
 
     Raises:
         InputError: SK-BUNDLE-001 or SK-BUNDLE-004.
@@ -266,12 +268,12 @@ def _check_index(path: Path) -> None:
             size = file.seek(0, os.SEEK_END)
             file.seek(max(0, size - (1 << 16) - _END.size))
             tail = file.read()
-    except (OSError, ValueError) as error:  # a ValueError is of a name that no file can have
-        why = getattr(error, "strerror", None) or error
-        raise InputError(f"{BROKEN} cannot read {path}: {why}", BROKEN) from None
+    except (OSError, ValueError) as error:  # a ValueError comes from a name that no file can have
+        reason = getattr(error, "strerror", None) or error
+        raise InputError(f"{BROKEN} cannot read {path}: {reason}", BROKEN) from None
     at = tail.rfind(b"PK\5\6")
     if at < 0 or len(tail) - at < _END.size:
-        raise InputError(f"{BROKEN} {path} is no bundle of simkit (no ZIP archive, or one that breaks off)", BROKEN)
+        raise InputError(f"{BROKEN} {path} is not a simkit bundle (not a ZIP archive, or truncated)", BROKEN)
     _, _, _, _, count, length, offset, _ = _END.unpack_from(tail, at)
-    if count > MAX_FILES or length > _MOST_INDEX or offset == 0xFFFFFFFF:
+    if count > MAX_FILES or length > _MAX_INDEX_BYTES or offset == 0xFFFFFFFF:
         raise InputError(f"{_TOO_LARGE} {path} has more files than a bundle may have ({MAX_FILES})", _TOO_LARGE)

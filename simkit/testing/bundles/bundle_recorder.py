@@ -1,6 +1,6 @@
-"""Keep what a bundle needs while a simulation runs: its journal, marks of the state, and the last messages.
+"""Recorder of everything that a bundle needs: the journal, state hashes and the last messages.
 
-Messages are made only once somebody wants them. A bundle is written when that is asked for, or when something fails.
+Messages are serialised only when a bundle is written, on request or after a failure.
 """
 
 from __future__ import annotations
@@ -29,12 +29,12 @@ from simkit.testing.bundles.journal_writer import JournalWriter
 from simkit.testing.bundles.manifest import Failure, RunEnd
 
 MAX_WINDOW_BYTES: Final = 256 << 20
-_ASSUMED_MESSAGE_BYTES: Final = 3000  # bytes that a message is taken for which is not packed yet
+_ASSUMED_MESSAGE_BYTES: Final = 3000  # assumed size of a message that is not serialised yet
 _TIME: Final = struct.Struct("<q")
 
 
 class WindowMessage(NamedTuple):
-    """One message of the last seconds."""
+    """Serialised message of the last seconds."""
 
     time_ns: int
     topic: str
@@ -43,19 +43,19 @@ class WindowMessage(NamedTuple):
 
 
 class MessageWindow:
-    """Keeps the last messages of all topics.
+    """Buffer of the last messages of all topics.
 
-    They are kept as they are, and packed when they are asked for: nearly all go before anybody asks. A publisher that
-    sends one object again and again has its messages packed at once.
+    Messages are stored as objects and serialised on demand, because most of them are dropped before a bundle is
+    written. A publisher that sends the same object repeatedly may change it, so its messages are serialised at once.
 
     Args:
-        sim: the simulation.
-        seconds: how long messages are kept [s] of simulated time; infinite for all of them.
-        topics: shell patterns of topics that are kept although they are pictures, or aside.
-        most: bytes that are kept; of more, the oldest go.
+        sim: Simulation.
+        seconds: Length of the window [s] of simulated time; infinite for the whole run.
+        topics: Shell patterns of image topics and internal topics to include.
+        most: Maximum size [bytes]; beyond it, the oldest messages are dropped.
 
     Attributes:
-        first: everything since so many steps is there.
+        first: Number of steps from which on the window is complete.
     """
 
     def __init__(
@@ -75,14 +75,14 @@ class MessageWindow:
         return max(0, self._cut, since)
 
     def close(self) -> None:
-        """Hears no more."""
+        """Stop receiving messages."""
         self._taps.close()
 
     def messages(self, first: int | None = None) -> Iterator[WindowMessage]:
-        """What was heard since so many steps, in its order; what cannot be made any more is left out.
+        """Iterate over the received messages in order; skip lazy messages that can no longer be made.
 
         Args:
-            first: steps; those of `first` where None.
+            first: Number of steps to begin at; the property `first` if None.
         """
         since = self.first if first is None else first
         clock = self._sim.engine.clock
@@ -102,7 +102,7 @@ class MessageWindow:
         last: Message = None
         is_packed = False
 
-        def hear(message: object) -> None:
+        def receive(message: object) -> None:
             nonlocal last, is_packed
             steps = sim.engine.steps
             if message is last:
@@ -117,10 +117,10 @@ class MessageWindow:
             if len(kept) > most or self._packed > self._most:
                 self._cut = self._drop() + 1
 
-        return hear
+        return receive
 
     def _drop(self) -> int:
-        """Lets go of the oldest message; gives the steps that it came after."""
+        """Drop the oldest message and return the number of steps at which it was received."""
         steps, _, _, content = self._kept.popleft()
         if type(content) is tuple:
             self._packed -= len(content[1])
@@ -133,7 +133,7 @@ class MessageWindow:
 
 
 class StateHashes:
-    """A hash of the state after every simulated second, with the steps made by then."""
+    """Hashes of the state after every simulated second, with the number of steps."""
 
     def __init__(self, sim: Simulation) -> None:
         self.found: list[tuple[int, str]] = []
@@ -146,19 +146,19 @@ class StateHashes:
         self._sim = sim
 
     def close(self) -> None:
-        """Makes no more."""
+        """Stop computing hashes."""
         self._is_on = False
         self._sim.communication.on_demand.look()
 
 
 def topic_digests(messages: Iterator[WindowMessage]) -> dict[str, JsonObject]:
-    """Topic -> type, how many messages, and SHA-256 of their times and bytes."""
+    """Summarise messages by topic: type, count and SHA-256 of the times and bytes."""
     found: dict[str, tuple[str, int, hashlib._Hash]] = {}
-    for one in messages:
-        type_name, count, digest = found.get(one.topic) or (one.type_name, 0, hashlib.sha256())
-        digest.update(_TIME.pack(one.time_ns))
-        digest.update(one.data)
-        found[one.topic] = type_name, count + 1, digest
+    for message in messages:
+        type_name, count, digest = found.get(message.topic) or (message.type_name, 0, hashlib.sha256())
+        digest.update(_TIME.pack(message.time_ns))
+        digest.update(message.data)
+        found[message.topic] = type_name, count + 1, digest
     return {
         topic: {"type": type_name, "count": count, "sha256": digest.hexdigest()}
         for topic, (type_name, count, digest) in sorted(found.items())
@@ -166,40 +166,46 @@ def topic_digests(messages: Iterator[WindowMessage]) -> dict[str, JsonObject]:
 
 
 def write_bag(path: Path, messages: Iterator[WindowMessage], latched: frozenset[str]) -> None:
-    """Writes messages to one MCAP file."""
+    """Write messages to one MCAP file.
+
+    Args:
+        path: File to write.
+        messages: Messages in order.
+        latched: Topics whose last message late subscribers receive.
+    """
 
     bag = McapBag(path)
     try:
-        for one in messages:
-            channel = bag.channel(one.topic, one.type_name, one.topic in latched)
-            bag.write_raw(channel, one.data, one.time_ns)
+        for message in messages:
+            channel = bag.channel(message.topic, message.type_name, message.topic in latched)
+            bag.write_raw(channel, message.data, message.time_ns)
     finally:
         bag.close()
 
 
 WINDOW_SECONDS: Final = 10.0
-"""So much of a run's end is kept, where nothing is said [s]."""
+"""Default length of the message window at the end of a run [s]."""
 NOT_RECORDED: Final = "SK-BUNDLE-007"
 
 
 class BundleRecorder:
-    """Writes down what comes into a run and keeps its last seconds; a context manager around it.
+    """Recorder of a run's inputs and last seconds; a context manager around the run.
 
     Args:
-        sim: as `simkit.load` gave it, nothing done yet.
-        seconds: how much of the end is kept [s] of simulated time.
-        topics: shell patterns of topics that are kept although they are pictures.
-        write_failed: writes a bundle when something is raised within the `with`; None for no bundle.
+        sim: Simulation right after `simkit.load`, before its first step.
+        seconds: Length of the message window [s] of simulated time.
+        topics: Shell patterns of image topics to include.
+        write_failed: Function that writes a bundle when an exception leaves the `with` block; None for no bundle.
 
     Attributes:
-        sim: the simulation.
-        journal: what came in.
-        window: the last seconds.
-        marks: of the state.
-        written: where it was written, once it was.
+        sim: Simulation.
+        journal: Recorded inputs.
+        window: Messages of the last seconds.
+        marks: State hashes.
+        written: Path of the bundle that was written after a failure; None before.
 
     Raises:
-        InputError: SK-BUNDLE-007 the run has begun already, or was not loaded by `simkit.load`.
+        InputError: SK-BUNDLE-007 the run has already begun, is already recorded, or was not loaded by `simkit.load`.
     """
 
     def __init__(
@@ -210,13 +216,14 @@ class BundleRecorder:
         write_failed: Callable[[BundleRecorder, Exception], Path] | None = None,
     ) -> None:
         if sim.run_spec is None or sim.engine.steps or sim.communication.bus.inbox:
-            why = "has begun already" if sim.run_spec is not None else "was not loaded by simkit.load"
+            reason = "has already begun" if sim.run_spec is not None else "was not loaded by simkit.load"
             raise InputError(
-                f"{NOT_RECORDED} a bundle begins with the run, and this one {why}; keep it right after load",
+                f"{NOT_RECORDED} cannot record a bundle: this run {reason}\n"
+                "    help: call simkit.testing.bundles.keep(sim) right after simkit.load",
                 NOT_RECORDED,
             )
         if sim.communication.bus.journal is not None:
-            raise InputError(f"{NOT_RECORDED} this run is kept already", NOT_RECORDED)
+            raise InputError(f"{NOT_RECORDED} this run is already recorded for a bundle", NOT_RECORDED)
         self.sim, self.seconds, self.topics, self._write_failed = sim, float(seconds), tuple(topics), write_failed
         self.written: Path | None = None
         self.window = MessageWindow(sim, seconds, topics)
@@ -225,7 +232,7 @@ class BundleRecorder:
         self._listen()
 
     def end(self, failure: Failure | None = None) -> RunEnd:
-        """How the run stands."""
+        """Return the present state of the run."""
         sim = self.sim
         return RunEnd(sim.engine.steps, sim.tick, sim.time_ns, state_hash(sim), failure)
 
@@ -233,16 +240,16 @@ class BundleRecorder:
         sim, sources = self.sim, self.journal.sources
         read = self._read = sim.contents.models_reader
 
-        def heard(source: Any, *args: Any, **named: Any) -> Any:
+        def read_and_record(source: Any, *args: Any, **named: Any) -> Any:
             sources.append(str(source))
             return read(source, *args, **named)
 
-        sim.contents.models_reader = heard
+        sim.contents.models_reader = read_and_record
         self.journal.keeper = self
         sim.communication.bus.journal = self.journal
 
     def close(self) -> None:
-        """Keeps nothing more; what was kept stays."""
+        """Stop recording; the recorded data remain."""
         self.sim.communication.bus.journal, self.sim.contents.models_reader = None, self._read
         self.window.close()
         self.marks.close()
@@ -256,23 +263,25 @@ class BundleRecorder:
         if self._write_failed is not None and isinstance(error, Exception):
             try:
                 self.written = self._write_failed(self, error)
-            except (SimkitError, OSError) as problem:  # what went wrong with the run goes on being raised
+            except (SimkitError, OSError) as problem:  # the run's own exception must reach the caller
                 error.add_note(f"no bundle was written: {problem}")
             else:
-                error.add_note(f"a bundle that repeats this: simkit replay {self.written}")
+                error.add_note(f"a bundle that repeats this failure: simkit replay {self.written}")
         self.close()
 
 
 def recorder_of(sim: Simulation) -> BundleRecorder:
-    """Who keeps a simulation.
+    """Return the recorder of a simulation.
 
     Raises:
-        InputError: SK-BUNDLE-007 nobody does.
+        InputError: SK-BUNDLE-007 the simulation is not recorded.
     """
     journal = sim.communication.bus.journal
     keeper = getattr(journal, "keeper", None)
     if not isinstance(keeper, BundleRecorder):
         raise InputError(
-            f"{NOT_RECORDED} this run is not kept: call simkit.testing.bundles.keep(sim) right after load", NOT_RECORDED
+            f"{NOT_RECORDED} this run is not recorded for a bundle\n"
+            "    help: call simkit.testing.bundles.keep(sim) right after simkit.load",
+            NOT_RECORDED,
         )
     return keeper

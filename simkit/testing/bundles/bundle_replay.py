@@ -1,4 +1,4 @@
-"""Repeats the run in a bundle and says whether it came out the same."""
+"""Replay of a bundle: repeats the run and compares the result with the recording."""
 
 from __future__ import annotations
 
@@ -25,22 +25,22 @@ from simkit.testing.run_record.fingerprint import fingerprint, fingerprint_diffe
 
 CODE: Final = "SK-BUNDLE-005"
 _CODE_POSITION: Final = re.compile(r"\([^()\s]*:\d+\)")
-_SLICE: Final = 0.5  # [s] of simulated time between two looks at who watches
+_SLICE: Final = 0.5  # [s] of simulated time between two calls of on_slice
 
 
 @dataclass(frozen=True)
 class ReplayResult:
-    """What came of a replay.
+    """Result of a replay.
 
     Attributes:
-        manifest: of the bundle.
-        state: hash of the physics at the end.
-        time: simulated [s] at the end.
-        failure: what it failed with.
-        differences: what is other than in the bundle, in words, the first first; empty where all is the same.
-        machine: what of the machine is other: name -> there and here.
-        refused: entries of the journal that could not be done.
-        messages: how many of the last seconds were compared, bit by bit.
+        manifest: Manifest of the bundle.
+        state: Hash of the physics state at the end.
+        time: Simulated time at the end [s].
+        failure: Failure of the replay; None if it did not fail.
+        differences: Descriptions of the differences from the bundle, earliest first; empty if there are none.
+        machine: Properties of the machine that differ: name -> value in the bundle and value here.
+        refused: Journal entries that were rejected.
+        messages: Number of messages of the last seconds that were compared bit for bit.
     """
 
     manifest: Manifest
@@ -54,7 +54,7 @@ class ReplayResult:
 
     @property
     def is_same(self) -> bool:
-        """Whether state, messages and the error are those of the bundle."""
+        """True if the state, the messages and the failure equal those in the bundle."""
         return not self.differences
 
 
@@ -65,25 +65,25 @@ def replay(
     on_slice: Callable[[Simulation], None] | None = None,
     record: Path | None = None,
 ) -> ReplayResult:
-    """Repeats the run in a bundle.
+    """Repeat the run in a bundle.
 
     Args:
-        path: of the bundle.
-        allow_code: whether plugins' code that came with it may run; it may do whatever you may.
-        on_slice: called now and then between two steps.
-        record: writes all topics of the replay to this bag.
+        path: Bundle.
+        allow_code: Allow the plugin code in the bundle to run. The code has the same rights as the user.
+        on_slice: Function that is called between two steps, every 0.5 s of simulated time or more often.
+        record: Bag to which all topics of the replay are written.
 
     Raises:
-        InputError: SK-BUNDLE-001 to SK-BUNDLE-004 the bundle is refused, SK-BUNDLE-005 it needs code that is not
+        InputError: SK-BUNDLE-001 to SK-BUNDLE-004 the bundle is invalid; SK-BUNDLE-005 it needs code that is not
             allowed.
-        LoadError: its world has errors here.
+        LoadError: The world has errors on this machine.
     """
     with open_bundle(path) as bundle, tempfile.TemporaryDirectory(prefix="simkit-replay.") as folder:
         if bundle.brings_code and not allow_code:
             listed = ", ".join(name.partition("/")[2].partition("/")[2] for name in bundle.manifest.code)
             raise InputError(
-                f"{CODE} {bundle.path} brings code of plugins, which was not run: {listed}\n"
-                "    help: look at it with simkit replay --list or --extract DIR, then allow it with --allow-code",
+                f"{CODE} {bundle.path} contains plugin code, which was not run: {listed}\n"
+                "    help: read it with simkit replay --list or --extract DIR, then allow it with --allow-code",
                 CODE,
             )
         bundle.extract(Path(folder), with_code=allow_code)
@@ -91,35 +91,35 @@ def replay(
 
 
 class _Replay:
-    """One replay.
+    """Replay of one bundle.
 
     Args:
-        bundle: what is repeated.
-        folder: where its files lie.
+        bundle: Bundle to repeat.
+        folder: Folder to which its files were extracted.
     """
 
     def __init__(self, bundle: Bundle, folder: Path) -> None:
-        self._bundle, self._said, self._folder = bundle, bundle.manifest, folder
+        self._bundle, self._manifest, self._folder = bundle, bundle.manifest, folder
 
     def run(self, on_slice: Callable[[Simulation], None] | None, record: Path | None) -> ReplayResult:
-        """Loads the world, plays the journal, and compares."""
-        said = self._said
-        machine = fingerprint_differences(said.fingerprint, fingerprint())
-        numbers = sorted({int(n) for name in said.code if (n := name.split("/")[1]).isdecimal()})
+        """Load the world, play the journal and compare the result."""
+        manifest = self._manifest
+        machine = fingerprint_differences(manifest.fingerprint, fingerprint())
+        numbers = sorted({int(n) for name in manifest.code if (n := name.split("/")[1]).isdecimal()})
         code = [self._folder / "code" / str(number) for number in numbers]
-        spec = packed_run_spec(self._folder, said.world, said.spawn, said.params, said.run_spec, code)
+        spec = packed_run_spec(self._folder, manifest.world, manifest.spawn, manifest.params, manifest.run_spec, code)
         try:
             opened = load_packed_world(spec)
         except PluginError as error:
             met = failure_from_error(error)
-            return ReplayResult(said, "", 0.0, met, tuple(self._failures(met)), machine, (), 0)
+            return ReplayResult(manifest, "", 0.0, met, tuple(self._failures(met)), machine, (), 0)
         with opened as sim:
             self._read_models_here(sim)
-            window, marks = MessageWindow(sim, said.seconds, said.topics, most=1 << 62), StateHashes(sim)
+            window, marks = MessageWindow(sim, manifest.seconds, manifest.topics, most=1 << 62), StateHashes(sim)
             player = JournalPlayer(sim, self._bundle.commands())
             recorder = None if record is None else Recorder(sim, record)
             try:
-                raised = self._played(sim, player, on_slice)
+                raised = self._run_to_end(sim, player, on_slice)
             finally:
                 if recorder is not None:
                     recorder.close()
@@ -127,13 +127,15 @@ class _Replay:
             found = [*self._failures(failure), *self._states(sim, marks)]
             streams, count = self._streams(window)
             refused = tuple(player.refused)
-            return ReplayResult(said, state_hash(sim), sim.time, failure, (*found, *streams), machine, refused, count)
+            return ReplayResult(
+                manifest, state_hash(sim), sim.time, failure, (*found, *streams), machine, refused, count
+            )
 
     def _read_models_here(self, sim: Simulation) -> None:
-        """Models that are spawned while it runs come from the bundle, and from nowhere else."""
-        read, models = sim.contents.models_reader, self._said.models
+        """Restrict models that are spawned during the replay to those in the bundle."""
+        read, models = sim.contents.models_reader, self._manifest.models
 
-        def packed(source: Any, *args: Any, **named: Any) -> Any:
+        def read_packed(source: Any, *args: Any, **named: Any) -> Any:
             text = str(source)
             if "<" not in text:
                 if text not in models:
@@ -141,13 +143,13 @@ class _Replay:
                 source = self._folder / models[text]
             return read(source, *args, **named)
 
-        sim.contents.models_reader = packed
+        sim.contents.models_reader = read_packed
 
-    def _played(
+    def _run_to_end(
         self, sim: Simulation, player: JournalPlayer, on_slice: Callable[[Simulation], None] | None
     ) -> SimkitError | None:
-        """Runs to the end; gives what it failed with there."""
-        end = self._said.end
+        """Run to the recorded end and return the error that stopped the replay; None if none did."""
+        end = self._manifest.end
         slice_ = max(1, sim.engine.clock.ticks(_SLICE))
         try:
             while True:
@@ -161,7 +163,7 @@ class _Replay:
                 if on_slice is not None:
                     on_slice(sim)
             if end.failure is not None and end.failure.kind in ("PluginError", "SimulationDiverged"):
-                sim.step(1)  # it failed before the step was done
+                sim.step(1)  # the run failed within this step, before the step was counted
         except InputError:
             raise
         except SimkitError as error:
@@ -171,52 +173,53 @@ class _Replay:
     # ------------------------------------------------------------------ comparing
 
     def _failures(self, failure: Failure | None) -> list[str]:
-        was = self._said.end.failure
+        was = self._manifest.end.failure
         if failure is None:
             repeats = was is not None and was.kind in ("PluginError", "SimulationDiverged", "RenderError")
             return [f"the run failed, the replay did not: {was.text:.300}"] if was is not None and repeats else []
         if was is None:
             return [f"the replay failed, the run did not: {failure.text:.300}"]
-        if _without_places(failure) == _without_places(was):
+        if _without_code_positions(failure) == _without_code_positions(was):
             return []
         return [f"the run failed with {was.text:.300}\n    the replay with {failure.text:.300}"]
 
     def _states(self, sim: Simulation, marks: StateHashes) -> list[str]:
-        """Whether the physics is the same, and if not, in which second it begins to be another."""
-        end = self._said.end
+        """Compare the physics state; if it differs, find the simulated second of the first difference."""
+        end = self._manifest.end
         if end.state == state_hash(sim) and end.steps == sim.engine.steps:
             return []
         here = dict(marks.found)
         same, first = 0, None
-        for steps, mark in self._said.marks:
+        for steps, mark in self._manifest.marks:
             if here.get(steps) != mark:
                 first = steps
                 break
             same = steps
         step = sim.timestep
-        where = f"equal up to {same * step:g} s" if same else "nothing before the first second is known to be equal"
-        where += f", other at {first * step:g} s" if first is not None else ", other at the end"
+        where = f"equal up to {same * step:g} s" if same else "no equal state is known"
+        where += f", differs at {first * step:g} s" if first is not None else ", differs at the end"
         if sim.engine.steps != end.steps:
-            where += f"; {sim.engine.steps} steps were made, not {end.steps}"
+            where += f"; the replay made {sim.engine.steps} steps, the run {end.steps}"
         return [f"state {state_hash(sim)[:16]}…, in the bundle {end.state[:16]}… ({where})"]
 
     def _streams(self, window: MessageWindow) -> tuple[list[str], int]:
-        """Whether the messages of the last seconds are the same."""
-        said = self._said
-        messages = list(window.messages(said.first))
-        here = topic_digests(iter(messages))
-        other = [topic for topic in sorted({*said.streams, *here}) if said.streams.get(topic) != here.get(topic)]
-        if not other:
+        """Compare the messages of the last seconds; return the differences and the number of messages."""
+        manifest = self._manifest
+        messages = list(window.messages(manifest.first))
+        replayed = topic_digests(iter(messages))
+        topics = sorted({*manifest.streams, *replayed})
+        differing = [topic for topic in topics if manifest.streams.get(topic) != replayed.get(topic)]
+        if not differing:
             return [], len(messages)
         with open_bag_to_read(self._folder / BAG) as bag:
             recorded = [WindowMessage(one.time_ns, one.topic, one.type_name, one.data) for one in bag.messages()]
-        there, mine = _by_topic(recorded), _by_topic(messages)
-        told = [(*_first_difference(there.get(t, []), mine.get(t, [])), t) for t in other]
-        return [f"{topic}: {text}" for _, text, topic in sorted(told)], len(messages)
+        there, here = _by_topic(recorded), _by_topic(messages)
+        found = [(*_first_difference(there.get(t, []), here.get(t, [])), t) for t in differing]
+        return [f"{topic}: {text}" for _, text, topic in sorted(found)], len(messages)
 
 
-def _without_places(failure: Failure) -> tuple[str, str, str]:
-    """What of an error is equal wherever it is written what raised."""
+def _without_code_positions(failure: Failure) -> tuple[str, str, str]:
+    """Return kind, code and text of a failure without the positions in source files."""
     return failure.kind, failure.code, _CODE_POSITION.sub("()", failure.text)
 
 
@@ -228,15 +231,18 @@ def _by_topic(messages: Iterable[WindowMessage]) -> dict[str, list[WindowMessage
 
 
 def _first_difference(there: list[WindowMessage], here: list[WindowMessage]) -> tuple[int, str]:
-    """When two streams part, and how, in words."""
+    """Return the time [ns] and a description of the first difference between two streams."""
     for number, (a, b) in enumerate(zip(there, here, strict=False)):
         if a.type_name != b.type_name:
-            return a.time_ns, f"is {b.type_name}, in the bundle {a.type_name}"
+            return a.time_ns, f"has type {b.type_name}, in the bundle {a.type_name}"
         if a.time_ns != b.time_ns:
             times = f"at {b.time_ns / 1e9:g} s, in the bundle at {a.time_ns / 1e9:g} s"
-            return a.time_ns, f"message {number + 1} comes {times}"
+            return a.time_ns, f"message {number + 1} is sent {times}"
         if a.data != b.data:
-            return a.time_ns, f"other bits from t = {a.time_ns / 1e9:g} s on (message {number + 1} of {len(there)})"
+            return (
+                a.time_ns,
+                f"content differs from t = {a.time_ns / 1e9:g} s on (message {number + 1} of {len(there)})",
+            )
     last = min(len(there), len(here))
     rest = (there if len(there) > len(here) else here)[last:]
     return (rest[0].time_ns if rest else 0), f"{len(here)} messages, in the bundle {len(there)}"

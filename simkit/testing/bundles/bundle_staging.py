@@ -1,4 +1,4 @@
-"""Copy the files that a run was made from into a folder, and open the world there."""
+"""Stager that copies the files of a run into a folder, and the loader of the world in such a folder."""
 
 from __future__ import annotations
 
@@ -45,13 +45,13 @@ def packed_run_spec(
     original: RunSpec,
     code: Sequence[Path] = (),
 ) -> RunSpec:
-    """Return the description of a run whose files lie in a folder.
+    """Return the specification of a run whose files are in one folder.
 
     Args:
-        folder: where the files lie.
-        world, spawn, params: as the manifest has them.
-        original: seed, overrides and options of the run.
-        code: folders of plugins whose code may run.
+        folder: Folder with the files.
+        world, spawn, params: Entries of the manifest.
+        original: Specification with the seed, overrides and options of the run.
+        code: Folders of plugins whose code may run.
     """
 
     options: LoadOptions = {
@@ -71,10 +71,10 @@ def packed_run_spec(
 
 
 def load_packed_world(spec: RunSpec) -> Simulation:
-    """Load the world of a bundle at t = 0; nothing outside of its folder is searched.
+    """Load the world of a bundle at t = 0; search no folder outside the bundle.
 
     Raises:
-        LoadError, PluginError: as `simkit.load`.
+        LoadError, PluginError: See `simkit.load`.
     """
 
     with _without_user_folders():
@@ -83,7 +83,7 @@ def load_packed_world(spec: RunSpec) -> Simulation:
 
 @contextmanager
 def _without_user_folders() -> Iterator[None]:
-    """Leaves the user's own folders out of a search: a file of the same name there is another one."""
+    """Hide the user's search folders, because a file of the same name in them may differ."""
     before = {name: os.environ.pop(name) for name in _SEARCH_VARIABLES if name in os.environ}
     try:
         yield
@@ -92,10 +92,11 @@ def _without_user_folders() -> Iterator[None]:
 
 
 def model_hash(model: mujoco.MjModel, originals: Mapping[str, object]) -> str:
-    """SHA-256 of all arrays of an `MjModel` and of its options but gravity.
+    """Return the SHA-256 of all arrays of an `MjModel` and of its options except gravity.
 
     Args:
-        originals: arrays as they were compiled, of those that were changed since.
+        model: Compiled model.
+        originals: Arrays as compiled, for those that were changed after compilation.
     """
     digest = hashlib.sha256()
     for name in sorted(dir(model)):
@@ -117,7 +118,7 @@ UNPACKED: Final = "SK-BUNDLE-006"
 
 @dataclass
 class StagedWorld:
-    """What was put into the stage."""
+    """Files of a run that were copied to the stage folder."""
 
     file: str
     spawn: list[PackedModel] = field(default_factory=list)
@@ -128,11 +129,11 @@ class StagedWorld:
 
 
 class WorldStager:
-    """Copies what a run was made from, so that it opens anywhere.
+    """Stager that copies the files of a run, so that the run can be loaded on another machine.
 
     Args:
-        spec: what was run.
-        stage: the folder that becomes the bundle.
+        spec: Specification of the run.
+        stage: Folder that becomes the bundle.
     """
 
     def __init__(self, spec: RunSpec, stage: Path) -> None:
@@ -140,27 +141,27 @@ class WorldStager:
         self._paths = [spec.folder / path for path in spec.options.get("resource_paths", ())]
 
     def world(self, keeper: BundleRecorder) -> StagedWorld:
-        """Everything that was loaded, and spawned later."""
+        """Copy the loaded world and all models that were spawned during the run."""
         spec, found = self._spec, self._main_files()
         for given in keeper.sim._loaded.structure.builder.parameter_files:
             found.params.append((given.model, self._copied(Path(given.file.path), f"params/{len(found.params)}")))
         for source in dict.fromkeys(source for source in keeper.journal.sources if "<" not in source):
             try:
                 found.models[source] = self._vendored(source, f"models/{len(found.models)}")
-            except SimkitError as error:  # somebody may have asked for a model that there is not
-                found.missing.append(f"{source!r:.100}, which was to be spawned, could not be packed: {error!s:.200}")
+            except SimkitError as error:  # the run may have requested a model that does not exist
+                found.missing.append(f"the spawned model {source!r:.100} could not be packed: {error!s:.200}")
         if spec.plugins:
             plugins = (one[1] if isinstance(one, tuple) else one for one in spec.plugins)
             kinds = ", ".join(sorted({type(plugin).__name__ for plugin in plugins}))
-            found.missing.append(f"plugins made in Python are not in it: {kinds}")
+            found.missing.append(f"plugins made in Python are not in the bundle: {kinds}")
         if spec.change_world is not None:
-            told = "the world was changed in Python as it was loaded (change_world); it is packed without"
-            found.missing.append(told)
+            problem = "changes made to the world in Python (change_world) are not in the bundle"
+            found.missing.append(problem)
         self._compare(found, keeper)
         return found
 
     def unloaded(self) -> StagedWorld:
-        """Everything that was to be loaded."""
+        """Copy the files of a run that failed while it was loaded."""
         found = self._main_files()
         files = self._spec.options.get("params_files", ())
         for one in [files] if isinstance(files, (str, os.PathLike)) else files:
@@ -169,7 +170,7 @@ class WorldStager:
         return found
 
     def _main_files(self) -> StagedWorld:
-        """The world and the models that are spawned as it is loaded."""
+        """Copy the world and the models that are spawned during loading."""
         found = StagedWorld(self._vendored(self._spec.world, "world", base=self._spec.options.get("base", "auto")))
         for number, one in enumerate(self._spec.spawn):
             spawn = parse_spawn(one, Diagnostics()) if isinstance(one, str) else one
@@ -179,7 +180,7 @@ class WorldStager:
         return found
 
     def _vendored(self, source: Any, target: str, base: str = "auto") -> str:
-        """The place of a file in the stage, with all that it names."""
+        """Copy a file and all files that it refers to; return its name in the stage folder."""
 
         spec, paths = self._spec, self._paths
         with tempfile.TemporaryDirectory() as folder:
@@ -206,11 +207,11 @@ class WorldStager:
         return f"{target}/{main.as_posix()}"
 
     def _found(self, uri: str) -> Path:
-        """The file or folder of a URI."""
+        """Resolve a URI to a file or folder."""
 
         path, _ = Resolver(self._paths, package_paths=self._spec.options.get("package_paths", {})).search(uri, None)
         if path is None:
-            raise InputError(f"{UNPACKED} {uri} is not found any more", UNPACKED)
+            raise InputError(f"{UNPACKED} {uri} no longer exists", UNPACKED)
         return path
 
     def _copied(self, path: Path, target: str) -> str:
@@ -220,27 +221,27 @@ class WorldStager:
         return f"{target}/{path.name}"
 
     def _compare(self, found: StagedWorld, keeper: BundleRecorder) -> None:
-        """Whether what was packed is what was run: files may have been edited since."""
+        """Compare the packed world with the one that was run, because files may have been edited since."""
         spec = self._spec
         try:
             with load_packed_world(packed_run_spec(self._stage, found.file, found.spawn, found.params, spec)) as sim:
                 same = model_hash(sim.mj_model, sim.engine.originals) == loaded_model_hash(keeper)
         except (SimkitError, OSError) as error:
-            found.missing.append(f"opening it again failed: {error!s:.300}")
+            found.missing.append(f"the packed world could not be loaded: {error!s:.300}")
             return
         if not same and not spec.options.get("plugin_paths") and spec.change_world is None:
-            found.missing.append("its files have been changed since the run began; they are packed as they are now")
+            found.missing.append("files were edited after the run began; the bundle holds the edited files")
 
 
 def loaded_model_hash(keeper: BundleRecorder) -> str:
-    """Of the model that was loaded, whatever has been changed of it since."""
+    """Return the hash of the model as it was loaded, without later changes."""
     sim = keeper.sim
     loaded = sim._loaded.structure.compiled.model
     return model_hash(loaded, sim.engine.originals if loaded is sim.mj_model else {})
 
 
 def _split_params_file(text: str) -> tuple[str, str]:
-    """`[MODEL=]FILE`."""
+    """Split an argument `[MODEL=]FILE` into a model name and a file."""
     model, equals, file = text.partition("=")
     return (model, file) if equals and "/" not in model and not Path(text).exists() else ("", text)
 
@@ -249,7 +250,7 @@ def _split_params_file(text: str) -> tuple[str, str]:
 
 
 def copy_plugin_modules(world: StagedWorld, stage: Path, folders: Iterable[FilePath]) -> None:
-    """The modules that were imported from the user's plugin folders; they are copied, not run."""
+    """Copy the modules that were imported from the user's plugin folders; the modules are not run."""
     roots = [Path(folder).resolve() for folder in folders]
     for number, root in enumerate(roots):
         files = {
@@ -266,14 +267,14 @@ def copy_plugin_modules(world: StagedWorld, stage: Path, folders: Iterable[FileP
 
 
 def _file_of(module: object) -> Path | None:
-    said = getattr(module, "__file__", None)
-    if not isinstance(said, str) or not said.endswith(".py"):
+    file = getattr(module, "__file__", None)
+    if not isinstance(file, str) or not file.endswith(".py"):
         return None
-    path = Path(said).resolve()
+    path = Path(file).resolve()
     return path if path.is_file() else None
 
 
 def _package_files(files: set[Path], root: Path) -> set[Path]:
-    """The `__init__.py` above files, up to a folder."""
+    """Return the `__init__.py` files in the parent folders of some files, up to a root folder."""
     above = {folder for file in files for folder in file.parents if folder.is_relative_to(root)}
     return {init for folder in above if (init := folder / "__init__.py").is_file()}

@@ -1,4 +1,4 @@
-"""Puts a run into one file: the world with all that it names, plugins' code, what came in, the last seconds."""
+"""Writer of bundles: the world with its files, plugin code, recorded inputs and the last seconds in one archive."""
 
 from __future__ import annotations
 
@@ -48,22 +48,22 @@ _PLAIN: Final = 0o100644 << 16
 _UNIX: Final = 3
 
 StagedFiles = Callable[[Path], Manifest]
-"""Puts everything into a folder, and says what is in it."""
+"""Function that copies all files into a folder and returns their manifest."""
 
 
 def keep(
     sim: Simulation, folder: str | Path | None = None, *, seconds: float = WINDOW_SECONDS, topics: Sequence[str] = ()
 ) -> BundleRecorder:
-    """Begins to keep what a bundle needs; to be called right after `simkit.load`.
+    """Record a run for a bundle; call this function right after `simkit.load`.
 
     Args:
-        sim: the simulation.
-        folder: where a bundle is written when something is raised within `with keep(…)`.
-        seconds: how much of the end is kept [s] of simulated time.
-        topics: shell patterns of topics that are kept although they are pictures.
+        sim: Simulation.
+        folder: Folder for a bundle that is written when an exception leaves the block `with keep(…)`.
+        seconds: Length of the message window [s] of simulated time.
+        topics: Shell patterns of image topics to include.
 
     Raises:
-        InputError: SK-BUNDLE-007 the run has begun already.
+        InputError: SK-BUNDLE-007 the run has already begun.
     """
     if folder is None:
         return BundleRecorder(sim, seconds, topics)
@@ -80,21 +80,21 @@ def write_bundle(
     overwrite: bool = False,
     with_code: bool = True,
 ) -> Path:
-    """Writes the run up to now into one file, which is there as a whole or not at all.
+    """Write the run up to now into one file; the file is complete or does not exist.
 
     Args:
-        kept: what `keep` gave, or its simulation, between two steps.
-        path: of the file.
-        failure: what the run ended with, if it failed.
-        name: of the run; else the world's.
-        overwrite: whether a file that is there is replaced.
-        with_code: whether the code of plugins in the user's folders is packed.
+        kept: Recorder that `keep` returned, or its simulation, between two steps.
+        path: File to write.
+        failure: Failure of the run; None if it did not fail.
+        name: Name of the run; the name of the world if empty.
+        overwrite: Replace an existing file.
+        with_code: Include the code of plugins in the user's folders.
 
     Returns:
-        The path.
+        Path of the file.
 
     Raises:
-        InputError: SK-BUNDLE-006 the world cannot be packed, SK-BUNDLE-007 the run is not kept, SK-CLI-016 the place
+        InputError: SK-BUNDLE-006 the world cannot be packed; SK-BUNDLE-007 the run is not recorded; SK-CLI-016 the file
             cannot be written.
     """
     keeper = kept if isinstance(kept, BundleRecorder) else recorder_of(kept)
@@ -119,13 +119,13 @@ def write_failed(
     """Write a bundle of a run that failed, named after the world, the error and the content.
 
     Raises:
-        InputError: as `write_bundle`.
+        InputError: See `write_bundle`.
     """
     return _write_under_own_name(folder, _files_of_run(keeper, failure, "", with_code))
 
 
 def _write_under_own_name(folder: Path, staged: StagedFiles) -> Path:
-    """Writes a bundle under a name of its own."""
+    """Write a bundle whose file name is made from the run's name, the failure and a hash."""
     with _write_hidden_file(folder.absolute(), staged) as (file, manifest):
         failure = manifest.end.failure or Failure("run", "", "")
         digest = hashlib.sha256(manifest.text().encode()).hexdigest()[:8]
@@ -137,7 +137,7 @@ def _write_under_own_name(folder: Path, staged: StagedFiles) -> Path:
 
 @contextmanager
 def _write_hidden_file(folder: Path, staged: StagedFiles) -> Iterator[tuple[Path, Manifest]]:
-    """A whole bundle under a hidden name in a folder, which the caller moves to its place."""
+    """Write a complete bundle to a hidden file, which the caller then renames."""
     work: Path | None = None
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -149,8 +149,8 @@ def _write_hidden_file(folder: Path, staged: StagedFiles) -> Iterator[tuple[Path
         _write_zip(stage, manifest, file)
         yield file, manifest
     except OSError as error:
-        said = f"SK-CLI-016 cannot write to {folder}: {error.strerror or error}"
-        raise InputError(said, "SK-CLI-016") from None
+        problem = f"SK-CLI-016 cannot write to {folder}: {error.strerror or error}"
+        raise InputError(problem, "SK-CLI-016") from None
     finally:
         if work is not None:
             shutil.rmtree(work, ignore_errors=True)
@@ -178,12 +178,15 @@ def _stage_files(keeper: BundleRecorder, stage: Path, failure: Failure | None, n
 
 
 def pack_load_failure(spec: RunSpec, folder: Path, failure: Failure) -> Path:
-    """Writes a bundle of a world that failed while it was loaded.
+    """Write a bundle of a world that failed while it was loaded.
 
     Args:
-        spec: what was to be run.
-        folder: where it goes.
-        failure: what it failed with.
+        spec: Specification of the run.
+        folder: Folder for the bundle.
+        failure: Failure of loading.
+
+    Returns:
+        Path of the bundle.
     """
     spec = replace(spec, folder=spec.folder.absolute())
 
@@ -201,7 +204,7 @@ def pack_load_failure(spec: RunSpec, folder: Path, failure: Failure) -> Path:
 
 
 def _world_fields(spec: RunSpec, world: StagedWorld) -> JsonObject:
-    """Return the fields of a manifest that say what was run, and on which machine."""
+    """Return the manifest fields that describe the run and the machine."""
     return {
         "world": world.file,
         "base": spec.options.get("base", "auto"),
@@ -218,37 +221,37 @@ def _world_fields(spec: RunSpec, world: StagedWorld) -> JsonObject:
 
 
 def _write_error(stage: Path, failure: Failure) -> None:
-    """The error with its traceback, where it is being handled."""
+    """Write the error message and, during exception handling, the traceback."""
     error = sys.exception()
-    told = "".join(traceback.format_exception(error)) if error is not None else failure.text + "\n"
-    (stage / "error.txt").write_text(strip_folders(told), encoding="utf-8", errors="replace")
+    text = "".join(traceback.format_exception(error)) if error is not None else failure.text + "\n"
+    (stage / "error.txt").write_text(strip_folders(text), encoding="utf-8", errors="replace")
 
 
 def _encodable_messages(messages: Iterator[WindowMessage], gaps: list[str]) -> Iterator[WindowMessage]:
-    """Messages as long as they can be made: what is wrong with the last ones is no reason to have no bundle."""
+    """Iterate over messages up to the first one that fails, so that a failure here does not prevent the bundle."""
     try:
         yield from messages
-    except Exception as error:  # noqa: BLE001 - a run that failed may have left anything
-        gaps.append(f"not all of the last seconds' messages could be made: {error!r:.200}")
+    except Exception as error:  # noqa: BLE001 - the state after a failed run may raise any exception
+        gaps.append(f"some messages of the last seconds could not be made: {error!r:.200}")
 
 
 def _file_table(stage: Path) -> dict[str, JsonObject]:
     found: dict[str, JsonObject] = {}
     for path in sorted(path for path in stage.rglob("*") if path.is_file()):
         name = path.relative_to(stage).as_posix()
-        why = name_fault(name)
-        if why:
-            raise InputError(f"{UNPACKED} the world cannot be packed: the file {name!r:.100} {why}", UNPACKED)
+        problem = name_fault(name)
+        if problem:
+            raise InputError(f"{UNPACKED} the world cannot be packed: the file {name!r:.100} {problem}", UNPACKED)
         with path.open("rb") as file:
             found[name] = {"size": path.stat().st_size, "sha256": hashlib.file_digest(file, "sha256").hexdigest()}
     total = sum(one["size"] for one in found.values())
     if total > MAX_BYTES:
-        raise InputError(f"{UNPACKED} the run has {total >> 20} MiB, a bundle holds {MAX_BYTES >> 20}", UNPACKED)
+        raise InputError(f"{UNPACKED} the run needs {total >> 20} MiB; a bundle holds {MAX_BYTES >> 20} MiB", UNPACKED)
     return found
 
 
 def _write_zip(stage: Path, manifest: Manifest, target: Path) -> None:
-    """The same bytes for the same content: no times, no owners, names in order."""
+    """Write an archive whose bytes depend only on the content: no times, no owners, sorted names."""
     with target.open("wb") as raw:
         with zipfile.ZipFile(raw, "w") as archive:
             for name in (PAGE, *sorted(manifest.files)):

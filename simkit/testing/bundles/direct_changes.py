@@ -1,6 +1,7 @@
-"""What callers change of the physics directly (`set_pose`, `apply_wrench`, `sim.mj_data`), found without asking them.
+"""Detector for direct changes to the physics (`set_pose`, `apply_wrench`, `sim.mj_data`).
 
-The state is compared with that after the last step. So it does not matter by which way it was written.
+The detector compares the state with the state after the last step. Therefore it finds a change independently of the
+function that made it.
 """
 
 from __future__ import annotations
@@ -27,10 +28,10 @@ Numbers = npt.NDArray[np.float64]
 
 
 class DirectChanges:
-    """Compares a simulation's physics with what it was when it was last seen.
+    """Comparison of a simulation's physics with its last known state.
 
     Args:
-        sim: the simulation.
+        sim: Simulation.
     """
 
     def __init__(self, sim: Simulation) -> None:
@@ -42,7 +43,7 @@ class DirectChanges:
         self.see()
 
     def see(self) -> None:
-        """Takes the present state for known."""
+        """Store the present state as the known state."""
         sim = self._sim
         self._state, self._model = state_vector(sim), sim.mj_model
         if self._edition != sim.engine.physics.edition:
@@ -50,49 +51,49 @@ class DirectChanges:
             self._edition = sim.engine.physics.edition
 
     def found(self) -> dict[str, object] | None:
-        """What is other than when it was last seen; None for nothing, or where the world has other parts since."""
+        """Return the changes since the known state; None without changes or if the model was recompiled."""
         sim = self._sim
         if sim.mj_model is not self._model:
             return None
-        words: dict[str, object] = {}
+        changes: dict[str, object] = {}
         now = state_vector(sim)
         if now.tobytes() != self._state.tobytes():
-            words["state"] = _encode_places(now, np.flatnonzero(now.view(np.int64) != self._state.view(np.int64)))
+            changes["state"] = _encode_at_indices(now, np.flatnonzero(now.view(np.int64) != self._state.view(np.int64)))
         if self._edition != sim.engine.physics.edition:
             fields = _changed_fields(self._fields, _changeable_fields(sim))
             if fields:
-                words["fields"] = fields
-        return words | {"one_shot": bool(sim.engine.physics.one_shot)} if words else None
+                changes["fields"] = fields
+        return changes | {"one_shot": bool(sim.engine.physics.one_shot)} if changes else None
 
 
-def _encode_places(values: Array, places: Array) -> dict[str, object]:
-    """Some of the values of an array, with their places."""
+def _encode_at_indices(values: Array, places: Array) -> dict[str, object]:
+    """Encode the values of an array at the given indices."""
     return {"size": values.size, "at": encode_value(places), "values": encode_value(values[places])}
 
 
 def state_vector(sim: Simulation) -> Numbers:
-    """Positions, velocities, controls and forces as one vector."""
+    """Return positions, velocities, controls and forces as one vector."""
     values = np.empty(mujoco.mj_stateSize(sim.mj_model, _SIGNATURE))
     mujoco.mj_getState(sim.mj_model, sim.mj_data, values, _SIGNATURE)
     return values
 
 
-def apply_changes(sim: Simulation, words: dict[str, object]) -> None:
-    """Changes the physics as it was changed by hand.
+def apply_changes(sim: Simulation, changes: dict[str, object]) -> None:
+    """Apply recorded direct changes to the physics.
 
     Raises:
-        MessageError: the words are not of this world.
+        MessageError: The changes do not fit this world.
     """
-    if "fields" in words:
-        _apply_fields(sim, words["fields"])
-    if "state" in words:
-        _apply_state(sim, words["state"])
-    sim.engine.physics.one_shot = bool(words.get("one_shot"))
+    if "fields" in changes:
+        _apply_fields(sim, changes["fields"])
+    if "state" in changes:
+        _apply_state(sim, changes["state"])
+    sim.engine.physics.one_shot = bool(changes.get("one_shot"))
 
 
-def _apply_state(sim: Simulation, words: object) -> None:
+def _apply_state(sim: Simulation, changes: object) -> None:
     physics, values = sim.engine.physics, state_vector(sim)
-    places, numbers = _indices_and_values(words, values.size)
+    places, numbers = _indices_and_values(changes, values.size)
     values[places] = numbers
     before = sim.mj_data.qpos.copy(), sim.mj_data.qvel.copy(), sim.mj_data.xfrc_applied.copy()
     mujoco.mj_setState(sim.mj_model, sim.mj_data, values, _SIGNATURE)
@@ -116,7 +117,7 @@ def _differs(before: Numbers, now: Numbers, model: mujoco.MjModel, joint: int, a
 
 
 def _changeable_fields(sim: Simulation) -> dict[str, Array]:
-    """What of the model may have been changed."""
+    """Copy the model fields that a user may have changed."""
     found = {name: getattr(sim.mj_model, name).copy() for name in sim.engine.originals}
     found["gravity"] = sim.mj_model.opt.gravity.copy()
     return found
@@ -129,14 +130,14 @@ def _changed_fields(before: dict[str, Array], now: dict[str, Array]) -> dict[str
         flat = values.reshape(-1)
         places = np.arange(flat.size) if old is None else np.flatnonzero(old.reshape(-1) != flat)
         if places.size:
-            found[name] = _encode_places(flat, places)
+            found[name] = _encode_at_indices(flat, places)
     return found
 
 
-def _apply_fields(sim: Simulation, words: object) -> None:
-    if not isinstance(words, dict):
-        raise MessageError("found no fields of the model")
-    for name, change in words.items():
+def _apply_fields(sim: Simulation, changes: object) -> None:
+    if not isinstance(changes, dict):
+        raise MessageError("expected a mapping of model fields")
+    for name, change in changes.items():
         if name == "gravity":
             old = sim.gravity
             places, numbers = _indices_and_values(change, 3)
@@ -151,11 +152,11 @@ def _apply_fields(sim: Simulation, words: object) -> None:
         sim.engine.touch(name).reshape(-1)[places] = numbers
 
 
-def _indices_and_values(words: object, size: int) -> tuple[npt.NDArray[np.int64], Numbers]:
-    """Places in an array with their values."""
-    if not isinstance(words, dict) or words.get("size") != size:
-        raise MessageError(f"a state of {size} numbers was to be changed, this world's is another")
-    places, numbers = decode_array(words.get("at")).astype(np.int64), decode_array(words.get("values"))
+def _indices_and_values(changes: object, size: int) -> tuple[npt.NDArray[np.int64], Numbers]:
+    """Decode the indices and values of changes to an array of a given size."""
+    if not isinstance(changes, dict) or changes.get("size") != size:
+        raise MessageError(f"the recorded change does not fit this world, whose array has {size} numbers")
+    places, numbers = decode_array(changes.get("at")).astype(np.int64), decode_array(changes.get("values"))
     if places.shape != numbers.shape or (places < 0).any() or (places >= size).any():
-        raise MessageError("a state was to be changed at places that it does not have")
+        raise MessageError("the recorded change has an index outside the array")
     return places, numbers

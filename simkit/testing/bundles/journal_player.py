@@ -1,4 +1,4 @@
-"""Does again what a journal says: the same things through the same doors, between the same two steps."""
+"""Player that repeats the entries of a journal with the same calls, between the same two steps."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ Entry = JsonMapping
 
 
 class JournalPlayer:
-    """Plays a journal into a simulation.
+    """Player of a journal.
 
     Args:
-        sim: at t = 0.
-        entries: of the journal, in order.
+        sim: Simulation at t = 0.
+        entries: Journal entries in order.
 
     Attributes:
-        count: how many entries were played.
-        refused: what could not be done, in words: it was refused in the run too, or the worlds differ.
+        count: Number of entries played.
+        refused: Descriptions of rejected entries. The original run rejected them too, or the worlds differ.
     """
 
     def __init__(self, sim: Simulation, entries: Iterable[Entry]) -> None:
@@ -55,14 +55,14 @@ class JournalPlayer:
 
     @property
     def next_steps(self) -> int | None:
-        """After how many steps something is to be done next between two steps; None when all is done."""
+        """Number of steps before the next entry between two steps; None after the last one."""
         return int(self._between[0]["steps"]) if self._between else None
 
     def play_due(self) -> None:
-        """Does what is due at the present step.
+        """Play all entries that are due at the present step.
 
         Raises:
-            PluginError, SimulationDiverged: what was done had somebody raise, as it did in the run.
+            PluginError, SimulationDiverged: A played entry raised the error, as in the run.
         """
         while self._between and self._between[0]["steps"] <= self._sim.engine.steps:
             self._play(self._between.popleft())
@@ -72,18 +72,18 @@ class JournalPlayer:
         was_served = self._sim.control.pausing.is_served
         self._sim.control.pausing.is_served = entry.get("served") is True
         try:
-            deed = _ENTRY_METHODS.get(entry["do"])
-            if deed is None:
-                raise MessageError(f"nothing is known of {entry['do']!r:.40}")
-            deed(self, entry)
+            method = _ENTRY_METHODS.get(entry["do"])
+            if method is None:
+                raise MessageError(f"unknown entry {entry['do']!r:.40}")
+            method(self, entry)
         except (InputError, KeyError, ValueError, TypeError, AttributeError) as error:
-            # the run may have had the same answer, and gone on
+            # the run may have raised the same error, caught it and continued
             text = str(error) if isinstance(error, SimkitError) else repr(error)
             self.refused.append(f"{entry['do']} after {entry['steps']} steps: {text:.300}")
         finally:
             self._sim.control.pausing.is_served = was_served
 
-    # ------------------------------------------------------------------ what can be done
+    # ------------------------------------------------------------------ entries
 
     def _publish(self, entry: Entry) -> None:
         self._sim.communication.bus.publish(_text_field(entry, "topic"), decode_message(entry.get("message")))
@@ -95,7 +95,7 @@ class JournalPlayer:
 
     def _send(self, entry: Entry) -> None:
         message, publisher = decode_message(entry.get("message")), self._publishers.get(entry.get("number"))
-        if publisher is None:  # opened before the journal was
+        if publisher is None:  # advertised before the journal began
             self._sim.communication.bus.publish(_text_field(entry, "topic"), message)
         else:
             publisher.publish(message)
@@ -104,25 +104,25 @@ class JournalPlayer:
         self._sim.communication.bus.close(self._publishers.pop(entry.get("number")))
 
     def _hear(self, entry: Entry) -> None:
-        """A tap where the run had a callback; only where that did something."""
-        heard = self._counting(entry.get("number"))
-        if heard is not None:
-            self._sim.communication.bus.tap(_text_field(entry, "topic"), heard)
+        """Add a tap for a callback of the run, if that callback did anything."""
+        callback = self._counting(entry.get("number"))
+        if callback is not None:
+            self._sim.communication.bus.tap(_text_field(entry, "topic"), callback)
 
     def _counting(self, number: object) -> Callable[[object], None] | None:
-        """A callback that does, the n-th time it is called, what the run's did then; None where that did nothing."""
-        deeds = self._within.get(_integer_field(number)) if number is not None else None
-        if not deeds:
+        """Return a callback that repeats, at its n-th call, the entries of the run's n-th call; None without entries."""
+        pending = self._within.get(_integer_field(number)) if number is not None else None
+        if not pending:
             return None
         count = 0
 
-        def heard(_: object) -> None:
+        def play_pending(_: object) -> None:
             nonlocal count
             count += 1
-            while deeds and _integer_field(deeds[0]["in"][1]) <= count:
-                self._play(deeds.popleft())
+            while pending and _integer_field(pending[0]["in"][1]) <= count:
+                self._play(pending.popleft())
 
-        return heard
+        return play_pending
 
     def _by_hand(self, entry: Entry) -> None:
         apply_changes(self._sim, dict(entry))
@@ -198,13 +198,13 @@ _ENTRY_METHODS: dict[str, Callable[[JournalPlayer, Entry], None]] = {
 def _text_field(entry: Entry, name: str) -> str:
     found = entry.get(name)
     if not isinstance(found, str):
-        raise MessageError(f"{name}: found {found!r:.60}, allowed is a text")
+        raise MessageError(f"{name}: found {found!r:.60}, expected a string")
     return found
 
 
 def _integer_field(value: object) -> int:
     if type(value) is not int or not 0 <= value < 1 << 62:
-        raise MessageError(f"found {value!r:.60}, allowed is a whole number from 0 on")
+        raise MessageError(f"found {value!r:.60}, expected an integer >= 0")
     return value
 
 
@@ -212,6 +212,6 @@ def _decode_pose(values: object) -> Pose | None:
     if values is None:
         return None
     if not isinstance(values, list) or len(values) != 7:
-        raise MessageError(f"found {values!r:.80}, allowed are 7 numbers of a pose")
+        raise MessageError(f"found {values!r:.80}, expected the 7 numbers of a pose")
     x, y, z, *rotation = (float(v) for v in values)
     return Pose((x, y, z), tuple(rotation))

@@ -1,4 +1,4 @@
-"""Messages and numbers as JSON, exactly: what is read again is what was written, bit by bit."""
+"""Encoding of messages and numbers as JSON without loss: decoding restores every bit."""
 
 from __future__ import annotations
 
@@ -14,26 +14,26 @@ from simkit.errors import MessageError
 from simkit.msgs import Message
 from simkit.run_spec import JsonObject
 
-_LISTED: Final = 64  # arrays up to this length are lists of numbers that a person can read
+_MAX_LISTED: Final = 64  # arrays up to this length are stored as readable lists of numbers
 _DTYPES: Final = frozenset(
     ("bool", "float32", "float64", *(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)))
 )
 
 
 class NotEncodable(Exception):
-    """A value that JSON has no word for; says which."""
+    """Value that JSON cannot represent; the message names its type."""
 
 
 def encode_message(message: Message) -> JsonObject:
-    """A message with its type. CDR would round numbers that the message itself still has in full."""
+    """Encode a message with its type. CDR would round numbers that the message holds in full precision."""
     return {"type": msgs.type_name(message), "fields": encode_value(message)}
 
 
 def encode_value(value: Any) -> Any:
-    """A value as JSON has it.
+    """Encode a value as JSON.
 
     Raises:
-        Unpacked: there is no word for it.
+        NotEncodable: JSON cannot represent the value.
     """
     if value is None or isinstance(value, (bool, int, float, str)):
         return value
@@ -52,28 +52,32 @@ def encode_value(value: Any) -> Any:
 
 
 def _encode_array(value: Any) -> Any:
-    if value.ndim == 1 and value.size <= _LISTED:
+    if value.ndim == 1 and value.size <= _MAX_LISTED:
         return value.tolist()
     data = np.ascontiguousarray(value)
     return {"dtype": str(data.dtype), "base64": base64.b64encode(data.tobytes()).decode("ascii")}
 
 
-def decode_message(words: Any) -> Any:
-    """The message that `encode_message` was given.
+def decode_message(encoded: Any) -> Any:
+    """Decode a message that `encode_message` returned.
 
     Raises:
-        MessageError: these are the words of none.
+        MessageError: The value is not an encoded message.
     """
-    if not isinstance(words, dict) or not isinstance(words.get("type"), str) or not isinstance(words["fields"], dict):
-        raise MessageError(f"found {words!r:.80}, allowed is a message's type with its fields")
-    return msgs.make(words["type"], **decode_value(words["fields"]))
+    if (
+        not isinstance(encoded, dict)
+        or not isinstance(encoded.get("type"), str)
+        or not isinstance(encoded["fields"], dict)
+    ):
+        raise MessageError(f"found {encoded!r:.80}, expected a message type with its fields")
+    return msgs.make(encoded["type"], **decode_value(encoded["fields"]))
 
 
 def decode_value(value: Any) -> Any:
-    """A value with its arrays.
+    """Decode a value and its arrays.
 
     Raises:
-        MessageError: an array is none.
+        MessageError: An array is invalid.
     """
     if isinstance(value, list):
         return [decode_value(one) for one in value]
@@ -84,17 +88,17 @@ def decode_value(value: Any) -> Any:
     return {key: decode_value(one) for key, one in value.items()}
 
 
-def decode_array(words: Any) -> Any:
-    """A flat array from a list of numbers, or from its bytes.
+def decode_array(encoded: Any) -> Any:
+    """Decode a flat array from a list of numbers or from its bytes.
 
     Raises:
-        MessageError: it is none.
+        MessageError: The array is invalid.
     """
     try:
-        if isinstance(words, list):
-            return np.array(words, dtype=float).reshape(-1)
-        if words["dtype"] not in _DTYPES:
-            raise ValueError(f"numbers of type {words['dtype']!r:.40}")
-        return np.frombuffer(base64.b64decode(words["base64"], validate=True), dtype=words["dtype"]).copy()
+        if isinstance(encoded, list):
+            return np.array(encoded, dtype=float).reshape(-1)
+        if encoded["dtype"] not in _DTYPES:
+            raise ValueError(f"unsupported number type {encoded['dtype']!r:.40}")
+        return np.frombuffer(base64.b64decode(encoded["base64"], validate=True), dtype=encoded["dtype"]).copy()
     except (ValueError, TypeError, KeyError, binascii.Error) as error:
-        raise MessageError(f"found no array: {error}") from None
+        raise MessageError(f"invalid array: {error}") from None

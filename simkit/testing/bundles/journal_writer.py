@@ -1,4 +1,4 @@
-"""Writes down all that comes into a simulation from outside: what, and between which two steps."""
+"""Journal of all inputs to a simulation from outside, each with the steps between which it arrived."""
 
 from __future__ import annotations
 
@@ -22,26 +22,28 @@ if TYPE_CHECKING:
     from simkit.runtime import Publisher, Simulation
     from simkit.runtime.communication.service_server import Service
 
-_MAX_BYTES_IN_MEMORY: Final = 16 << 20  # bytes; what is more goes to a temporary file
+_MAX_BYTES_IN_MEMORY: Final = 16 << 20  # beyond this size [bytes], the journal continues in a temporary file
 _WRITTEN_AS_GIVEN: Final = ("add_weld", "cancel", "make_movable", "remove", "reseed", "reset", "reset_models")
-"""Calls whose arguments an entry holds as they are."""
+"""Calls whose arguments are stored unchanged in the entry."""
 MAX_JOURNAL_BYTES: Final = 1 << 30
-"""A journal has no more bytes than these."""
+"""Maximum size of a journal [bytes]."""
 
 AnswerCallback = Callable[[object], None]
 
 
 class JournalWriter:
-    """The journal of a run, from its first step on; see `simkit.runtime.communication.journal.Journal`.
+    """Journal of a run from its first step on; see `simkit.runtime.communication.journal.Journal`.
+
+    "Outside" means code that is neither a plugin nor the engine: the caller and the caller's callbacks.
 
     Args:
-        sim: at t = 0, nothing done yet.
+        sim: Simulation at t = 0, before any input.
 
     Attributes:
-        count: how many entries it has.
-        gaps: what could not be written down, in words.
-        sources: what models were read from while it ran, in order: files and names.
-        keeper: whose it is.
+        count: Number of entries.
+        gaps: Descriptions of inputs that could not be recorded.
+        sources: Files and names from which models were read during the run, in order.
+        keeper: Recorder that owns the journal.
     """
 
     def __init__(self, sim: Simulation) -> None:
@@ -49,7 +51,7 @@ class JournalWriter:
         self._file = tempfile.SpooledTemporaryFile(max_size=_MAX_BYTES_IN_MEMORY)  # noqa: SIM115 - lives as long as the run
         finalize(self, self._file.close)
         self._inside = 0
-        self._place: list[int] | None = None
+        self._callback_position: list[int] | None = None
         self._heard: dict[int, list[int]] = {}
         self._numbers: WeakKeyDictionary[object, int] = WeakKeyDictionary()
         self._called: WeakKeyDictionary[object, int] = WeakKeyDictionary()
@@ -66,7 +68,7 @@ class JournalWriter:
         self.keeper: object = None
 
     def write_to(self, path: Path) -> None:
-        """Copies what was written so far."""
+        """Copy all entries to a file."""
         self._look()
         self._file.seek(0)
         with path.open("wb") as file:
@@ -74,30 +76,30 @@ class JournalWriter:
                 file.write(piece)
         self._file.seek(0, 2)
 
-    # ------------------------------------------------------------------ who is outside
+    # ------------------------------------------------------------------ calls from outside
 
     @property
     def _is_outside(self) -> bool:
-        return not self._inside and (self._place is not None or not self._sim.engine.is_stepping)
+        return not self._inside and (self._callback_position is not None or not self._sim.engine.is_stepping)
 
     @contextmanager
     def passing(self, door: str, words: Mapping[str, object]) -> Iterator[AnswerCallback | None]:
-        """Writes down what somebody outside does; what follows from it within is not written."""
+        """Record a call from outside; calls that result from it inside the simulation are not recorded."""
         if not self._is_outside:
             yield None
             return
         self._look()
-        told = self._told(door, words)
+        on_answer = self._record_call(door, words)
         self._inside += 1
         try:
-            yield told
+            yield on_answer
         finally:
             self._inside -= 1
             self._by_hand.see()
 
     @contextmanager
     def called_back(self, subscription: object) -> Iterator[None]:
-        """A callback that is no plugin's: it is outside, wherever it is called from."""
+        """Treat a callback as outside the simulation, unless it belongs to a plugin."""
         number = self._numbers.get(subscription)
         if number is None:  # a plugin's
             yield
@@ -107,20 +109,20 @@ class JournalWriter:
 
     @contextmanager
     def _outside_at(self, number: int) -> Iterator[None]:
-        before = self._inside, self._place
-        self._inside, self._place = 0, self._heard[number]
+        before = self._inside, self._callback_position
+        self._inside, self._callback_position = 0, self._heard[number]
         self._by_hand.see()
         try:
             yield
         finally:
             self._look()
-            self._inside, self._place = before
+            self._inside, self._callback_position = before
 
     def outside(self, callback: Callable[[object], object] | None) -> Callable[[object], object] | None:
-        """A callback of somebody outside, whose calls are counted so that what it does has a place."""
+        """Wrap a callback of an outside caller to count its calls, so that its inputs can be placed in the journal."""
         if callback is None or not self._is_outside:
             return callback
-        count = self._new_place()
+        count = self._new_callback_counter()
 
         @functools.wraps(callback)
         def called(value: object) -> object:
@@ -131,31 +133,33 @@ class JournalWriter:
         self._called[called] = count[0]
         return called
 
-    def _new_place(self) -> list[int]:
+    def _new_callback_counter(self) -> list[int]:
         number = len(self._heard) + 1
         found = self._heard[number] = [number, 0]
         return found
 
     def hears(self, topic: str, subscription: object) -> None:
-        """A tap before the new subscriber counts what both get, so that what it does has a place."""
+        """Count the messages of a new outside subscriber, so that the inputs of its callback can be placed in the
+        journal.
+        """
         if not self._is_outside:
             return
-        count = self._new_place()
+        count = self._new_callback_counter()
         number = self._numbers[subscription] = count[0]
 
-        def heard(_: object) -> None:
+        def count_message(_: object) -> None:
             count[1] += 1
 
         self._write("hear", {"number": number, "topic": topic})
-        self._sim.communication.bus.tap(topic, heard, takes_later=True)
+        self._sim.communication.bus.tap(topic, count_message, takes_later=True)
 
     def before_steps(self) -> None:
-        """What was changed by hand before a step comes before it."""
+        """Record direct changes to the physics before the next step."""
         if self._is_outside:
             self._look()
 
     def after_steps(self) -> None:
-        """What steps change is not by hand."""
+        """Store the state after a step, because a step's own changes are not inputs."""
         if self._is_outside:
             self._by_hand.see()
 
@@ -165,14 +169,14 @@ class JournalWriter:
             self._write("by_hand", found)
             self._by_hand.see()
 
-    # ------------------------------------------------------------------ writing
+    # ------------------------------------------------------------------ entries
 
-    def _told(self, door: str, words: Mapping[str, object]) -> AnswerCallback | None:
-        """Writes an entry; what is to be told of the result comes back."""
+    def _record_call(self, door: str, words: Mapping[str, object]) -> AnswerCallback | None:
+        """Write an entry and return the callback for the result, if there is one."""
         try:
             entry: JsonObject | None = dict(words) if door in _WRITTEN_AS_GIVEN else self._entries[door](**words)
         except NotEncodable as error:
-            self.gaps.append(f"{door} at t={self._sim.time:g} s was given a {error}, which a bundle cannot hold")
+            self.gaps.append(f"{door} at t={self._sim.time:g} s had an argument that a bundle cannot hold: {error}")
             return None
         if entry is None:
             return None
@@ -183,21 +187,21 @@ class JournalWriter:
     def _write(self, do: str, words: Mapping[str, object]) -> None:
         sim = self._sim
         entry: dict[str, object] = {"steps": sim.engine.steps, "tick": sim.tick, "do": do, **words}
-        if self._place is not None:
-            entry["in"] = list(self._place)
+        if self._callback_position is not None:
+            entry["in"] = list(self._callback_position)
         if sim.control.pausing.is_served:
             entry["served"] = True
         line = json.dumps(entry).encode() + b"\n"
         if self._file.tell() + len(line) > MAX_JOURNAL_BYTES:
             if not self.gaps or "no more" not in self.gaps[-1]:
                 self.gaps.append(
-                    f"from t={sim.time:g} s on no more commands are in it: they have {MAX_JOURNAL_BYTES >> 30} GiB"
+                    f"from t={sim.time:g} s on no more commands are recorded: the limit is {MAX_JOURNAL_BYTES >> 30} GiB"
                 )
             return
         self._file.write(line)
         self.count += 1
 
-    # ------------------------------------------------------------------ the doors, by name
+    # ------------------------------------------------------------------ entries by call name
 
     def _of_publish(self, topic: str, message: object) -> dict[str, object]:
         return {"topic": topic, "message": encode_message(message)}
@@ -218,7 +222,7 @@ class JournalWriter:
 
     def _of_call(self, service: Service, request: object) -> dict[str, object] | None:
         if service.owner is None and not service.yields:
-            return None  # the caller's own: what it does is written down
+            return None  # the caller's own service: the inputs that its callback makes are recorded instead
         return {"service": service.name, "request": encode_message(request)}
 
     def _of_send_goal(self, action: str, goal: object, on_feedback: object, on_done: object) -> dict[str, object]:
@@ -227,10 +231,10 @@ class JournalWriter:
         return {"action": action, "goal": encode_message(goal), **{k: v for k, v in heard.items() if v is not None}}
 
     def _of_offer(self, service: str) -> None:
-        self.gaps.append(f"the service {service!r} was offered by the caller; who called it would find none")
+        self.gaps.append(f"the service {service!r} was offered by the caller; a replay does not have it")
 
     def _of_act(self, action: str) -> None:
-        self.gaps.append(f"the action {action!r} was opened by the caller; who sent a goal would find none")
+        self.gaps.append(f"the action {action!r} was offered by the caller; a replay does not have it")
 
     def _of_set(self, node: str, name: str, value: object) -> dict[str, object]:
         return {"node": node, "name": name, "value": encode_value(value)}
@@ -250,20 +254,20 @@ class JournalWriter:
     def _of_snapshot(self) -> dict[str, object]:
         number = self._snapshot_count = self._snapshot_count + 1
 
-        def keep(snapshot: object) -> None:
+        def remember(snapshot: object) -> None:
             key = id(snapshot)
 
-            def gone(_: object) -> None:
+            def forget(_: object) -> None:
                 self._snapshots.pop(key, None)
 
-            self._snapshots[key] = ref(snapshot, gone), number
+            self._snapshots[key] = ref(snapshot, forget), number
 
-        return {"number": number, "then": keep}
+        return {"number": number, "then": remember}
 
     def _of_restore(self, snapshot: object) -> dict[str, object] | None:
         known = self._snapshots.get(id(snapshot))
         if known is None:
-            self.gaps.append(f"a snapshot from before the bundle began was restored at t={self._sim.time:g} s")
+            self.gaps.append(f"at t={self._sim.time:g} s a snapshot was restored that is older than the recording")
             return None
         return {"number": known[1]}
 
@@ -273,7 +277,7 @@ def _encode_pose(pose: Pose | None) -> list[float] | None:
 
 
 def _encode_model_source(source: object, name: str | None, pose: Pose | None) -> dict[str, object]:
-    """A model to be spawned: a text of XML as it is, a file or name as it was said."""
+    """Encode a model to be spawned: XML text unchanged, a file or name as requested."""
     if isinstance(source, SceneModel):
         raise NotEncodable("model made in Python")
     return {"source": str(source), "name": name, "pose": _encode_pose(pose)}

@@ -1,4 +1,4 @@
-"""The first page of a bundle: what was run, how it ended, what is in it. Read as what a stranger wrote."""
+"""Manifest of a bundle (`bundle.json`): the run, its end and the files; every value is validated when it is read."""
 
 from __future__ import annotations
 
@@ -21,19 +21,19 @@ PAGE: Final = "bundle.json"
 COMMANDS: Final = "commands.jsonl"
 BAG: Final = "last_seconds.mcap"
 CHECK: Final = "check"
-"""Kind of the failure of a run in which something did not hold."""
+"""Kind of failure of a run in which a check did not pass."""
 _FOLDERS: Final = re.compile(r"(?<![\w:/.])(?:[A-Za-z]:)?(?:[/\\][^\s/\\:'\"()]+)*[/\\](?=[^\s/\\:'\"()]+\.\w)")
 BROKEN, NEWER = "SK-BUNDLE-001", "SK-BUNDLE-002"
 
 
 @dataclass(frozen=True)
 class Failure:
-    """What a run failed with.
+    """Failure of a run.
 
     Attributes:
-        kind: name of the exception's class; CHECK where a check did not hold.
-        code: of the error.
-        text: what was said, without folders.
+        kind: Class name of the exception; CHECK if a check did not pass.
+        code: Diagnostic code of the error; empty if it has none.
+        text: Message without folder names.
     """
 
     kind: str
@@ -42,34 +42,42 @@ class Failure:
 
 
 def failure_from_error(error: BaseException) -> Failure:
-    """An error as a bundle has it."""
+    """Convert an exception to the failure that a bundle stores."""
     code = str(getattr(error, "code", "") or "") if isinstance(error, SimkitError) else ""
     return Failure(type(error).__name__, code, strip_folders(str(error))[:20_000])
 
 
 def failure_from_checks(results: Iterable[CheckResult], *, was_given_up: bool = False) -> Failure | None:
-    """What did not hold as a bundle has it; None where all did, and the run was not given up for its wall time."""
+    """Convert check results to the failure that a bundle stores.
+
+    Args:
+        results: Results of all checks.
+        was_given_up: True if the run was stopped because its wall time ran out.
+
+    Returns:
+        None if all checks passed and the run was not stopped early.
+    """
     lines = [f"{result.check.title}: {result.message}" for result in results if not result.passed]
     if was_given_up and not lines:
-        lines = ["the run was given up for its wall time"]
+        lines = ["the run was stopped because its wall-clock limit was reached"]
     return Failure(CHECK, "", strip_folders("\n".join(lines))[:20_000]) if lines else None
 
 
 def strip_folders(text: str) -> str:
-    """A text in which files stand without the folders that they are in, which are elsewhere on another machine."""
+    """Remove the folders from all file names in a text, because they differ between machines."""
     return _FOLDERS.sub("", text)
 
 
 @dataclass(frozen=True)
 class RunEnd:
-    """How a run stood when it was packed.
+    """State of a run at the time it was packed.
 
     Attributes:
-        steps: made since it was loaded.
-        tick: at which it stood.
-        time_ns: simulated [ns].
-        state: hash of the physics, as `simkit run` prints it.
-        failure: None where nothing failed.
+        steps: Steps made since loading.
+        tick: Tick of the simulation clock.
+        time_ns: Simulated time [ns].
+        state: Hash of the physics state, as `simkit run` prints it.
+        failure: Failure of the run; None if nothing failed.
     """
 
     steps: int
@@ -81,7 +89,7 @@ class RunEnd:
 
 @dataclass(frozen=True)
 class PackedModel:
-    """A model that comes into the world as it is loaded."""
+    """Model that is spawned while the world is loaded."""
 
     file: str
     place: tuple[float, ...] | None = None
@@ -90,27 +98,27 @@ class PackedModel:
 
 @dataclass(frozen=True)
 class Manifest:
-    """What a bundle says of itself.
+    """Contents of `bundle.json`.
 
     Attributes:
-        name: of the run.
-        world: the file to open.
-        base: of a bare model.
-        seed, overrides, sleep, on_error: as of `simkit.load`.
-        spawn: models put into the world.
-        params: parameter files: model (empty for all) and file.
-        models: what was spawned while it ran: as it was said -> file.
-        code: files of the user's plugins.
-        missing: what could not be packed, in words.
-        fingerprint: of the machine that made it.
-        seconds: how long messages were kept [s].
-        topics: patterns of topics that were kept although they are pictures.
-        first: steps since which messages are in it.
-        end: how the run stood.
-        streams: of the last seconds: topic -> type, count, sha256.
-        marks: steps and hash of the state, once a simulated second.
-        commands: how many entries the journal has.
-        files: name -> size and sha256.
+        name: Name of the run.
+        world: World file in the bundle.
+        base: Mounting of a bare model, as in `simkit.load`.
+        seed, overrides, sleep, on_error: Arguments of `simkit.load`.
+        spawn: Models that were spawned into the world during loading.
+        params: Parameter files, as pairs of a model name (empty for all models) and a file.
+        models: Models that were spawned during the run: requested source -> file in the bundle.
+        code: Files of the user's plugins.
+        missing: Sentences about everything that could not be packed.
+        fingerprint: Properties of the machine that made the bundle.
+        seconds: Length of the message window [s].
+        topics: Patterns of image topics whose messages were recorded.
+        first: Number of steps from which on messages are included.
+        end: State at the end of the run.
+        streams: Topics of the last seconds: topic -> type, count, sha256.
+        marks: Number of steps and state hash, once per simulated second.
+        commands: Number of journal entries.
+        files: File name -> size and sha256.
     """
 
     name: str
@@ -137,168 +145,173 @@ class Manifest:
 
     @property
     def run_spec(self) -> RunSpec:
-        """Seed, overrides and options of the run; its files are where the bundle is extracted."""
+        """Seed, overrides and options of the run; the files are those of the extracted bundle."""
         options: LoadOptions = {"base": self.base, "sleep": self.sleep}
         if self.on_error in ("stop", "disable"):
             options["on_error"] = cast(PluginErrorPolicy, self.on_error)
         return RunSpec(self.world, seed=self.seed, name=self.name, overrides=self.overrides, options=options)
 
     def text(self) -> str:
-        """As JSON; equal for equal ones."""
-        words = {"format": FORMAT, **asdict(self)}
-        words["seconds"] = self.seconds if math.isfinite(self.seconds) else None
-        return json.dumps(words, sort_keys=True, indent=1) + "\n"
+        """Return the manifest as JSON; equal manifests give equal texts."""
+        fields = {"format": FORMAT, **asdict(self)}
+        fields["seconds"] = self.seconds if math.isfinite(self.seconds) else None
+        return json.dumps(fields, sort_keys=True, indent=1) + "\n"
 
 
 def read_manifest(data: bytes, path: str) -> Manifest:
-    """The manifest in a bundle's first page.
+    """Parse the content of `bundle.json`.
+
+    Args:
+        data: Content of the file.
+        path: Path of the bundle, for messages.
 
     Raises:
-        InputError: SK-BUNDLE-001 it is none, SK-BUNDLE-002 a later simkit wrote it.
+        InputError: SK-BUNDLE-001 the content is not a manifest; SK-BUNDLE-002 a newer simkit wrote the bundle.
     """
     try:
-        words = json.loads(data)
+        fields = json.loads(data)
     except (ValueError, RecursionError) as error:
-        raise InputError(f"{BROKEN} {path}: {PAGE} is no JSON: {error!s:.80}", BROKEN) from None
-    if not isinstance(words, dict) or not isinstance(words.get("format"), int):
-        raise InputError(f"{BROKEN} {path} is no bundle of simkit: {PAGE} says no format", BROKEN)
-    if words["format"] > FORMAT:
-        said = f"{NEWER} {path} is of format {words['format']}, this simkit reads up to {FORMAT}"
-        raise InputError(f"{said}\n    help: a newer simkit opens it", NEWER)
+        raise InputError(f"{BROKEN} {path}: {PAGE} is not JSON: {error!s:.80}", BROKEN) from None
+    if not isinstance(fields, dict) or not isinstance(fields.get("format"), int):
+        raise InputError(f"{BROKEN} {path} is not a simkit bundle: {PAGE} has no 'format'", BROKEN)
+    if fields["format"] > FORMAT:
+        problem = f"{NEWER} {path} has format {fields['format']}; this version of simkit reads formats up to {FORMAT}"
+        raise InputError(f"{problem}\n    help: open it with a newer version of simkit", NEWER)
     try:
-        return _parse_manifest(_ManifestReader(words))
+        return _parse_manifest(_ManifestReader(fields))
     except (_InvalidValue, OverflowError) as error:
         raise InputError(f"{BROKEN} {path}: {PAGE}: {error}", BROKEN) from None
 
 
 class _InvalidValue(Exception):
-    """Something is of another kind than it has to be; says what."""
+    """Value of a wrong type or outside its range; the message names the value."""
 
 
 class _ManifestReader:
-    """Takes values out of a mapping, each of the kind that it has to be."""
+    """Reader of typed values from a mapping."""
 
-    def __init__(self, words: Mapping[str, object], at: str = "") -> None:
-        self._words, self._at = words, at
+    def __init__(self, fields: Mapping[str, object], prefix: str = "") -> None:
+        self._fields, self._prefix = fields, prefix
 
     def _value(self, name: str, kind: type[_Value], allowed: str) -> _Value:
-        value = self._words.get(name)
+        value = self._fields.get(name)
         if not isinstance(value, kind) or (isinstance(value, bool) and kind is not bool):
-            raise _InvalidValue(f"{self._at}{name}: found {value!r:.60}, allowed is {allowed}")
+            raise _InvalidValue(f"{self._prefix}{name}: found {value!r:.60}, expected {allowed}")
         return value
 
     def text(self, name: str) -> str:
-        return self._value(name, str, "a text")
+        return self._value(name, str, "a string")
 
     def flag(self, name: str) -> bool:
         return self._value(name, bool, "true or false")
 
     def count(self, name: str) -> int:
-        found = self._value(name, int, "a whole number from 0 on")
+        found = self._value(name, int, "an integer >= 0")
         if not 0 <= found < 1 << 62:
-            raise _InvalidValue(f"{self._at}{name}: found {found!r:.60}, allowed is a whole number from 0 on")
+            raise _InvalidValue(f"{self._prefix}{name}: found {found!r:.60}, expected an integer >= 0")
         return found
 
     def time(self, name: str) -> float:
-        if self._words.get(name) is None:
+        if self._fields.get(name) is None:
             return math.inf
-        kind = int if isinstance(self._words[name], int) else float
-        found = float(self._value(name, kind, "a number of seconds"))
+        kind = int if isinstance(self._fields[name], int) else float
+        found = float(self._value(name, kind, "a number of seconds >= 0"))
         if not found >= 0:
-            raise _InvalidValue(f"{self._at}{name}: found {found}, allowed is a number of seconds")
+            raise _InvalidValue(f"{self._prefix}{name}: found {found}, expected a number of seconds >= 0")
         return found
 
-    def either(self, name: str, take: Callable[[str], _Value]) -> _Value | None:
-        return None if self._words.get(name) is None else take(name)
+    def optional(self, name: str, take: Callable[[str], _Value]) -> _Value | None:
+        return None if self._fields.get(name) is None else take(name)
 
-    def listed(self, name: str) -> list[Any]:
+    def items(self, name: str) -> list[Any]:
         return self._value(name, list, "a list")
 
     def mapping(self, name: str) -> JsonObject:
         return self._value(name, dict, "a mapping")
 
     def _require_all(self, name: str, values: Iterable[object], kind: type, allowed: str) -> None:
-        if not all(isinstance(one, kind) for one in values):
-            raise _InvalidValue(f"{self._at}{name}: allowed is {allowed}")
+        if not all(isinstance(value, kind) for value in values):
+            raise _InvalidValue(f"{self._prefix}{name}: expected {allowed}")
 
     def texts(self, name: str) -> tuple[str, ...]:
-        found = self.listed(name)
-        self._require_all(name, found, str, "a list of texts")
+        found = self.items(name)
+        self._require_all(name, found, str, "a list of strings")
         return tuple(found)
 
-    def of_texts(self, name: str) -> dict[str, str]:
+    def text_mapping(self, name: str) -> dict[str, str]:
         found = self.mapping(name)
-        self._require_all(name, found.values(), str, "a mapping of texts")
+        self._require_all(name, found.values(), str, "a mapping of strings")
         return found
 
     def reader(self, name: str) -> _ManifestReader:
-        return _ManifestReader(self.mapping(name), f"{self._at}{name}.")
+        return _ManifestReader(self.mapping(name), f"{self._prefix}{name}.")
 
     def readers(self, name: str) -> list[_ManifestReader]:
-        found = self.listed(name)
+        found = self.items(name)
         self._require_all(name, found, dict, "a list of mappings")
-        return [_ManifestReader(one, f"{self._at}{name}[{number}].") for number, one in enumerate(found)]
+        return [_ManifestReader(item, f"{self._prefix}{name}[{number}].") for number, item in enumerate(found)]
 
     def each(self, name: str) -> dict[str, _ManifestReader]:
         found = self.mapping(name)
         self._require_all(name, found.values(), dict, "a mapping of mappings")
-        return {key: _ManifestReader(one, f"{self._at}{name}.{key:.60}.") for key, one in found.items()}
+        return {key: _ManifestReader(item, f"{self._prefix}{name}.{key:.60}.") for key, item in found.items()}
 
 
-def _parse_manifest(said: _ManifestReader) -> Manifest:
+def _parse_manifest(reader: _ManifestReader) -> Manifest:
     return Manifest(
-        name=said.text("name"),
-        world=said.text("world"),
-        base=said.text("base"),
-        seed=said.count("seed"),
-        overrides=said.texts("overrides"),
-        sleep=said.flag("sleep"),
-        on_error=said.either("on_error", said.text),
-        spawn=tuple(_parse_spawned(one) for one in said.readers("spawn")),
-        params=tuple(_parse_pair(one) for one in said.listed("params")),
-        models=said.of_texts("models"),
-        code=said.texts("code"),
-        missing=said.texts("missing"),
-        fingerprint=said.of_texts("fingerprint"),
-        seconds=said.time("seconds"),
-        topics=said.texts("topics"),
-        first=said.count("first"),
-        end=_parse_end(said.reader("end")),
+        name=reader.text("name"),
+        world=reader.text("world"),
+        base=reader.text("base"),
+        seed=reader.count("seed"),
+        overrides=reader.texts("overrides"),
+        sleep=reader.flag("sleep"),
+        on_error=reader.optional("on_error", reader.text),
+        spawn=tuple(_parse_spawned(model) for model in reader.readers("spawn")),
+        params=tuple(_parse_pair(pair) for pair in reader.items("params")),
+        models=reader.text_mapping("models"),
+        code=reader.texts("code"),
+        missing=reader.texts("missing"),
+        fingerprint=reader.text_mapping("fingerprint"),
+        seconds=reader.time("seconds"),
+        topics=reader.texts("topics"),
+        first=reader.count("first"),
+        end=_parse_end(reader.reader("end")),
         streams={
-            topic: {"type": one.text("type"), "count": one.count("count"), "sha256": one.text("sha256")}
-            for topic, one in said.each("streams").items()
+            topic: {"type": stream.text("type"), "count": stream.count("count"), "sha256": stream.text("sha256")}
+            for topic, stream in reader.each("streams").items()
         },
-        marks=tuple(_parse_state_mark(one) for one in said.listed("marks")),
-        commands=said.count("commands"),
+        marks=tuple(_parse_state_mark(mark) for mark in reader.items("marks")),
+        commands=reader.count("commands"),
         files={
-            name: {"size": one.count("size"), "sha256": one.text("sha256")} for name, one in said.each("files").items()
+            name: {"size": file.count("size"), "sha256": file.text("sha256")}
+            for name, file in reader.each("files").items()
         },
     )
 
 
-def _parse_end(said: _ManifestReader) -> RunEnd:
-    one = said.either("failure", said.reader)
-    failure = None if one is None else Failure(one.text("kind"), one.text("code"), one.text("text"))
-    return RunEnd(said.count("steps"), said.count("tick"), said.count("time_ns"), said.text("state"), failure)
+def _parse_end(reader: _ManifestReader) -> RunEnd:
+    fields = reader.optional("failure", reader.reader)
+    failure = None if fields is None else Failure(fields.text("kind"), fields.text("code"), fields.text("text"))
+    return RunEnd(reader.count("steps"), reader.count("tick"), reader.count("time_ns"), reader.text("state"), failure)
 
 
-def _parse_spawned(said: _ManifestReader) -> PackedModel:
-    place = said.either("place", said.listed)
+def _parse_spawned(reader: _ManifestReader) -> PackedModel:
+    place = reader.optional("place", reader.items)
     if place is not None:
         numbers = all(isinstance(v, (int, float)) and not isinstance(v, bool) for v in place)
         if not numbers or len(place) not in (3, 4, 6):
-            raise _InvalidValue(f"place: found {place!r:.60}, allowed are 3, 4 or 6 numbers")
+            raise _InvalidValue(f"place: found {place!r:.60}, expected 3, 4 or 6 numbers")
     numbers_of_place = None if place is None else tuple(map(float, place))
-    return PackedModel(said.text("file"), numbers_of_place, said.either("name", said.text))
+    return PackedModel(reader.text("file"), numbers_of_place, reader.optional("name", reader.text))
 
 
-def _parse_pair(one: object) -> tuple[str, str]:
-    if not isinstance(one, list) or len(one) != 2 or not all(isinstance(part, str) for part in one):
-        raise _InvalidValue(f"params: found {one!r:.60}, allowed is a model's name and a file")
-    return one[0], one[1]
+def _parse_pair(pair: object) -> tuple[str, str]:
+    if not isinstance(pair, list) or len(pair) != 2 or not all(isinstance(part, str) for part in pair):
+        raise _InvalidValue(f"params: found {pair!r:.60}, expected a model name and a file")
+    return pair[0], pair[1]
 
 
-def _parse_state_mark(one: object) -> tuple[int, str]:
-    if not isinstance(one, list) or len(one) != 2 or type(one[0]) is not int or not isinstance(one[1], str):
-        raise _InvalidValue(f"marks: found {one!r:.60}, allowed are steps and a hash")
-    return one[0], one[1]
+def _parse_state_mark(mark: object) -> tuple[int, str]:
+    if not isinstance(mark, list) or len(mark) != 2 or type(mark[0]) is not int or not isinstance(mark[1], str):
+        raise _InvalidValue(f"marks: found {mark!r:.60}, expected a number of steps and a hash")
+    return mark[0], mark[1]
