@@ -110,7 +110,7 @@ class JournalPlayer:
             self._sim.communication.bus.tap(_text_field(entry, "topic"), callback)
 
     def _counting(self, number: object) -> Callable[[object], None] | None:
-        """Return a callback that repeats, at its n-th call, the entries of the run's n-th call; None without entries."""
+        """Return a callback that plays at its n-th call the entries of the run's n-th call; None without entries."""
         pending = self._within.get(_integer_field(number)) if number is not None else None
         if not pending:
             return None

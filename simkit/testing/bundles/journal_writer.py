@@ -139,7 +139,7 @@ class JournalWriter:
         return found
 
     def hears(self, topic: str, subscription: object) -> None:
-        """Count the messages of a new outside subscriber, so that the inputs of its callback can be placed in the
+        """Count messages of a new outside subscriber, so that the inputs of its callback can be placed in the
         journal.
         """
         if not self._is_outside:
@@ -195,7 +195,7 @@ class JournalWriter:
         if self._file.tell() + len(line) > MAX_JOURNAL_BYTES:
             if not self.gaps or "no more" not in self.gaps[-1]:
                 self.gaps.append(
-                    f"from t={sim.time:g} s on no more commands are recorded: the limit is {MAX_JOURNAL_BYTES >> 30} GiB"
+                    f"from t={sim.time:g} s on, no more commands are recorded: limit is {MAX_JOURNAL_BYTES >> 30} GiB"
                 )
             return
         self._file.write(line)

@@ -1,7 +1,7 @@
 """Conditions: expressions over a running simulation, and checks that must hold while it runs.
 
-The text of an expression and a simulation enter; values, and results of checks with the reason, leave. No part of
-Python reads or runs an expression, and whoever looks changes no bits.
+The inputs are the text of an expression and a simulation. The results are values and check results with their reasons.
+Expressions are never parsed or run as Python code. Evaluating an expression does not change the simulation.
 """
 
 from __future__ import annotations

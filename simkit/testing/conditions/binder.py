@@ -1,4 +1,4 @@
-"""Bind an expression to a world: each node gets its value type and a closure that returns its value."""
+"""Binder of expressions: each node gets its value type in a world and a function that returns its value."""
 
 from __future__ import annotations
 
@@ -54,21 +54,21 @@ _TIME_NAMES: Final = ("time", "tick")
 
 
 def bind(expression: syntax.Expression, view: WorldView) -> BoundNode:
-    """An expression in a world.
+    """Bind an expression to a world.
 
     Raises:
-        InputError: it names what the world does not have, or what is there does not fit.
-        AbsentTopic: a topic that the view waits for.
+        InputError: A name is unknown, or the type of a value does not fit.
+        AbsentTopic: The view waits for a topic of the expression.
     """
     return Binder(expression.source, view).part(expression.root)
 
 
 class Binder:
-    """Binds the parts of one expression.
+    """Binder of one expression.
 
     Args:
-        source: its text.
-        view: the world.
+        source: Text of the expression.
+        view: World.
     """
 
     def __init__(self, source: str, view: WorldView) -> None:
@@ -89,14 +89,14 @@ class Binder:
         }
 
     def part(self, node: syntax.Node) -> BoundNode:
-        """A node as a part of the world."""
+        """Bind a node."""
         return self._kinds[type(node)](node)
 
     def fault(self, code: str, message: str, span: syntax.Span, hint: str = "") -> Exception:
-        """What is wrong at a place."""
+        """Return an error at a place in the expression."""
         return syntax.expression_error(code, message, self.source, span, hint)
 
-    # ------------------------------------------------------------------ words
+    # ------------------------------------------------------------------ names
 
     def _name(self, node: syntax.Name) -> BoundNode:
         if node.name in _CONSTANTS:
@@ -112,8 +112,8 @@ class Binder:
             raise self.fault("SK-COND-002", message, node.span, f"write {FUNCTIONS[node.name].usage}")
         near = did_you_mean(node.name, [*_CONSTANTS, *_TIME_NAMES, *FUNCTIONS])
         if not near:
-            near = f"names of models and topics stand in quotes: '{node.name}'"
-        raise self.fault("SK-COND-002", f"{node.name!r} stands for no value", node.span, near)
+            near = f"names of models and topics need quotes: '{node.name}'"
+        raise self.fault("SK-COND-002", f"unknown name {node.name!r}", node.span, near)
 
     def _call(self, node: syntax.Call) -> BoundNode:
         function = FUNCTIONS.get(node.name)
@@ -123,28 +123,28 @@ class Binder:
                 near = f"write {node.name} alone"
             raise self.fault(
                 "SK-COND-002",
-                f"there is no function {node.name!r}",
+                f"unknown function {node.name!r}",
                 node.name_span,
-                near or f"there is {', '.join(FUNCTIONS)}",
+                near or f"available: {', '.join(FUNCTIONS)}",
             )
         count = len(node.arguments)
         if not function.least <= count <= function.most:
-            message = f"{node.name} is given {count} argument{'' if count == 1 else 's'}"
+            message = f"{node.name} does not take {count} argument{'' if count == 1 else 's'}"
             raise self.fault("SK-COND-003", message, node.span, f"write {function.usage}")
         return function.make(self, node)
 
     # ------------------------------------------------------------------ truth
 
     def truth(self, node: syntax.Node) -> BoundNode:
-        """A part that is true or false.
+        """Bind a node that must be true or false.
 
         Raises:
-            InputError: SK-COND-004 it is something else.
+            InputError: SK-COND-004 the node has another type.
         """
         part = self.part(node)
         if part.kind is not TRUTH:
-            message = f"{node.span.text(self.source)} is {part.kind}, where true or false is wanted"
-            raise self.fault("SK-COND-004", message, node.span, "compare it: < <= > >= == !=")
+            message = f"{node.span.text(self.source)} is {part.kind}, but must be true or false"
+            raise self.fault("SK-COND-004", message, node.span, "compare it with < <= > >= == !=")
         return part
 
     def _not(self, node: syntax.Not) -> BoundNode:
@@ -164,7 +164,7 @@ class Binder:
                     holds: bool = get()
                     if holds is decisive:
                         return holds
-                except syntax.UndecidedValue as reason:  # one that decides may still come
+                except syntax.UndecidedValue as reason:  # a later operand may still decide
                     unknown = unknown or reason
             if unknown is not None:
                 raise unknown
@@ -173,7 +173,7 @@ class Binder:
         return BoundNode(node, TRUTH, value, operands)
 
     def _comparison(self, node: syntax.Comparison) -> BoundNode:
-        """What says whether a comparison holds."""
+        """Bind a comparison."""
         operands = tuple(self.part(operand) for operand in node.operands)
         for sign, (left, right) in zip(node.signs, pairwise(operands), strict=True):
             self._check_comparable(sign, left, right)
@@ -196,24 +196,24 @@ class Binder:
     def _check_comparable(self, sign: str, left: BoundNode, right: BoundNode) -> None:
         for part in (left, right):
             if is_vector_like(part.kind):
-                hint = "norm(…), min(…) or one of its parts (.x, [0]) can; distance(a, b) says how far two are apart"
+                hint = "compare norm(…), min(…) or a part (.x, [0]); distance(a, b) gives the distance of two points"
                 raise self._of_wrong_kind(part, "which cannot be compared", hint)
             if not is_scalar(part.kind):
                 raise self.not_a_number(part)
         if left.kind is not right.kind:
-            message = f"{left.kind} is compared with {right.kind}"
+            message = f"cannot compare {left.kind} with {right.kind}"
             raise self.fault("SK-COND-004", message, right.node.span)
         if sign not in ("==", "!=") and left.kind is not NUMBER:
-            message = f"{sign} compares numbers, and {left.node.span.text(self.source)} is {left.kind}"
+            message = f"{sign} compares numbers, but {left.node.span.text(self.source)} is {left.kind}"
             raise self.fault("SK-COND-004", message, left.node.span, "write == or !=")
 
     # ------------------------------------------------------------------ numbers
 
     def number(self, node: syntax.Node) -> BoundNode:
-        """A part that is a number.
+        """Bind a node that must be a number.
 
         Raises:
-            InputError: SK-COND-004 it is something else.
+            InputError: SK-COND-004 the node has another type.
         """
         part = self.part(node)
         if part.kind is not NUMBER:
@@ -221,8 +221,8 @@ class Binder:
         return part
 
     def not_a_number(self, part: BoundNode) -> Exception:
-        """Says that a part is no number, and how one is made of it."""
-        return self._of_wrong_kind(part, "where a number is wanted", number_hint(part.kind))
+        """Return an error for a part that is not a number, with a hint for converting it."""
+        return self._of_wrong_kind(part, "but must be a number", number_hint(part.kind))
 
     def _of_wrong_kind(self, part: BoundNode, why: str, hint: str) -> Exception:
         message = f"{part.node.span.text(self.source)} is {part.kind}, {why}"
@@ -258,11 +258,11 @@ class Binder:
         both = is_vector_like(left.kind) and is_vector_like(right.kind)
         allowed = ("+", "-") if both else ("*", "/") if left.kind is not NUMBER else ("*",)
         if node.sign not in allowed:
-            message = f"{left.kind} {node.sign} {right.kind} means nothing"
-            raise self.fault("SK-COND-004", message, node.span, "norm(v) is a vector's length, v.x one of its parts")
+            message = f"cannot compute {left.kind} {node.sign} {right.kind}"
+            raise self.fault("SK-COND-004", message, node.span, "norm(v) is the length of a vector, v.x a component")
         lengths = {part.kind.length for part in (left, right) if is_vector_like(part.kind)} - {None}
         if len(lengths) > 1:
-            message = f"vectors of {' and '.join(map(str, sorted(lengths, key=str)))} numbers do not go together"
+            message = f"cannot combine vectors of {' and '.join(map(str, sorted(lengths, key=str)))} numbers"
             raise self.fault("SK-COND-004", message, node.span)
         act, a, b = VECTOR_OPERATORS[node.sign], as_vector(left), as_vector(right)
         source = node.span.text(self.source)
@@ -270,7 +270,7 @@ class Binder:
         def value() -> Any:
             x, y = a(), b()
             if both and len(x) != len(y):
-                raise syntax.UndecidedValue(f"{source} has lists of {len(x)} and of {len(y)} numbers")
+                raise syntax.UndecidedValue(f"{source} combines lists of {len(x)} and {len(y)} numbers")
             return act(x, y)
 
         kind = next(part.kind for part in (left, right) if is_vector_like(part.kind))
@@ -281,14 +281,14 @@ class Binder:
     def _attribute(self, node: syntax.Attribute) -> BoundNode:
         if isinstance(node.of, syntax.Name) and node.of.name not in (*_CONSTANTS, *_TIME_NAMES, *FUNCTIONS):
             name = f"{node.of.name}.{node.name}"
-            hint = f"pose('{node.of.name}').{node.name} is a part of a pose; names stand in quotes"
-            raise self.fault("SK-COND-002", f"{name!r} stands for no value", node.span, hint)
+            hint = f"write pose('{node.of.name}').{node.name} for a pose; names need quotes"
+            raise self.fault("SK-COND-002", f"unknown name {name!r}", node.span, hint)
         of = self.part(node.of)
         found = attribute_of(of, node.name)
         if found is None:
             allowed = listed_attributes(of.kind)
             message = f"{of.node.span.text(self.source)} is {of.kind}, which has no {node.name!r}"
-            hint = did_you_mean(node.name, allowed) or _parts_hint(of.kind) or "it has no parts"
+            hint = did_you_mean(node.name, allowed) or _parts_hint(of.kind) or "it has no attributes"
             raise self.fault("SK-COND-007", message, node.name_span, hint)
         kind, get = found
         return BoundNode(node, kind, get, (of,), of.feed)
@@ -303,16 +303,16 @@ class Binder:
         is_negated = isinstance(node.index, syntax.Sign) and isinstance(node.index.operand, syntax.Number)
         fixed = at() if isinstance(node.index, syntax.Number) or is_negated else None
         if fixed is not None and not float(fixed).is_integer():
-            raise self.fault("SK-COND-004", "items are numbered from 0 by whole numbers", node.index.span)
+            raise self.fault("SK-COND-004", "an index must be an integer", node.index.span)
         if fixed is not None and length is not None and not -length <= fixed < length:
-            raise self.fault("SK-COND-007", f"there are {length} items, numbered from 0", node.index.span)
+            raise self.fault("SK-COND-007", f"index out of range: there are {length} items", node.index.span)
         source = node.span.text(self.source)
         is_number = item is NUMBER
 
         def value() -> Any:
             items, place = get(), at()
             if not (-len(items) <= place < len(items)) or place != int(place):
-                raise syntax.UndecidedValue(f"{source} is not there: {len(items)} items have come")
+                raise syntax.UndecidedValue(f"{source} is out of range: there are {len(items)} items")
             found = items[int(place)]
             return float(found) if is_number else bool(found) if item is TRUTH else found
 
@@ -325,8 +325,8 @@ def _parts_hint(kind: ValueType) -> str:
 
 
 def number_hint(kind: ValueType) -> str:
-    """How a number is made of a value of some kind."""
+    """Return a hint for converting a value to a number."""
     if is_vector_like(kind):
-        return "min(…), max(…), mean(…), norm(…) or [0] make a number of it"
+        return "min(…), max(…), mean(…), norm(…) or [0] convert it to a number"
     attributes = listed_attributes(kind)
     return f"it has .{', .'.join(attributes)}" if attributes else ""

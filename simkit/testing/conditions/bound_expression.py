@@ -1,4 +1,4 @@
-"""Nodes of an expression bound to a world: how each is evaluated, converted to a vector or pose, and explained."""
+"""Nodes of an expression bound to a world: evaluation, conversion to vectors and poses, and texts for reports."""
 
 from __future__ import annotations
 
@@ -22,24 +22,24 @@ if TYPE_CHECKING:
     from simkit.testing.conditions.world_view import LatestMessage, WorldView
 
 
-_MAX_SHOWN = 6  # items of a list
+_MAX_SHOWN = 6  # items of a list in a text
 
 
 ValueGetter = Callable[[], Any]
-"""Returns the value of a part of an expression at this tick: a number, a text, a vector, a pose or a message."""
+"""Function that returns the present value of a node: a number, a text, a vector, a pose or a message."""
 
 
 @dataclass(frozen=True, slots=True)
 class BoundNode:
-    """A part of an expression.
+    """Node of an expression bound to a world.
 
     Attributes:
-        node: where it stands.
-        kind: of its value.
-        get: its value now; raises Undecided where it has none.
-        below: the parts that it is made of.
-        feed: where it comes from one topic's newest message and nothing else, that one.
-        tell: more about its value, in words.
+        node: Node of the syntax tree.
+        kind: Type of the value.
+        get: Function that returns the present value; raises UndecidedValue if it is unknown.
+        below: Operands.
+        feed: Topic's newest message, if the value depends on nothing else; None otherwise.
+        tell: Function that returns details about the value for reports.
     """
 
     node: syntax.Node
@@ -51,7 +51,7 @@ class BoundNode:
 
 
 def value_text(value: Any) -> str:
-    """A value as a report has it."""
+    """Format a value for a report."""
     if value is True or value is False:
         return "true" if value else "false"
     if isinstance(value, (int, float)):
@@ -70,44 +70,44 @@ def _join_texts(values: Any) -> str:
 
 
 def findings(source: str, part: BoundNode, *, wanted: bool = True) -> list[str]:
-    """The values that make a condition hold or not: `min(scan('/scan')) was 0.098`.
+    """Return the values that make a condition true or false: `min(scan('/scan')) was 0.098`.
 
     Args:
-        source: the expression.
-        part: true or false.
-        wanted: what it should have been.
+        source: Text of the expression.
+        part: Node that is true or false.
+        wanted: Expected value.
     """
-    told: dict[str, None] = {}
-    _collect_findings(source, part, wanted, told)
-    if not told:  # nothing in it changes: `1 > 2`
-        _finding_text(source, part, told)
-    return list(told)
+    texts: dict[str, None] = {}
+    _collect_findings(source, part, wanted, texts)
+    if not texts:  # constant condition, such as `1 > 2`
+        _finding_text(source, part, texts)
+    return list(texts)
 
 
-def _collect_findings(source: str, part: BoundNode, wanted: bool, told: dict[str, None]) -> None:
+def _collect_findings(source: str, part: BoundNode, wanted: bool, texts: dict[str, None]) -> None:
     node = part.node
     if isinstance(node, syntax.Not):
-        _collect_findings(source, part.below[0], not wanted, told)
+        _collect_findings(source, part.below[0], not wanted, texts)
     elif isinstance(node, syntax.Junction):
-        # of what has to hold all together only what does not is of interest; else all of it
+        # if all operands must have the expected value, only those that do not have it matter
         is_all = (node.word == "and") == wanted
         for operand in part.below:
             if not is_all or _current_value(operand) is not wanted:
-                _collect_findings(source, operand, wanted, told)
+                _collect_findings(source, operand, wanted, texts)
     elif isinstance(node, syntax.Comparison):
         for operand in part.below:
             if not _is_literal(operand.node):
-                _finding_text(source, operand, told)
+                _finding_text(source, operand, texts)
     else:
-        _finding_text(source, part, told)
+        _finding_text(source, part, texts)
 
 
-def _finding_text(source: str, part: BoundNode, told: dict[str, None]) -> None:
+def _finding_text(source: str, part: BoundNode, texts: dict[str, None]) -> None:
     text = part.node.span.text(source)
     try:
-        told[f"{text} was {value_text(part.get())}{part.tell() if part.tell is not None else ''}"] = None
+        texts[f"{text} was {value_text(part.get())}{part.tell() if part.tell is not None else ''}"] = None
     except syntax.UndecidedValue as reason:
-        told[f"{text} is not known: {reason}"] = None
+        texts[f"{text} is unknown: {reason}"] = None
 
 
 def _current_value(part: BoundNode) -> Any:
@@ -118,7 +118,7 @@ def _current_value(part: BoundNode) -> Any:
 
 
 def _is_literal(node: syntax.Node) -> bool:
-    """Whether it stands there as it is."""
+    """Check whether a node is constant."""
     if isinstance(node, syntax.Sign):
         return _is_literal(node.operand)
     if isinstance(node, syntax.Arithmetic):
@@ -129,16 +129,16 @@ def _is_literal(node: syntax.Node) -> bool:
 
 
 def is_scalar(kind: ValueType) -> bool:
-    """Whether two values of a kind can be equal."""
+    """Check whether values of a type can be compared for equality."""
     return kind in (NUMBER, TRUTH, TEXT)
 
 
 class ExpressionBinder(Protocol):
-    """What a function of the language asks of the binder of the expression that calls it.
+    """Interface of the binder for functions of the expression language.
 
     Attributes:
-        source: text of the expression.
-        view: the world that the expression is bound to.
+        source: Text of the expression.
+        view: World that the expression is bound to.
     """
 
     source: str
@@ -162,17 +162,17 @@ class ExpressionBinder(Protocol):
 
 BindFunction = Callable[[ExpressionBinder, syntax.Call], BoundNode]
 UNLIMITED_ARGUMENTS: Final = 100
-"""Arguments of a function that takes any number of them."""
+"""Maximum number of arguments of a function that takes any number of them."""
 
 
 @dataclass(frozen=True)
 class Function:
-    """One function.
+    """Function of the expression language.
 
     Attributes:
-        usage: how it is written.
-        least, most: arguments that it takes.
-        make: binds a call of it.
+        usage: Call syntax, for messages.
+        least, most: Limits of the number of arguments.
+        make: Function that binds a call.
     """
 
     usage: str
@@ -182,22 +182,22 @@ class Function:
 
 
 def quoted_argument(binder: ExpressionBinder, call: syntax.Call, place: int, what: str) -> syntax.Text:
-    """An argument that is a name in quotes.
+    """Return an argument that must be a quoted name.
 
     Raises:
-        InputError: SK-COND-004 it is something else.
+        InputError: SK-COND-004 the argument is not a quoted name.
     """
     node = call.arguments[place]
     if isinstance(node, syntax.Text):
         return node
     source = node.span.text(binder.source)
-    hint = f"names stand in quotes: {call.name}('{source}')" if isinstance(node, syntax.Name) else ""
-    message = f"{call.name} wants {what} in quotes, and is given {source}"
+    hint = f"names need quotes: {call.name}('{source}')" if isinstance(node, syntax.Name) else ""
+    message = f"{call.name} needs {what} in quotes, found {source}"
     raise binder.fault("SK-COND-004", message, node.span, hint)
 
 
 def as_vector(part: BoundNode) -> ValueGetter:
-    """What gives a part as an array of 64 bit numbers, shape (n,); a number as it is."""
+    """Return a getter of a node's value as a float array, shape (n,); a number is returned unchanged."""
     get = part.get
     if part.kind is NUMBER:
         return get
@@ -207,12 +207,12 @@ def as_vector(part: BoundNode) -> ValueGetter:
 
 
 def vector_from_message(message: Message) -> Vector:
-    """A vector or a point, shape (3,)."""
+    """Return a vector or point message as an array, shape (3,)."""
     return np.array((message.x, message.y, message.z), dtype=np.float64)
 
 
 def as_pose(part: BoundNode) -> Callable[[], Pose]:
-    """What gives a pose, or a message that is one, as a pose."""
+    """Return a getter of a node's pose; a pose message is converted."""
     get = part.get
     if part.kind is POSE:
         return get
@@ -227,9 +227,9 @@ def as_pose(part: BoundNode) -> Callable[[], Pose]:
 
 
 def as_numbers(part: BoundNode) -> ValueGetter | None:
-    """What gives the numbers of a list, a vector, or a scan; of a scan those of the rays that met something.
+    """Return a getter of the numbers in a list, a vector or a scan; None if the node has no numbers.
 
-    Rays that met nothing (+inf, nan) are left out; -inf, too near to be measured, is not. None where it has no numbers.
+    For a scan, rays without a hit (+inf, NaN) are left out; -inf, for an object below the minimum range, is kept.
     """
     get = part.get
     if part.kind.message == SCAN:
@@ -251,11 +251,11 @@ _JOINT_ATTRIBUTES = ("position", "velocity", "effort", "lower", "upper")
 
 
 def _numbered(names: Sequence[str], numbers: Callable[[Any], Any]) -> dict[str, _ReadField]:
-    """Numbers of a value by their names.
+    """Return attributes that are numbers of a value.
 
     Args:
-        names: in the order of the numbers.
-        numbers: gives them of the value.
+        names: Attribute names in the order of the numbers.
+        numbers: Function that returns the numbers of a value.
     """
     return {name: (kinds.NUMBER, _number_at(at, numbers)) for at, name in enumerate(names)}
 
@@ -278,7 +278,7 @@ _VALUE_FIELDS: Final[dict[kinds.ValueType, dict[str, _ReadField]]] = {
 
 
 def listed_attributes(kind: kinds.ValueType) -> list[str]:
-    """What parts a value of a kind has."""
+    """Return the names of the attributes of a type."""
     if kind.message:
         angles = _ANGLES if kinds.is_orientation_like(kind) or kinds.is_pose_like(kind) else ()
         return [*kinds.fields_of(kind.message), *(_AXES if kinds.is_pose_like(kind) else ()), *angles]
@@ -290,7 +290,7 @@ def _fields_of_value(kind: kinds.ValueType) -> dict[str, _ReadField]:
 
 
 def attribute_of(part: BoundNode, name: str) -> AttributeGetter | None:
-    """A part of a value, and its kind; None where it has no such part."""
+    """Return the type and getter of an attribute; None if it does not exist."""
     kind, get = part.kind, part.get
     if kind is kinds.JOINT:
         return _joint_attribute(get(), name)
@@ -310,7 +310,7 @@ def attribute_of(part: BoundNode, name: str) -> AttributeGetter | None:
 
 
 def _joint_attribute(joint: Joint, name: str) -> AttributeGetter | None:
-    """Of the handle of a joint: a number for each degree of freedom, which is one number for most."""
+    """Return an attribute of a joint: a number, or a list with one number for each degree of freedom."""
     if name not in _JOINT_ATTRIBUTES:
         return None
     read = attrgetter(name)

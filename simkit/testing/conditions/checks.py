@@ -1,4 +1,4 @@
-"""The checks of a run while it runs: one class for each kind of check, and their results."""
+"""Checks during a run: one class for each kind of check, and their results."""
 
 from __future__ import annotations
 
@@ -23,21 +23,20 @@ from simkit.testing.conditions.world_view import AbsentTopic, WorldView
 
 _EARLY_ENDS: Final = {
     **dict.fromkeys(("duration", "until", "timeout"), ""),
-    "wall_timeout": "the run was given up after its wall time",
+    "wall_timeout": "the run was stopped at its wall-clock limit",
 }
-"""How a run ends -> in words, where it did not come to its end."""
-"""How a run ends -> in words, where it did not come to its end."""
+"""End of a run -> description, if the run did not end regularly."""
 
 
 @dataclass(frozen=True)
 class CheckResult:
-    """What became of one check.
+    """Result of one check.
 
     Attributes:
-        check: a `simkit.run_spec.Check`.
-        passed: whether it held.
-        message: in words, with the numbers found: why not, or when it was reached.
-        time: when it was decided [s] of simulated time.
+        check: Check.
+        passed: True if the check passed.
+        message: Explanation with the measured values.
+        time: Simulated time of the decision [s].
     """
 
     check: Check
@@ -47,7 +46,7 @@ class CheckResult:
 
 
 def time_text(time: float) -> str:
-    """A simulated time as a report has it."""
+    """Format a simulated time for a report."""
     return f"t = {time:.6g} s"
 
 
@@ -55,14 +54,14 @@ _ORDER_OPERATORS = {"<": operator.lt, "<=": operator.le, ">": operator.gt, ">=":
 
 
 class Condition:
-    """An expression in a world; one that names a topic which nobody publishes yet is bound as soon as somebody does.
+    """Expression in a world; an expression with an unknown topic is bound when the topic gets a publisher.
 
     Args:
-        source: the expression.
-        view: the world.
+        source: Text of the expression.
+        view: World.
 
     Raises:
-        InputError: it cannot be read, or names what the world does not have, or is not true or false.
+        InputError: The expression has a syntax error or an unknown name, or is not true or false.
     """
 
     def __init__(self, source: str, view: WorldView) -> None:
@@ -70,27 +69,27 @@ class Condition:
         self._expression = parse(source)
         self._part: BoundNode | None = None
         self._fault = ""
-        self._awaited = self._topic = ""
+        self._waiting_reason = self._topic = ""
         self._revision = -1
         self._bind()
 
     def holds(self) -> bool:
-        """Whether it is true now.
+        """Return the present value of the condition.
 
         Raises:
-            Undecided: that is not known.
+            UndecidedValue: The value is unknown.
         """
         if self._part is None:
             self._bind_late()
         if self._part is None:
-            raise UndecidedValue(self._fault or self._awaited)
+            raise UndecidedValue(self._fault or self._waiting_reason)
         return bool(self._part.get())
 
     def gap(self) -> tuple[bool, float, str]:
-        """Whether it holds, and where two numbers are compared how far they are apart, else no number; with the text.
+        """Return the value of the condition, the distance of two compared numbers (else NaN), and a text for reports.
 
         Raises:
-            Undecided: that is not known.
+            UndecidedValue: The value is unknown.
         """
         part = self._part
         node = None if part is None else part.node
@@ -104,26 +103,26 @@ class Condition:
         return holds(a, b), abs(a - b), f"{left.node.span.text(self.source)} was {value_text(a)}"
 
     def findings(self, *, wanted: bool = True) -> str:
-        """The values that make it hold or not."""
+        """Return the values that make the condition true or false."""
         if self._part is None:
-            return self._fault or self._awaited
+            return self._fault or self._waiting_reason
         return ", ".join(findings(self.source, self._part, wanted=wanted))
 
     def _bind(self) -> None:
         try:
             part = bind(self._expression, self._view)
         except AbsentTopic as absent:
-            self._awaited = str(absent)
+            self._waiting_reason = str(absent)
             self._topic = absent.topic
             return
         if part.kind is not TRUTH:
-            message = f"the expression is {part.kind}, where true or false is wanted"
+            message = f"the expression is {part.kind}, but must be true or false"
             span = part.node.span
-            raise expression_error("SK-COND-004", message, self.source, span, "compare it: < <= > >= == !=")
+            raise expression_error("SK-COND-004", message, self.source, span, "compare it with < <= > >= == !=")
         self._part = part
 
     def _bind_late(self) -> None:
-        """Once the topic that is waited for is there; what does not fit then makes it fail, not the run."""
+        """Bind the expression when its topic exists; an error then fails the check instead of the run."""
         bus = self._view.sim.communication.bus
         if self._fault or bus.revision == self._revision:
             return
@@ -137,11 +136,11 @@ class Condition:
 
 
 class RunningCheck(ABC):
-    """A check of a run.
+    """Check during a run.
 
     Args:
-        check: a `simkit.run_spec.Check`.
-        view: the world.
+        check: Check.
+        view: World.
     """
 
     def __init__(self, check: Check, view: WorldView) -> None:
@@ -150,17 +149,17 @@ class RunningCheck(ABC):
         self._result: CheckResult | None = None
 
     def look(self, time: float) -> None:
-        """Looks at the state after a step [s]; called until it is decided."""
+        """Evaluate the state after a step at a time [s]; called until the check is decided."""
 
     def result(self, reason: str) -> CheckResult:
-        """What became of it, at the end of the run."""
+        """Return the result at the end of the run."""
         if self._result is None:
             self._result = self._at_end(_EARLY_ENDS.get(reason, f"the run ended with {reason}"))
         return self._result
 
     @abstractmethod
     def _at_end(self, cut: str) -> CheckResult:
-        """What became of it where nothing was decided before the end; `cut` says why that came early, if it did."""
+        """Return the result of an undecided check; `cut` describes an early end of the run, or is empty."""
 
     def _decide(self, passed: bool, message: str, time: float | None = None) -> CheckResult:
         self.is_decided = True
@@ -169,7 +168,7 @@ class RunningCheck(ABC):
 
 
 class ConditionCheck(RunningCheck):
-    """A check of a condition."""
+    """Check with a condition."""
 
     def __init__(self, check: Check, view: WorldView) -> None:
         super().__init__(check, view)
@@ -177,13 +176,13 @@ class ConditionCheck(RunningCheck):
 
 
 class ReachedCheck(ConditionCheck):
-    """Must hold once."""
+    """Condition that must be true once."""
 
     _nearest, _nearest_text, _nearest_time = math.inf, "", 0.0
 
     @property
     def is_reached(self) -> bool:
-        """Whether it has been."""
+        """True if the condition was true."""
         return self._result is not None and self._result.passed
 
     def look(self, time: float) -> None:
@@ -201,19 +200,19 @@ class ReachedCheck(ConditionCheck):
             self._nearest, self._nearest_text, self._nearest_time = gap, text, time
 
     def _how_far(self) -> str:
-        """The values now, and where they were nearer before, those of then."""
+        """Return the present values, and the nearest earlier values if they were nearer."""
         found = self._condition.findings()
         if not self._nearest_text or self._nearest_text in found:
             return found
-        return f"{found}; nearest, at {time_text(self._nearest_time)}, {self._nearest_text}"
+        return f"{found}; nearest at {time_text(self._nearest_time)}: {self._nearest_text}"
 
     def _at_end(self, cut: str) -> CheckResult:
-        end = f"was not reached by {time_text(self._sim.time)}" + (f", where {cut}" if cut else "")
+        end = f"was not reached by {time_text(self._sim.time)}" + (f", when {cut}" if cut else "")
         return self._decide(False, f"{end}: {self._how_far()}")
 
 
 class AlwaysCheck(ConditionCheck):
-    """Must hold at every step, as soon as its values are known."""
+    """Condition that must be true at every step from the time when its values are known."""
 
     _since: float | None = None
     _last = 0.0
@@ -237,9 +236,9 @@ class AlwaysCheck(ConditionCheck):
             reason = self._condition.findings()
             if self._sim.time < self.check.after:
                 reason = f"the run ended at {now}, before {time_text(self.check.after)}"
-            return self._decide(False, f"was never looked at: {reason}")
+            return self._decide(False, f"was never evaluated: {reason}")
         if cut:
-            return self._decide(False, f"held until {now}, where {cut}")
+            return self._decide(False, f"held until {now}, when {cut}")
         found = self._condition.findings(wanted=False)
         if self._last < self._sim.time - 0.5 * self._sim.timestep:
             return self._decide(True, f"held from {time_text(self._since)} to {time_text(self._last)}, then: {found}")
@@ -247,12 +246,12 @@ class AlwaysCheck(ConditionCheck):
 
 
 class FinalCheck(ConditionCheck):
-    """Must hold at the end."""
+    """Condition that must be true at the end."""
 
     def _at_end(self, cut: str) -> CheckResult:
         now = time_text(self._sim.time)
         if cut:
-            return self._decide(False, f"was not looked at: at {now} {cut}")
+            return self._decide(False, f"was not evaluated: at {now} {cut}")
         try:
             holds = self._condition.holds()
         except UndecidedValue:
@@ -264,11 +263,10 @@ class SeparationCheck(RunningCheck):
     """Models or links that must not touch."""
 
     def __init__(self, check: Check, view: WorldView) -> None:
-
         super().__init__(check, view)
         names, source = check.models, " ".join(map(repr, check.models))
         if not 1 <= len(names) <= 2:
-            message = f"SK-COND-009 {len(names)} models are to be apart; allowed are one, that touches nothing, or two"
+            message = f"SK-COND-009 the check 'apart' has {len(names)} models; expected one or two"
             raise InputError(message, "SK-COND-009")
         spans, at = [], 0
         for name in names:
@@ -285,17 +283,17 @@ class SeparationCheck(RunningCheck):
     def _at_end(self, cut: str) -> CheckResult:
         now = time_text(self._sim.time)
         if cut:
-            return self._decide(False, f"nothing touched until {now}, where {cut}")
+            return self._decide(False, f"no contact until {now}, when {cut}")
         if self._sim.time < self.check.after:
-            return self._decide(False, f"was never looked at: the run ended at {now}")
-        return self._decide(True, f"nothing touched until {now}")
+            return self._decide(False, f"was never evaluated: the run ended at {now}")
+        return self._decide(True, f"no contact until {now}")
 
 
-_MAX_LATENESS = 2.5  # periods without a message after which a topic has stopped
+_MAX_LATENESS = 2.5  # number of periods without a message after which a topic counts as stopped
 
 
 def configured_rate(sim: Simulation, topic: str) -> float | None:
-    """The rate that what publishes on a topic is set to [Hz], of several together; None where that is not known."""
+    """Return the configured rate of a topic's publishers together [Hz]; None if it is unknown."""
     owners: list[object] = [sensor for sensor in sim.engine.structure.all_sensors() if topic in sensor._topics.values()]
     if not owners:
         for _, end, _, what in sim.communication.bus.endpoints(topic):
@@ -306,7 +304,7 @@ def configured_rate(sim: Simulation, topic: str) -> float | None:
 
 
 def _publisher_rate(owner: object, timestep: float) -> float | None:
-    """Of a sensor its update rate, where zero is every step; of a plugin that of its hook after steps."""
+    """Return a sensor's update rate (0 means every step) or the rate of a plugin's hook after steps [Hz]."""
     rate = getattr(owner, "update_rate", None)
     if isinstance(rate, (int, float)) and hasattr(owner, "scoped") and hasattr(owner, "sample"):
         return min(float(rate), 1.0 / timestep) if rate > 0 else 1.0 / timestep
@@ -315,12 +313,12 @@ def _publisher_rate(owner: object, timestep: float) -> float | None:
 
 
 class TopicRateCheck(RunningCheck):
-    """Messages per simulated second, from the first to the last; a topic that stops before the end has failed."""
+    """Rate of messages from the first to the last; a topic that stops before the end fails."""
 
     def __init__(self, check: Check, view: WorldView) -> None:
         super().__init__(check, view)
         if not check.topic:
-            raise InputError("SK-COND-009 a check of a rate names no topic", "SK-COND-009")
+            raise InputError("SK-COND-009 a rate check has no topic", "SK-COND-009")
         self._topic = absolute_name(check.topic)
         self._tally = view.tally(self._topic)
 
@@ -328,26 +326,28 @@ class TopicRateCheck(RunningCheck):
         sim, tally, check = self._sim, self._tally, self.check
         now = time_text(sim.time)
         if cut:
-            return self._decide(False, f"{tally.count} messages came until {now}, where {cut}")
+            return self._decide(False, f"{tally.count} messages received until {now}, when {cut}")
         if not tally.count:
             topics = sim.communication.bus.all_topics()
             if self._topic in topics:
-                return self._decide(False, f"no message came on {self._topic} until {now}")
+                return self._decide(False, f"no message received on {self._topic} until {now}")
             near = did_you_mean(self._topic, topics)
-            return self._decide(False, f"nobody publishes on {self._topic}" + (f"; {near}" if near else ""))
-        wanted = check.rate if check.rate is not None else configured_rate(sim, self._topic)
+            return self._decide(False, f"no publisher on {self._topic}" + (f"; {near}" if near else ""))
+        target = check.rate if check.rate is not None else configured_rate(sim, self._topic)
         found = tally.rate()
         first, last = time_text(tally.first / 1e9), time_text(tally.last / 1e9)
         if found is None:
-            message = f"one message came on {self._topic}, at {last}, until {now}"
-            return self._decide(False, message if tally.count == 1 else f"{tally.count} messages came, all at {last}")
+            message = f"only one message received on {self._topic} until {now}, at {last}"
+            return self._decide(
+                False, message if tally.count == 1 else f"{tally.count} messages received, all at {last}"
+            )
         text = f"{self._topic}: {found:.6g} Hz ({tally.count} messages from {first} to {last})"
-        if wanted is None:
-            wanted, asked = found, ""
+        if target is None:
+            target, expected = found, ""
         else:
-            asked = f", wanted are {wanted:.6g} Hz"
-        if abs(found - wanted) > check.tolerance * wanted:
-            return self._decide(False, f"{text}{asked} ± {check.tolerance * 100:.3g} %")
-        if sim.time - tally.last / 1e9 > _MAX_LATENESS / wanted + 1.5 * sim.timestep:
+            expected = f", expected {target:.6g} Hz"
+        if abs(found - target) > check.tolerance * target:
+            return self._decide(False, f"{text}{expected} ± {check.tolerance * 100:.3g} %")
+        if sim.time - tally.last / 1e9 > _MAX_LATENESS / target + 1.5 * sim.timestep:
             return self._decide(False, f"{text}, and none from then until {now}")
-        return self._decide(True, text + asked)
+        return self._decide(True, text + expected)

@@ -1,4 +1,4 @@
-"""Looks at a simulation while it runs, and says in the end what held."""
+"""Watch that evaluates the checks of a run after every step."""
 
 from __future__ import annotations
 
@@ -27,20 +27,20 @@ _CHECK_CLASSES: Final[dict[str, type[RunningCheck]]] = {
 
 
 class Watch:
-    """The checks of a run; a context manager around it.
+    """Checks of a run; a context manager around the run.
 
-    Conditions are looked at when it is entered and after every step; who looks changes no bits.
+    Conditions are evaluated on entry and after every step. Evaluation does not change the simulation.
 
     Args:
-        sim: the simulation.
-        checks: `simkit.run_spec.Check`.
-        until: an expression that ends the run; empty for none.
-        timeout: by when it must hold [s].
-        absent: what an expression is that names a topic which nobody publishes: an "error", or one that is not known
-            until somebody does ("wait"), so that its check fails.
+        sim: Simulation.
+        checks: Checks.
+        until: Expression that ends the run when it is true; empty for none.
+        timeout: Time by which `until` must be true [s].
+        absent: Behaviour for a topic without a publisher: "error", or "wait"; a check that still waits at the end
+            fails.
 
     Raises:
-        InputError: an expression cannot be read, or names what the world does not have; all that is wrong is told.
+        InputError: Expressions have syntax errors or unknown names; the message lists all errors.
     """
 
     def __init__(
@@ -54,15 +54,15 @@ class Watch:
     ) -> None:
         self._sim = sim
         self._view = WorldView(sim, absent)
-        wanted = list(checks)
+        all_checks = list(checks)
         if until:
-            wanted.insert(0, Check("goal", expression=until, by=timeout))
-        self._entries = self._bound(wanted)
+            all_checks.insert(0, Check("goal", expression=until, by=timeout))
+        self._entries = self._bind_checks(all_checks)
         self._until = self._entries[0] if until else None
         self._running: list[RunningCheck] = []
         self._is_active = False
 
-    def _bound(self, checks: Sequence[Check]) -> list[RunningCheck]:
+    def _bind_checks(self, checks: Sequence[Check]) -> list[RunningCheck]:
         entries: list[RunningCheck] = []
         errors: list[InputError] = []
         for check in checks:
@@ -77,14 +77,14 @@ class Watch:
 
     @property
     def ended(self) -> bool:
-        """Whether `until` holds, or did; the run is then over."""
+        """True if `until` is or was true, so the run is over."""
         return isinstance(self._until, ReachedCheck) and self._until.is_reached
 
     def results(self, reason: str) -> tuple[CheckResult, ...]:
-        """What became of every check, that of `until` first; to be asked once the run is over.
+        """Return the results of all checks, that of `until` first; call this method after the run.
 
         Args:
-            reason: why it is: "duration", "until", "timeout", "wall_timeout", or what it failed with.
+            reason: End of the run: "duration", "until", "timeout", "wall_timeout", or the text of an error.
         """
         return tuple(entry.result(reason) for entry in self._entries)
 
@@ -106,7 +106,7 @@ class Watch:
         self._view.close()
 
     def look(self) -> None:
-        """Looks at the state as it is now; called by itself after every step."""
+        """Evaluate the checks for the present state; this method is called automatically after every step."""
         time = self._sim.time
         for entry in self._running:
             entry.look(time)

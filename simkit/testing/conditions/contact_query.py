@@ -1,4 +1,4 @@
-"""Who touches whom: the engine's contacts, by names of models, links and collisions."""
+"""Contacts between models, links and collisions by name."""
 
 from __future__ import annotations
 
@@ -15,20 +15,21 @@ if TYPE_CHECKING:
     from simkit.compiler import Compiled
 
 _MAX_SLOPE: Final = math.cos(math.radians(45.0))
-_MANY_CONTACTS: Final = 32  # contacts
+_MANY_CONTACTS: Final = 32  # from this number on, arrays are faster than Python numbers
 _HEIGHT_MAP: Final = int(mujoco.mjtGeom.mjGEOM_HFIELD)
 
 
 class ContactQuery:
-    """The contacts of one model, link or collision, or those between two; surfaces that touch or overlap.
+    """Contacts of one model, link or collision, or between two; surfaces that touch or overlap.
 
-    Of one alone, what is around it counts and the ground does not: what stands still in the world and pushes upwards,
-    within 45° of the vertical (floors, ramps, steps from above), and height maps. Nor do its own parts count.
+    Without a second name, contacts with the ground are ignored: with static surfaces that push upwards, within 45° of
+    the vertical (floors, ramps, steps from above), and with height maps. Contacts between collisions of the first
+    entity are ignored too.
 
     Args:
-        sim: the simulation.
-        first: a scoped name.
-        second: another; None for whatever there is.
+        sim: Simulation.
+        first: Scoped name.
+        second: Another scoped name; None for all surroundings.
     """
 
     def __init__(self, sim: Simulation, first: str, second: str | None = None) -> None:
@@ -38,14 +39,14 @@ class ContactQuery:
         self._asleep: tuple[tuple[int, int, int], ...] = ()
 
     def now(self) -> tuple[tuple[int, int, int], ...]:
-        """Contact number and two geoms of each, the first one's before the other's; of the state at this tick."""
+        """Return the contact number and two geoms, the first entity's first, of each contact at this tick."""
         self._bind()
         data = self._sim.engine.physics.fresh()
         sleepers = self._sleepers(data)
         return self._at_rest(len(sleepers)) if sleepers else self._among(data)
 
     def force(self) -> float:
-        """The sum of what presses the surfaces together [N]."""
+        """Return the sum of the normal forces [N]."""
         found = self.now()
         if not found:
             return 0.0
@@ -58,7 +59,7 @@ class ContactQuery:
         return total
 
     def describe(self) -> str:
-        """Which links touch: `tb3::base_link touches wall::link`; empty where none do."""
+        """Return the links that touch, such as `tb3::base_link touches wall::link`; empty without contacts."""
         names = self._sim.engine.names
         pairs: dict[str, None] = {}
         for _, mine, other in self.now():
@@ -67,10 +68,10 @@ class ContactQuery:
         listed = list(pairs)
         return ", ".join(listed[:3]) + (f" and {len(listed) - 3} more" if len(listed) > 3 else "")
 
-    # ------------------------------------------------------------------ which
+    # ------------------------------------------------------------------ selection
 
     def _bind(self) -> None:
-        """Which geoms are meant; found anew after a spawn or a removal."""
+        """Find the geoms of both entities again after a spawn or a removal."""
         compiled = self._sim.engine.structure.compiled
         if compiled is self._compiled:
             return
@@ -90,7 +91,7 @@ class ContactQuery:
         self._trees = trees or list(range(model.ntree))
 
     def _moving(self, geoms: Bools) -> list[int]:
-        """The trees that these geoms belong to."""
+        """Return the kinematic trees of some geoms."""
         model = self._sim.mj_model
         trees = np.unique(model.body_treeid[model.geom_bodyid[np.flatnonzero(geoms)]])
         return [int(tree) for tree in trees if tree >= 0]
@@ -101,7 +102,7 @@ class ContactQuery:
         contact = data.contact
         pairs = contact.geom
         mine, others, found, up = self._mine, self._others, [], None
-        # the usual few contacts cost less as Python's numbers than as arrays
+        # for few contacts, Python numbers are faster than arrays
         is_few = len(pairs) <= _MANY_CONTACTS
         rows = range(len(pairs)) if is_few else self._concerned[pairs].any(axis=1).nonzero()[0].tolist()
         geoms = pairs.tolist() if is_few else None
@@ -125,22 +126,22 @@ class ContactQuery:
         return tuple(found)
 
     def _up(self) -> tuple[float, float, float]:
-        """Away from where things fall, a unit vector; z without gravity."""
+        """Return the unit vector against gravity; z without gravity."""
         x, y, z = self._sim.mj_model.opt.gravity.tolist()
         size = math.sqrt(x * x + y * y + z * z)
         return (-x / size, -y / size, -z / size) if size else (0.0, 0.0, 1.0)
 
-    # ------------------------------------------------------------------ what sleeps
+    # ------------------------------------------------------------------ sleep
 
     def _sleepers(self, data: mujoco.MjData) -> list[int]:
-        """What is meant here and sleeps: the engine lists no contacts of sleepers."""
+        """Return the relevant trees that sleep, for which the engine lists no contacts."""
         if not self._sim.engine.physics.sleep.counts:
             return []
         asleep = data.tree_asleep
         return [tree for tree in self._trees if asleep[tree] >= 0]
 
     def _at_rest(self, sleepers: int) -> tuple[tuple[int, int, int], ...]:
-        """The contacts of what sleeps, which stay as they are until it wakes."""
+        """Return contacts that include sleeping entities; they do not change until one wakes up."""
         sim = self._sim
         is_all = sleepers == len(self._trees)
         if not (is_all and sim.tick - 1 <= self._asleep_at <= sim.tick):
@@ -150,5 +151,5 @@ class ContactQuery:
 
 
 def _collisions_below(name: str, collisions: tuple[str, ...]) -> set[str]:
-    """The collisions that are, or belong to, what has a name."""
+    """Return the collisions with a name and those below it."""
     return {scoped for scoped in collisions if scoped == name or scoped.startswith(name + "::")}

@@ -1,4 +1,4 @@
-"""Operators and functions of numbers and of lists, as IEEE 754 defines them: infinite or NaN, never an exception."""
+"""Operators and functions for numbers and lists as in IEEE 754: results may be NaN, but never an exception."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ BinaryOperator = Callable[[float, float], float]
 
 
 def divide(a: float, b: float) -> float:
-    """a / b."""
+    """Return a / b."""
     if b:
         return a / b
     if not a or a != a or b != b:
@@ -34,14 +34,14 @@ def divide(a: float, b: float) -> float:
 
 
 def remainder(a: float, b: float) -> float:
-    """a - b·floor(a / b): it has the sign of b."""
+    """Return a - b·floor(a / b), which has the sign of b."""
     if not b or not math.isfinite(a) or b != b:
         return math.nan
     return a % b
 
 
 def power(a: float, b: float) -> float:
-    """a to the b."""
+    """Return a raised to the power b."""
     try:
         found = math.pow(a, b)
     except OverflowError:
@@ -53,7 +53,7 @@ def power(a: float, b: float) -> float:
 
 
 def nan_where_undefined(function: Callable[..., float], otherwise: float = math.nan) -> Callable[..., float]:
-    """A function of `math` that is no number where it is not defined, and infinite where it is too large."""
+    """Wrap a function of `math`: return NaN where the function is undefined, infinity where the result is too large."""
 
     def value(*numbers: float) -> float:
         try:
@@ -67,17 +67,17 @@ def nan_where_undefined(function: Callable[..., float], otherwise: float = math.
 
 
 def logarithm(a: float) -> float:
-    """Natural; -inf at zero."""
+    """Return the natural logarithm; -inf at zero."""
     return math.log(a) if a > 0 else -math.inf if a == 0 else math.nan
 
 
 def round_finite(function: Callable[[float], int]) -> Callable[[float], float]:
-    """A rounding that leaves what is not finite as it is."""
+    """Wrap a rounding function so that NaN and infinity are returned unchanged."""
     return lambda a: float(function(a)) if math.isfinite(a) else a
 
 
 def wrap_angle(angle: float) -> float:
-    """An angle [rad] in (-pi, pi]."""
+    """Wrap an angle [rad] to (-pi, pi]."""
     if not math.isfinite(angle):
         return math.nan
     found = math.remainder(angle, 2 * math.pi)
@@ -109,7 +109,7 @@ VECTOR_OPERATORS: Final = {
 
 
 def _numeric(usage: str, count: int, function: Callable[..., float]) -> Function:
-    """A function of so many numbers."""
+    """Return a function that takes a fixed number of numbers."""
 
     def make(binder: ExpressionBinder, call: Call) -> BoundNode:
         parts = tuple(binder.number(node) for node in call.arguments)
@@ -152,14 +152,14 @@ NUMBER_FUNCTIONS: Final[dict[str, Function]] = {
 }
 
 
-# ---------------------------------------------------------------------- of several values
+# ---------------------------------------------------------------------- functions of several values
 
 
 Reduction = Callable[[Any], float]
 
 
 def cached_by_message(part: BoundNode, get: ValueGetter) -> ValueGetter:
-    """What gives a value that comes from one topic's newest message, worked out once a message."""
+    """Wrap a getter so that its value is computed once for each new message of a topic."""
     feed = part.feed
     if feed is None:
         return get
@@ -177,12 +177,12 @@ def cached_by_message(part: BoundNode, get: ValueGetter) -> ValueGetter:
 
 
 def _bind_reduction(usage: str, function: Reduction, *, of_none: float | None) -> Function:
-    """A function of several numbers, or of a list of them.
+    """Return a function that takes several numbers or one list.
 
     Args:
-        usage: how it is written.
-        function: of an array that is not empty.
-        of_none: its value where there are no numbers; None where it has none then.
+        usage: Call syntax, for messages.
+        function: Reduction of a non-empty array to a number.
+        of_none: Value for an empty list; None if it is undefined.
     """
 
     def make(binder: ExpressionBinder, call: Call) -> BoundNode:
@@ -203,7 +203,7 @@ def _bind_reduction(usage: str, function: Reduction, *, of_none: float | None) -
             if len(found):
                 return float(function(found))
             if of_none is None:
-                raise UndecidedValue(f"{source} is of no numbers at all")
+                raise UndecidedValue(f"{source} has an empty list")
             return of_none
 
         return BoundNode(call, NUMBER, cached_by_message(parts[0], value), parts, parts[0].feed)
@@ -219,7 +219,7 @@ def _len(binder: ExpressionBinder, call: Call) -> BoundNode:
     part = binder.part(call.arguments[0])
     get = part.get
     if part.kind.item is None:
-        text = f"{part.node.span.text(binder.source)} is {part.kind}, and len counts the items of a list"
+        text = f"{part.node.span.text(binder.source)} is {part.kind}, but len needs a list"
         raise binder.fault("SK-COND-004", text, part.node.span)
     return BoundNode(call, NUMBER, lambda: float(len(get())), (part,), part.feed)
 
@@ -239,7 +239,7 @@ def _isfinite(binder: ExpressionBinder, call: Call) -> BoundNode:
 
 
 def _bind_any_or_all(usage: str, decisive: bool) -> Function:
-    """`any` (decided by a true one) and `all` (decided by a false one), of arguments or of a list."""
+    """Return `any` (decisive value True) or `all` (decisive value False), for several arguments or one list."""
 
     def make(binder: ExpressionBinder, call: Call) -> BoundNode:
         first = binder.part(call.arguments[0])

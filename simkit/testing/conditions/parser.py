@@ -1,6 +1,6 @@
-"""Parse expressions: a tokenizer and a Pratt parser by binding powers.
+"""Parser of expressions: a tokenizer and a Pratt parser with binding powers.
 
-No part of Python reads or runs an expression.
+Expressions are never parsed or run as Python code.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from simkit.testing.conditions import syntax_tree as syntax
 TokenKind = Literal["number", "name", "text", "sign", "end"]
 
 MAX_LENGTH: Final = 2000
-"""Characters of an expression."""
+"""Maximum length of an expression in characters."""
 
 _TOKEN = re.compile(
     r"(?P<space>\s+)"
@@ -33,7 +33,7 @@ _UNITS = {"s", "ms", "m", "mm", "cm", "km", "deg", "rad", "Hz", "hz", "kg", "N",
 
 @dataclass(frozen=True, slots=True)
 class Token:
-    """One word with its place."""
+    """Token with its position."""
 
     kind: TokenKind
     text: str
@@ -41,15 +41,15 @@ class Token:
 
 
 def tokenize(source: str) -> list[Token]:
-    """The words of a text, with an end behind them.
+    """Split a text into tokens and append an end token.
 
     Raises:
-        InputError: SK-COND-001 it has a sign that means nothing; SK-COND-008 it is too long.
+        InputError: SK-COND-001 the text has an invalid character; SK-COND-008 the text is too long.
     """
     if len(source) > MAX_LENGTH:
-        message = f"an expression of {len(source)} characters; allowed are {MAX_LENGTH}"
+        message = f"the expression has {len(source)} characters; the limit is {MAX_LENGTH}"
         span = syntax.Span(MAX_LENGTH, MAX_LENGTH + 1)
-        raise syntax.expression_error("SK-COND-008", message, source, span, "make several checks of it")
+        raise syntax.expression_error("SK-COND-008", message, source, span, "split it into several checks")
     found: list[Token] = []
     at = 0
     while at < len(source):
@@ -66,15 +66,15 @@ def tokenize(source: str) -> list[Token]:
 
 
 def _check_separation(source: str, before: Token | None, token: Token) -> None:
-    """A number and a name that touch are a unit, or a name that begins with a digit."""
+    """Raise an error if a name follows a number without a space, as in `3m` or `2nd`."""
     if before is None or before.kind != "number" or token.kind != "name" or before.span.end != token.span.start:
         return
     span = before.span.to(token.span)
     what, hint = "is neither a number nor a name", ""
     if token.text in _UNITS:
-        what, hint = "has a unit", f"numbers are in SI units (m, s, rad) and stand alone: {before.text}"
+        what, hint = "has a unit", f"numbers are in SI units (m, s, rad) and have no unit: write {before.text}"
         if token.text == "deg":
-            hint = f"angles are in rad: rad({before.text}) makes some of degrees"
+            hint = f"angles are in rad: write rad({before.text}) to convert degrees"
     raise _syntax_error(f"{span.text(source)!r} {what}", source, span, hint)
 
 
@@ -85,17 +85,17 @@ def _syntax_error(message: str, source: str, span: syntax.Span, hint: str = "") 
 def _invalid_character(source: str, at: int) -> Exception:
     sign = source[at]
     if sign in "'\"":
-        return _syntax_error("a text that has no end", source, syntax.Span(at, len(source)), f"close it with {sign}")
+        return _syntax_error("missing closing quote", source, syntax.Span(at, len(source)), f"close it with {sign}")
     pair = source[at : at + 2]
     if pair in _SUGGESTED_OPERATORS:
         span = syntax.Span(at, at + 2)
-        return _syntax_error(f"{pair} means nothing here", source, span, _SUGGESTED_OPERATORS[pair])
-    what = f"{sign!r} means nothing here" if sign.isprintable() else f"a sign that cannot be read (U+{ord(sign):04X})"
+        return _syntax_error(f"invalid operator {pair}", source, span, _SUGGESTED_OPERATORS[pair])
+    what = f"invalid character {sign!r}" if sign.isprintable() else f"invalid character U+{ord(sign):04X}"
     return _syntax_error(what, source, syntax.Span(at, at + 1), _SUGGESTED_OPERATORS.get(sign, ""))
 
 
 MAX_DEPTH: Final = 100
-"""Levels of an expression within each other."""
+"""Maximum number of nested levels of an expression."""
 
 _OR, _AND, _NOT, _COMPARE, _SUM, _PRODUCT, _SIGN, _POWER, _POSTFIX = range(1, 10)
 _COMPARISONS = ("<", "<=", ">", ">=", "==", "!=")
@@ -113,16 +113,17 @@ _VALUE_KINDS = ("name", "number", "text")
 
 
 def parse(source: str) -> syntax.Expression:
-    """Reads an expression; what it names is looked up when it is bound to a world.
+    """Parse an expression; names are resolved later, when the expression is bound to a world.
 
     Raises:
-        InputError: SK-COND-001 it cannot be read; SK-COND-008 it is too long or too deep. The message shows the place.
+        InputError: SK-COND-001 a syntax error; SK-COND-008 the expression is too long or too deep. The message shows
+            the place.
     """
     return syntax.Expression(source, _Parser(source).whole())
 
 
 class _Parser:
-    """Reads tokens; a text in quotes keeps them in its token, so that the text of a sign or a word is no other's."""
+    """Parser of one expression; tokens of quoted texts keep their quotes, so they cannot equal operators or names."""
 
     def __init__(self, source: str) -> None:
         self._source = source
@@ -141,7 +142,7 @@ class _Parser:
 
     def whole(self) -> syntax.Node:
         if len(self._tokens) == 1:
-            raise _syntax_error("an expression is empty", self._source, self._next.span)
+            raise _syntax_error("the expression is empty", self._source, self._next.span)
         root = self._expression(0)
         if self._next.kind != "end":
             raise self._unexpected(self._next)
@@ -150,7 +151,7 @@ class _Parser:
     # ------------------------------------------------------------------ by binding power
 
     def _expression(self, least: int) -> syntax.Node:
-        """What binds more tightly than `least`."""
+        """Parse operators that bind more tightly than `least`."""
         self._open += 1
         if self._open > MAX_DEPTH:
             raise self._too_deep(self._next.span)
@@ -179,7 +180,7 @@ class _Parser:
         raise self._unexpected(token)
 
     def _bracketed(self, opened: Token) -> syntax.Node:
-        """What stands in brackets: one part of an expression, or the numbers of a list with commas between."""
+        """Parse the content of brackets: one expression, or a list of numbers separated by commas."""
         items = [self._expression(0)]
         while self._next.text == ",":
             self._take()
@@ -205,7 +206,7 @@ class _Parser:
             return syntax.Index(left.span.to(end.span), self._level(left, index), left, index)
         if token.text == "(":
             return self._call(left, token)
-        # a power binds to the right, and its exponent may have a sign
+        # power binds to the right, and its exponent may have a sign
         right = self._expression(_SIGN - 1 if token.text == "**" else binding)
         span = left.span.to(right.span)
         return syntax.Arithmetic(span, self._level(left, right), token.text, token.span, left, right)
@@ -213,23 +214,23 @@ class _Parser:
     def _chain(
         self, left: syntax.Node, words: Sequence[str], binding: int
     ) -> tuple[tuple[str, ...], tuple[syntax.Node, ...]]:
-        """Operators of one kind that follow each other, and their operands, of which the first is read already."""
-        taken, operands = [], [left]
+        """Parse a chain of operators of one kind after a first operand that is already parsed."""
+        operators, operands = [], [left]
         while self._next.text in words:
-            taken.append(self._take().text)
+            operators.append(self._take().text)
             operands.append(self._expression(binding))
-        return tuple(taken), tuple(operands)
+        return tuple(operators), tuple(operands)
 
     def _attribute(self, left: syntax.Node) -> syntax.Node:
         name = self._take()
         if name.kind != "name":
-            raise _syntax_error("the name of a part is missing after the dot", self._source, name.span)
+            raise _syntax_error("missing attribute name after the dot", self._source, name.span)
         return syntax.Attribute(left.span.to(name.span), self._level(left), left, name.text, name.span)
 
     def _call(self, left: syntax.Node, bracket: Token) -> syntax.Node:
         if not isinstance(left, syntax.Name):
-            hint = "parts of values are read: pose('tb3').x"
-            raise _syntax_error("only functions are called, by their name", self._source, left.span, hint)
+            hint = "attributes are written without brackets: pose('tb3').x"
+            raise _syntax_error("only functions can be called", self._source, left.span, hint)
         arguments: list[syntax.Node] = []
         while self._next.text != ")":
             arguments.append(self._expression(0))
@@ -239,37 +240,37 @@ class _Parser:
         end = self._expect(")", bracket)
         return syntax.Call(left.span.to(end.span), self._level(*arguments), left.name, left.span, tuple(arguments))
 
-    # ------------------------------------------------------------------ what is wrong
+    # ------------------------------------------------------------------ errors
 
     def _expect(self, sign: str, opened: Token) -> Token:
         token = self._next
         if token.text == sign:
             return self._take()
         if token.kind == "end":
-            raise _syntax_error(f"{sign} is missing: this {opened.text} is never closed", self._source, opened.span)
+            raise _syntax_error(f"missing {sign}: this {opened.text} is not closed", self._source, opened.span)
         raise self._unexpected(token, sign)
 
-    def _unexpected(self, token: Token, wanted: str = "") -> Exception:
+    def _unexpected(self, token: Token, expected: str = "") -> Exception:
         before = self._tokens[self._tokens.index(token) - 1] if token is not self._tokens[0] else None
         hint = ""
         if token.kind == "end":
-            message = f"it ends after {before.text!r}, where a value is missing" if before else "it is empty"
+            message = f"missing value after {before.text!r}" if before else "the expression is empty"
         elif token.text in _PYTHON_KEYWORDS:
-            message, hint = f"{token.text!r} is no word of this language", "this is no Python: see docs/conditions.md"
+            message, hint = f"{token.text!r} is not part of this language", "for the syntax, see docs/conditions.md"
         elif token.kind in _VALUE_KINDS and before and before.kind in _VALUE_KINDS:
-            message = f"{token.text} stands right after {before.text}"
-            hint = "join conditions by: and, or; values by + - * / %"
+            message = f"missing operator between {before.text} and {token.text}"
+            hint = "join conditions with and, or; values with + - * / %"
             if before.kind == "name" and before.text not in ("and", "or", "not"):
-                hint = f"a function's arguments stand in brackets: {before.text}({token.text})"
+                hint = f"write the arguments of a function in brackets: {before.text}({token.text})"
         else:
-            message = f"{token.text!r} is not expected here"
-        if wanted and token.kind != "end":
-            message += f"; {wanted} is missing before it"
+            message = f"unexpected {token.text!r}"
+        if expected and token.kind != "end":
+            message += f"; missing {expected} before it"
         return _syntax_error(message, self._source, token.span, hint)
 
     def _too_deep(self, span: syntax.Span) -> Exception:
-        message = f"an expression of more than {MAX_DEPTH} levels within each other"
-        return syntax.expression_error("SK-COND-008", message, self._source, span, "make several checks of it")
+        message = f"the expression has more than {MAX_DEPTH} nested levels"
+        return syntax.expression_error("SK-COND-008", message, self._source, span, "split it into several checks")
 
     def _level(self, *below: syntax.Node) -> int:
         depth = 1 + max((node.depth for node in below), default=0)

@@ -8,33 +8,33 @@ from typing import Final
 from simkit.errors import InputError
 
 REMOVED_CODE: Final = "SK-NAME-002"
-"""What handles of things that were removed raise."""
+"""Diagnostic code of an error from the handle of a removed entity."""
 
-_MAX_COLUMNS = 100  # characters of an expression that are shown around a place
+_MAX_COLUMNS = 100  # maximum number of characters shown around an error
 
 
 @dataclass(frozen=True, slots=True)
 class Span:
-    """A part of an expression's text: from `start` up to, not including, `end`."""
+    """Part of an expression's text from `start` up to, but not including, `end`."""
 
     start: int
     end: int
 
     def text(self, source: str) -> str:
-        """What stands there."""
+        """Return the text of this part."""
         return source[self.start : self.end]
 
     def to(self, last: Span) -> Span:
-        """Return the part from the start of this one to the end of a later one."""
+        """Return the span from the start of this span to the end of a later one."""
         return Span(self.start, last.end)
 
 
 class UndecidedValue(Exception):
-    """A value that is not known now: no message has come yet, an index is out of range, a model was removed."""
+    """Value that is unknown now: no message was received, an index is out of range, or a model was removed."""
 
 
 def expression_error(code: str, message: str, source: str, span: Span, hint: str = "") -> InputError:
-    """An error with the expression, a caret under the place, and what helps."""
+    """Return an error that shows the expression, carets under the error, and a hint."""
     text = f"{code} {message}\n    {underlined_expression(source, span)}"
     if hint:
         text += f"\n    help: {hint}"
@@ -42,7 +42,7 @@ def expression_error(code: str, message: str, source: str, span: Span, hint: str
 
 
 def underlined_expression(source: str, span: Span) -> str:
-    """The expression, and below it carets under a place; of a long one the part around it."""
+    """Return the expression with carets under a span; shorten a long expression around the span."""
     plain = "".join(c if c.isprintable() else " " for c in source)
     first = 0
     if len(plain) > _MAX_COLUMNS:
@@ -55,7 +55,7 @@ def underlined_expression(source: str, span: Span) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Node:
-    """A part of an expression, at its place, with so many levels below it and itself."""
+    """Node of the syntax tree with its span and the number of levels of its subtree."""
 
     span: Span
     depth: int
@@ -63,31 +63,35 @@ class Node:
 
 @dataclass(frozen=True, slots=True)
 class Number(Node):
+    """Literal number."""
+
     value: float
 
 
 @dataclass(frozen=True, slots=True)
 class Text(Node):
+    """Literal text in quotes."""
+
     value: str
 
 
 @dataclass(frozen=True, slots=True)
 class Numbers(Node):
-    """`(a, b, c)`: a point, a vector, or another list of numbers."""
+    """List of numbers `(a, b, c)`, such as a point or a vector."""
 
     items: tuple[Node, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Name(Node):
-    """A word that stands for a value: `time`, `tick`, `pi`, `true`."""
+    """Name of a value: `time`, `tick`, `pi`, `true`."""
 
     name: str
 
 
 @dataclass(frozen=True, slots=True)
 class Sign(Node):
-    """`-a` or `+a`."""
+    """Signed operand: `-a` or `+a`."""
 
     sign: str
     operand: Node
@@ -95,12 +99,14 @@ class Sign(Node):
 
 @dataclass(frozen=True, slots=True)
 class Not(Node):
+    """Negated operand: `not a`."""
+
     operand: Node
 
 
 @dataclass(frozen=True, slots=True)
 class Arithmetic(Node):
-    """Two operands and one of + - * / % **."""
+    """Arithmetic operation: two operands and one of + - * / % **."""
 
     sign: str
     sign_span: Span
@@ -110,7 +116,7 @@ class Arithmetic(Node):
 
 @dataclass(frozen=True, slots=True)
 class Comparison(Node):
-    """One operand more than signs: `0 < a < 1` holds where both do."""
+    """Comparison with one operand more than operators; the chain `0 < a < 1` is true if both comparisons are."""
 
     signs: tuple[str, ...]
     operands: tuple[Node, ...]
@@ -118,7 +124,7 @@ class Comparison(Node):
 
 @dataclass(frozen=True, slots=True)
 class Junction(Node):
-    """Two or more operands joined by `and`, or by `or`."""
+    """Logical operation: two or more operands joined by `and`, or by `or`."""
 
     word: str
     operands: tuple[Node, ...]
@@ -126,7 +132,7 @@ class Junction(Node):
 
 @dataclass(frozen=True, slots=True)
 class Attribute(Node):
-    """`of.name`."""
+    """Attribute of a value: `of.name`."""
 
     of: Node
     name: str
@@ -135,7 +141,7 @@ class Attribute(Node):
 
 @dataclass(frozen=True, slots=True)
 class Index(Node):
-    """`of[index]`."""
+    """Item of a list: `of[index]`."""
 
     of: Node
     index: Node
@@ -143,7 +149,7 @@ class Index(Node):
 
 @dataclass(frozen=True, slots=True)
 class Call(Node):
-    """`name(arguments)`."""
+    """Function call: `name(arguments)`."""
 
     name: str
     name_span: Span
@@ -152,7 +158,7 @@ class Call(Node):
 
 @dataclass(frozen=True, slots=True)
 class Expression:
-    """A text that was read."""
+    """Parsed expression."""
 
     source: str
     root: Node

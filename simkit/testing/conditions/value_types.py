@@ -1,4 +1,4 @@
-"""What kind of value a part of an expression has: known before the first step."""
+"""Types of values in expressions; the type of every part is known before the first step."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ _NUMBERS = ("int", "uint", "float")
 
 @dataclass(frozen=True)
 class ValueType:
-    """A kind of value.
+    """Type of a value.
 
     Attributes:
-        name: as messages call it.
-        message: the ROS type of a message.
-        item: the kind of a list's items.
-        length: how many items a list always has; None where that differs.
-        has_axes: whether a list of three numbers is a vector with x, y and z.
+        name: Name for messages.
+        message: ROS type of a message; empty for other values.
+        item: Type of a list's items; None for other values.
+        length: Fixed number of items; None if it varies.
+        has_axes: True if a list of three numbers is a vector with x, y and z.
     """
 
     name: str
@@ -32,7 +32,7 @@ class ValueType:
 
     @property
     def is_numbers(self) -> bool:
-        """Whether it is a list of numbers, a vector among them."""
+        """True for a list of numbers, including vectors."""
         return self.item is NUMBER
 
     def __str__(self) -> str:
@@ -57,28 +57,28 @@ SCAN: Final = "sensor_msgs/msg/LaserScan"
 
 
 def message_type(type_name: str) -> ValueType:
-    """The kind of a message."""
+    """Return the type of a ROS message."""
     return ValueType("a message", message=type_name)
 
 
 def is_vector_like(kind: ValueType) -> bool:
-    """Whether it is a list of numbers, or a message that means a vector."""
+    """Check whether a type is a list of numbers, or a message that represents a vector."""
     return kind.is_numbers or kind.message in _AS_VECTOR
 
 
 def is_pose_like(kind: ValueType) -> bool:
-    """Whether it is a pose, or a message that is one."""
+    """Check whether a type is a pose, or a message that represents one."""
     return kind is POSE or kind.message in _AS_POSE
 
 
 def is_orientation_like(kind: ValueType) -> bool:
-    """Whether it is an orientation, or a message that is one."""
+    """Check whether a type is an orientation, or a message that represents one."""
     return kind is ORIENTATION or kind.message in _AS_ORIENTATION
 
 
 @cache
 def fields_of(type_name: str) -> dict[str, tuple[str, ValueType]]:
-    """Field of a message type -> the attribute that holds it, and its kind."""
+    """Return the fields of a message type: name -> attribute and type."""
 
     name = msgs.full_name(type_name)
     found: dict[str, tuple[str, ValueType]] = {}

@@ -29,15 +29,15 @@ _ENTITY_ARGUMENT = "the name of a model or a link"
 
 
 def entity_argument(binder: ExpressionBinder, call: Call, place: int) -> Entity:
-    """A model or a link that an argument names."""
+    """Return the model or link that an argument names."""
     node = quoted_argument(binder, call, place, _ENTITY_ARGUMENT)
     return binder.view.thing(node.value, binder.source, node.span)
 
 
-def _seen_from(
+def _bind_relative(
     kind: kinds.ValueType, in_world: Callable[[Entity], object], seen: Callable[[Entity, Entity], object]
 ) -> BindFunction:
-    """A function of a model or a link: its value in the world, or as it is seen from a second one."""
+    """Return a function of a model or link: its value in the world, or relative to a second one."""
 
     def make(binder: ExpressionBinder, call: Call) -> BoundNode:
         one = entity_argument(binder, call, 0)
@@ -58,16 +58,16 @@ def _twist_in(frame: Entity, one: Entity) -> tuple[Vector, Vector]:
     return _in_axes(frame, linear), _in_axes(frame, angular)
 
 
-_pose = _seen_from(kinds.POSE, lambda one: one.pose(), lambda frame, one: frame.pose().inverse() @ one.pose())
-_twist = _seen_from(kinds.TWIST, lambda one: one.twist(), _twist_in)
-_velocity = _seen_from(kinds.VECTOR, lambda one: one.twist()[0], lambda frame, one: _in_axes(frame, one.twist()[0]))
+_pose = _bind_relative(kinds.POSE, lambda one: one.pose(), lambda frame, one: frame.pose().inverse() @ one.pose())
+_twist = _bind_relative(kinds.TWIST, lambda one: one.twist(), _twist_in)
+_velocity = _bind_relative(kinds.VECTOR, lambda one: one.twist()[0], lambda frame, one: _in_axes(frame, one.twist()[0]))
 
 
 def _joint(binder: ExpressionBinder, call: Call) -> BoundNode:
     node = quoted_argument(binder, call, 0, "the name of a joint")
     joint = binder.view.joint(node.value, binder.source, node.span)
     entities, name = binder.view.sim.contents.handles, joint.scoped
-    # another may come in the place of one that was removed
+    # after a removal, a new joint may have the same name
     return BoundNode(call, kinds.JOINT, lambda: entities.tables["joint"].get(name, joint))
 
 
@@ -92,7 +92,7 @@ def _distance(binder: ExpressionBinder, call: Call) -> BoundNode:
     def value() -> float:
         a, b = first(), second()
         if len(a) != len(b):
-            raise UndecidedValue(f"{source} has lists of {len(a)} and of {len(b)} numbers")
+            raise UndecidedValue(f"{source} compares lists of {len(a)} and {len(b)} numbers")
         gap = a - b
         return math.sqrt(float(gap.dot(gap)))
 
@@ -100,17 +100,17 @@ def _distance(binder: ExpressionBinder, call: Call) -> BoundNode:
 
 
 def _point_argument(binder: ExpressionBinder, node: Node, part: BoundNode) -> ValueGetter:
-    """What gives the point that an argument means."""
+    """Return a getter of the point that an argument describes."""
     if part.kind is kinds.TEXT and isinstance(node, Text):
-        named = binder.view.thing(node.value, binder.source, node.span)
-        return lambda: named.pose().position
+        entity = binder.view.thing(node.value, binder.source, node.span)
+        return lambda: entity.pose().position
     if kinds.is_pose_like(part.kind):
         pose = as_pose(part)
         return lambda: pose().position
     if part.kind is kinds.NUMBER or not kinds.is_vector_like(part.kind):
         text = node.span.text(binder.source)
-        hint = "distance takes poses, vectors, and names of models and links in quotes"
-        raise binder.fault("SK-COND-004", f"{text} is {part.kind}, which is no place", node.span, hint)
+        hint = "distance accepts poses, vectors, and quoted names of models and links"
+        raise binder.fault("SK-COND-004", f"{text} is {part.kind}, which is not a point", node.span, hint)
     return as_vector(part)
 
 
@@ -132,7 +132,7 @@ def _topic(binder: ExpressionBinder, call: Call) -> BoundNode:
 def _scan(binder: ExpressionBinder, call: Call) -> BoundNode:
     _, type_name, node = _topic_argument(binder, call)
     if type_name != kinds.SCAN:
-        text = f"{node.value!r} carries {type_name}, and scan reads {kinds.SCAN}"
+        text = f"{node.value!r} has type {type_name}, but scan reads {kinds.SCAN}"
         raise binder.fault("SK-COND-004", text, node.span, f"topic('{node.value}') reads any message")
     return _topic(binder, call)
 
@@ -149,7 +149,7 @@ def _rate(binder: ExpressionBinder, call: Call) -> BoundNode:
     def value() -> float:
         rate = tally.rate()
         if rate is None:
-            raise UndecidedValue(f"fewer than two messages have come on {topic}")
+            raise UndecidedValue(f"fewer than two messages received on {topic}")
         return rate
 
     return BoundNode(call, kinds.NUMBER, value)
@@ -161,7 +161,7 @@ def _age(binder: ExpressionBinder, call: Call) -> BoundNode:
 
     def value() -> float:
         if not tally.count:
-            raise UndecidedValue(f"no message has come on {topic}")
+            raise UndecidedValue(f"no message received on {topic}")
         return (sim.time_ns - tally.last) / 1e9
 
     return BoundNode(call, kinds.NUMBER, value)
@@ -176,11 +176,11 @@ def _contact_query(binder: ExpressionBinder, call: Call) -> ContactQuery:
 def _contact(binder: ExpressionBinder, call: Call) -> BoundNode:
     touching = _contact_query(binder, call)
 
-    def tell() -> str:
+    def contact_details() -> str:
         found = touching.describe()
         return f" ({found})" if found else ""
 
-    return BoundNode(call, kinds.TRUTH, lambda: bool(touching.now()), tell=tell)
+    return BoundNode(call, kinds.TRUTH, lambda: bool(touching.now()), tell=contact_details)
 
 
 def _contacts(binder: ExpressionBinder, call: Call) -> BoundNode:

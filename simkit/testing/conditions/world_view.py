@@ -1,4 +1,4 @@
-"""A world as expressions read it: models, links and joints by name, and the messages of topics."""
+"""View of a world for expressions: models, links and joints by name, and the messages of topics."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from simkit.testing.conditions.syntax_tree import REMOVED_CODE, Span, UndecidedV
 
 
 class _TopicListener(ABC):
-    """Listens to a topic between `open` and `close`.
+    """Listener to a topic between `open` and `close`.
 
     Args:
-        sim: the simulation.
-        topic: absolute.
+        sim: Simulation.
+        topic: Absolute name of the topic.
     """
 
     def __init__(self, sim: Simulation, topic: str) -> None:
@@ -31,30 +31,30 @@ class _TopicListener(ABC):
 
     @abstractmethod
     def _subscribe(self) -> Subscription:
-        """Begin to listen."""
+        """Subscribe to the topic."""
 
     def open(self) -> None:
-        """Listens from now on."""
+        """Start listening."""
         if self._subscription is None:
             self._subscription = self._subscribe()
 
     def close(self) -> None:
-        """Listens no more; what came so far stays."""
+        """Stop listening; received data remain."""
         if self._subscription is not None:
             self._subscription.close()
 
 
 class LatestMessage(_TopicListener):
-    """The newest message of a topic; it is made only when somebody looks."""
+    """Newest message of a topic; lazy messages are made only on access."""
 
     def _subscribe(self) -> Subscription:
         return self._sim.communication.bus.subscribe(self.topic, keep=1)
 
     def latest(self) -> object:
-        """The newest message.
+        """Return the newest message.
 
         Raises:
-            Undecided: none has come.
+            UndecidedValue: No message was received.
         """
         message = self._subscription.latest if self._subscription is not None else None
         if message is None:
@@ -63,11 +63,11 @@ class LatestMessage(_TopicListener):
 
 
 class MessageCounter(_TopicListener):
-    """How many messages come on a topic, and when; the messages are not looked at.
+    """Number and times of messages on a topic; their content is not read.
 
     Attributes:
-        count: messages since it was opened, or since time went back.
-        first, last: simulated times [ns] of the first and the newest of them.
+        count: Messages received since opening or since the last reset of the simulation.
+        first, last: Simulated times of the first and the newest message [ns].
     """
 
     count = first = last = 0
@@ -76,7 +76,7 @@ class MessageCounter(_TopicListener):
         return self._sim.communication.bus.tap(self.topic, self._take, takes_later=True)
 
     def rate(self) -> float | None:
-        """Messages per simulated second from the first to the newest [Hz]; None before two at different times."""
+        """Return the rate from the first to the newest message [Hz]; None before two messages at different times."""
         if self.count < 2 or self.last <= self.first:
             return None
         return (self.count - 1) * 1e9 / (self.last - self.first)
@@ -91,22 +91,23 @@ class MessageCounter(_TopicListener):
         self.count += 1
 
 
-_MAX_LISTED = 12  # names that are listed where none is near
+_MAX_LISTED = 12  # names listed if none is similar
 
 
 class AbsentTopic(Exception):
-    """A topic that nobody publishes yet."""
+    """Topic without a publisher."""
 
     def __init__(self, topic: str, hint: str) -> None:
-        super().__init__(f"nobody publishes on {topic}" + (f"; {hint}" if hint else ""))
+        super().__init__(f"no publisher on {topic}" + (f"; {hint}" if hint else ""))
         self.topic = topic
 
 
 class Entity:
-    """A model or a link: the one that has its name now, also where another came in the place of one removed.
+    """Model or link by name; after a removal, a new entity of the same name takes its place.
 
     Args:
-        handle: of the simulation.
+        sim: Simulation.
+        handle: Handle of the model or link.
     """
 
     def __init__(self, sim: Simulation, handle: Any) -> None:
@@ -115,20 +116,20 @@ class Entity:
         self._kind = "link" if hasattr(handle, "linear_velocity") else "model"
 
     def pose(self) -> Pose:
-        """In the world."""
+        """Return the pose in the world frame."""
         pose: Pose
         try:
             pose = self.handle.pose
         except InputError as error:
-            pose = self._again(error).pose
+            pose = self._find_replacement(error).pose
         return pose
 
     def twist(self) -> tuple[Vector, Vector]:
-        """Velocity of its origin [m/s] and of turning [rad/s], world axes."""
+        """Return the linear velocity of the origin [m/s] and the angular velocity [rad/s] in world axes."""
         try:
             return self._twist(self.handle)
         except InputError as error:
-            return self._twist(self._again(error))
+            return self._twist(self._find_replacement(error))
 
     def _twist(self, handle: Any) -> tuple[Vector, Vector]:
         if self._kind == "link":
@@ -140,16 +141,16 @@ class Entity:
             return np.zeros(3), np.zeros(3)
         both = carrier._velocity()
         angular = both[:3]
-        # of the model's origin, which the canonical link carries along
+        # velocity of the model's origin, which moves rigidly with the canonical link
         x, y, z = (origin - carrier.pose.position).tolist()
         a, b, c = angular.tolist()
         return both[3:] + np.array((b * z - c * y, c * x - a * z, a * y - b * x)), angular
 
-    def _again(self, error: InputError) -> Any:
-        """What has the name now.
+    def _find_replacement(self, error: InputError) -> Any:
+        """Return the entity that has the name now.
 
         Raises:
-            Undecided: nothing.
+            UndecidedValue: No entity has the name.
         """
         if error.code != REMOVED_CODE:
             raise error
@@ -161,11 +162,11 @@ class Entity:
 
 
 class WorldView:
-    """What expressions read of a simulation.
+    """View of a simulation for expressions.
 
     Args:
-        sim: the simulation.
-        absent: what a topic is that nobody publishes yet: an "error", or one to wait for ("wait").
+        sim: Simulation.
+        absent: Behaviour for a topic without a publisher: "error", or "wait" for one.
     """
 
     def __init__(self, sim: Simulation, absent: Literal["error", "wait"] = "error") -> None:
@@ -177,20 +178,20 @@ class WorldView:
     # ------------------------------------------------------------------ names
 
     def thing(self, name: str, source: str, span: Span) -> Entity:
-        """A model or a link by its scoped name, or by its own where only one has it.
+        """Return a model or link by its scoped name, or by its short name if that is unique.
 
         Raises:
-            InputError: SK-COND-005 there is none, or several; names the closest.
+            InputError: SK-COND-005 no entity or several entities have the name; the message suggests the closest.
         """
         return Entity(self.sim, self._find(("model", "link"), name, source, span))
 
     def joint(self, name: str, source: str, span: Span) -> Joint:
-        """A joint, likewise."""
+        """Return a joint by its scoped name, or by its short name if that is unique."""
         found: Joint = self._find(("joint",), name, source, span)
         return found
 
     def scoped(self, name: str, source: str, span: Span) -> str:
-        """The scoped name of a model, a link, or a collision."""
+        """Return the scoped name of a model, a link or a collision."""
 
         if name in collision_table(self.sim.engine.structure.compiled).names:
             return name
@@ -208,21 +209,21 @@ class WorldView:
             return everything[own[0]]
         what = " or ".join(kinds)
         if own:
-            message = f"{len(own)} of the world are called {name!r}: {_list_names(own)}"
-            raise expression_error("SK-COND-005", message, source, span, "write the whole name")
+            message = f"{len(own)} entities have the name {name!r}: {_list_names(own)}"
+            raise expression_error("SK-COND-005", message, source, span, "write the scoped name")
         short = [key.rpartition("::")[2] for key in everything]
         near = did_you_mean(name, [*everything, *short])
         message = f"the world has no {what} {name!r}"
-        raise expression_error("SK-COND-005", message, source, span, near or _require_present(everything))
+        raise expression_error("SK-COND-005", message, source, span, near or _available_text(everything))
 
     # ------------------------------------------------------------------ topics
 
     def topic(self, name: str, source: str, span: Span) -> tuple[str, str]:
-        """A topic with its type.
+        """Return the absolute name and the type of a topic.
 
         Raises:
-            InputError: SK-COND-006 there is no such topic; names the closest.
-            AbsentTopic: there is none yet, and it is waited for.
+            InputError: SK-COND-006 the topic does not exist; the message suggests the closest.
+            AbsentTopic: The topic does not exist yet, and the view waits for it.
         """
         topic = absolute_name(name)
         topics = self.sim.communication.bus.all_topics()
@@ -230,33 +231,33 @@ class WorldView:
             return topic, topics[topic]
         near = did_you_mean(topic, topics)
         if self.absent == "wait":
-            self.feed(topic), self.tally(topic)  # whatever it will be asked for, nothing is missed
+            self.feed(topic), self.tally(topic)  # listen from now on, so that no message is missed
             raise AbsentTopic(topic, near)
         message = f"there is no topic {topic!r}"
-        raise expression_error("SK-COND-006", message, source, span, near or _require_present(topics))
+        raise expression_error("SK-COND-006", message, source, span, near or _available_text(topics))
 
     def feed(self, topic: str) -> LatestMessage:
-        """The newest message of a topic."""
+        """Return the newest message of a topic."""
         feed = self._feeds.setdefault(topic, LatestMessage(self.sim, topic))
         if self._is_open:
             feed.open()
         return feed
 
     def tally(self, topic: str) -> MessageCounter:
-        """The count of a topic's messages."""
+        """Return the message counter of a topic."""
         tally = self._tallies.setdefault(topic, MessageCounter(self.sim, topic))
         if self._is_open:
             tally.open()
         return tally
 
     def open(self) -> None:
-        """Begins to listen."""
+        """Start listening to all topics."""
         self._is_open = True
         for listener in self._listeners():
             listener.open()
 
     def close(self) -> None:
-        """Listens no more."""
+        """Stop listening."""
         for listener in self._listeners():
             listener.close()
 
@@ -270,6 +271,6 @@ def _list_names(names: Iterable[str]) -> str:
     return ", ".join(names[:_MAX_LISTED]) + rest
 
 
-def _require_present(names: Iterable[str]) -> str:
+def _available_text(names: Iterable[str]) -> str:
     listed = _list_names(names)
-    return f"there is {listed}" if listed else "there is none"
+    return f"available: {listed}" if listed else "the world has none"

@@ -1,6 +1,6 @@
-"""Golden runs: the reference run of a scenario on disk, and the check of today's run against it.
+"""Golden runs: reference runs of scenarios on disk, and the check of a new run against them.
 
-A scenario or the folder of a golden run enters; a verdict, and on request a changed golden run, leave. Files that
-earlier versions wrote are read, and the same record always gives the same bytes. Records come from
-`simkit.testing.run_record`; comparison, cause and report lie in the folders below, which never import this one.
+The input is a scenario or the folder of a golden run. The output is a verdict and, on request, an updated golden run.
+Files of earlier versions remain readable, and the same record always gives the same bytes. Records come from
+`simkit.testing.run_record`. The subfolders for comparison, cause and report never import this package.
 """

@@ -1,8 +1,8 @@
-"""Arrays and texts as few bytes: numbers rounded and predicted, split into planes of bytes, and compressed.
+"""Compact storage of arrays and texts: numbers are rounded, predicted, split into byte planes and compressed.
 
-A block is `SKGOLD` and a version, the length of a JSON text, that text, and the bytes of all arrays one after the
-other; the whole is compressed with xz. What is read may come from a stranger: sizes are bounded before anything is
-made of them, types come from a list, and nothing is executed.
+A block is `SKGOLD` with a version, the length of a JSON text, that text, and the bytes of all arrays in order. The
+block is compressed with xz. A block may come from an untrusted source. Therefore all sizes are bounded before memory is
+allocated, number types come from a fixed list, and nothing is executed.
 """
 
 from __future__ import annotations
@@ -21,38 +21,38 @@ from simkit.testing.run_record.record import Array
 _MAGIC: Final = b"SKGOLD\x01\n"
 _PRESET: Final = 6 | lzma.PRESET_EXTREME
 _FAST: Final = 3
-_LONG_BLOCK_BYTES: Final = 2 << 20  # [bytes]
-_MAX_MEMORY: Final = 64 << 20  # [bytes] that unpacking may take beside what comes out
+_LONG_BLOCK_BYTES: Final = 2 << 20
+_MAX_MEMORY: Final = 64 << 20  # [bytes] for the decompressor, without its output
 MAX_BLOCK_BYTES: Final = 1 << 30
-"""Of what a block unpacks to [bytes]; also of all its arrays together."""
+"""Maximum size of an unpacked block and of all its arrays together [bytes]."""
 _TYPES: Final = frozenset(
     ("bool", "int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64", "float32", "float64")
 )
-_ORDERS: Final = ("plain", "time", "time2", "across")  # how a number is foretold from those before it
+_ORDERS: Final = ("plain", "time", "time2", "across")  # direction in which a number is predicted
 _MAX_DIMENSIONS: Final = 5
 
 
 class PackingError(ValueError):
-    """A block is damaged, or is none."""
+    """Damaged data block, or data in another format."""
 
 
 class Packer:
-    """Gathers arrays, and gives the block with them."""
+    """Collector of arrays for one block."""
 
     def __init__(self) -> None:
         self._entries: list[dict[str, object]] = []
         self._parts: list[bytes] = []
 
     def add(self, values: Array, step: float = 0.0) -> int:
-        """Takes an array; the number it is found by.
+        """Add an array and return its number in the block.
 
         Args:
-            values: whose first axis is time.
-            step: what it is rounded to; 0 keeps it exactly.
+            values: Array whose first axis is time.
+            step: Rounding step; 0 stores the values exactly.
         """
         entry: dict[str, object] = {"dtype": str(values.dtype), "shape": list(values.shape)}
         if entry["dtype"] not in _TYPES:
-            raise TypeError(f"arrays of {values.dtype} are not kept")
+            raise TypeError(f"arrays of {values.dtype} cannot be stored")
         values = np.ascontiguousarray(values)
         if len(values) > 1 and values.size and _is_constant(values):
             entry["constant"] = True
@@ -70,20 +70,20 @@ class Packer:
         return len(self._entries) - 1
 
     def block(self, about: object) -> bytes:
-        """The compressed block.
+        """Return the compressed block.
 
         Args:
-            about: plain data that goes with the arrays.
+            about: JSON data to store with the arrays.
         """
         head = json.dumps({"arrays": self._entries, "about": about}, separators=(",", ":"), ensure_ascii=False)
         text = head.encode()
         whole = b"".join((_MAGIC, struct.pack("<I", len(text)), text, *self._parts))
-        # of large worlds most is alike, and the best takes minutes
+        # large worlds compress well with any preset, and the best preset takes minutes for them
         preset = _PRESET if len(whole) <= _LONG_BLOCK_BYTES else _FAST
         return lzma.compress(whole, format=lzma.FORMAT_XZ, check=lzma.CHECK_CRC64, preset=preset)
 
     def _whole_numbers(self, values: Array, step: float, entry: dict[str, object]) -> Array | None:
-        """The values as whole numbers of steps; None where they are kept bit by bit."""
+        """Convert the values to integer multiples of the step; None if they must be stored bit by bit."""
         if values.dtype.kind in "iub" and values.size:
             return values.astype(np.int64)
         if step <= 0 or not values.size:
@@ -100,19 +100,19 @@ class Packer:
 
 
 class Unpacker:
-    """The arrays of a block.
+    """Reader of the arrays in a block.
 
     Args:
-        data: the block.
+        data: Compressed block.
 
     Raises:
-        PackingError: it is damaged.
+        PackingError: The block is damaged.
     """
 
     def __init__(self, data: bytes) -> None:
         whole = _decompress(data)
         if not whole.startswith(_MAGIC) or len(whole) < len(_MAGIC) + 4:
-            raise PackingError("it does not begin as one does")
+            raise PackingError("the data do not start with the header of a block")
         start = len(_MAGIC) + 4
         (length,) = struct.unpack("<I", whole[len(_MAGIC) : start])
         try:
@@ -120,30 +120,30 @@ class Unpacker:
             self.about: Any = head["about"]
             self._entries = [_validate_entry(entry) for entry in head["arrays"]]
         except (ValueError, KeyError, TypeError, RecursionError, OverflowError) as error:
-            raise PackingError(f"its table cannot be read: {error}") from None
+            raise PackingError(f"the table of the block cannot be read: {error}") from None
         if sum(_size(entry) for entry in self._entries) > MAX_BLOCK_BYTES:
-            raise PackingError("its arrays are too large")
+            raise PackingError("the arrays of the block are too large")
         self._whole = memoryview(whole)
         self._starts = np.cumsum([start + length, *(entry["bytes"] for entry in self._entries)]).tolist()
         if self._starts[-1] != len(whole):
-            raise PackingError("it is cut off, or there is something behind it")
+            raise PackingError("the block is truncated or has additional data at its end")
 
     def array(self, number: object) -> Array:
-        """The array that was taken under a number.
+        """Return the array with a number that `Packer.add` returned.
 
         Raises:
-            PackingError: there is none, or it is damaged.
+            PackingError: The number is unknown, or the array is damaged.
         """
         if type(number) is not int or not 0 <= number < len(self._entries):
             raise PackingError(f"there is no array {number!r:.40}")
         entry = self._entries[number]
         data = bytes(self._whole[self._starts[number] : self._starts[number + 1]])
         try:
-            return self._of(entry, data)
+            return self._decode(entry, data)
         except (ValueError, TypeError, KeyError, OverflowError) as error:
             raise PackingError(f"array {number} is damaged: {error}") from None
 
-    def _of(self, entry: JsonObject, data: bytes) -> Array:
+    def _decode(self, entry: JsonObject, data: bytes) -> Array:
         shape, dtype = tuple(entry["shape"]), np.dtype(entry["dtype"])
         stored = (1, *shape[1:]) if entry["constant"] else shape
         kept_as = np.dtype(entry["width"]) if entry["order"] else dtype
@@ -159,7 +159,7 @@ class Unpacker:
     def _with_kinds(self, values: Array, entry: JsonObject) -> Array:
         inner = self._entries[entry["kinds"]] if 0 <= entry["kinds"] < len(self._entries) else None
         if inner is None or inner["kinds"] is not None:
-            raise PackingError("an array without what is not finite in it")
+            raise PackingError("the table of non-finite values of an array is missing")
         kinds = self.array(entry["kinds"]).reshape(values.shape)
         for kind, value in ((1, np.nan), (2, np.inf), (3, -np.inf)):
             values[kinds == kind] = value
@@ -171,25 +171,25 @@ def _decompress(data: bytes) -> bytes:
     try:
         whole = decompressor.decompress(data, max_length=MAX_BLOCK_BYTES)
     except (lzma.LZMAError, EOFError) as error:
-        raise PackingError(f"it cannot be unpacked: {error}") from None
+        raise PackingError(f"the block cannot be decompressed: {error}") from None
     if not decompressor.eof or decompressor.unused_data:
-        raise PackingError("it is cut off, too large, or there is something behind it")
+        raise PackingError("the block is truncated, too large, or has additional data at its end")
     return whole
 
 
 def _validate_entry(entry: Any) -> dict[str, object]:
-    """An entry of a block's table, of which nothing is believed."""
+    """Validate an entry of a block's table, which may come from an untrusted source."""
     shape, dtype, size = entry["shape"], entry["dtype"], entry["bytes"]
     if dtype not in _TYPES or type(shape) is not list or len(shape) > _MAX_DIMENSIONS:
-        raise ValueError("an array of an unknown type")
+        raise ValueError("an array has an unknown type")
     if not all(type(n) is int and 0 <= n <= MAX_BLOCK_BYTES for n in (*shape, size)):
-        raise ValueError("an array of no size")
+        raise ValueError("an array has an invalid size")
     order, step, kinds = entry.get("order", ""), entry.get("step", 0.0), entry.get("kinds")
     width = entry.get("width", "uint8")
     if order not in ("", *_ORDERS) or width not in ("uint8", "uint16", "uint32", "uint64"):
-        raise ValueError("an array in no known order")
+        raise ValueError("an array has an unknown order")
     if type(step) not in (int, float) or not 0 <= step < math.inf or not (kinds is None or type(kinds) is int):
-        raise ValueError("an array with an odd step")
+        raise ValueError("an array has an invalid step")
     return {
         "shape": shape, "dtype": dtype, "bytes": size, "order": order, "step": step, "kinds": kinds, "width": width,
         "constant": entry.get("constant") is True and bool(shape) and shape[0] > 0,
@@ -205,11 +205,11 @@ def _is_constant(values: Array) -> bool:
     return bool((bits == bits[:1]).all())
 
 
-# ---------------------------------------------------------------------- numbers from those before
+# ---------------------------------------------------------------------- prediction of numbers
 
 
 class _Prediction(NamedTuple):
-    """Differences from what the numbers before let expect, as bytes."""
+    """Differences between numbers and their predictions, as bytes."""
 
     order: str
     width: str
@@ -218,7 +218,7 @@ class _Prediction(NamedTuple):
 
 
 def _predict(whole: Array) -> _Prediction:
-    """The differences in the order in which they take least."""
+    """Encode the differences in the order that needs the fewest bytes."""
     best: _Prediction | None = None
     for order in _ORDERS:
         if (order == "across" and whole.ndim < 2) or (order in ("time", "time2") and len(whole) < 2):
@@ -233,7 +233,7 @@ def _predict(whole: Array) -> _Prediction:
 
 
 def _entropy_bits(data: bytes, count: int) -> float:
-    """About how many bits planes of so many bytes take: their entropy."""
+    """Estimate the compressed size of byte planes by their entropy [bits]."""
     if not count:
         return 1.0
     planes = np.frombuffer(data, np.uint8).reshape(-1, count)
@@ -266,7 +266,7 @@ def _undo_prediction(residual: Array, order: str) -> Array:
 
 
 def _zigzag(numbers: Array) -> Array:
-    """Small numbers of either sign as small ones without: 0, -1, 1, -2, …"""
+    """Map signed to unsigned numbers so that small magnitudes stay small: 0, -1, 1, -2, … become 0, 1, 2, 3, …"""
     flat = numbers.reshape(-1)
     return ((flat << 1) ^ (flat >> 63)).view(np.uint64)
 
@@ -277,13 +277,13 @@ def _unzigzag(numbers: Array) -> Array:
 
 
 def _smallest_type(numbers: Array) -> Array:
-    """The same in the fewest bytes each."""
+    """Convert numbers to the smallest unsigned type that holds them."""
     largest = int(numbers.max(initial=0))
     return numbers.astype(next(w for w in ("uint8", "uint16", "uint32", "uint64") if largest <= np.iinfo(w).max))
 
 
 def _byte_planes(values: Array) -> bytes:
-    """All first bytes, then all second ones, …: equal ones stand together."""
+    """Group the first bytes of all values, then the second bytes, and so on, because equal bytes compress better."""
     size = values.dtype.itemsize
     little = values.astype(values.dtype.newbyteorder("<"), copy=False)
     return np.ascontiguousarray(little.view(np.uint8).reshape(-1, size).T).tobytes()
@@ -291,7 +291,7 @@ def _byte_planes(values: Array) -> bytes:
 
 def _join_byte_planes(data: bytes, dtype: np.dtype[Any], count: int) -> Array:
     if len(data) != count * dtype.itemsize:
-        raise ValueError("of another length than it says")
+        raise ValueError("the data do not have the declared length")
     planes = np.frombuffer(data, np.uint8).reshape(dtype.itemsize, count)
     little = np.ascontiguousarray(planes.T).view(dtype.newbyteorder("<")).reshape(-1)
     return little.astype(dtype)

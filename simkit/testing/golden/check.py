@@ -1,4 +1,4 @@
-"""Checks a golden run: the same scenario again, compared, and explained where it differs."""
+"""Check of a golden run: run the same scenario again, compare the results and explain differences."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ from simkit.testing.run_record.run_recorder import ENVIRONMENT_VARIABLES, run_re
 from simkit.testing.scenarios.scenario_file import read_scenario
 
 CAUSE_BUDGET_SECONDS: Final = 60.0
-"""Wall time [s] that looking for causes may take."""
-_MAX_NAMED: Final = 5  # changes of a world in which a scenario cannot be run any more
-_MAX_DIFFERENCES: Final = 12  # differences that a blessing lists
+"""Wall-clock limit of the search for causes [s]."""
+_MAX_NAMED: Final = 5  # world changes listed after an error of the scenario
+_MAX_DIFFERENCES: Final = 12  # differences stored in the history when a run is blessed
 
 
 def check_golden(
@@ -37,30 +37,34 @@ def check_golden(
     causes: bool = True,
     budget_s: float = CAUSE_BUDGET_SECONDS,
 ) -> Verdict:
-    """Runs a golden run's scenario again and compares.
+    """Run the scenario of a golden run again and compare the results.
 
     Args:
-        folder: of the golden run.
-        scenario: what is run; None for the scenario's file, or, where there is none, what stands in the golden run.
-        bless: why what differs is right: then it becomes golden. What does not differ stays as it is.
-        other_renderer: whether pictures of another renderer may be blessed.
-        causes: whether differences are explained.
-        budget_s: wall time that this may take [s].
+        folder: Folder of the golden run.
+        scenario: Scenario to run. If None, use the scenario's file, or without a file the scenario in the golden run.
+        bless: Reason why the differences are correct; the new run then becomes golden. Without differences, nothing is
+            written.
+        other_renderer: Allow pictures of another renderer to be blessed.
+        causes: Search for the causes of differences.
+        budget_s: Wall-clock limit of the search for causes [s].
 
     Returns:
-        The verdict; of what was blessed it says what differed.
+        Verdict. After a blessing, the verdict lists what differed before.
 
     Raises:
-        InputError: SK-GOLDEN-002 to SK-GOLDEN-004 the golden run cannot be read; SK-GOLDEN-006 it cannot be run again
-            from here; SK-GOLDEN-007 it is not blessed; or the world cannot be loaded.
-        RenderError: there are pictures, and nothing that draws.
+        InputError: SK-GOLDEN-002 to SK-GOLDEN-004 the golden run cannot be read; SK-GOLDEN-006 its scenario cannot be
+            run here; SK-GOLDEN-007 the run must not be blessed; or the world cannot be loaded.
+        RenderError: The scenario has pictures, and no renderer is available.
     """
     if bless is not None and not bless.strip():
-        raise InputError("SK-GOLDEN-007 a blessing needs a reason: --bless 'wheels are 1 mm larger'", "SK-GOLDEN-007")
+        raise InputError(
+            "SK-GOLDEN-007 --bless has no reason\n    help: state one, such as --bless 'wheels are 1 mm larger'",
+            "SK-GOLDEN-007",
+        )
     place = golden_folder(folder)
     golden = read_golden(place)
-    asked = _current_scenario(place, golden, scenario)
-    with _recorded_environment(golden.environment), _run_today(golden, asked) as (run, elapsed):
+    current_scenario = _current_scenario(place, golden, scenario)
+    with _recorded_environment(golden.environment), _run_today(golden, current_scenario) as (run, elapsed):
         comparison = compare(golden, run)
         verdict = Verdict(place.resolve().name, golden, run, comparison, None, run.checks, elapsed)
         if not comparison.passed and bless is not None:
@@ -72,7 +76,7 @@ def check_golden(
 
 @contextmanager
 def _run_today(golden: RunRecord, scenario: RunSpec) -> Iterator[tuple[RunRecord, float]]:
-    """A run of today with its wall time [s]; its simulation is closed at the end."""
+    """Run a scenario and yield its record and wall time [s]; close the simulation at the end."""
     started = time.perf_counter()
     try:
         run = run_record(scenario)
@@ -87,51 +91,51 @@ def _run_today(golden: RunRecord, scenario: RunSpec) -> Iterator[tuple[RunRecord
 
 
 def _append_world_changes(error: InputError, golden: RunRecord, scenario: RunSpec) -> InputError:
-    """Why a run was not even begun, with what has changed in its world: a topic that it needs may have gone with it."""
+    """Add the changes of the world to an error, because a change may have removed a topic that the scenario needs."""
 
     still = replace(scenario, commands=(), play="", play_topics=(), checks=(), until="", timeout=None, duration=0.0)
     try:
         run = run_record(still)
     except SimkitError:
-        return error  # the world itself cannot be used
+        return error  # the world itself cannot be loaded
     if run.simulation is not None:
         run.simulation.close()
     changes = world_changes(golden, run)
     if not changes:
         return error
-    told = [f"{change.words} ({change.where})" if change.where else change.words for change in changes[:_MAX_NAMED]]
-    if len(changes) > len(told):
-        told.append(f"{len(changes) - len(told)} more")
-    lines = "\n".join(f"    since it was golden: {one}" for one in told)
-    return InputError(f"{error}\n{lines}", error.code)
+    lines = [f"{change.words} ({change.where})" if change.where else change.words for change in changes[:_MAX_NAMED]]
+    if len(changes) > len(lines):
+        lines.append(f"{len(changes) - len(lines)} more")
+    text = "\n".join(f"    changed since the golden run: {line}" for line in lines)
+    return InputError(f"{error}\n{text}", error.code)
 
 
 def _current_scenario(place: Path, golden: RunRecord, given: RunSpec | None) -> RunSpec:
-    """What is run: read anew from the scenario's file, for that is what somebody may have changed."""
+    """Return the scenario to run; read its file again, because the file may have been changed."""
     stored = golden.scenario
     if given is not None:
         return given
     if stored.file is not None and stored.file.is_file():
         return read_scenario(stored.file)
     if stored.file is not None:
-        why = f": its scenario {stored.file.resolve()} is not there\n    help: put it back, or record anew"
+        problem = f": its scenario {stored.file.resolve()} does not exist\n    help: restore the file, or record anew"
     elif stored.test:
         test = shlex.quote(os.path.normpath(place / "../../.." / stored.test))
-        why = f" is of a test that makes plugins or steps by itself\n    help: pytest {test}"
+        problem = f" belongs to a test that makes plugins or steps itself\n    help: run pytest {test}"
     elif stored.plugins:
-        why = (
-            f" was recorded with plugins made in Python ({', '.join(map(str, stored.plugins))}), which are not here\n"
-            "    help: check it where they are made: the fixture sensor_regression, or "
+        problem = (
+            f" was recorded with plugins made in Python ({', '.join(map(str, stored.plugins))}), unknown here\n"
+            "    help: check the run in the program that makes the plugins: use the fixture sensor_regression, or "
             "simkit.testing.golden.check.check_golden(folder, scenario=...)"
         )
     else:
         return stored
-    raise InputError(f"SK-GOLDEN-006 {place}{why}", "SK-GOLDEN-006")
+    raise InputError(f"SK-GOLDEN-006 {place}{problem}", "SK-GOLDEN-006")
 
 
 @contextmanager
 def _recorded_environment(environment: Mapping[str, str]) -> Iterator[None]:
-    """Has the variables that say what the world is be as they were."""
+    """Set the environment variables that describe the world to their recorded values."""
     kept = {name: os.environ.get(name) for name in ENVIRONMENT_VARIABLES if name in environment}
     try:
         os.environ.update({name: environment[name] for name in kept})
@@ -145,16 +149,16 @@ def _recorded_environment(environment: Mapping[str, str]) -> Iterator[None]:
 
 
 def make_golden(place: Path, verdict: Verdict, reason: str, *, other_renderer: bool = False) -> None:
-    """Makes the run of a verdict golden, with what differs in its history.
+    """Replace a golden run by the run of a verdict and add the differences to the history.
 
     Args:
-        place: folder of the golden run that it was compared with.
-        verdict: the run, and what differs.
-        reason: why that is right.
-        other_renderer: whether pictures of another renderer may become golden.
+        place: Folder of the golden run.
+        verdict: New run and its differences.
+        reason: Reason why the differences are correct.
+        other_renderer: Allow pictures of another renderer.
 
     Raises:
-        InputError: SK-GOLDEN-007 it failed, or its pictures are another renderer's.
+        InputError: SK-GOLDEN-007 the run failed, or its pictures come from another renderer.
     """
     golden, run = verdict.golden, verdict.run
     refuse_failed(run, place)
@@ -162,9 +166,9 @@ def make_golden(place: Path, verdict: Verdict, reason: str, *, other_renderer: b
         before, now = golden.fingerprint.get(RENDERER), run.fingerprint.get(RENDERER)
         if before and now and before != now:
             raise InputError(
-                f"SK-GOLDEN-007 {place} is not blessed: its pictures were drawn by {before}, here they are by {now}, "
-                "and everybody else's would differ\n    help: bless it where the others run (CI), or say "
-                "--bless-other-renderer",
+                f"SK-GOLDEN-007 {place} is not blessed: its pictures come from {before}, the new ones from {now}; "
+                "on all other machines they would differ\n    help: bless the run on a machine with the first "
+                "renderer (CI), or add --bless-other-renderer",
                 "SK-GOLDEN-007",
             )
     words = [one.words for one in verdict.comparison.differences]
@@ -175,10 +179,12 @@ def make_golden(place: Path, verdict: Verdict, reason: str, *, other_renderer: b
 
 
 def refuse_failed(run: RunRecord, place: Path) -> None:
-    """A run that broke off is no example.
+    """Raise an error if a run failed, because a failed run must not become golden.
 
     Raises:
-        InputError: SK-GOLDEN-007 it is one.
+        InputError: SK-GOLDEN-007 the run failed.
     """
     if run.error is not None:
-        raise InputError(f"SK-GOLDEN-007 {place}: the run failed, and is not made golden: {run.error}", "SK-GOLDEN-007")
+        raise InputError(
+            f"SK-GOLDEN-007 {place}: the run failed and cannot become golden: {run.error}", "SK-GOLDEN-007"
+        )

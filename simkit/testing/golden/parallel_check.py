@@ -1,4 +1,4 @@
-"""Check several golden runs, one after the other or in parallel processes."""
+"""Check of several golden runs, one after another or in parallel processes."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class CheckOptions:
-    """How golden runs are checked; fields as the arguments of `simkit.testing.golden.check.check_golden`."""
+    """Options of a check; the fields are arguments of `simkit.testing.golden.check.check_golden`."""
 
     bless: str | None = None
     other_renderer: bool = False
@@ -29,12 +29,12 @@ class CheckOptions:
 
 @dataclass
 class CheckResult:
-    """What became of one golden run.
+    """Result of checking one golden run.
 
     Attributes:
-        folder: where it is.
-        verdict: None where it could not be checked.
-        error: then why.
+        folder: Folder of the golden run.
+        verdict: Verdict; None if the check could not be made.
+        error: Reason why the check could not be made; None otherwise.
     """
 
     folder: Path
@@ -43,19 +43,19 @@ class CheckResult:
 
     @property
     def rank(self) -> tuple[int, str]:
-        """Worst first: what could not be checked, what differs, what passed."""
+        """Sort key: runs that could not be checked, then runs that differ, then runs that passed."""
         if self.verdict is None:
             return 0, str(self.folder)
         return 2 if self.verdict.passed else 1, str(self.folder)
 
 
-def check_goldens(paths: Sequence[Path], wanted: CheckOptions, jobs: int = 1) -> list[CheckResult]:
-    """Checks golden runs, and those in folders; the worst first.
+def check_goldens(paths: Sequence[Path], options: CheckOptions, jobs: int = 1) -> list[CheckResult]:
+    """Check golden runs and return the results, worst first.
 
     Args:
-        paths: of golden runs or of folders that hold some.
-        wanted: how.
-        jobs: how many at once, each in a process of its own.
+        paths: Golden runs, or folders that contain golden runs.
+        options: Options of each check.
+        jobs: Number of parallel processes.
     """
     from simkit.testing.golden.store import find_goldens
 
@@ -67,33 +67,33 @@ def check_goldens(paths: Sequence[Path], wanted: CheckOptions, jobs: int = 1) ->
         except SimkitError as error:
             results.append(CheckResult(path, error=error))
     if jobs > 1 and len(folders) > 1:
-        results += _check_in_parallel(list(folders), wanted, min(jobs, len(folders)))
+        results += _check_in_parallel(list(folders), options, min(jobs, len(folders)))
     else:
-        results += [check_golden_folder(folder, wanted) for folder in folders]
+        results += [check_golden_folder(folder, options) for folder in folders]
     return sorted(results, key=lambda result: result.rank)
 
 
-def check_golden_folder(folder: Path, wanted: CheckOptions) -> CheckResult:
-    """Checks one golden run."""
+def check_golden_folder(folder: Path, options: CheckOptions) -> CheckResult:
+    """Check one golden run and return its verdict or error."""
     from simkit.testing.golden.check import check_golden
 
     try:
-        return CheckResult(folder, check_golden(folder, **vars(wanted)))
+        return CheckResult(folder, check_golden(folder, **vars(options)))
     except SimkitError as error:
         return CheckResult(folder, error=error)
 
 
-def _check_in_parallel(folders: list[Path], wanted: CheckOptions, jobs: int) -> list[CheckResult]:
+def _check_in_parallel(folders: list[Path], options: CheckOptions, jobs: int) -> list[CheckResult]:
     import multiprocessing
     from concurrent.futures import ProcessPoolExecutor
 
-    context = multiprocessing.get_context("spawn")  # a graphics library does not survive a fork
+    context = multiprocessing.get_context("spawn")  # graphics libraries do not survive a fork
     with ProcessPoolExecutor(jobs, context, _end_with_parent) as pool:
-        return list(pool.map(_check_in_process, folders, [wanted] * len(folders)))
+        return list(pool.map(_check_in_process, folders, [options] * len(folders)))
 
 
 def _end_with_parent() -> None:
-    """In another process: ends it once the one that began it is gone, however that went."""
+    """End this child process when its parent process ends for any reason."""
     import multiprocessing
     from multiprocessing.connection import wait
 
@@ -109,10 +109,10 @@ def _end_with_parent() -> None:
     threading.Thread(target=watch, name="simkit ends with its parent", daemon=True).start()
 
 
-def _check_in_process(folder: Path, wanted: CheckOptions) -> CheckResult:
-    """Of another process: without what cannot leave it."""
-    with redirect_stdout(sys.stderr):  # what a plugin prints there; standard output is the parent's
-        result = check_golden_folder(folder, wanted)
+def _check_in_process(folder: Path, options: CheckOptions) -> CheckResult:
+    """Check a golden run in a child process; remove data that cannot be pickled from the result."""
+    with redirect_stdout(sys.stderr):  # plugins may print, but standard output belongs to the parent's report
+        result = check_golden_folder(folder, options)
     if result.error is not None:
         result.error.__cause__ = result.error.__context__ = None
     if result.verdict is not None:

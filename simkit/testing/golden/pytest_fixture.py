@@ -1,4 +1,4 @@
-"""Golden runs in tests: what pytest's fixture `sensor_regression` gives."""
+"""Golden runs in tests: the object behind pytest's fixture `sensor_regression`."""
 
 from __future__ import annotations
 
@@ -29,27 +29,31 @@ if TYPE_CHECKING:
 
 _UNSAFE: Final = re.compile(r"[^A-Za-z0-9_.=-]+")
 _PARAMETERS: Final = re.compile(r"([\w.]+)\[([^\[\]]+)\]")
-_LONGEST: Final = 80  # letters of a folder's name
-_LINES: Final = 24  # of a report that a failure shows
-_BUDGET: Final = 20.0  # [s] of wall time for finding the cause
+_LONGEST: Final = 80  # maximum length of a folder name
+_LINES: Final = 24  # maximum length of a report in a test failure
+_BUDGET: Final = 20.0  # wall-clock limit of the search for causes [s]
 _FILES: Final = (".yaml", ".yml", ".py")
-_NUMBERS: Final = ("absolute", "relative", "share", "image", "ssim")  # of a tolerance
-_SCENARIO_ARGUMENTS: Final = ("overrides", "spawn", "plugins")  # of `simkit.load`, which a scenario has fields for
+_NUMBERS: Final = ("absolute", "relative", "share", "image", "ssim")  # numeric fields of a tolerance
+_SCENARIO_ARGUMENTS: Final = (
+    "overrides",
+    "spawn",
+    "plugins",
+)  # arguments of `simkit.load` that a scenario stores itself
 
 
 @dataclass
 class GoldenLocation:
-    """Where a test's golden runs are, and what becomes of them.
+    """Folder and options of a test's golden runs.
 
     Attributes:
-        folder: `golden/<stem of the test's file>` beside that file.
-        name: of the test, its class and parameters included.
-        beside: folder of the test's file, where worlds are looked for first.
-        test: pytest's name of the test.
-        reason: why golden runs are written anew; None to compare.
-        other_renderer: whether that may be with pictures of another renderer.
-        pages: folder that gets a page for each run that differs; None for none.
-        done: what was done, in sentences, for the end of all tests.
+        folder: `golden/<stem of the test's file>` in the folder of that file.
+        name: Name of the test with its class and parameters.
+        beside: Folder of the test's file; worlds are searched in it first.
+        test: Node id of the test in pytest.
+        reason: Reason for writing golden runs anew; None to compare.
+        other_renderer: Allow pictures of another renderer to be written.
+        pages: Folder for an HTML page of each run that differs; None for no pages.
+        done: Sentences about written golden runs, for pytest's summary.
     """
 
     folder: Path
@@ -63,17 +67,17 @@ class GoldenLocation:
 
     @property
     def short_test(self) -> str:
-        """Its name without the folders, which depend on where pytest is run."""
+        """Node id of the test without folders, which depend on pytest's working directory."""
         file, colons, name = self.test.partition("::")
         return file.rpartition("/")[2] + colons + name
 
 
 class SensorRegression:
-    """Compares what runs give with golden runs beside the test; what the fixture `sensor_regression` gives.
+    """Comparison of runs with golden runs in a test; the value of the fixture `sensor_regression`.
 
     Args:
-        place: where those are.
-        keep: is given every simulation that is opened, to close it when the test ends.
+        place: Folder and options of the golden runs.
+        keep: Function that receives every loaded simulation and closes it at the end of the test.
     """
 
     def __init__(self, place: GoldenLocation, keep: Callable[[Simulation, str], None]) -> None:
@@ -92,43 +96,43 @@ class SensorRegression:
         seed: int | None = None,
         **options: object,
     ) -> Verdict:
-        """Runs, and fails the test where what comes is not golden.
+        """Run a world or scenario, and fail the test if the result differs from the golden run.
 
         Args:
-            what: a world (a file beside the test, a bare name, XML text), a scenario or its file, or a simulation,
-                which goes on from where it stands.
-            name: tells several golden runs of one test apart.
-            duration: simulated time [s]; 10 where nothing says it.
-            topics: patterns of those that are looked at; all but clocks where nothing says it.
-            skip: patterns of those that are left out.
-            tolerances: by topic or field (`{"/scan": 0.01, "/imu": "statistics", "/odom": {"relative": 0.01}}`), or
-                `simkit.run_spec.Tolerance`. They go before a scenario's. Numbers among them count on the same
-                machine too, and then nothing but topics is compared.
-            seed: of the noise.
-            options: further ones of `simkit.load`: `plugins`, `overrides`, `resource_paths`, …
+            what: World (a file in the test's folder, a bare name or XML text), scenario, scenario file, or a
+                simulation, which continues from its present state.
+            name: Name that distinguishes several golden runs of one test.
+            duration: Simulated time [s]; default 10.
+            topics: Patterns of recorded topics; default all topics except clocks.
+            skip: Patterns of topics to leave out.
+            tolerances: Tolerances by topic or field (`{"/scan": 0.01, "/imu": "statistics", "/odom": {"relative":
+                0.01}}`), or objects of `simkit.run_spec.Tolerance`. They have priority over those of a scenario.
+                Numbers in them also apply on the machine that recorded the golden run; then only topics are compared.
+            seed: Seed of the sensor noise.
+            options: Further arguments of `simkit.load`: `plugins`, `overrides`, `resource_paths`, …
 
         Returns:
-            What was found, for further questions.
+            Verdict of the comparison.
 
         Raises:
-            pytest.fail.Exception: the run is not its golden one, or there is none yet.
-            InputError: the world or an argument cannot be used.
+            pytest.fail.Exception: The run differs from the golden run, or there is no golden run yet.
+            InputError: The world or an argument is invalid.
         """
         from simkit.testing.run_record.run_recorder import run_record
 
         scenario, sim = self._scenario(what)
-        said = {"duration": duration, "seed": seed, "topics": _topic_patterns(topics), "skip": _topic_patterns(skip)}
-        given = {key: value for key, value in {**said, **options}.items() if value is not None}
+        named = {"duration": duration, "seed": seed, "topics": _topic_patterns(topics), "skip": _topic_patterns(skip)}
+        given = {key: value for key, value in {**named, **options}.items() if value is not None}
         scenario = _with_tolerances(_with_arguments(scenario, given, sim is not None), tolerances)
         if sim is not None or scenario.plugins:
             scenario = replace(scenario, test=self._place.short_test)
         place = self._place_for(name)
-        self._demand_golden(place)
+        self._require_golden(place)
         start = time.perf_counter()
         record = run_record(scenario, sim=sim)
         if sim is None:
             self._keep(record.simulation, scenario.title)
-        return self._judged(place, record, time.perf_counter() - start, again=not scenario.test)
+        return self._compare_or_write(place, record, time.perf_counter() - start, again=not scenario.test)
 
     @contextmanager
     def of(
@@ -141,15 +145,15 @@ class SensorRegression:
         tolerances: Mapping[str, object] | Sequence[Tolerance] = (),
         duration: float = 10.0,
     ) -> Iterator[None]:
-        """Listens while the test steps a simulation by itself, and judges at the end of the `with` block.
+        """Record a simulation that the test steps itself, and compare at the end of the `with` block.
 
         Args:
-            sim: the simulation, wherever it stands.
-            name, topics, skip, tolerances: as when called.
-            duration: about how long it will run [s]: how densely states are kept.
+            sim: Simulation in any state.
+            name, topics, skip, tolerances: See `__call__`.
+            duration: Approximate duration of the run [s]; it determines the interval between recorded states.
 
         Raises:
-            pytest.fail.Exception: at the end: the run is not its golden one, or there is none yet.
+            pytest.fail.Exception: At the end of the block, the run differs from the golden run, or there is none yet.
         """
         from simkit.testing.run_record.run_recorder import RunRecorder
 
@@ -167,22 +171,22 @@ class SensorRegression:
             yield
             scenario = replace(scenario, duration=(sim.tick - tick) * sim.timestep)
             record = replace(capture.record(), scenario=scenario)
-        self._demand_golden(place)
-        self._judged(place, record, time.perf_counter() - start, again=False)
+        self._require_golden(place)
+        self._compare_or_write(place, record, time.perf_counter() - start, again=False)
 
     def _place_for(self, name: str | None) -> Path:
         folder = safe_name(self._place.name) + ("" if name is None else f"+{safe_name(name)}")
         if folder in self._used:
             raise InputError(
-                f"SK-GOLDEN-020 this test has a golden run {folder!r} already\n"
-                '    help: sensor_regression(…, name="second") tells them apart',
+                f"SK-GOLDEN-020 this test already has a golden run {folder!r}\n"
+                '    help: give each run of the test its own name: sensor_regression(…, name="second")',
                 "SK-GOLDEN-020",
             )
         self._used.add(folder)
         return self._place.folder / folder
 
     def _scenario(self, what: Any) -> tuple[RunSpec, Simulation | None]:
-        """What is to be run, and the simulation where it is open already."""
+        """Return the scenario to run, and the simulation if it is already loaded."""
         if isinstance(what, RunSpec):
             beside = self._place.beside if what.folder == Path() and what.file is None else what.folder
             return replace(what, folder=beside), None
@@ -196,7 +200,7 @@ class SensorRegression:
             return RunSpec(text, folder=self._place.beside if beside.exists() else Path.cwd()), None
         if not hasattr(what, "mj_model"):
             raise InputError(
-                f"SK-GOLDEN-021 sensor_regression: found {type(what).__name__}, allowed is a world, a scenario or a "
+                f"SK-GOLDEN-021 sensor_regression: found {type(what).__name__}, expected a world, a scenario or a "
                 "simulation",
                 "SK-GOLDEN-021",
             )
@@ -205,15 +209,16 @@ class SensorRegression:
         folder = loaded.folder if loaded is not None else self._place.beside
         return RunSpec(world or what.world.name, seed=what.seed, folder=folder), what
 
-    def _demand_golden(self, place: Path) -> None:
+    def _require_golden(self, place: Path) -> None:
         from simkit.testing.golden.store import is_golden
 
         if self._place.reason is None and not is_golden(place):
-            said = f"there is no golden run {_short_path(place)} yet\n    help: pytest {shlex.quote(self._place.test)}"
-            pytest.fail(f"{said} --simkit-update-golden", pytrace=False)
+            problem = f"there is no golden run {_short_path(place)} yet"
+            help_ = f"    help: pytest {shlex.quote(self._place.test)} --simkit-update-golden"
+            pytest.fail(f"{problem}\n{help_}", pytrace=False)
 
-    def _judged(self, place: Path, record: RunRecord, elapsed: float, *, again: bool) -> Verdict:
-        """Compares a run with its golden one, or makes it the golden one."""
+    def _compare_or_write(self, place: Path, record: RunRecord, elapsed: float, *, again: bool) -> Verdict:
+        """Compare a run with its golden run, or write it as the golden run."""
         from simkit.testing.golden.check import make_golden, refuse_failed
         from simkit.testing.golden.store import is_golden, read_golden, write_golden
 
@@ -222,8 +227,8 @@ class SensorRegression:
             refuse_failed(record, place)
             for result in record.checks:
                 if not result.passed:
-                    said = f"{place}: a check does not hold, and the run is not made golden: {result.check.title}"
-                    raise InputError(f"SK-GOLDEN-007 {said}: {result.message}", "SK-GOLDEN-007")
+                    problem = f"{place}: a check failed, so the run cannot become golden: {result.check.title}"
+                    raise InputError(f"SK-GOLDEN-007 {problem}: {result.message}", "SK-GOLDEN-007")
         if writes and not is_golden(place):
             write_golden(place, record, reason=self._place.reason or "")
             self._place.done.append(f"written: {_short_path(place)}")
@@ -232,7 +237,7 @@ class SensorRegression:
         verdict = Verdict(place.name, golden, record, compare(golden, record), None, record.checks, elapsed)
         if writes:
             if verdict.comparison.passed:
-                self._place.done.append(f"as it was: {_short_path(place)}")
+                self._place.done.append(f"unchanged: {_short_path(place)}")
             else:
                 make_golden(place, verdict, self._place.reason or "", other_renderer=self._place.other_renderer)
                 self._place.done.append(f"changed: {_short_path(place)}: {verdict.comparison.differences[0].words}")
@@ -241,18 +246,17 @@ class SensorRegression:
         return verdict
 
     def _fail(self, place: Path, verdict: Verdict, *, again: bool) -> None:
-
         if not verdict.comparison.passed:
             both = verdict.golden, verdict.run, verdict.comparison
             if again:
                 verdict.explanation = explain(*both, budget_s=_BUDGET)
-            else:  # what only the test can do again is not tried again
+            else:  # only the test itself can repeat this run
                 verdict.explanation = explain(*both, rerun=None)
         lines = text_report(verdict, 100, most=8, mark="")
         if len(lines) > _LINES:
-            lines = [*lines[:_LINES], f"  … and {len(lines) - _LINES} lines more"]
+            lines = [*lines[:_LINES], f"  … and {len(lines) - _LINES} more lines"]
         command = f"pytest {shlex.quote(self._place.test)} --simkit-update-golden"
-        command += ' --simkit-golden-reason "why it is meant"'
+        command += ' --simkit-golden-reason "reason for the change"'
         if self._place.pages is not None:
             page = self._place.pages / f"{self._place.folder.name}-{place.name}.html"
             write_html(page, [verdict], bless=command)
@@ -262,9 +266,9 @@ class SensorRegression:
 
 
 def safe_name(text: str) -> str:
-    """A folder's name for any name of a test; other names give other ones.
+    """Convert a test name to a folder name; different names give different folders.
 
-    `test_scan[2.0]` is `test_scan-2.0`; names with letters that files had better not have get a hash.
+    `test_scan[2.0]` becomes `test_scan-2.0`. Names with characters that are unsafe in file names get a hash.
     """
     parameters = _PARAMETERS.fullmatch(text)
     text = f"{parameters[1]}-{parameters[2]}" if parameters else text
@@ -275,12 +279,12 @@ def safe_name(text: str) -> str:
 
 
 def _with_arguments(scenario: RunSpec, given: JsonObject, is_open: bool) -> RunSpec:
-    """A scenario with arguments over its own."""
+    """Return a scenario whose fields are replaced by a test's arguments."""
     own = {key: given.pop(key) for key in ("duration", "seed", "topics", "skip", *_SCENARIO_ARGUMENTS) if key in given}
     if is_open and (given or {"seed", *_SCENARIO_ARGUMENTS} & own.keys()):
         wrong = ", ".join(sorted([*given, *({"seed", *_SCENARIO_ARGUMENTS} & own.keys())]))
         raise InputError(
-            f"SK-GOLDEN-021 sensor_regression: {wrong}: of a simulation that is open already this cannot be chosen",
+            f"SK-GOLDEN-021 sensor_regression: {wrong}: not possible for a simulation that is already loaded",
             "SK-GOLDEN-021",
         )
     for key in _SCENARIO_ARGUMENTS:
@@ -290,14 +294,14 @@ def _with_arguments(scenario: RunSpec, given: JsonObject, is_open: bool) -> RunS
 
 
 def _topic_patterns(patterns: str | Sequence[str] | None) -> tuple[str, ...] | None:
-    """Patterns of topics, with their leading slashes."""
+    """Return patterns of topics with leading slashes."""
     if patterns is None:
         return None
     return tuple(map(absolute_topic, (patterns,) if isinstance(patterns, str) else patterns))
 
 
 def _with_tolerances(scenario: RunSpec, given: Mapping[str, object] | Sequence[Tolerance]) -> RunSpec:
-    """A scenario with a test's tolerances before its own: who gives numbers means them on every machine."""
+    """Return a scenario with a test's tolerances before its own; numeric tolerances apply on every machine."""
     own = _parse_tolerances(given)
     if any(getattr(t, name) is not None for t in own if not t.statistics for name in _NUMBERS):
         scenario = replace(scenario, bits=False, state=False, model=False)
@@ -305,29 +309,29 @@ def _with_tolerances(scenario: RunSpec, given: Mapping[str, object] | Sequence[T
 
 
 def _parse_tolerances(given: JsonMapping | Sequence[Tolerance]) -> tuple[Tolerance, ...]:
-    """Tolerances as a scenario's file says them, or made already."""
+    """Parse tolerances in the form of a scenario file; accept `Tolerance` objects too."""
     if not isinstance(given, Mapping):
         return tuple(given)
     found = []
     for pattern, value in given.items():
-        said: JsonMapping
+        fields: JsonMapping
         if isinstance(value, Tolerance):
             found.append(replace(value, pattern=absolute_topic(pattern)))
             continue
         if isinstance(value, str) and value in TOLERANCE_MODES:
-            said = {value: True}
+            fields = {value: True}
         elif isinstance(value, Mapping) and all(map(_is_valid_tolerance, value, value.values())):
-            said = value
+            fields = value
         elif _is_valid_tolerance("absolute", value):
-            said = {"absolute": float(value)}
+            fields = {"absolute": float(value)}
         else:
             raise _tolerance_error(pattern, value)
-        found.append(Tolerance(absolute_topic(pattern), **said))
+        found.append(Tolerance(absolute_topic(pattern), **fields))
     return tuple(found)
 
 
 def _is_valid_tolerance(name: object, value: object) -> bool:
-    """Whether a field of a tolerance may have a value."""
+    """Check whether a field of a tolerance accepts a value."""
     if name in _NUMBERS:
         return isinstance(value, (int, float)) and not isinstance(value, bool) and value >= 0
     return name in TOLERANCE_MODES and isinstance(value, bool)
@@ -336,13 +340,13 @@ def _is_valid_tolerance(name: object, value: object) -> bool:
 def _tolerance_error(pattern: str, value: object) -> InputError:
     names = ", ".join(name for name in Tolerance.__dataclass_fields__ if name not in ("pattern", "where"))
     return InputError(
-        f"SK-GOLDEN-021 sensor_regression: tolerances[{pattern!r}]: found {value!r:.80}, allowed is a number of at "
-        f"least 0, one of {', '.join(TOLERANCE_MODES)}, or a mapping of {names}",
+        f"SK-GOLDEN-021 sensor_regression: tolerances[{pattern!r}]: found {value!r:.80}, expected a number >= 0, "
+        f"one of {', '.join(TOLERANCE_MODES)}, or a mapping of {names}",
         "SK-GOLDEN-021",
     )
 
 
 def _short_path(path: Path) -> str:
-    """As seen from the working directory, where that is shorter."""
+    """Return the path relative to the working directory, if the path is below it."""
     relative = os.path.relpath(path)
     return relative if not relative.startswith("..") else str(path)

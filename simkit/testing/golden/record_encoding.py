@@ -1,4 +1,4 @@
-"""A scenario and its record as what stands in `golden.json` and a block of data; and back."""
+"""Encoding of a scenario and its record as the text of `golden.json` and a block of data, and decoding."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ _PLAIN: Final = (
 
 
 def encode_scenario(scenario: RunSpec, folder: Path) -> dict[str, object]:
-    """A scenario as JSON holds it.
+    """Encode a scenario as JSON data.
 
     Args:
-        scenario: what is written.
-        folder: that files are named relative to; so that it does not matter where a checkout lies.
+        scenario: Scenario.
+        folder: Folder to which file names are made relative, so that the result is the same in every checkout.
     """
 
     def place(path: Any) -> str:
@@ -69,14 +69,15 @@ def encode_scenario(scenario: RunSpec, folder: Path) -> dict[str, object]:
 
 
 def decode_scenario(plain: JsonMapping, folder: Path) -> RunSpec:
-    """The scenario that plain data stands for; of plugins that were made in Python it has the names of their classes.
+    """Decode a scenario; plugins made in Python are represented by the names of their classes.
 
     Args:
-        plain: as `encode_scenario` gives it; a world that is a long text is not in it, and is empty.
-        folder: of the golden run.
+        plain: Data from `encode_scenario`. A world that is a long XML text is not included; the decoded world is then
+            empty.
+        folder: Folder of the golden run.
 
     Raises:
-        ValueError, TypeError, KeyError: it is none.
+        ValueError, TypeError, KeyError: The data are not a scenario.
     """
 
     def place(text: object) -> str:
@@ -87,7 +88,7 @@ def decode_scenario(plain: JsonMapping, folder: Path) -> RunSpec:
         given[name] = tuple(map(str, given.get(name, ())))
     for name in ("duration", "seed", "picture"):
         if not isinstance(given.get(name, 0), (int, float)):
-            raise TypeError(f"{name} is no number")
+            raise TypeError(f"{name} is not a number")
     given["spawn"] = tuple(
         _move_spawn(str(text), lambda p: place(p) if Path(place(p)).exists() else p) for text in plain.get("spawn", ())
     )
@@ -104,19 +105,19 @@ def decode_scenario(plain: JsonMapping, folder: Path) -> RunSpec:
 
 
 def is_long_text(world: str) -> bool:
-    """Whether a world is XML too long to be read beside the rest."""
+    """Check whether a world is XML text that is too long for `golden.json`."""
     return "<" in world and len(world) > _LONG_TEXT
 
 
 def relative_world(scenario: RunSpec, folder: Path) -> str:
-    """The world's name: a file relative to `folder`; a bare name or XML text as it is."""
+    """Return the world's name: a file relative to `folder`; a bare name or XML text unchanged."""
     if "<" in scenario.world:
         return scenario.world
     return scenario.world if scenario.beside is None else relative_path(scenario.beside, folder)
 
 
 def relative_path(path: Path, folder: Path) -> str:
-    """A path as seen from a folder, with slashes; the whole one where they are on different drives."""
+    """Return a path relative to a folder, with slashes; the absolute path if the two are on different drives."""
     try:
         return Path(os.path.relpath(path.resolve(), folder.resolve())).as_posix()
     except ValueError:
@@ -124,13 +125,13 @@ def relative_path(path: Path, folder: Path) -> str:
 
 
 def _move_spawn(text: str, place: Callable[[str], str]) -> str:
-    """`MODEL:x,y,yaw[:name]` with another place of the model."""
+    """Replace the model's path in `MODEL:x,y,yaw[:name]`."""
     model, colon, rest = text.partition(":")
     return place(model) + colon + rest
 
 
 def _move_option(name: str, value: Any, place: Callable[[object], str]) -> object:
-    """An option of a scenario as plain data, with other places of its files."""
+    """Convert an option of a scenario to JSON data and replace the paths in it."""
     if name in _PATH_OPTIONS:
         several = [value] if isinstance(value, (str, os.PathLike)) else list(value)
         return [_move_params_file(str(one), place) for one in several]
@@ -140,7 +141,7 @@ def _move_option(name: str, value: Any, place: Callable[[object], str]) -> objec
 
 
 def _move_params_file(text: str, place: Callable[[object], str]) -> str:
-    """`[MODEL=]FILE` with another place of the file."""
+    """Replace the path of the file in `[MODEL=]FILE`."""
     model, equals, file = text.rpartition("=")
     return f"{model}{equals}{place(file)}"
 
@@ -154,7 +155,7 @@ def _plain_value(value: Any) -> object:
 
 
 def _non_default_fields(value: Any, default: Any) -> dict[str, object]:
-    """The fields that are other than the default's, without places."""
+    """Return the fields that differ from the default, without source positions."""
     usual = asdict(default)
     return {name: _plain_value(one) for name, one in asdict(value).items() if name != "where" and one != usual[name]}
 
@@ -170,18 +171,18 @@ def _class_name(plugin: object) -> str:
     return str(getattr(kind, "__qualname__", getattr(kind, "__name__", kind)))
 
 
-_MAX_FIELDS: Final = 400_000  # numbers of the compiled model; of a larger one its fields are not kept
-_DEPTH_STEP: Final = 2.0**-10  # [m] that depths of small pictures are rounded to
+_MAX_FIELDS: Final = 400_000  # numbers in the compiled model; the fields of a larger model are not stored
+_DEPTH_STEP: Final = 2.0**-10  # [m], rounding step for depths in small pictures
 _STATISTICS: Final = ("mean", "deviation", "quantiles", "taus", "allan", "independent", "kurtosis")
 
 
 def encode_record(record: RunRecord) -> tuple[JsonObject, bytes]:
-    """What people read of a record, and the block of its data."""
+    """Return the readable part of a record and the block with its data."""
     packer = Packer()
     inner: JsonObject = {
         "streams": {topic: _pack_stream(packer, s, record.scenario) for topic, s in sorted(record.streams.items())},
         "states": _pack_states(packer, record.states),
-        "leaves": dict(record.leaves),  # in the order of the file, for what is put back has its old place
+        "leaves": dict(record.leaves),  # in file order, so that an undone change gets its old position
         "fields": _pack_fields(packer, record.fields),
     }
     if is_long_text(record.scenario.world):
@@ -202,16 +203,16 @@ def encode_record(record: RunRecord) -> tuple[JsonObject, bytes]:
     return about, packer.block(inner)
 
 
-def decode_record(said: JsonMapping, data: bytes, scenario: RunSpec) -> RunRecord:
-    """The record that was written.
+def decode_record(stored: JsonMapping, data: bytes, scenario: RunSpec) -> RunRecord:
+    """Decode a record.
 
     Args:
-        said: what stands in `golden.json`.
-        data: the block.
-        scenario: that is in it.
+        stored: Content of `golden.json`.
+        data: Block of data.
+        scenario: Scenario decoded from `golden.json`.
 
     Raises:
-        PackingError, ValueError, TypeError, KeyError: it is damaged.
+        PackingError, ValueError, TypeError, KeyError: The data are damaged.
     """
     unpacker = Unpacker(data)
     inner = unpacker.about
@@ -219,16 +220,16 @@ def decode_record(said: JsonMapping, data: bytes, scenario: RunSpec) -> RunRecor
         scenario = replace(scenario, world=str(inner["world"]))
     return RunRecord(
         scenario,
-        {str(k): str(v) for k, v in said["fingerprint"].items()},
+        {str(k): str(v) for k, v in stored["fingerprint"].items()},
         {str(topic): _unpack_stream(unpacker, str(topic), one) for topic, one in inner["streams"].items()},
         _unpack_states(unpacker, inner["states"]),
         _validate_values(inner["leaves"]),
         {},
         _unpack_fields(unpacker, inner["fields"]),
-        {str(k): str(v) for k, v in said["sources"].items()},
-        {str(k): int(v) for k, v in said["diagnostics"].items()},
-        str(said["end"]),
-        environment={str(k): str(v) for k, v in said.get("environment", {}).items() if k in ENVIRONMENT_VARIABLES},
+        {str(k): str(v) for k, v in stored["sources"].items()},
+        {str(k): int(v) for k, v in stored["diagnostics"].items()},
+        str(stored["end"]),
+        environment={str(k): str(v) for k, v in stored.get("environment", {}).items() if k in ENVIRONMENT_VARIABLES},
     )
 
 
@@ -236,7 +237,6 @@ def decode_record(said: JsonMapping, data: bytes, scenario: RunSpec) -> RunRecor
 
 
 def _pack_stream(packer: Packer, stream: Stream, scenario: RunSpec) -> dict[str, object]:
-
     columns = {}
     for path, column in stream.columns.items():
         step = column.step or storage_step(stream.type_name, path, scenario, stream.topic)
@@ -266,41 +266,41 @@ def _pack_stream(packer: Packer, stream: Stream, scenario: RunSpec) -> dict[str,
     return found
 
 
-def _unpack_stream(unpacker: Unpacker, topic: str, said: JsonMapping) -> Stream:
-    times = unpacker.array(said["times"])
+def _unpack_stream(unpacker: Unpacker, topic: str, stored: JsonMapping) -> Stream:
+    times = unpacker.array(stored["times"])
     if times.ndim != 1 or times.dtype != np.int64:
-        raise PackingError("times of another type")
-    stream, count = Stream(topic, str(said["type"]), times), len(times)
-    for path, one in said["columns"].items():
+        raise PackingError("the time stamps have a wrong type")
+    stream, count = Stream(topic, str(stored["type"]), times), len(times)
+    for path, one in stored["columns"].items():
         lengths = unpacker.array(one["lengths"]) if "lengths" in one else None
         column = Column(unpacker.array(one["values"]), lengths, float(one["step"]))
         rows = len(column.values) if lengths is None else len(lengths)
         if rows != count or (
             lengths is not None and (lengths.min(initial=0) < 0 or lengths.sum() != len(column.values))
         ):
-            raise PackingError(f"{topic}.{path} has {rows} messages of {count}")
+            raise PackingError(f"{topic}.{path} has values of {rows} messages, but the topic has {count}")
         stream.columns[str(path)] = column
-    stream.words = {str(path): _unpack_words(unpacker, one, count) for path, one in said["words"].items()}
+    stream.words = {str(path): _unpack_words(unpacker, one, count) for path, one in stored["words"].items()}
     stream.statistics = {
         str(path): NoiseStatistics(int(one["count"]), *(unpacker.array(one[name]) for name in _STATISTICS))
-        for path, one in said["statistics"].items()
+        for path, one in stored["statistics"].items()
     }
-    stream.chunks, stream.digest = [str(chunk) for chunk in said["chunks"]], str(said["digest"])
-    if "pictures" in said:
-        stream.pictures = _unpack_pictures(unpacker, said["pictures"], count)
+    stream.chunks, stream.digest = [str(chunk) for chunk in stored["chunks"]], str(stored["digest"])
+    if "pictures" in stored:
+        stream.pictures = _unpack_pictures(unpacker, stored["pictures"], count)
     return stream
 
 
-def _unpack_pictures(unpacker: Unpacker, said: JsonMapping, count: int) -> Pictures:
-    small, tiles = unpacker.array(said["small"]), unpacker.array(said["tiles"])
-    kept, hashes = (None if said[name] is None else unpacker.array(said[name]) for name in ("kept", "hashes"))
-    wanted = count if kept is None else len(kept)
-    if small.ndim != 4 or tiles.ndim != 3 or len(small) != wanted or len(tiles) != wanted:
-        raise PackingError("pictures of another shape")
+def _unpack_pictures(unpacker: Unpacker, stored: JsonMapping, count: int) -> Pictures:
+    small, tiles = unpacker.array(stored["small"]), unpacker.array(stored["tiles"])
+    kept, hashes = (None if stored[name] is None else unpacker.array(stored[name]) for name in ("kept", "hashes"))
+    expected = count if kept is None else len(kept)
+    if small.ndim != 4 or tiles.ndim != 3 or len(small) != expected or len(tiles) != expected:
+        raise PackingError("the pictures have a wrong shape")
     if kept is not None and len(kept) and (kept.min() < 0 or kept.max() >= count):
-        raise PackingError("pictures of messages that there are not")
-    height, width = (int(one) for one in said["shape"])
-    return Pictures(small, (height, width), str(said["encoding"]), tiles, kept, hashes)
+        raise PackingError("the pictures refer to messages that do not exist")
+    height, width = (int(one) for one in stored["shape"])
+    return Pictures(small, (height, width), str(stored["encoding"]), tiles, kept, hashes)
 
 
 def _pack_words(packer: Packer, texts: list[str]) -> dict[str, object]:
@@ -308,11 +308,11 @@ def _pack_words(packer: Packer, texts: list[str]) -> dict[str, object]:
     return {"texts": list(known), "which": packer.add(np.array([known[text] for text in texts], dtype=np.int64))}
 
 
-def _unpack_words(unpacker: Unpacker, said: JsonMapping, count: int) -> list[str]:
-    texts = [str(text) for text in said["texts"]]
-    which = unpacker.array(said["which"]).tolist()
+def _unpack_words(unpacker: Unpacker, stored: JsonMapping, count: int) -> list[str]:
+    texts = [str(text) for text in stored["texts"]]
+    which = unpacker.array(stored["which"]).tolist()
     if len(which) != count or any(type(i) is not int or not 0 <= i < len(texts) for i in which):
-        raise PackingError("texts of messages that there are not")
+        raise PackingError("the texts do not match the messages")
     return [texts[i] for i in which]
 
 
@@ -331,18 +331,18 @@ def _pack_states(packer: Packer, states: States) -> dict[str, object]:
     return found | texts | {"digest": states.digest, "named_digest": states.named_digest}
 
 
-def _unpack_states(unpacker: Unpacker, said: JsonMapping) -> States:
-    marks, inputs, ticks = (unpacker.array(said[name]) for name in ("marks", "inputs", "ticks"))
-    values, given = unpacker.array(said["values"]), unpacker.array(said["input_values"])
-    names, given_names = [str(n) for n in said["names"]], [str(n) for n in said["input_names"]]
-    timestep = float(said["timestep"])
+def _unpack_states(unpacker: Unpacker, stored: JsonMapping) -> States:
+    marks, inputs, ticks = (unpacker.array(stored[name]) for name in ("marks", "inputs", "ticks"))
+    values, given = unpacker.array(stored["values"]), unpacker.array(stored["input_values"])
+    names, given_names = [str(n) for n in stored["names"]], [str(n) for n in stored["input_names"]]
+    timestep = float(stored["timestep"])
     if marks.ndim != 1 or inputs.shape != marks.shape or not 0 < timestep < 1e6:
-        raise PackingError("marks of another shape")
+        raise PackingError("the state hashes have a wrong shape")
     if values.shape != (len(ticks), len(names)) or given.shape != (len(ticks), len(given_names)):
-        raise PackingError("states of another shape")
+        raise PackingError("the states have a wrong shape")
     return States(
         timestep, marks, inputs, ticks, names, values, given_names, given,
-        str(said["digest"]), str(said["named_digest"]),
+        str(stored["digest"]), str(stored["named_digest"]),
     )  # fmt: skip
 
 
@@ -357,23 +357,23 @@ def _pack_fields(packer: Packer, fields: Mapping[str, Array]) -> dict[str, objec
     }
 
 
-def _unpack_fields(unpacker: Unpacker, said: JsonMapping) -> ModelFields:
+def _unpack_fields(unpacker: Unpacker, stored: JsonMapping) -> ModelFields:
     tables: dict[str, tuple[list[str], dict[str, Array]]] = {}
-    for kind, one in said.items():
+    for kind, one in stored.items():
         names = [str(name) for name in one["names"]]
         table = {str(name): unpacker.array(number) for name, number in one["table"].items()}
         if any(len(array) != len(names) for array in table.values()):
-            raise PackingError(f"fields of {kind} of another length")
+            raise PackingError(f"the fields of {kind} have a wrong length")
         tables[str(kind)] = (names, table)
     return ModelFields(tables)
 
 
 def _validate_values(leaves: object) -> dict[str, object]:
-    """Leaves as they may be: numbers, texts, and lists of them."""
+    """Validate the world's values: numbers, texts, and lists of them."""
 
     def is_plain(value: object) -> bool:
         return isinstance(value, (bool, int, float, str)) or (isinstance(value, list) and all(map(is_plain, value)))
 
     if not isinstance(leaves, dict) or not all(map(is_plain, leaves.values())):
-        raise PackingError("leaves of another type")
+        raise PackingError("the world's values have a wrong type")
     return leaves

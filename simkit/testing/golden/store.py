@@ -1,7 +1,7 @@
-"""Golden runs on disk: a folder with `golden.json` to read and one file of data.
+"""Golden runs on disk: a folder with the readable file `golden.json` and one data file.
 
-`golden.json` names the data it belongs to by its hash. The data are written first and `golden.json` is put in place
-last, in one go: at whatever moment the writing is cut off, what is there is the old golden run or the new one.
+`golden.json` refers to its data file by hash. The data file is written first; then `golden.json` is replaced
+atomically. If writing is interrupted at any time, the folder holds either the old or the new golden run.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ _DATA: Final = re.compile(r"data-[0-9a-f]{12}\.xz")
 _TEMPORARY_NAME: Final = re.compile(r"\.golden-\d+\.tmp")
 _MAX_TEXT_BYTES: Final = 16 << 20  # [bytes] of golden.json
 _MAX_DATA_BYTES: Final = 256 << 20
-_READ_ATTEMPTS: Final = 20  # of reading a golden run that others write at the same time
-_MAX_HISTORY: Final = 50  # reasons that are kept
+_READ_ATTEMPTS: Final = 20  # attempts to read a golden run that another process is writing
+_MAX_HISTORY: Final = 50  # entries
 
 
 def write_golden(
@@ -39,14 +39,14 @@ def write_golden(
     changed: Sequence[str] = (),
     history: Sequence[JsonMapping] = (),
 ) -> None:
-    """Makes a record the golden one.
+    """Write a record as the golden run.
 
     Args:
-        folder: where it goes; a golden run that is there is replaced in one go.
-        record: what a run gave.
-        reason: why it is right; for what is recorded first it may be empty.
-        changed: what differs from the one before, in sentences.
-        history: of the one before; what is written adds an entry.
+        folder: Target folder; an existing golden run in it is replaced atomically.
+        record: Record of a run.
+        reason: Reason why the record is correct; may be empty for the first one.
+        changed: Sentences about the differences from the previous golden run.
+        history: History of the previous golden run; one entry is added.
 
     Raises:
         InputError: SK-GOLDEN-005 the folder cannot be written.
@@ -79,25 +79,25 @@ def write_golden(
                 os.fsync(handle)
             _remove_old_data(place, name)
     except OSError as error:
-        message = f"SK-GOLDEN-005 {place} cannot be written: {error.strerror or error}"
+        message = f"SK-GOLDEN-005 cannot write {place}: {error.strerror or error}"
         raise InputError(message, "SK-GOLDEN-005") from None
 
 
 def read_golden(folder: str | os.PathLike[str]) -> RunRecord:
-    """The golden record of a folder.
+    """Read the golden record in a folder.
 
     Raises:
-        InputError: SK-GOLDEN-002 there is none; SK-GOLDEN-003 it is damaged, or no golden run at all; SK-GOLDEN-004 a
-            newer version of simkit wrote it.
+        InputError: SK-GOLDEN-002 there is no golden run; SK-GOLDEN-003 the golden run is damaged or has another format;
+            SK-GOLDEN-004 a newer version of simkit wrote it.
     """
     place = golden_folder(folder)
-    said, name, digest, data = _read_main_and_data(place)
+    main, name, digest, data = _read_main_and_data(place)
     if len(data) > _MAX_DATA_BYTES:
-        raise _damaged_error(place / name, "is larger than any golden run may be")
+        raise _damaged_error(place / name, f"is larger than {_MAX_DATA_BYTES >> 20} MiB")
     if hashlib.sha256(data).hexdigest() != digest:
-        raise _damaged_error(place / name, f"is not what {MAIN_FILE} says: its hash is another")
+        raise _damaged_error(place / name, f"does not have the hash that {MAIN_FILE} lists")
     try:
-        return decode_record(said, data, decode_scenario(said["scenario"], place))
+        return decode_record(main, data, decode_scenario(main["scenario"], place))
     except PackingError as error:
         raise _damaged_error(place / name, f"is damaged: {error}") from None
     except (ValueError, TypeError, KeyError, AttributeError, IndexError, OverflowError, RecursionError) as error:
@@ -105,15 +105,15 @@ def read_golden(folder: str | os.PathLike[str]) -> RunRecord:
 
 
 def _read_main_and_data(place: Path) -> tuple[JsonObject, str, str, bytes]:
-    """What `golden.json` says, the name and the hash of its data, and those."""
+    """Return the content of `golden.json`, then the name, hash and content of its data file."""
     for trial in range(_READ_ATTEMPTS):
-        said = read_main(place)
-        name, digest = _read_data(place, said)
+        main = read_main(place)
+        name, digest = _read_data(place, main)
         try:
             with open(place / name, "rb") as file:
-                return said, name, digest, file.read(_MAX_DATA_BYTES + 1)
-        except FileNotFoundError as error:  # or somebody has made another run golden just now
-            if trial == _READ_ATTEMPTS - 1 or read_main(place) == said:
+                return main, name, digest, file.read(_MAX_DATA_BYTES + 1)
+        except FileNotFoundError as error:  # another process may have replaced the golden run just now
+            if trial == _READ_ATTEMPTS - 1 or read_main(place) == main:
                 raise _damaged_error(place / name, f"cannot be read: {error.strerror}") from None
         except OSError as error:
             raise _damaged_error(place / name, f"cannot be read: {error.strerror or error}") from None
@@ -121,10 +121,10 @@ def _read_main_and_data(place: Path) -> tuple[JsonObject, str, str, bytes]:
 
 
 def read_main(folder: Path) -> JsonObject:
-    """What `golden.json` of a folder says.
+    """Return the content of `golden.json` in a folder.
 
     Raises:
-        InputError: as `read_golden`.
+        InputError: See `read_golden`.
     """
     path = folder / MAIN_FILE
     try:
@@ -133,54 +133,54 @@ def read_main(folder: Path) -> JsonObject:
     except (FileNotFoundError, NotADirectoryError):
         raise InputError(
             f"SK-GOLDEN-002 {folder}: there is no golden run (no {MAIN_FILE})\n"
-            "    help: simkit golden record WORLD --out DIR makes one",
+            "    help: make one with: simkit golden record WORLD --out DIR",
             "SK-GOLDEN-002",
         ) from None
     except OSError as error:
         raise _damaged_error(path, f"cannot be read: {error.strerror or error}") from None
     if len(text) > _MAX_TEXT_BYTES:
-        raise _damaged_error(path, "is larger than any may be")
+        raise _damaged_error(path, f"is larger than {_MAX_TEXT_BYTES >> 20} MiB")
     try:
-        said = json.loads(text.decode())
+        main = json.loads(text.decode())
     except RecursionError:
-        raise _damaged_error(path, "is nested too deep") from None
+        raise _damaged_error(path, "has too many nested levels") from None
     except ValueError as error:
         raise _damaged_error(path, f"is not JSON: {error}") from None
-    if not isinstance(said, dict) or type(said.get("format")) is not int:
-        raise _damaged_error(path, "is not of a golden run")
-    if said["format"] > FORMAT:
+    if not isinstance(main, dict) or type(main.get("format")) is not int:
+        raise _damaged_error(path, "is not the file of a golden run")
+    if main["format"] > FORMAT:
         raise InputError(
-            f"SK-GOLDEN-004 {path}: format {said['format']} is newer than what this simkit reads ({FORMAT})\n"
+            f"SK-GOLDEN-004 {path} has format {main['format']}; this version of simkit reads formats up to {FORMAT}\n"
             "    help: pip install --upgrade simkit-robotics",
             "SK-GOLDEN-004",
         )
-    if said["format"] < 1 or not isinstance(said.get("scenario"), dict):
-        raise _damaged_error(path, "is not of a golden run")
-    return said
+    if main["format"] < 1 or not isinstance(main.get("scenario"), dict):
+        raise _damaged_error(path, "is not the file of a golden run")
+    return main
 
 
 def read_history(folder: str | os.PathLike[str]) -> list[JsonMapping]:
-    """What was recorded and blessed in a folder, oldest first."""
+    """Return the history of a golden run, oldest entry first."""
     found = read_main(golden_folder(folder)).get("history", [])
     return [one for one in found if isinstance(one, dict)] if isinstance(found, list) else []
 
 
 def golden_folder(path: str | os.PathLike[str]) -> Path:
-    """The folder of a golden run, of which `golden.json` may be named as well."""
+    """Return the folder of a golden run, given the folder or its `golden.json`."""
     found = Path(path)
     return found.parent if found.name == MAIN_FILE else found
 
 
 def is_golden(path: str | os.PathLike[str]) -> bool:
-    """Whether there is a golden run."""
+    """Check whether a path is a golden run."""
     return (golden_folder(path) / MAIN_FILE).is_file()
 
 
 def find_goldens(path: str | os.PathLike[str]) -> list[Path]:
-    """The golden runs in a folder and below it, by name.
+    """Return the golden runs in a folder and its subfolders, sorted by name.
 
     Raises:
-        InputError: SK-GOLDEN-002 there is none.
+        InputError: SK-GOLDEN-002 there is no golden run.
     """
     top = golden_folder(path)
     if (top / MAIN_FILE).is_file():
@@ -196,11 +196,11 @@ def find_goldens(path: str | os.PathLike[str]) -> list[Path]:
     return found
 
 
-def _read_data(place: Path, said: JsonMapping) -> tuple[str, str]:
-    data = said.get("data")
+def _read_data(place: Path, main: JsonMapping) -> tuple[str, str]:
+    data = main.get("data")
     name, digest = (data.get("file"), data.get("sha256")) if isinstance(data, dict) else (None, None)
     if not isinstance(name, str) or not _DATA.fullmatch(name) or not isinstance(digest, str):
-        raise _damaged_error(place / MAIN_FILE, "does not say where its data are")
+        raise _damaged_error(place / MAIN_FILE, "does not name its data file")
     return name, digest
 
 
@@ -209,7 +209,7 @@ def _damaged_error(path: Path, what: str) -> InputError:
 
 
 def _write_atomically(folder: Path, name: str, data: bytes) -> None:
-    """Writes a file that is there as a whole or not at all."""
+    """Write a file atomically, so that it is complete or absent."""
     left = folder / f".golden-{os.getpid()}.tmp"
     with open(left, "wb") as file:
         file.write(data)
@@ -220,10 +220,10 @@ def _write_atomically(folder: Path, name: str, data: bytes) -> None:
 
 @contextmanager
 def _locked_folder(folder: Path) -> Iterator[int | None]:
-    """Lets one process at a time write in a folder: of two, the last one's run is golden, as a whole.
+    """Lock a folder, so that only one process writes in it at a time.
 
     Yields:
-        A descriptor of the folder; None on Windows, which has no lock for one.
+        Descriptor of the folder; None on Windows, which cannot lock a folder.
     """
     if not hasattr(os, "O_DIRECTORY"):
         yield None
@@ -232,7 +232,7 @@ def _locked_folder(folder: Path) -> Iterator[int | None]:
 
     handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
     try:
-        with suppress(OSError):  # a file system without locks
+        with suppress(OSError):  # some file systems have no locks
             fcntl.flock(handle, fcntl.LOCK_EX)
         yield handle
     finally:
@@ -240,7 +240,7 @@ def _locked_folder(folder: Path) -> Iterator[int | None]:
 
 
 def _remove_old_data(folder: Path, name: str) -> None:
-    """Removes the data that were golden before, and what a writing that was cut off has left."""
+    """Remove old data files and temporary files of interrupted writes."""
     for path in folder.iterdir():
         if (_DATA.fullmatch(path.name) and path.name != name) or _TEMPORARY_NAME.fullmatch(path.name):
             path.unlink(missing_ok=True)

@@ -1,5 +1,5 @@
-"""What one run gave: its messages, the states of its physics, and the inputs that it was made from, as arrays.
+"""Records of runs: messages, physics states and inputs of one run as arrays.
 
-A run specification or an open simulation enters, a `RunRecord` leaves. Whether a record is right is not judged here:
-`simkit.testing.golden` compares two of them.
+The input is a run specification or a loaded simulation. The result is a `RunRecord`. `simkit.testing.golden` compares
+two records.
 """

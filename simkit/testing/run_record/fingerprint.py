@@ -1,4 +1,4 @@
-"""What a run depends on beside its scenario: versions, processor, renderer, and hashes of its files."""
+"""Fingerprint of everything besides the scenario that a run depends on: versions, processor, renderer, and file hashes."""
 
 from __future__ import annotations
 
@@ -24,19 +24,19 @@ if TYPE_CHECKING:
 
 
 RENDERER: Final = "renderer"
-"""What draws pictures; it counts only where there are some."""
+"""Key of the renderer, which matters only for runs with pictures."""
 _INFORMATION_ONLY: Final = ("simkit code", "python")
-"""What is kept for who looks for a cause, and is not expected to change any bit."""
+"""Keys that help to find a cause, but are not expected to change any bit."""
 
 
 def fingerprint(*, pictures: bool = False) -> dict[str, str]:
-    """Versions, processor and system of this process.
+    """Return versions, processor and system of this process.
 
     Args:
-        pictures: whether the renderer is asked for, which opens it.
+        pictures: Include the renderer, which must be opened for this.
 
     Returns:
-        Name -> value; `renderer` only where it was asked for.
+        Name -> value; `renderer` only on request.
     """
     found = dict(_machine_fingerprint())
     if pictures:
@@ -47,7 +47,7 @@ def fingerprint(*, pictures: bool = False) -> dict[str, str]:
 def fingerprint_differences(
     a: Mapping[str, str], b: Mapping[str, str], pictures: bool = False
 ) -> dict[str, tuple[str, str]]:
-    """What of two fingerprints that bits depend on is other: name -> both values."""
+    """Return the entries of two fingerprints that differ and may change bits: name -> both values."""
     names = [n for n in dict.fromkeys((*a, *b)) if n not in _INFORMATION_ONLY and (pictures or n != RENDERER)]
     return {n: (a.get(n, ""), b.get(n, "")) for n in names if a.get(n, "") != b.get(n, "")}
 
@@ -80,19 +80,19 @@ def _version(package: str) -> str:
 
 
 def _cpu_features() -> str:
-    """What of the processor's instructions NumPy and the mathematics library choose by: the widest of each family."""
+    """Return the processor features by which NumPy and the maths library select their code: the widest of each family."""
 
     try:
         features = import_module("numpy._core._multiarray_umath").__cpu_features__
-    except (ImportError, AttributeError):  # a NumPy that hides it
+    except (ImportError, AttributeError):  # some NumPy versions hide the table
         return ""
-    told = ("AVX512F", "AVX512_SKX", "AVX512_ICL", "AVX512_SPR", "AVX2", "FMA3", "ASIMD", "SVE", "VSX4", "VX")
-    return " ".join(name for name in told if features.get(name))
+    relevant = ("AVX512F", "AVX512_SKX", "AVX512_ICL", "AVX512_SPR", "AVX2", "FMA3", "ASIMD", "SVE", "VSX4", "VX")
+    return " ".join(name for name in relevant if features.get(name))
 
 
 @cache
 def code_hash() -> str:
-    """The first letters of a hash over simkit's own Python files."""
+    """Return the first 12 characters of a hash of simkit's own Python files."""
     root = Path(__file__).resolve().parents[2]
     digest = hashlib.sha256()
     for path in sorted(root.rglob("*.py")):
@@ -114,14 +114,14 @@ def _renderer() -> str:
 
 
 _MAX_MODULES: Final = 100
-_FILE_NAMING_SUFFIXES: Final = frozenset((".obj", ".dae", ".gltf", ".glb"))  # formats of meshes that name further files
+_FILE_NAMING_SUFFIXES: Final = frozenset((".obj", ".dae", ".gltf", ".glb"))  # mesh formats that refer to further files
 _SIMKIT_FOLDER: Final = Path(__file__).resolve().parents[2]
 
 
 def source_hashes(sim: Simulation) -> dict[str, str]:
-    """Meshes, pictures and the code of plugins that are not simkit's own: name -> SHA-256.
+    """Return the SHA-256 of meshes, pictures and code of external plugins, by file name.
 
-    A name is a file's last parts, as many as tell it from the others.
+    A file name includes as many parent folders as necessary to be unique.
     """
 
     of_plugins = plugin_value_files(sim)
@@ -138,7 +138,7 @@ def source_hashes(sim: Simulation) -> dict[str, str]:
 
 
 def _files_of_scene(value: object) -> Iterator[Path]:
-    """The files that a scene names."""
+    """Iterate over the files that a scene refers to."""
     if isinstance(value, Path):
         yield value
         yield from _files_of_mesh(value)
@@ -157,7 +157,7 @@ def _files_of_scene(value: object) -> Iterator[Path]:
 
 
 def _files_of_mesh(mesh: Path) -> Iterator[Path]:
-    """Materials, pictures and buffers that a mesh names itself."""
+    """Iterate over the materials, pictures and buffers that a mesh refers to."""
     if mesh.suffix.lower() not in _FILE_NAMING_SUFFIXES:
         return
     from simkit.compiler.meshes.mesh_part import MeshFileError
@@ -166,11 +166,11 @@ def _files_of_mesh(mesh: Path) -> Iterator[Path]:
     try:
         yield from (Path(path) for path, known in convert_file(mesh).companions.items() if known is not None)
     except (MeshFileError, OSError):
-        return  # loading said so
+        return  # loading has already reported the error
 
 
 def _plugin_code_files(sim: Simulation) -> Iterator[Path]:
-    """The files of plugins and sensors that somebody else wrote."""
+    """Iterate over the code files of plugins and sensors that are not part of simkit."""
     for part in (*sim.engine.structure.all_plugins(), *sim.engine.structure.all_sensors()):
         for kind in type(part).__mro__:
             file = getattr(sys.modules.get(kind.__module__), "__file__", None)
@@ -181,9 +181,9 @@ def _plugin_code_files(sim: Simulation) -> Iterator[Path]:
 
 
 def imported_files(path: Path) -> list[Path]:
-    """A file of code and those beside it that it imports, and they: a change in any of them is one of the plugin."""
+    """Return a code file and the files in its folder that it imports, directly or indirectly."""
     found = [path]
-    for file in found:  # grows on the way
+    for file in found:  # the loop appends to this list
         if len(found) > _MAX_MODULES:
             break
         try:
@@ -206,7 +206,7 @@ def _is_standard_library(module: str) -> bool:
 
 
 def _short_names(paths: list[Path]) -> dict[Path, str]:
-    """A name for each path: its last part, and more of them where two would be called the same."""
+    """Return a unique name for each path: the file name, with parent folders where names are equal."""
     names = {path: path.name for path in paths}
     for parts in range(2, 8):
         taken: dict[str, int] = {}

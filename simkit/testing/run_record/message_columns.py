@@ -14,18 +14,18 @@ from simkit import msgs
 from simkit.testing.run_record.record import Column
 
 _STAMPS: Final = ("builtin_interfaces/msg/Time", "builtin_interfaces/msg/Duration")
-_BASE, _NAME = 1, 2  # as the type store numbers the kinds of fields; what is neither is a list
+_BASE, _NAME = 1, 2  # kinds of fields in the type store; other kinds are lists
 _NS: Final = 1_000_000_000
 
 
 class MessageFields(NamedTuple):
-    """The fields of a type, flat; times are single ones.
+    """Fields of a message type as flat paths; a time is one field.
 
     Attributes:
-        numbers, texts, stamps: paths of single ones, with the type of the numbers.
-        arrays: of lists of numbers, with their type.
-        lists: of lists of texts.
-        parts: of lists of messages, with their type.
+        numbers, texts, stamps: Paths of single values; numbers with their type.
+        arrays: Paths of number lists with their type.
+        lists: Paths of text lists.
+        parts: Paths of message lists with their type.
     """
 
     numbers: dict[str, str]
@@ -38,7 +38,7 @@ class MessageFields(NamedTuple):
 
 @cache
 def message_fields(type_name: str) -> MessageFields:
-    """What a message type holds."""
+    """Return the fields of a message type."""
     found = MessageFields({}, [], [], {}, [], {})
     _add_fields(found, type_name, "")
     return found
@@ -68,11 +68,11 @@ def _dtype(base: str) -> str:
 
 
 class MessageRows:
-    """Collects the fields of messages of one type.
+    """Collector of the fields of messages.
 
     Args:
-        type_name: of all of them.
-        skip: paths that are not collected.
+        type_name: Type of all messages.
+        skip: Paths that are not collected.
     """
 
     def __init__(self, type_name: str, skip: frozenset[str] = frozenset()) -> None:
@@ -96,7 +96,7 @@ class MessageRows:
         return len(self._rows)
 
     def take(self, message: object) -> None:
-        """One message more; what it holds is copied."""
+        """Add a message; its values are copied."""
         self._rows.append(self._single(message))
         for path, get in self._arrays.items():
             self._kept[path].append(np.array(get(message)))
@@ -109,7 +109,7 @@ class MessageRows:
                 rows.take(item)
 
     def columns(self) -> tuple[dict[str, Column], dict[str, list[str]]]:
-        """Numbers and texts by path."""
+        """Return numbers and texts by path."""
         fields = self._fields
         columns: dict[str, Column] = {}
         words: dict[str, list[str]] = {}
@@ -131,7 +131,7 @@ class MessageRows:
 
 
 def join_arrays(arrays: list[Any], dtype: str) -> Column:
-    """One array a message: a table where all are as long, else one after the other."""
+    """Join one array per message: as a table if all have the same length, else one after another."""
     lengths = np.array([len(a) for a in arrays], dtype=np.int64)
     if not len(arrays):
         return Column(np.zeros((0, 0), dtype=dtype))
@@ -143,7 +143,7 @@ def join_arrays(arrays: list[Any], dtype: str) -> Column:
 def _add_nested_fields(
     columns: dict[str, Column], words: dict[str, list[str]], path: str, rows: MessageRows, counts: list[int]
 ) -> None:
-    """The fields of a list of messages, gathered by the message that they are part of."""
+    """Add the fields of a message list, grouped by the message that contains the list."""
     inner, texts = rows.columns()
     starts = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
     is_even = len(set(counts)) == 1 and counts[0] > 0
@@ -167,7 +167,7 @@ def _nested_path(skip: frozenset[str], path: str) -> frozenset[str]:
 
 
 def _getter(paths: list[str]) -> Callable[[Any], tuple[Any, ...]]:
-    """Gives the values at all paths as a tuple."""
+    """Return a function that returns the values at all paths as a tuple."""
     if not paths:
         return lambda _: ()
     if len(paths) == 1:

@@ -1,6 +1,4 @@
-"""What is recorded of the messages of one topic, by their type: fields, small pictures, thinned clouds, noise
-statistics.
-"""
+"""Recorders for the messages of one topic by type: fields, small pictures, thinned point clouds, noise statistics."""
 
 from __future__ import annotations
 
@@ -23,15 +21,15 @@ if TYPE_CHECKING:
 
 
 TILE: Final = 32
-"""Length of a tile's side [px]."""
+"""Side length of a tile [px]."""
 
 
 def tile_hashes(image: Array, tile: int = TILE) -> npt.NDArray[np.uint32]:
-    """A hash of each tile of a picture, shape (rows, columns); the last ones may be smaller.
+    """Return a hash of each tile of a picture, shape (rows, columns); the last tiles may be smaller.
 
     Args:
-        image: shape (height, width) or (height, width, channels), of any type.
-        tile: length of a tile's side [px].
+        image: Picture of any type, shape (height, width) or (height, width, channels).
+        tile: Side length of a tile [px].
     """
 
     rows, columns = -(-image.shape[0] // tile), -(-image.shape[1] // tile)
@@ -44,13 +42,13 @@ def tile_hashes(image: Array, tile: int = TILE) -> npt.NDArray[np.uint32]:
 
 
 def shrink(image: Array, longest: int) -> Array:
-    """A small picture: the mean of the pixels under each of its own, of its type.
+    """Reduce a picture: each pixel is the mean of the pixels that it covers, with the same type.
 
-    Of depths the mean is of those that are finite; where there are none, the first of them (infinite or not a number).
+    For depths, the mean includes finite values only. Without finite values, the first value is used (infinite or NaN).
 
     Args:
-        image: shape (height, width) or (height, width, channels), uint8, uint16 or float32.
-        longest: of its sides [px]; a picture that is smaller stays.
+        image: Picture of type uint8, uint16 or float32, shape (height, width) or (height, width, channels).
+        longest: Maximum side length [px]; a smaller picture is returned unchanged.
     """
     height, width = image.shape[:2]
     factor = longest / max(height, width, 1)
@@ -71,7 +69,7 @@ def shrink(image: Array, longest: int) -> Array:
 
 
 def _block_sum(values: Array, rows: Array, columns: Array) -> Array:
-    """The sum over blocks that begin at these rows and columns."""
+    """Return the sums of blocks that begin at the given rows and columns."""
     return np.asarray(np.add.reduceat(np.add.reduceat(values, rows, axis=0), columns, axis=1))
 
 
@@ -82,8 +80,8 @@ _BINARY_FIELDS: Final = {
     _CLOUD: frozenset(("data", "fields")),
     "sensor_msgs/msg/CompressedImage": frozenset(("data",)),
 }
-_POINTS_KEPT: Final = 64  # of a cloud's message that are kept
-_PICTURES_KEPT: Final = 32  # of a run that are kept, at most
+_POINTS_KEPT: Final = 64  # maximum number of stored points in a cloud message
+_PICTURES_KEPT: Final = 32  # maximum number of stored pictures in a run
 _CHANNELS: Final = {
     **dict.fromkeys(("mono8", "8UC1", "bayer_rggb8", "bayer_bggr8", "bayer_gbrg8", "bayer_grbg8"), ("uint8", 1)),
     **dict.fromkeys(("rgb8", "bgr8", "8UC3"), ("uint8", 3)),
@@ -98,26 +96,26 @@ _CLOUD_TYPES: Final = {
 
 
 class MessageRecorder:
-    """Takes the messages of one topic, and says in the end what they were: all fields as they are.
+    """Recorder of one topic that stores all fields unchanged.
 
     Args:
-        type_name: of the messages.
+        type_name: Type of the messages.
     """
 
     def __init__(self, type_name: str) -> None:
         self._rows = MessageRows(type_name, _BINARY_FIELDS.get(type_name, frozenset()))
 
     def take(self, message: Message) -> None:
-        """One message more; what is kept of it is copied."""
+        """Add a message; stored data are copied."""
         self._rows.take(message)
 
     def fill(self, stream: Stream) -> None:
-        """Puts what was taken into a stream."""
+        """Write the recorded data to a stream."""
         stream.columns, stream.words = self._rows.columns()
 
 
 def message_recorder_for(scenario: RunSpec, sim: Simulation, topic: str, type_name: str) -> MessageRecorder:
-    """What takes the messages of a topic."""
+    """Return the recorder for a topic."""
     if type_name == _IMAGE:
         return _ImageRecorder(scenario.picture)
     if type_name == _CLOUD:
@@ -135,7 +133,7 @@ def message_recorder_for(scenario: RunSpec, sim: Simulation, topic: str, type_na
 
 
 class _ImageRecorder(MessageRecorder):
-    """Pictures, made small."""
+    """Recorder of reduced pictures."""
 
     def __init__(self, longest: int) -> None:
         super().__init__(_IMAGE)
@@ -157,13 +155,13 @@ class _ImageRecorder(MessageRecorder):
         if number % self._every:
             return
         image = pixels_of_image(message)
-        if image is None or shape != self._shape:  # of another size from one to the next: the digest has it
+        if image is None or shape != self._shape:  # a changed size cannot be stored, but the digest covers it
             self._is_odd = True
             return
         small = shrink(image, self._longest)
         self._small.append(small if small.dtype != np.uint16 else small.astype(np.float32))
         self._tiles.append(tile_hashes(image))
-        if len(self._small) > _PICTURES_KEPT:  # every second of them, so that the numbers of two runs meet
+        if len(self._small) > _PICTURES_KEPT:  # keep every second one, so that two runs keep the same messages
             self._every *= 2
             del self._small[1::2], self._tiles[1::2]
 
@@ -183,7 +181,7 @@ class _ImageRecorder(MessageRecorder):
 
 
 class _CloudRecorder(MessageRecorder):
-    """Clouds of points, thinned; the digest has all of them."""
+    """Recorder of thinned point clouds; the digest covers all points."""
 
     def __init__(self) -> None:
         super().__init__(_CLOUD)
@@ -209,7 +207,7 @@ class _CloudRecorder(MessageRecorder):
 
 
 def pixels_of_image(message: Message) -> Any:
-    """The pixels of an Image message, shape (height, width, channels); None for an encoding that is not known."""
+    """Return the pixels of an Image message, shape (height, width, channels); None for an unknown encoding."""
     kind = _CHANNELS.get(str(message.encoding))
     if kind is None:
         return None
@@ -225,7 +223,7 @@ def pixels_of_image(message: Message) -> Any:
 
 
 def points_of_cloud(message: Message) -> Any:
-    """The points of a PointCloud2 as a structured array."""
+    """Return the points of a PointCloud2 message as a structured array."""
     order: Literal[">", "<"] = ">" if message.is_bigendian else "<"
     kinds: list[object] = []
     names: list[str] = []
@@ -244,12 +242,13 @@ def points_of_cloud(message: Message) -> Any:
 
 
 class _NoiseRecorder(MessageRecorder):
-    """All fields but those of which the statistics are kept, of readings less truths.
+    """Recorder of all fields that replaces some fields by statistics of the difference between reading and ground
+    truth.
 
     Args:
-        sensor: that publishes.
-        type_name: of its messages.
-        paths: of the fields whose statistics are kept.
+        sensor: Publishing sensor.
+        type_name: Type of the messages.
+        paths: Fields to replace by statistics.
     """
 
     def __init__(self, sensor: Any, type_name: str, paths: Sequence[str]) -> None:
@@ -271,14 +270,14 @@ class _NoiseRecorder(MessageRecorder):
             column, truth = read[path], true[path]
             if column.lengths is not None or column.values.shape != truth.values.shape or not len(column.values):
                 continue
-            with np.errstate(invalid="ignore"):  # rays that hit nothing, in both
+            with np.errstate(invalid="ignore"):  # inf - inf for rays without a hit in both
                 residual = _table(column.values) - _table(truth.values)
             if not np.nan_to_num(residual).any():
-                continue  # there is no noise: samples are compared
+                continue  # without noise, samples are compared
             stream.statistics[path] = noise_statistics(residual, period)
             del stream.columns[path]
 
 
 def _table(values: Array) -> Array:
-    """A row for each message."""
+    """Return an array with one row for each message."""
     return values.reshape(len(values), -1).astype(np.float64)

@@ -1,4 +1,4 @@
-"""What noise is like, in a few numbers, and whether two samples of it can be of one kind."""
+"""Statistics of sensor noise, and tests if two samples can come from the same noise."""
 
 from __future__ import annotations
 
@@ -12,30 +12,30 @@ import numpy.typing as npt
 Floats = npt.NDArray[np.float64]
 
 FALSE_ALARM: Final = 1e-11
-"""Probability with which one test calls two samples of one noise different: a field has some ten tests, so that ten
-thousand checks of a robot with a hundred fields stay silent with more than 99.9 %."""
+"""Probability that one test reports equal noise as different. A field has about ten tests, so 10 000 checks of a robot
+with 100 fields raise no false alarm with a probability of more than 99.9 %.
+"""
 QUANTILES: Final = 129
-_COMPONENTS: Final = 16  # that are told apart; a covariance has 9
-_MIN_SAMPLES: Final = 8  # samples that say something
-_SLOW_DRIFT: Final = 4  # slowest waves of a sample, which a drift shows in
-_DRIFT_RATIO: Final = 4.0  # their mean power, of white noise's, from which there is one: by chance once in ten thousand
-_WALK: Final = 13.2  # a random walk's mean has this times the power of its slowest wave: 4 pi squared by 3
-_ALLAN_LEAST: Final = 20  # independent differences of averages behind an Allan deviation that is kept
+_COMPONENTS: Final = 16  # components with separate statistics; a covariance has 9
+_MIN_SAMPLES: Final = 8  # samples needed for a test
+_SLOW_DRIFT: Final = 4  # number of slowest Fourier components, in which a drift appears
+_DRIFT_RATIO: Final = 4.0  # mean power relative to white noise that counts as drift; chance probability 1e-4
+_WALK: Final = 13.2  # variance of a random walk's mean relative to its slowest component: 4 pi squared by 3
+_ALLAN_LEAST: Final = 20  # independent differences of averages needed for an Allan deviation
 
 
 @dataclass
 class NoiseStatistics:
-    """Of the residual (reading less truth) of one field.
+    """Statistics of the residual (reading minus ground truth) of one field.
 
     Attributes:
-        count: of samples.
-        mean, deviation: in the field's unit, one for each component, shape (components,).
-        quantiles: at evenly spread probabilities, shape (components, quantiles).
-        taus: averaging times of the Allan deviation [s], (taus,).
-        allan: Allan deviation at those, (components, taus).
-        independent: how many independent samples tell as much of the mean as these do, which may depend on each other,
-            (components,).
-        kurtosis: fourth moment by the squared variance (3 for a normal distribution), (components,).
+        count: Number of samples.
+        mean, deviation: Mean and standard deviation in the field's unit, shape (components,).
+        quantiles: Quantiles at equidistant probabilities, shape (components, quantiles).
+        taus: Averaging times of the Allan deviation [s], shape (taus,).
+        allan: Allan deviation at these times, shape (components, taus).
+        independent: Number of independent samples with the same information about the mean, shape (components,).
+        kurtosis: Fourth moment divided by the squared variance (3 for a normal distribution), shape (components,).
     """
 
     count: int
@@ -50,14 +50,15 @@ class NoiseStatistics:
 
 @dataclass(frozen=True)
 class StatisticDifference:
-    """A statistic in which two samples cannot be of one noise.
+    """Statistic that proves two samples to come from different noise.
 
     Attributes:
-        what: "mean", "deviation", "distribution" or "allan".
-        component: which.
-        golden, run: its values; of a distribution, the part of samples below `at`.
-        at: where a distribution differs most, in the field's unit; the averaging time of an Allan deviation [s].
-        limit: how far they may be apart: a difference, of deviations a ratio.
+        what: "mean", "deviation", "distribution", "allan" or "count".
+        component: Index of the component.
+        golden, run: Values in both runs; for a distribution, the share of samples below `at`.
+        at: Value with the largest difference of distributions, in the field's unit; averaging time of an Allan
+            deviation [s].
+        limit: Largest difference that chance explains; a ratio for deviations.
     """
 
     what: Literal["mean", "deviation", "distribution", "allan", "count"]
@@ -69,12 +70,12 @@ class StatisticDifference:
 
 
 def noise_statistics(residual: npt.ArrayLike, period: float) -> NoiseStatistics:
-    """The statistics of noise.
+    """Return the statistics of noise.
 
     Args:
-        residual: reading less truth, shape (samples,) or (samples, components); samples that are not finite are left
-            out. Many components (rays, pixels) are taken for one noise, without an Allan deviation.
-        period: between two samples [s].
+        residual: Reading minus ground truth, shape (samples,) or (samples, components). Samples that are not finite are
+            left out. Many components (rays, pixels) are pooled to one, without an Allan deviation.
+        period: Time between two samples [s].
     """
     values = np.asarray(residual, np.float64)
     values = values.reshape(len(values), -1 if values.size else max(1, int(np.prod(values.shape[1:]))))
@@ -106,12 +107,12 @@ def noise_statistics(residual: npt.ArrayLike, period: float) -> NoiseStatistics:
 def statistic_differences(
     golden: NoiseStatistics, run: NoiseStatistics, absolute: float = 0.0, relative: float = 0.0
 ) -> list[StatisticDifference]:
-    """In what two samples cannot be of one noise, each with a false alarm of `FALSE_ALARM`.
+    """Return the statistics that prove two samples to differ, each with a false-alarm probability of `FALSE_ALARM`.
 
     Args:
-        golden, run: of the same field.
-        absolute: how far means may be apart beside what chance explains, in the field's unit.
-        relative: part by which deviations may be other beside what chance explains.
+        golden, run: Statistics of the same field.
+        absolute: Additional tolerance for means, in the field's unit.
+        relative: Additional relative tolerance for deviations.
     """
     if golden.mean.shape != run.mean.shape:
         return [StatisticDifference("count", 0, float(golden.mean.size), float(run.mean.size), 0.0)]
@@ -124,14 +125,14 @@ def statistic_differences(
         of_deviation = _deviation_difference(golden, run, component, relative)
         of_mean = _mean_difference(golden, run, component, absolute)
         found += [of_mean, of_deviation]
-        if of_deviation is None:  # which shows in the rest too, as a mean does in the distribution
+        if of_deviation is None:  # other deviations also change the distribution, and so do other means
             found.append(None if of_mean else _distribution_difference(golden, run, component, absolute))
             found.append(_allan_difference(golden, run, component, relative))
     return [deviance for deviance in found if deviance is not None]
 
 
 def detectable_ratio(count: float, kurtosis: float = 3.0) -> float:
-    """The smallest ratio of two deviations that is found nearly always, from two samples of this many values."""
+    """Return the smallest ratio of two deviations that is almost always detected in two samples of this size."""
     from scipy.stats import norm
 
     if count < _MIN_SAMPLES:
@@ -146,7 +147,7 @@ def detectable_ratio(count: float, kurtosis: float = 3.0) -> float:
 def _mean_difference(
     golden: NoiseStatistics, run: NoiseStatistics, c: int, absolute: float
 ) -> StatisticDifference | None:
-    """Means, by the normal distribution of their difference with the number of independent samples."""
+    """Compare means by a t-test with the number of independent samples."""
     from scipy.stats import t as student
 
     counts = _sample_counts(golden, c), _sample_counts(run, c)
@@ -162,7 +163,8 @@ def _mean_difference(
 def _deviation_difference(
     golden: NoiseStatistics, run: NoiseStatistics, c: int, relative: float
 ) -> StatisticDifference | None:
-    """Deviations, by the logarithm of their ratio, whose variance is (kurtosis - 1) / 4 by the number of samples.
+    """Compare deviations by the logarithm of their ratio, whose variance is (kurtosis - 1) / 4 by the number of
+    samples.
 
     Source: Shoemaker, "Fixing the F test for equal variances", The American Statistician 57(2), 2003.
     """
@@ -170,7 +172,7 @@ def _deviation_difference(
     if a == b:
         return None
     floor = 1e-12 * max(abs(golden.mean[c]), abs(run.mean[c]))
-    if a <= floor or b <= floor:  # one of them has no noise at all
+    if a <= floor or b <= floor:  # one sample has no noise
         return StatisticDifference("deviation", c, a, b, 1.0) if max(a, b) > 4.0 * floor else None
     kurtosis = max(3.0, *(s.kurtosis[c] for s in (golden, run) if s.kurtosis.size))
     inverse = 1.0 / max(2.0, _sample_counts(golden, c) - 1.0) + 1.0 / max(2.0, _sample_counts(run, c) - 1.0)
@@ -183,7 +185,7 @@ def _deviation_difference(
 def _distribution_difference(
     golden: NoiseStatistics, run: NoiseStatistics, c: int, absolute: float
 ) -> StatisticDifference | None:
-    """Kolmogorov-Smirnov from quantiles: the least distance of the distributions that the quantiles allow."""
+    """Compare distributions by Kolmogorov-Smirnov with the smallest distance that the quantiles permit."""
     a, b = golden.quantiles[c], run.quantiles[c]
     if a.size < 2 or b.size < 2 or golden.deviation[c] == 0.0:
         return None
@@ -203,7 +205,7 @@ def _distribution_difference(
 def _allan_difference(
     golden: NoiseStatistics, run: NoiseStatistics, c: int, relative: float
 ) -> StatisticDifference | None:
-    """Allan deviations at the same averaging times, by the F distribution of their squares: the one furthest off."""
+    """Compare Allan deviations at equal averaging times by the F distribution; return the largest difference."""
     from scipy.stats import f as fisher
 
     common = [float(tau) for tau in golden.taus if np.isclose(run.taus, tau, rtol=1e-6).any()]
@@ -224,37 +226,37 @@ def _allan_difference(
 
 
 def _degrees_of_freedom(statistics: NoiseStatistics, c: int, tau: float) -> float:
-    """Independent squares behind an Allan deviation: half as many as there are averages, fewer with heavy tails."""
+    """Return the degrees of freedom of an Allan variance: half the number of averages, fewer for heavy tails."""
     width = max(1.0, tau / float(statistics.taus[0]))
     kurtosis = 3.0 + max(0.0, float(statistics.kurtosis[c]) - 3.0 if statistics.kurtosis.size else 0.0) / width
     return max(2.0, statistics.count / width / (kurtosis - 1.0))
 
 
 def _sample_counts(statistics: NoiseStatistics, c: int) -> float:
-    """Independent samples behind a component."""
+    """Return the number of independent samples of a component."""
     if not statistics.independent.size:
         return float(statistics.count)
     return float(max(2.0, min(statistics.count, statistics.independent[c])))
 
 
 def _sigmas(count: float) -> float:
-    """How many standard errors chance explains; more where the error itself is known from few samples."""
+    """Return the number of standard errors that chance explains; more for few samples, whose error is uncertain."""
     from scipy.stats import t as student
 
     return float(student.isf(FALSE_ALARM / 2.0, max(2.0, count - 1.0)))
 
 
 def _bounds(quantiles: Floats, places: Floats) -> tuple[Floats, Floats]:
-    """The least and the greatest part of a sample that can lie at or below each place, by its quantiles."""
+    """Return the least and greatest share of a sample at or below each place, given its quantiles."""
     steps, at_most = quantiles.size - 1, np.searchsorted(quantiles, places, side="right")
     return np.clip((at_most - 1) / steps, 0.0, 1.0), np.clip(at_most / steps, 0.0, 1.0)
 
 
-# ---------------------------------------------------------------------- numbers of a sample
+# ---------------------------------------------------------------------- statistics of a sample
 
 
 def _allan(values: Floats, period: float) -> tuple[Floats, Floats]:
-    """Overlapping Allan deviation at doubling averaging times.
+    """Return averaging times and overlapping Allan deviations at doubling averaging times.
 
     Source: IEEE Std 952-1997, annex C; Riley, "Handbook of Frequency Stability Analysis", NIST SP 1065, 5.2.4.
     """
@@ -273,7 +275,7 @@ def _allan(values: Floats, period: float) -> tuple[Floats, Floats]:
 
 
 def _independent_samples(centred: Floats) -> float:
-    """How many independent samples tell as much of the mean: by the autocorrelation, up to where it first vanishes.
+    """Return the number of independent samples with the same information about the mean, from the autocorrelation.
 
     Source: Geyer, "Practical Markov chain Monte Carlo", Statistical Science 7(4), 1992: sums of pairs, while positive.
     """
@@ -291,6 +293,6 @@ def _independent_samples(centred: Floats) -> float:
     pairs = pairs[: int(ends[0])] if ends.size else pairs
     time = max(1.0, 2.0 * float(pairs.sum()) - 1.0)
     slow = np.abs(np.fft.rfft(centred)[1 : 1 + _SLOW_DRIFT]) ** 2 / total
-    if float(slow.mean()) > _DRIFT_RATIO:  # the mean of a random walk wanders further than its slowest wave shows
+    if float(slow.mean()) > _DRIFT_RATIO:  # the mean of a random walk varies more than its slowest component shows
         time = max(time, _WALK * float(slow.max()))
     return max(1.0, count / time)

@@ -1,4 +1,4 @@
-"""What one run of a scenario gave, as arrays: the golden one that was stored, or the one that is compared with it."""
+"""Data types for the record of one run, stored or new."""
 
 from __future__ import annotations
 
@@ -20,13 +20,12 @@ Array = npt.NDArray[Any]
 
 @dataclass
 class Column:
-    """One field of a topic's messages.
+    """Field of a topic's messages.
 
     Attributes:
-        values: shape (messages, …); where messages have different numbers of values, (all values,), one message after
-            the other.
-        lengths: how many values each message has, (messages,); None where all have the same shape.
-        step: what the values are rounded to; 0 where they are exact.
+        values: Values, shape (messages, …); shape (all values,) if the number of values varies between messages.
+        lengths: Number of values in each message, shape (messages,); None if all messages have the same shape.
+        step: Rounding step of the values; 0 if they are exact.
     """
 
     values: Array
@@ -34,7 +33,7 @@ class Column:
     step: float = 0.0
 
     def of(self, index: int) -> Array:
-        """The values of one message."""
+        """Return the values of one message."""
         if self.lengths is None:
             return np.asarray(self.values[index])
         start = int(self.lengths[:index].sum())
@@ -43,16 +42,16 @@ class Column:
 
 @dataclass
 class Pictures:
-    """The pictures of a topic, small.
+    """Reduced pictures of a topic.
 
     Attributes:
-        small: shape (messages, height, width, channels), uint8, or float32 for depths [m] (not finite: nothing there).
-        shape: height and width as they came [px].
-        encoding: of the messages.
-        tiles: a hash of each tile of each picture as it came, shape (messages, rows, columns), uint32.
-        kept: of which messages `small` and `tiles` are, ascending, (kept,): every second, fourth, … where there are
-            many; None for all.
-        hashes: of every picture as it came, (messages,), uint32; None where not known.
+        small: Reduced pictures, shape (messages, height, width, channels), uint8, or float32 for depths [m] (not finite
+            without a hit).
+        shape: Height and width of the original pictures [px].
+        encoding: Encoding of the messages.
+        tiles: Hash of each tile of the original pictures, shape (messages, rows, columns), uint32.
+        kept: Messages in `small` and `tiles`, ascending, shape (kept,): every second, fourth, … of many; None for all.
+        hashes: Hash of every original picture, shape (messages,), uint32; None if unknown.
     """
 
     small: Array
@@ -64,16 +63,16 @@ class Pictures:
 
     @property
     def messages(self) -> npt.NDArray[np.int64]:
-        """Of which messages `small` and `tiles` are, where all are kept as well."""
+        """Messages whose pictures are in `small` and `tiles`."""
         return np.arange(len(self.small)) if self.kept is None else self.kept
 
     def at(self, messages: npt.NDArray[np.int64]) -> Pictures:
-        """Only those of some of the messages that are kept."""
+        """Return the pictures of some of the stored messages."""
         rows = np.searchsorted(self.messages, messages)
         return replace(self, small=self.small[rows], tiles=self.tiles[rows], kept=messages)
 
     def first(self, count: int) -> Pictures:
-        """Those of the first messages."""
+        """Return the pictures of the first messages."""
         found = self.at(self.messages[self.messages < count])
         hashes = None if self.hashes is None else self.hashes[:count]
         return replace(found, kept=None if self.kept is None else found.kept, hashes=hashes)
@@ -81,18 +80,18 @@ class Pictures:
 
 @dataclass
 class Stream:
-    """What one topic gave.
+    """Recorded data of one topic.
 
     Attributes:
-        topic: its name.
-        type_name: its ROS type.
-        times_ns: when each message was published, simulated time [ns].
-        columns: numbers, by path of the field (`pose.pose.position.x`, `ranges`).
-        words: texts, by path.
-        pictures: for images.
-        statistics: of the noise, by path of the field, where statistics are compared instead of samples.
-        chunks: SHA-256 of the messages as CDR, one a second of simulated time, its first 16 hexadecimal digits.
-        digest: SHA-256 of them all.
+        topic: Name of the topic.
+        type_name: ROS type.
+        times_ns: Simulated time of publication of each message [ns].
+        columns: Numbers by path of the field (`pose.pose.position.x`, `ranges`).
+        words: Texts by path of the field.
+        pictures: Reduced pictures; None for other types.
+        statistics: Noise statistics by path of the field, for fields whose samples are not stored.
+        chunks: First 16 hexadecimal digits of the SHA-256 of each simulated second's messages in CDR.
+        digest: SHA-256 of all messages.
     """
 
     topic: str
@@ -108,20 +107,21 @@ class Stream:
 
 @dataclass
 class States:
-    """The physics on its way: a mark of every tick, and the whole state now and then.
+    """Physics of a run: a one-byte mark of every tick, and some complete states.
 
     Attributes:
-        timestep: length of a step [s].
-        marks: one byte of a hash of positions and velocities after each tick, shape (ticks,); what has no name has its
-            place by its number, all else by name, so that the order of models in a file does not show.
-        inputs: one byte of a hash of what plugins and commands put in (controls, forces) at each tick, (ticks,).
-        ticks: at which the state was kept, ascending.
-        names: of the quantities: `robot::wheel_joint position`, `crate velocity z`, … .
-        values: shape (kept, quantities), exact.
-        input_names, input_values: the same of controls and forces.
-        digest: the state hash at the end, as `simkit run` prints it.
-        named_digest: SHA-256 of all marks and of the state at the end by name, which the order of models in a file does
-            not change; hexadecimal.
+        timestep: Time step [s].
+        marks: One byte of a hash of positions and velocities after each tick, shape (ticks,). The hash orders entities
+            by name, so it does not depend on their order in the file. Unnamed entities are ordered by number.
+        inputs: One byte of a hash of the inputs from plugins and commands (controls, forces) at each tick, shape
+            (ticks,).
+        ticks: Ticks of the stored states, ascending.
+        names: Names of the quantities: `robot::wheel_joint position`, `crate velocity z`, … .
+        values: Exact values, shape (kept, quantities).
+        input_names, input_values: Names and values of controls and forces.
+        digest: State hash at the end, as `simkit run` prints it.
+        named_digest: Hexadecimal SHA-256 of all marks and of the final state by name; independent of the order in the
+            file.
     """
 
     timestep: float
@@ -138,26 +138,24 @@ class States:
 
 @dataclass
 class RunRecord:
-    """What one run of a scenario gave.
+    """Record of one run of a scenario.
 
     Attributes:
-        scenario: what was run.
-        fingerprint: versions, processor, renderer: `simkit.testing.run_record.fingerprint`.
-        streams: by topic.
-        states: the physics.
-        leaves: what the world means once resolved, flat: path -> value (number, text, or list of numbers); paths are
-            made of names, so that the order in the file does not show.
-        leaf_places: `file:line` of those that have one; of the run only.
-        fields: the compiled model's fields by name of the part (`geom robot::wheel::collision size`), for saying what
-            the engine saw.
-        sources: SHA-256 of the files that the run was made from, by name: meshes, pictures, parameter files and the
-            code of plugins.
-        diagnostics: codes of what loading reported, with how many of each.
-        end: why the run ended: "duration", "until", …, or the error's text.
-        simulation: the run's own, for further questions; None for what was read from a file.
-        checks: what became of the scenario's checks (`simkit.testing.conditions.CheckResult`); of the run only.
-        error: what the run failed with; of the run only.
-        environment: variables of the environment that say what the world is (`TURTLEBOT3_MODEL`); empty where not set.
+        scenario: Scenario.
+        fingerprint: Versions, processor, renderer: `simkit.testing.run_record.fingerprint`.
+        streams: Recorded data by topic.
+        states: Physics.
+        leaves: Values of the resolved world: path -> value (number, text, or list of numbers). Paths consist of names
+            and therefore do not depend on the order in the file.
+        leaf_places: `file:line` of these values, where known; for a new run only.
+        fields: Fields of the compiled model by entity name (`geom robot::wheel::collision size`).
+        sources: SHA-256 of the files of the run by name: meshes, pictures, parameter files and the code of plugins.
+        diagnostics: Codes reported during loading, with their counts.
+        end: End of the run: "duration", "until", …, or the text of an error.
+        simulation: Simulation of the run, still open; None for a stored record.
+        checks: Results of the scenario's checks; for a new run only.
+        error: Error that ended the run; for a new run only.
+        environment: Environment variables that select the world (`TURTLEBOT3_MODEL`); empty if not set.
     """
 
     scenario: RunSpec

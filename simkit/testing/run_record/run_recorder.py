@@ -1,4 +1,4 @@
-"""Run a scenario and record the topics and the physics of it."""
+"""Recorder that runs a scenario and records its topics and physics."""
 
 from __future__ import annotations
 
@@ -38,27 +38,27 @@ _PARTS: Final[dict[str, tuple[str, Callable[[Any], Any]]]] = {
     _CONTACTS: ("contacts", attrgetter("collision1.name", "collision2.name")),
     "gazebo_msgs/msg/ContactsState": ("states", attrgetter("collision1_name", "collision2_name")),
 }
-"""A list of parts that each say whose they are, and what they say; those that say the same keep their order."""
+"""Message type -> field with a list of items, and the sort key of its items; equal items keep their order."""
 _POINTS: Final[dict[str, tuple[str, ...]]] = {
     _CONTACTS: ("positions", "normals", "depths", "wrenches"),
     "gazebo_msgs/msg/ContactsState": ("contact_positions", "contact_normals", "depths", "wrenches"),
 }
-"""Lists side by side, of the points where two things touch; the first says where."""
+"""Message type -> parallel lists of contact points; the first list has the positions."""
 _ACROSS: Final = (1.0, math.sqrt(0.5), math.sqrt(1.0 / 3.0))
-"""Points are in order along this direction, which is none that the corners of a box have in common."""
+"""Direction in which contact points are sorted; no edge or diagonal of a box is perpendicular to it."""
 _ROWS: Final[dict[str, tuple[str, ...]]] = {
     "gazebo_msgs/msg/ModelStates": ("name", "pose", "twist"),
     "gazebo_msgs/msg/LinkStates": ("name", "pose", "twist"),
 }
-"""Lists side by side, of all that a world holds; the first has the names."""
+"""Message type -> parallel lists of all entities; the first list has the names."""
 
 
 def sort_message(message: Message, type_name: str) -> object:
-    """A message with its parts by name; itself where they are, or where their order means something.
+    """Return a message whose items are sorted by name; the message itself if it is sorted or its order has a meaning.
 
     Args:
-        message: which is not changed.
-        type_name: of it.
+        message: Message; it is not modified.
+        type_name: Type of the message.
     """
     if type_name in _PARTS:
         field, key = _PARTS[type_name]
@@ -82,7 +82,7 @@ def sort_message(message: Message, type_name: str) -> object:
 
 
 def _sort_points(part: Any, fields: tuple[str, ...]) -> object:
-    """A contact with its points in one order: the engine's depends on which of the two came first in the file."""
+    """Return a contact with sorted points, because the engine's order depends on the order of models in the file."""
     columns = {field: getattr(part, field) for field in fields}
     places = columns[fields[0]]
     keys = [p.x * _ACROSS[0] + p.y * _ACROSS[1] + p.z * _ACROSS[2] for p in places]
@@ -98,7 +98,7 @@ def _sort_points(part: Any, fields: tuple[str, ...]) -> object:
 
 
 def _without_entity_numbers(contact: Message) -> object:
-    """A contact without the numbers of what touches: they count the parts of the file, and names stand beside them."""
+    """Return a contact without entity numbers, which depend on the order in the file; the names identify the entities."""
     wrenches = [
         replace(w, body_1_id=replace(w.body_1_id, data=0), body_2_id=replace(w.body_2_id, data=0))
         for w in contact.wrenches
@@ -114,25 +114,25 @@ def _without_entity_numbers(contact: Message) -> object:
 _CLOCK: Final = "rosgraph_msgs/msg/Clock"
 _RENDERED: Final = ("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage")
 ENVIRONMENT_VARIABLES: Final = ("TURTLEBOT3_MODEL",)
-_HASH_LETTERS: Final = 16  # of the hash of a second
+_HASH_LETTERS: Final = 16  # characters of the hash of a second
 
 
 def run_record(scenario: RunSpec, *, sim: Simulation | None = None) -> RunRecord:
-    """Runs a scenario to its end and records what it gives.
+    """Run a scenario to its end and record its outputs.
 
-    The record's `simulation` is left open, for further questions; whoever asked for the record closes it.
+    The record's `simulation` stays open. The caller must close it.
 
     Args:
-        scenario: what is run.
-        sim: its world, where it is open already; it goes on from where it stands.
+        scenario: Scenario.
+        sim: Simulation of its world, in any state; None to load it.
 
     Raises:
-        InputError: the world, a command or a check cannot be used.
-        RenderError: there are pictures to be drawn and nothing that draws.
+        InputError: The world, a command or a check is invalid.
+        RenderError: There are pictures to render, but no renderer is available.
     """
     results: tuple[CheckResult, ...] = ()
     failed: Exception | None = None
-    with contextlib.chdir("."):  # where a plugin may have gone is nobody else's place
+    with contextlib.chdir("."):  # a plugin may change the working directory; restore it afterwards
         opened = open_scenario(scenario) if sim is None else sim
         try:
             with RunRecorder(scenario, opened, scenario.longest) as capture:
@@ -151,16 +151,15 @@ def run_record(scenario: RunSpec, *, sim: Simulation | None = None) -> RunRecord
 
 
 class RunRecorder:
-    """Takes down the topics and the physics of a simulation, from now on; a context manager around its run.
+    """Recorder of the topics and the physics of a simulation, from now on; a context manager around the run.
 
     Args:
-        scenario: which topics, and how.
-        sim: the simulation.
-        longest: how long it will run at most [s]; states are kept accordingly.
+        scenario: Scenario with topics and tolerances.
+        sim: Simulation.
+        longest: Maximum duration of the run [s]; it determines the interval between stored states.
     """
 
     def __init__(self, scenario: RunSpec, sim: Simulation, longest: float) -> None:
-
         self._scenario, self._sim = scenario, sim
         self._streams: dict[str, StreamRecorder] = {}
         self._leaves, self._places = values_of_simulation(sim)
@@ -177,24 +176,24 @@ class RunRecorder:
         self.close()
 
     def close(self) -> None:
-        """Takes nothing any more."""
+        """Stop recording."""
         for stream in self._streams.values():
             stream.queue.deliver_all()
         self._taps.close()
         self._marks.close()
 
     def record(self, end: str = "duration") -> RunRecord:
-        """What was taken so far.
+        """Return the record up to now.
 
         Args:
-            end: why the run ended.
+            end: End of the run.
         """
 
         published = {topic for topic, _, _, does in self._sim.communication.bus.endpoints() if does == "publishes"}
         streams = {}
         for topic in sorted(self._streams):
-            taker = self._streams[topic]
-            stream = taker.stream()
+            stream_recorder = self._streams[topic]
+            stream = stream_recorder.stream()
             if len(stream.times_ns) or topic in published:
                 streams[topic] = stream
         pictures = any(s.type_name in _RENDERED and len(s.times_ns) for s in streams.values())
@@ -214,13 +213,13 @@ class RunRecorder:
         )
 
     def _receiver_of(self, topic: str, type_name: str) -> Callable[[object], None] | None:
-        if not self._is_asked_for(topic, type_name):
+        if not self._is_recorded(topic, type_name):
             return None
         sim = self._sim
         stream = self._streams[topic] = StreamRecorder(self._scenario, sim, topic, type_name)
         return lambda message: stream.queue.add(sim.time_ns, message)
 
-    def _is_asked_for(self, topic: str, type_name: str) -> bool:
+    def _is_recorded(self, topic: str, type_name: str) -> bool:
         scenario = self._scenario
         if matches_topic(topic, scenario.skip):
             return False
@@ -230,41 +229,41 @@ class RunRecorder:
 
 
 class StreamRecorder:
-    """Takes down one topic.
+    """Recorder of one topic.
 
     Args:
-        scenario: how.
-        sim: the simulation.
-        topic, type_name: which.
+        scenario: Scenario with the tolerances.
+        sim: Simulation.
+        topic, type_name: Topic and its type.
 
     Attributes:
-        queue: is given each message with the time at which it was published [ns].
+        queue: Queue that receives each message with its time of publication [ns].
     """
 
     def __init__(self, scenario: RunSpec, sim: Simulation, topic: str, type_name: str) -> None:
         self._scenario, self._sim, self._topic, self._type_name = scenario, sim, topic, type_name
-        self._taker: MessageRecorder | None = None
+        self._message_recorder: MessageRecorder | None = None
         self._times: list[int] = []
         self._whole, self._second = hashlib.sha256(), hashlib.sha256()
         self._chunks: list[str] = []
         self.queue = MessageQueue(self._keep)
 
     def stream(self) -> Stream:
-        """What was taken so far."""
+        """Return the recorded data up to now."""
         self._sim.communication.bus.gather(self._topic)
         self.queue.deliver_all()
         stream = Stream(self._topic, self._type_name, np.array(self._times, np.int64))
         stream.digest = self._whole.hexdigest()
         stream.chunks = [*self._chunks, self._second.hexdigest()[:_HASH_LETTERS]] if self._times else []
-        if self._taker is not None:
-            self._taker.fill(stream)
+        if self._message_recorder is not None:
+            self._message_recorder.fill(stream)
         return stream
 
     def _keep(self, now: int, message: object) -> None:
         type_name = msgs.type_name(message)
-        if self._taker is None:
+        if self._message_recorder is None:
             self._type_name = type_name
-            self._taker = message_recorder_for(self._scenario, self._sim, self._topic, type_name)
+            self._message_recorder = message_recorder_for(self._scenario, self._sim, self._topic, type_name)
         message = sort_message(message, type_name)
         data = msgs.serialize(message)
         self._whole.update(data)
@@ -274,11 +273,11 @@ class StreamRecorder:
             self._second = hashlib.sha256()
         self._second.update(data)
         self._times.append(now)
-        if type_name == self._type_name:  # a second type on one topic counts in the digest
-            self._taker.take(message)
+        if type_name == self._type_name:  # messages of a second type on the topic count in the digest only
+            self._message_recorder.take(message)
 
 
 def _environment(sim: Simulation) -> dict[str, str]:
-    """What the environment says of the world: which TurtleBot3 it is."""
-    is_told = any("turtlebot3" in model.name for model in sim.world.models)
-    return {name: os.environ.get(name, "") for name in ENVIRONMENT_VARIABLES if is_told}
+    """Return the environment variables that select the world, such as the TurtleBot3 model."""
+    is_relevant = any("turtlebot3" in model.name for model in sim.world.models)
+    return {name: os.environ.get(name, "") for name in ENVIRONMENT_VARIABLES if is_relevant}

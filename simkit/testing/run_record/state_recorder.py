@@ -1,4 +1,4 @@
-"""Record the physics of a run by names: the fields of its compiled model, a mark for each tick, and whole states."""
+"""Recorder of a run's physics by names: fields of the compiled model, a mark for each tick, and complete states."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from simkit.runtime.engine.physics_step import Physics
 from simkit.runtime.engine.snapshot import state_hash
 from simkit.testing.run_record.record import Array, States
 
-_STATES_KEPT: Final = 64  # states of a run, where the world is small
-_MAX_VALUES: Final = 6000  # of all of them together
+_STATES_KEPT: Final = 64  # maximum number of stored states
+_MAX_VALUES: Final = 6000  # maximum number of values in all stored states
 _MIN_STATES: Final = 3
-_MAX_WATCHED_BODIES: Final = 200  # bodies; of more, forces on them are looked at only where something was written
+_MAX_WATCHED_BODIES: Final = 200  # with more bodies, forces are hashed only after a write access
 
 
 class StateRecorder:
-    """Follows the physics of a run, tick by tick.
+    """Recorder of the physics at every tick.
 
     Args:
-        sim: the simulation.
-        ticks: how many steps the run will have at most.
+        sim: Simulation.
+        ticks: Maximum number of steps of the run.
     """
 
     def __init__(self, sim: Simulation, ticks: int) -> None:
@@ -37,20 +37,20 @@ class StateRecorder:
         self._data: Any = None
         self._edition = -1
         self._is_active = True
-        self._every, self._given = 1, 0
+        self._every, self._input_mark = 1, 0
         self._has_more = self._listens = False
-        self._look_anew()
+        self._bind_model()
         self._keep()
         sim.communication.on_demand.add(lambda: self._is_active, None, self._mark, "after")
 
     def close(self) -> None:
-        """Ends it."""
+        """Stop recording."""
         if self._is_active:
             self._is_active = False
             self._sim.communication.on_demand.look()
 
     def states(self) -> States:
-        """What was seen, the state of now included."""
+        """Return the recorded states, including the present one."""
         self._keep()
         names = _union(state for _, state, _ in self._kept)
         inputs = _union(given for _, _, given in self._kept)
@@ -77,25 +77,25 @@ class StateRecorder:
     def _mark(self, _: int) -> None:
         physics = self._sim.engine.physics
         if physics.data is not self._data:
-            self._look_anew()
+            self._bind_model()
         state = crc32(self._qvel.take(self._dofs).data, crc32(self._qpos.take(self._positions).data))
         if self._has_more:
             data = self._data
             state = crc32(data.act[self._activations].data, crc32(data.mocap_pos[self._mocaps].data, state))
             state = crc32(data.mocap_quat[self._mocaps].data, state)
-        state ^= state >> 16  # all of it counts in its last byte
+        state ^= state >> 16  # fold all bits into the last byte
         self._marks.append((state ^ (state >> 8)) & 0xFF)
         if physics.edition != self._edition or self._listens:
             self._edition = physics.edition
-            self._given = self._hash_inputs(physics)
-        self._inputs.append(self._given)
+            self._input_mark = self._hash_inputs(physics)
+        self._inputs.append(self._input_mark)
         if len(self._marks) % self._every == 0:
             self._keep()
 
     def _hash_inputs(self, physics: Physics) -> int:
         found = crc32(self._ctrl.take(self._controls).data)
         applied, pushed = self._applied, self._pushed
-        if physics.shows_applied:  # forces of one step are gone by now, and remembered
+        if physics.shows_applied:  # forces for one step are already cleared; use their stored values
             applied, pushed = physics.last_applied + applied, physics.last_pushed + pushed
         if crc32(applied.data) != self._no_force:
             found = crc32(applied.take(self._dofs).data, found)
@@ -106,8 +106,8 @@ class StateRecorder:
 
     # ------------------------------------------------------------------ names
 
-    def _look_anew(self) -> None:
-        """Learns the names of the model that is there now."""
+    def _bind_model(self) -> None:
+        """Bind to the present model and read its names."""
         physics = self._sim.engine.physics
         model, data = physics.model, physics.data
         self._data = data
@@ -121,24 +121,24 @@ class StateRecorder:
         self._bodies, self._mocaps = _sort_by_name(named.bodies), _sort_by_name(named.mocaps)
         self._has_more = bool(model.na or model.nmocap)
         self._listens = model.nbody <= _MAX_WATCHED_BODIES
-        self._edition, self._given = -1, 0
+        self._edition, self._input_mark = -1, 0
         width = model.nq + model.nv + model.nu + 1
         kept = int(np.clip(_MAX_VALUES // width, _MIN_STATES, _STATES_KEPT))
         self._every = max(1, -(-self._ticks // kept))
 
     def _keep(self) -> None:
-        """Takes the whole state."""
+        """Store the complete state."""
         tick = len(self._marks)
         if self._kept and self._kept[-1][0] == tick:
             return
         physics = self._sim.engine.physics
         if physics.data is not self._data:
-            self._look_anew()
+            self._bind_model()
         self._kept.append((tick, *self._named.values(physics)))
 
 
 class StateQuantities:
-    """Names of what a compiled model's state is made of, in the order of the engine."""
+    """Names of the state quantities of a compiled model, in the engine's order."""
 
     def __init__(self, model: mujoco.MjModel) -> None:
         self.bodies = _names(model, mujoco.mjtObj.mjOBJ_BODY, model.nbody)
@@ -170,7 +170,7 @@ class StateQuantities:
         self.forces = [f"force on {name}" for name in self.velocities]
 
     def values(self, physics: Physics) -> tuple[dict[str, float], dict[str, float]]:
-        """The state by name, and what is put in; of forces those that are not zero."""
+        """Return the state and the inputs by name; forces only where they are not zero."""
         data = physics.data
         state = dict(zip(self.positions, data.qpos.tolist(), strict=True))
         state.update(zip(self.velocities, data.qvel.tolist(), strict=True))
@@ -192,7 +192,7 @@ _WRENCH: Final = (*(f"push {part}" for part in "xyz"), *(f"torque {part}" for pa
 
 
 def _sort_by_name(names: list[str]) -> npt.NDArray[np.intp]:
-    """Puts them in the order of their names."""
+    """Return the indices that sort the names."""
     return np.array(sorted(range(len(names)), key=names.__getitem__), dtype=np.intp)
 
 
@@ -201,7 +201,7 @@ def _union(states: Iterable[Iterable[str]]) -> list[str]:
 
 
 def _state_table(states: list[dict[str, float]], names: list[str]) -> npt.NDArray[np.float64]:
-    """A row for each state; not a number where it has no such quantity (a model that was not there)."""
+    """Return a table with one row for each state; NaN for quantities that a state does not have."""
     values = [[state.get(name, np.nan) for name in names] for state in states]
     return np.array(values, dtype=np.float64).reshape(len(states), len(names))
 
@@ -224,15 +224,15 @@ _KINDS: Final = {
 }
 _NAMES: Final = {"jnt": "joint", "cam": "camera", "mat": "material", "eq": "equality", "hfield": "heightmap"}
 _NUMBERING: Final = ("adr", "num", "id", "simple", "sameframe", "plugin", "signature", "priority_")
-"""Endings of fields that say where something stands in the model's lists, which the order of a file decides."""
+"""Endings of fields with positions in the model's lists, which depend on the order in the file."""
 _BINARY_FIELDS: Final = {"mesh": ("vert", "face"), "hfield": ("data",), "tex": ("data",)}
 
 
 class ModelFields(Mapping[str, Array]):
-    """Fields of named parts, as `geom robot::wheel::collision size`.
+    """Fields of named model elements, with keys such as `geom robot::wheel::collision size`.
 
     Args:
-        tables: part -> names and, by field, an array with a row for each.
+        tables: Element kind -> names, and an array with one row per name for each field.
     """
 
     def __init__(self, tables: Mapping[str, tuple[list[str], Mapping[str, Array]]]) -> None:
@@ -255,7 +255,7 @@ class ModelFields(Mapping[str, Array]):
 
 
 def fields_of_model(sim: Simulation) -> ModelFields:
-    """The fields of a simulation's compiled model."""
+    """Return the fields of a simulation's compiled model."""
     model = sim.engine.physics.model
     tables: dict[str, tuple[list[str], dict[str, Array]]] = {"option": (["engine"], _options(model.opt))}
     members = [name for name in dir(model) if not name.startswith("_")]
@@ -296,7 +296,7 @@ def _names(model: mujoco.MjModel, kind: mujoco.mjtObj, size: int) -> list[str]:
 
 
 def _add_meshes(model: mujoco.MjModel, tables: dict[str, tuple[list[str], dict[str, Array]]]) -> None:
-    """Meshes by how many vertices and faces they have, and a hash of those."""
+    """Add the number of vertices and faces and a hash of the content of each mesh."""
     if not model.nmesh:
         return
     names = _names(model, mujoco.mjtObj.mjOBJ_MESH, model.nmesh)

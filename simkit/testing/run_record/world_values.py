@@ -1,4 +1,4 @@
-"""A resolved world as a flat table: one path for each value, the values of controller and motion files included."""
+"""Values of a resolved world as a flat table with one path for each value, including controller and motion files."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ if TYPE_CHECKING:
 
 
 _IGNORED_FIELDS: Final = frozenset(("where", "name", "scoped", "uri", "script", "skin", "missing", "mjcf", "moved_by"))
-"""Fields that are places or names of files, or that are in the path already, or no plain values."""
+"""Fields that are places or file names, that are part of the path, or that are not plain values."""
 _SENSOR_FIELDS: Final = frozenset(("pose", "update_rate", "topic", "plugin"))
-"""Elements of a sensor that are fields of it as well."""
+"""Elements of a sensor that are also fields of the sensor."""
 WorldValues = JsonObject
 
 
 def values_of_simulation(sim: Simulation) -> tuple[WorldValues, dict[str, str]]:
-    """The values that a simulation's world is made of.
+    """Return the values of a simulation's world.
 
     Returns:
         Path -> number, text, or list of numbers (a pose is x, y, z and a quaternion w, x, y, z); path -> `file:line`.
@@ -41,16 +41,16 @@ def values_of_simulation(sim: Simulation) -> tuple[WorldValues, dict[str, str]]:
 
 
 def values_of_world(world: SceneWorld) -> tuple[WorldValues, dict[str, str]]:
-    """The same of a world that is not simulated."""
+    """Return the values and places of a world that is not simulated."""
     walk = _WorldWalk()
     walk.dataclass(world, "", "")
     return walk.leaves, walk.places
 
 
 def split_path(path: str) -> list[tuple[str, str]]:
-    """The steps of a path: (field, key), the key empty where there is none; an attribute's field begins with `@`.
+    """Split a path into steps (field, key); the key may be empty, and the field of an attribute begins with `@`.
 
-    Names in brackets have `]` as `%5D` and `%` as `%25`; they come back as they are.
+    In keys, `]` is written as `%5D` and `%` as `%25`; the result has the original characters.
     """
     steps: list[tuple[str, str]] = []
     at = 0
@@ -71,7 +71,7 @@ def split_path(path: str) -> list[tuple[str, str]]:
 
 
 def item_keys(items: Iterable[object]) -> list[str]:
-    """What the items of a list go by in paths: their name (of a second one `name#2`), else their number from 0."""
+    """Return keys for the items of a list: the name (`name#2` for a second one), else the index."""
     seen: dict[str, int] = {}
     keys = []
     for number, item in enumerate(items):
@@ -85,8 +85,11 @@ def item_keys(items: Iterable[object]) -> list[str]:
 
 
 def element_keys(elements: Iterable[Params]) -> list[str]:
-    """What elements of one parent go by: their own names, with the attribute `name` or a number from 1 where several
-    have the same: `update_rate`, `left_joint[2]`, `plugin[drive]`."""
+    """Return keys for the child elements of one parent: `update_rate`, `left_joint[2]`, `plugin[drive]`.
+
+    The key is the element's name. If several elements have the same name, the key adds the attribute `name` or a number
+    from 1.
+    """
     found = list(elements)
     equal: dict[str, list[Params]] = {}
     for one in found:
@@ -104,7 +107,7 @@ def element_keys(elements: Iterable[Params]) -> list[str]:
 
 
 class _WorldWalk:
-    """Goes through dataclasses and elements."""
+    """Visitor of dataclasses and elements."""
 
     def __init__(self) -> None:
         self.leaves: WorldValues = {}
@@ -151,7 +154,7 @@ class _WorldWalk:
             self.value(item, f"{path}[{escaped_key(key)}]", place)
 
     def element(self, params: Params, path: str, place: str, left_out: frozenset[str] = frozenset()) -> None:
-        """An element with what is in it."""
+        """Add an element and its children."""
         if params.where.line:
             place = str(params.where)
         for name, text in sorted(params.attributes.items()):
@@ -171,7 +174,7 @@ class _WorldWalk:
 
 
 def shape_class_name(value: object) -> str:
-    """The class of what may be of several: shapes."""
+    """Return the class name of a shape; empty for other values."""
     kind = type(value)
     return kind.__name__ if kind.__module__ == "simkit.scene.geometry" else ""
 
@@ -192,12 +195,12 @@ def _scalar(item: object) -> object:
 
 
 def escaped_key(key: str) -> str:
-    """A name as it stands in the brackets of a path."""
+    """Escape a name for the brackets of a path."""
     return key.replace("%", "%25").replace("]", "%5D")
 
 
 def _element_value(text: str) -> object:
-    """The text of an element: numbers where it is some, so that `0.10` is `0.1`; files by what is in them."""
+    """Convert the text of an element: to numbers, so that `0.10` equals `0.1`; a file to its content hash."""
     words = text.split()
     try:
         numbers = [float(word) for word in words]
@@ -213,13 +216,13 @@ def _element_value(text: str) -> object:
 
 
 def file_content_text(path: Path) -> str:
-    """What is in a file, in a few letters: the beginning of its SHA-256, and its size."""
+    """Return a short text for the content of a file: 16 characters of its SHA-256, and its size."""
     digest, size = file_hash(path)
     return f"{digest[:16]} ({size} bytes)" if digest else "missing"
 
 
 def file_hash(path: Path) -> tuple[str, int]:
-    """SHA-256 and size of a file; empty and 0 where it cannot be read."""
+    """Return SHA-256 and size of a file; empty and 0 if it cannot be read."""
     try:
         stat = path.stat()
         return _cached_file_hash(str(path), stat.st_mtime_ns, stat.st_size)
@@ -234,25 +237,25 @@ def _cached_file_hash(path: str, _: int, size: int) -> tuple[str, int]:
 
 
 _SUFFIXES: Final = frozenset((".yaml", ".yml"))
-_MAX_FILE_VALUES: Final = 100_000  # values of one file
+_MAX_FILE_VALUES: Final = 100_000
 _MAX_YAML_DEPTH: Final = 60
-_MAX_FILE_BYTES: Final = 8 << 20  # bytes
+_MAX_FILE_BYTES: Final = 8 << 20
 _PLAIN_YAML_VALUE: Final = re.compile(r"[\w/*:-]+")
 
 
 def plugin_value_files(sim: Simulation) -> list[Path]:
-    """The files that plugins have found, each once."""
+    """Return the value files that plugins have read, each once."""
     return list(dict.fromkeys(path.resolve() for path in sim.engine.structure.builder.files_read))
 
 
 def values_of_files(paths: Iterable[Path]) -> tuple[dict[str, object], dict[str, str], set[Path]]:
-    """What is in files of values.
+    """Read the values in YAML files.
 
     Args:
-        paths: files; those of another kind are left out.
+        paths: Files; other file types are ignored.
 
     Returns:
-        Path of a leaf (`files[controllers.yaml].arm.gains.p`) -> value, `file:line`, and the files that were read.
+        Path of a value (`files[controllers.yaml].arm.gains.p`) -> value, `file:line`, and the files that were read.
     """
     leaves: dict[str, object] = {}
     places: dict[str, str] = {}
@@ -272,7 +275,7 @@ def values_of_files(paths: Iterable[Path]) -> tuple[dict[str, object], dict[str,
 
 
 def _parse_document(path: Path) -> object:
-    """The document of a file; None where it is not one of values."""
+    """Parse a YAML file; None if it is not a YAML file or too large."""
     if path.suffix.lower() not in _SUFFIXES:
         return None
     import yaml
@@ -286,7 +289,7 @@ def _parse_document(path: Path) -> object:
 
 
 def _flatten_document(node: Any, path: str, found: dict[str, tuple[object, int]], depth: int) -> bool:
-    """Goes through a document; False where it is too large, or holds itself."""
+    """Add the values of a document; return False if it is too large or contains itself."""
     if depth > _MAX_YAML_DEPTH or len(found) > _MAX_FILE_VALUES:
         return False
     line = node.start_mark.line + 1
@@ -307,7 +310,7 @@ def _flatten_document(node: Any, path: str, found: dict[str, tuple[object, int]]
 
 
 def _yaml_scalar(node: Any) -> object:
-    """A scalar: the number that it is, or its text."""
+    """Return a number or a text."""
     try:
         return float(node.value) if not node.style else node.value
     except ValueError:

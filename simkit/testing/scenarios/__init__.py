@@ -1,6 +1,5 @@
-"""Scenarios and exercises: their files in YAML or Python, their run from start to end, and the grades of solutions.
+"""Scenarios and exercises: their files in YAML or Python, their runs, and the grades of solutions.
 
-A scenario file enters, a `RunSpec` leaves; a `RunSpec` enters, its world and the results of its checks leave. All
-problems of a file are reported at once, with file and line. What a run gave is recorded elsewhere
-(`simkit.testing.run_record`).
+A scenario file gives a `RunSpec`. Running a `RunSpec` gives a simulation and the results of its checks. All problems of
+a file are reported at once, with file and line. `simkit.testing.run_record` records the outputs of a run.
 """

@@ -1,4 +1,4 @@
-"""What an exercise is, and how its file is read: a scenario's with a block `exercise` more."""
+"""Exercises and the reader of their files: a scenario file with an additional block `exercise`."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from simkit.yaml_reader import finite_number
 
 _KEYS: Final = ("title", "text", "hand_in", "robot", "parameters", "pass", "runs")
 _RUN_KEYS: Final = ("name", "seed", "set", "spawn", "parameters", "duration")
-_WALL_TIMEOUT: Final = 120.0  # [s] of a run whose scenario has none: who hands in an endless loop is told so
+_WALL_TIMEOUT: Final = 120.0  # [s], default limit of a run, so that a plugin with an endless loop gets a grade
 
 
 @dataclass(frozen=True)
@@ -22,9 +22,9 @@ class ExerciseRun:
     """One run of an exercise.
 
     Attributes:
-        name: what a report calls it.
-        scenario: what is run.
-        parameters: of the plugin that was handed in.
+        name: Name in reports.
+        scenario: Scenario of the run.
+        parameters: Arguments of the submitted plugin's constructor.
     """
 
     name: str
@@ -34,16 +34,17 @@ class ExerciseRun:
 
 @dataclass(frozen=True)
 class Exercise:
-    """What is asked of a plugin.
+    """Exercise that a plugin must solve.
 
     Attributes:
-        title: in one line.
-        text: what is to be done.
-        hand_in: name of the file that is handed in.
-        robot: scoped name of what the plugin hangs on; empty where the world's file names the plugin itself.
-        pass_mark: part of the points that is needed.
-        runs: in which it is tried.
-        file: it was read from.
+        title: Title in one line.
+        text: Description of the task.
+        hand_in: Name of the file to submit.
+        robot: Scoped name of the entity that the plugin is attached to; empty if the world file names the plugin
+            itself.
+        pass_mark: Share of the points needed to pass, 0 to 1.
+        runs: Runs in which the plugin is tested.
+        file: File of the exercise.
     """
 
     title: str
@@ -56,10 +57,10 @@ class Exercise:
 
 
 def read_exercise(path: str | Path) -> Exercise:
-    """The exercise in a YAML file.
+    """Read an exercise from a YAML file.
 
     Raises:
-        LoadError: with every problem of the file: SK-SCEN-001 to SK-SCEN-004, SK-SCEN-006.
+        LoadError: The file has problems (SK-SCEN-001 to SK-SCEN-004, SK-SCEN-006); the error lists all of them.
     """
     diagnostics = Diagnostics()
     document = Document(Path(path), diagnostics)
@@ -69,20 +70,20 @@ def read_exercise(path: str | Path) -> Exercise:
     block = document.values.get("exercise") if isinstance(document.values, dict) else None
     if block is None:
         hint = "exercise: {title: ..., hand_in: my_plugin.py, robot: ...}"
-        document.error("SK-SCEN-004", "an exercise needs a block 'exercise'", hint=hint)
-    said = {} if block is None else document.only(block, _KEYS, "an exercise", "exercise")
-    exercise = _ExerciseReader(document, said, ("exercise",)).exercise(scenario)
+        document.error("SK-SCEN-004", "missing block 'exercise'", hint=hint)
+    fields = {} if block is None else document.only(block, _KEYS, "an exercise", "exercise")
+    exercise = _ExerciseReader(document, fields, ("exercise",)).exercise(scenario)
     diagnostics.raise_if_errors()
     return exercise
 
 
 class _ExerciseReader(ValueReader):
-    """Reads the values of an exercise, or of one of its runs."""
+    """Reader of the values of an exercise or of one of its runs."""
 
     def exercise(self, scenario: RunSpec) -> Exercise:
         if not scenario.checks and not scenario.until:
-            hint = "goals, limits, no_contact, rates or until say what is asked"
-            self._document.error("SK-SCEN-006", "an exercise in which nothing must hold is always passed", hint=hint)
+            hint = "add goals, limits, no_contact, rates or until"
+            self._document.error("SK-SCEN-006", "the exercise has no checks, so every plugin would pass", hint=hint)
         if scenario.wall_timeout is None:
             scenario = replace(scenario, wall_timeout=_WALL_TIMEOUT)
         parameters = self._parameters()
@@ -92,22 +93,22 @@ class _ExerciseReader(ValueReader):
         return Exercise(title or scenario.title, text, hand_in, robot, self._pass_mark(), runs, file)
 
     def _runs(self, scenario: RunSpec, parameters: JsonMapping) -> tuple[ExerciseRun, ...]:
-        listed = self._said.get("runs", [{}])
+        listed = self._fields.get("runs", [{}])
         if not isinstance(listed, list) or not listed:
             self._wrong(listed, "a list of runs", "runs")
             return ()
         found = []
         for number, one in enumerate(listed):
             at = (*self._at, "runs", number)
-            said = self._document.only(one, _RUN_KEYS, "a run", *at)
-            found.append(_ExerciseReader(self._document, said, at).run(number, scenario, parameters))
+            fields = self._document.only(one, _RUN_KEYS, "a run", *at)
+            found.append(_ExerciseReader(self._document, fields, at).run(number, scenario, parameters))
         return tuple(found)
 
     def run(self, number: int, scenario: RunSpec, parameters: JsonMapping) -> ExerciseRun:
-        wanted = self._said.get("duration", scenario.duration)
-        duration = self._number_of(wanted, None, ("duration",), above=0.0)
+        requested = self._fields.get("duration", scenario.duration)
+        duration = self._number_of(requested, None, ("duration",), above=0.0)
         folder = self._document.path.parent
-        spawn = (resolve_spawn_file(folder, one) for one in self._texts_of(self._said.get("spawn", []), "spawn"))
+        spawn = (resolve_spawn_file(folder, one) for one in self._texts_of(self._fields.get("spawn", []), "spawn"))
         changed = replace(
             scenario,
             seed=self._whole("seed", scenario.seed, 0),
@@ -115,47 +116,47 @@ class _ExerciseReader(ValueReader):
             overrides=(*scenario.overrides, *self._overrides()),
             spawn=(*scenario.spawn, *spawn),
         )
-        name = self._said.get("name", f"run {number + 1}")
+        name = self._fields.get("name", f"run {number + 1}")
         if not isinstance(name, str):
-            self._wrong(name, "a text", "name")
+            self._wrong(name, "a string", "name")
         return ExerciseRun(str(name), changed, {**parameters, **self._parameters()})
 
     # ------------------------------------------------------------------ plain values
 
     def _stripped(self, key: str) -> str:
-        value = self._said.get(key, "")
+        value = self._fields.get(key, "")
         if isinstance(value, str):
             return value.strip()
-        self._wrong(value, "a text", key)
+        self._wrong(value, "a string", key)
         return ""
 
     def _texts_of(self, value: object, key: str) -> tuple[str, ...]:
         listed = [value] if isinstance(value, str) else value
         if isinstance(listed, list) and all(isinstance(one, str) for one in listed):
             return tuple(listed)
-        self._wrong(value, "a text, or a list of them", key)
+        self._wrong(value, "a string or a list of strings", key)
         return ()
 
     def _parameters(self) -> JsonMapping:
-        value = self._said.get("parameters", {})
+        value = self._fields.get("parameters", {})
         if isinstance(value, dict) and all(isinstance(one, str) for one in value):
             return value
         self._wrong(value, "a mapping", "parameters")
         return {}
 
     def _overrides(self) -> tuple[str, ...]:
-        value = self._said.get("set", {})
+        value = self._fields.get("set", {})
         if not isinstance(value, dict):
             return self._texts_of(value, "set")
         for path, one in value.items():
             if not is_scalar_text(one):
-                self._wrong(one, "a number, a text, true or false, or a list of them", "set", path)
+                self._wrong(one, "a number, a string, true or false, or a list of these", "set", path)
         return tuple(f"{path}={yaml_value_text(one)}" for path, one in value.items())
 
     def _pass_mark(self) -> float:
-        value = self._said.get("pass", 1.0)
+        value = self._fields.get("pass", 1.0)
         mark = finite_number(value)
         if mark is not None and 0.0 <= mark <= 1.0:
             return mark
-        self._wrong(value, "a part of the points, 0 to 1", "pass")
+        self._wrong(value, "a number from 0 to 1", "pass")
         return 1.0

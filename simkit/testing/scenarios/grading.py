@@ -1,4 +1,4 @@
-"""Grade plugins that were handed in for an exercise, and report the grades."""
+"""Grading of plugins that were submitted for an exercise, and reports of the grades."""
 
 from __future__ import annotations
 
@@ -18,22 +18,22 @@ from simkit.run_spec import JsonObject
 from simkit.testing.junit import JunitCase
 from simkit.testing.scenarios.exercise import Exercise, ExerciseRun
 
-_SPARE_SECONDS: Final = 20.0  # [s] of wall time beside a run's own, for the start and the end of its process
-_MAX_LINES_SHOWN: Final = 20  # last lines of what was printed that are kept
+_SPARE_SECONDS: Final = 20.0  # [s], additional wall time for starting and ending a run's process
+_MAX_LINES_SHOWN: Final = 20  # last lines of printed output
 
 
 @dataclass(frozen=True)
 class CheckGrade:
-    """One check of a run.
+    """Grade of one check.
 
     Attributes:
-        title: of the check.
-        passed: whether it held.
-        message: what was found, in words.
-        points: got.
-        worth: points that it is worth.
-        hint: what helps where it did not hold.
-        time: when it was decided [s].
+        title: Title of the check.
+        passed: True if the check passed.
+        message: Result with the measured values.
+        points: Achieved points.
+        worth: Achievable points.
+        hint: Hint for a check that failed.
+        time: Simulated time of the decision [s].
     """
 
     title: str
@@ -47,15 +47,15 @@ class CheckGrade:
 
 @dataclass(frozen=True)
 class RunGrade:
-    """One run.
+    """Grade of one run.
 
     Attributes:
-        name: of the run.
-        seed: of its noise.
-        time: how far it came, simulated [s].
-        marks: its checks.
-        error: what ended it before its time; empty where nothing did.
-        printed: last lines that it printed.
+        name: Name of the run.
+        seed: Seed of the sensor noise.
+        time: Simulated time at the end [s].
+        marks: Grades of the checks.
+        error: Reason for an early end; empty for a complete run.
+        printed: Last lines that the run printed.
     """
 
     name: str
@@ -68,13 +68,13 @@ class RunGrade:
 
 @dataclass(frozen=True)
 class Grade:
-    """What was handed in, and what it got.
+    """Grade of one submission.
 
     Attributes:
-        exercise: what was asked.
-        hand_in: the plugin's file; empty where there is none.
-        outcomes: of every run.
-        label: a short name of its own among those that are graded together.
+        exercise: Exercise.
+        hand_in: File of the plugin; empty if there is none.
+        outcomes: Grades of all runs.
+        label: Short name, unique among the submissions graded together.
     """
 
     exercise: Exercise
@@ -84,30 +84,30 @@ class Grade:
 
     @property
     def points(self) -> float:
-        """Points got."""
+        """Achieved points."""
         return sum(mark.points for outcome in self.outcomes for mark in outcome.marks)
 
     @property
     def worth(self) -> float:
-        """Points that could be had."""
+        """Achievable points."""
         return sum(mark.worth for outcome in self.outcomes for mark in outcome.marks)
 
     @property
     def passed(self) -> bool:
-        """Whether the points are enough."""
+        """True if the points suffice."""
         return self.points >= self.exercise.pass_mark * self.worth - 1e-9
 
 
 def grade(exercise: Exercise, hand_in: Path | None = None, pictures: Path | None = None) -> Grade:
-    """Runs an exercise with what was handed in, each run in a process of its own.
+    """Run an exercise with a submitted plugin, each run in its own process.
 
     Args:
-        exercise: what is asked.
-        hand_in: file of the plugin; None where the exercise brings all there is.
-        pictures: folder for a picture of each run's path.
+        exercise: Exercise.
+        hand_in: File of the plugin; None if the exercise needs no submission.
+        pictures: Folder for a picture of each run's path.
 
     Raises:
-        InputError: the exercise itself is at fault: its world, its commands or what it asks for.
+        InputError: The exercise itself has an error: its world, its commands or its checks.
     """
     (graded,) = grade_all(exercise, [hand_in], pictures)
     return graded
@@ -116,16 +116,16 @@ def grade(exercise: Exercise, hand_in: Path | None = None, pictures: Path | None
 def grade_all(
     exercise: Exercise, hand_ins: Sequence[Path | None], pictures: Path | None = None, jobs: int = 1
 ) -> Iterator[Grade]:
-    """Runs an exercise with several plugins, in their order; what each got comes as soon as it is known.
+    """Run an exercise with several plugins and yield the grades in their order as soon as they are known.
 
     Args:
-        exercise: what is asked.
-        hand_ins: files of plugins; None for one that the exercise brings itself.
-        pictures: folder for a picture of each run's path.
-        jobs: processes at a time.
+        exercise: Exercise.
+        hand_ins: Files of plugins; None for a run without a submission.
+        pictures: Folder for a picture of each run's path.
+        jobs: Number of parallel processes.
 
     Raises:
-        InputError: the exercise itself is at fault.
+        InputError: The exercise itself has an error.
     """
     names = short_labels(hand_ins)
     processes = ChildProcesses()
@@ -136,21 +136,21 @@ def grade_all(
             return _run_grade(processes, exercise, number, hand_in, picture)
 
         runs = range(len(exercise.runs))
-        asked = [
+        submissions = [
             (hand_in, name, [pool.submit(outcome, hand_in, name, number) for number in runs])
             for hand_in, name in zip(hand_ins, names, strict=True)
         ]
         try:
-            for hand_in, name, outcomes in asked:
+            for hand_in, name, outcomes in submissions:
                 file = "" if hand_in is None else str(hand_in)
                 yield Grade(exercise, file, tuple(one.result() for one in outcomes), name)
-        finally:  # also where somebody asks for no more: what waits is left, what runs is ended
+        finally:  # also if the caller stops iterating: cancel waiting runs and end running ones
             pool.shutdown(wait=False, cancel_futures=True)
             processes.end()
 
 
 def short_labels(hand_ins: Sequence[Path | None]) -> list[str]:
-    """A short name for each: of its file, with that of its folder before it where two files have one name."""
+    """Return a short unique name for each file, with the folder's name if several files have the same name."""
     stems = ["" if file is None else file.stem for file in hand_ins]
     longer = [
         stem if file is None or stems.count(stem) == 1 else f"{file.absolute().parent.name}_{stem}"
@@ -169,7 +169,7 @@ def _run_grade(
     checks = _required_checks(variation)
     found, printed = _run_in_process(processes, exercise, number, hand_in, picture)
     error = found.get("error", "")
-    results = found.get("results") or [(False, "the run ended before its time", found["time"])] * len(checks)
+    results = found.get("results") or [(False, "the run ended early", found["time"])] * len(checks)
     marks = [
         CheckGrade(title, passed, message, worth if passed else 0.0, worth, "" if passed else hint, time)
         for (title, worth, hint), (passed, message, time) in zip(checks, results, strict=True)
@@ -178,7 +178,7 @@ def _run_grade(
 
 
 def _required_checks(variation: ExerciseRun) -> list[tuple[str, float, str]]:
-    """Title, points and hint of everything that must hold, in the order of the results."""
+    """Return title, points and hint of all checks in the order of the results."""
     scenario = variation.scenario
     until = [(f"until {scenario.until}", 1.0, "")] if scenario.until else []
     return until + [(check.title, check.points, check.hint) for check in scenario.checks]
@@ -187,7 +187,7 @@ def _required_checks(variation: ExerciseRun) -> list[tuple[str, float, str]]:
 def _run_in_process(
     processes: ChildProcesses, exercise: Exercise, number: int, hand_in: Path | None, picture: str
 ) -> tuple[JsonObject, str]:
-    """What a run gave, and what it printed."""
+    """Run an exercise in a child process; return its result and its printed output."""
     variation = exercise.runs[number]
     limit = (variation.scenario.wall_timeout or 0.0) + _SPARE_SECONDS
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
@@ -201,27 +201,27 @@ def _run_in_process(
             "picture": picture,
             "token": token,
         }
-        asked = Path(folder) / "job.json"
-        asked.write_text(json.dumps(job), encoding="utf-8")
+        job_file = Path(folder) / "job.json"
+        job_file.write_text(json.dumps(job), encoding="utf-8")
         environment = {**os.environ, "PYTHONIOENCODING": "utf-8"}
         done = processes.run(
-            "simkit.testing.scenarios.grading_process", [str(asked)], environment=environment, limit=limit
+            "simkit.testing.scenarios.grading_process", [str(job_file)], environment=environment, limit=limit
         )
         printed = "\n".join(done.last_lines(_MAX_LINES_SHOWN))
         if done.is_late:
-            message = f"it was still running after {limit:g} s of wall time and was ended: a loop without an end?"
+            message = f"the run was stopped after {limit:g} s of wall time; the plugin may have an endless loop"
             return {"error": message, "time": 0.0}, printed
         found = _read_process_result(target, token, len(_required_checks(variation)))
     if found is None:
         how = f"with {done.code}" if done.code >= 0 else f"by signal {-done.code}"
-        return {"error": f"its process ended {how} in the middle of the run", "time": 0.0}, printed
+        return {"error": f"the process ended {how} before the run was complete", "time": 0.0}, printed
     if "fault" in found:
         raise InputError(f"{exercise.file}: {variation.name}: {found['fault']}", found["code"])
     return found, printed
 
 
 def _read_process_result(target: Path, token: str, count: int) -> JsonObject | None:
-    """What a run left behind; None where that is not what simkit writes: what was handed in can write there too."""
+    """Read the result of a run; None if the file was not written by simkit, because the plugin can write there too."""
     try:
         found = json.loads(target.read_text(encoding="utf-8")) if target.is_file() else None
     except (OSError, ValueError):
@@ -232,7 +232,7 @@ def _read_process_result(target: Path, token: str, count: int) -> JsonObject | N
 
 
 def grade_text(graded: Grade) -> Iterator[str]:
-    """Lines for a terminal: each run, each check with what was found, hints where one did not hold, the points."""
+    """Yield the lines of a text report: runs, checks with results, hints for failed checks, and points."""
     exercise = graded.exercise
     yield exercise.title + (f" - {Path(graded.hand_in).name}" if graded.hand_in else "")
     for outcome in graded.outcomes:
@@ -246,7 +246,7 @@ def grade_text(graded: Grade) -> Iterator[str]:
             if mark.hint:
                 yield f"          hint: {mark.hint}"
         if outcome.printed and not all(mark.passed for mark in outcome.marks):
-            yield "    it printed:"
+            yield "    printed output:"
             yield from (f"      {line}" for line in outcome.printed.splitlines())
     share = graded.points / graded.worth if graded.worth else 1.0
     verdict = "passed" if graded.passed else "not passed"
@@ -254,7 +254,7 @@ def grade_text(graded: Grade) -> Iterator[str]:
 
 
 def grade_json(graded: Grade) -> JsonObject:
-    """The same as plain data."""
+    """Return a grade as JSON data."""
     return {
         "exercise": graded.exercise.title,
         "hand_in": graded.hand_in,
@@ -277,7 +277,7 @@ def _run_json(outcome: RunGrade) -> JsonObject:
 
 
 def junit_cases(graded: Grade) -> list[JunitCase]:
-    """One case of JUnit for each check of each run."""
+    """Return one JUnit test case for each check of each run."""
 
     suite = graded.label or Path(graded.hand_in).stem or graded.exercise.file.stem
     return [

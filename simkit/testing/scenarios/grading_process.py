@@ -1,4 +1,4 @@
-"""One run of an exercise in a process of its own, so that what was handed in can end, hang or print as it likes."""
+"""Child process for one run of an exercise, because a submitted plugin may exit, hang or print anything."""
 
 from __future__ import annotations
 
@@ -17,26 +17,26 @@ from simkit.testing.scenarios.scenario_run import open_scenario, run_scenario
 
 
 def main(job_file: str) -> None:
-    """Runs one variation and leaves what came of it as JSON in a file.
+    """Run one variation of an exercise and write the result to a JSON file.
 
     Args:
-        job_file: what is to be done, as JSON: `exercise` and `hand_in` (files; empty for none), `number` of the run,
-            `target` (file for the result), `picture` (file for one of the path; empty for none), and a `token` that
-            the result has too. The file is removed: what was handed in does not find it lying around.
+        job_file: JSON file with the job: `exercise` and `hand_in` (files; empty for none), `number` of the run,
+            `target` (file for the result), `picture` (file for a picture of the path; empty for none), and `token`,
+            which is copied to the result. The file is removed at once, so that the plugin cannot read the token.
     """
     job = json.loads(Path(job_file).read_text(encoding="utf-8"))
     Path(job_file).unlink()
-    asked = read_exercise(job["exercise"])
+    exercise = read_exercise(job["exercise"])
     hand_in = Path(job["hand_in"]) if job["hand_in"] else None
-    found = _run_exercise(asked, asked.runs[job["number"]], hand_in, job["picture"])
+    found = _run_exercise(exercise, exercise.runs[job["number"]], hand_in, job["picture"])
     try:
         Path(job["target"]).write_text(json.dumps({**found, "token": job["token"]}), encoding="utf-8")
-    except OSError as error:  # what was handed in has removed the place
+    except OSError as error:  # the plugin has removed the folder
         sys.exit(f"the result cannot be written: {error.strerror}")
 
 
-def _run_exercise(asked: Exercise, variation: ExerciseRun, hand_in: Path | None, picture: str) -> JsonObject:
-    """What became of each check, or what went wrong."""
+def _run_exercise(exercise: Exercise, variation: ExerciseRun, hand_in: Path | None, picture: str) -> JsonObject:
+    """Run a variation and return the results of its checks, or an error."""
     from simkit.recording.run_picture import DrivenPath, save_picture
     from simkit.runtime.engine.snapshot import state_hash
 
@@ -46,10 +46,10 @@ def _run_exercise(asked: Exercise, variation: ExerciseRun, hand_in: Path | None,
         if hand_in is not None:
             paths = (hand_in.parent, *variation.scenario.options.get("plugin_paths", ()))
             more["plugin_paths"] = paths
-            if asked.robot:
+            if exercise.robot:
                 more["plugins"] = (
                     *variation.scenario.plugins,
-                    (asked.robot, _make_plugin(hand_in, variation.parameters)),
+                    (exercise.robot, _make_plugin(hand_in, variation.parameters)),
                 )
         with open_scenario(variation.scenario, **more) as sim:
             driven = DrivenPath(sim) if picture else None
@@ -61,7 +61,7 @@ def _run_exercise(asked: Exercise, variation: ExerciseRun, hand_in: Path | None,
                 save_picture(sim, Path(picture), render_view, driven)
             results = [(result.passed, result.message, result.time) for result in ended.results]
             return {"end": ended.reason, "time": sim.time, "results": results, "state": state_hash(sim)}
-    except (LoadError, InputError) as error:  # the world's, or of a check or command that does not fit it
+    except (LoadError, InputError) as error:  # an error of the exercise or of the plugin
         if hand_in is None or not _is_sound_without_plugin(variation):
             return {"fault": str(error), "code": error.code}
         return {"error": str(error), "time": 0.0 if sim is None else sim.time}
@@ -76,23 +76,23 @@ def _run_exercise(asked: Exercise, variation: ExerciseRun, hand_in: Path | None,
 
 
 def _is_sound_without_plugin(variation: ExerciseRun) -> bool:
-    """Whether the exercise's world opens and has what its checks name where nothing was handed in."""
+    """Check whether the exercise's world loads and its checks can be bound without a submission."""
     from simkit.testing.conditions import Watch
 
-    asked = variation.scenario
+    scenario = variation.scenario
     try:
-        with open_scenario(asked) as sim:
-            Watch(sim, asked.checks, until=asked.until, absent="wait")
+        with open_scenario(scenario) as sim:
+            Watch(sim, scenario.checks, until=scenario.until, absent="wait")
     except SimkitError:
         return False
     return True
 
 
 def _make_plugin(file: Path, parameters: JsonMapping) -> object:
-    """The plugin of a file.
+    """Create the plugin of a file.
 
     Raises:
-        LoadError: SK-PLUGIN-008 it has none, or running or making it failed.
+        LoadError: SK-PLUGIN-008 the file has no plugin, or running the file or creating the plugin failed.
     """
     from simkit.params import Params
     from simkit.plugins.discovery.user_plugins import find_user_plugin
@@ -100,22 +100,22 @@ def _make_plugin(file: Path, parameters: JsonMapping) -> object:
 
     diagnostics = Diagnostics()
     where = Where(str(file))
-    wanted = ScenePlugin(file.stem, file.name, "", Params("plugin", "", {}, (), where), where)
-    found = find_user_plugin(wanted, [file.parent], diagnostics)
+    scene_plugin = ScenePlugin(file.stem, file.name, "", Params("plugin", "", {}, (), where), where)
+    found = find_user_plugin(scene_plugin, [file.parent], diagnostics)
     if found is None:
         if not diagnostics.has_errors:
-            diagnostics.error("SK-PLUGIN-008", f"{file.name} has no plugin", where)
+            diagnostics.error("SK-PLUGIN-008", f"{file.name} contains no plugin", where)
         raise LoadError(tuple(diagnostics))
     try:
         return found(**parameters)
     except Exception as error:
-        message = f"making a {found.__name__} failed: {type(error).__name__}: {error}{_error_position(error, file)}"
+        message = f"creating {found.__name__} failed: {type(error).__name__}: {error}{_error_position(error, file)}"
         diagnostics.error("SK-PLUGIN-008", message, where)
         raise LoadError(tuple(diagnostics)) from error
 
 
 def _error_position(error: BaseException, file: Path | None) -> str:
-    """Where in what was handed in an error came from."""
+    """Return the line of the plugin's file in which an error occurred."""
     frames = [f for f in traceback.extract_tb(error.__traceback__) if file is not None and f.filename == str(file)]
     frames = frames or [
         f for f in traceback.extract_tb(error.__traceback__) if file and Path(f.filename) == file.resolve()

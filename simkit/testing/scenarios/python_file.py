@@ -1,4 +1,4 @@
-"""Scenario files in Python: run the file, take its `scenario`, and validate the values of it."""
+"""Scenario files in Python: run the file, get its variable `scenario`, and validate the values."""
 
 from __future__ import annotations
 
@@ -20,21 +20,21 @@ _CHECK_KINDS: Final = get_args(CheckKind)
 
 
 def validate_scenario(scenario: RunSpec) -> Iterator[str]:
-    """Each as `attribute: found …, allowed is …`."""
+    """Yield a message `attribute: found …, expected …` for each invalid value."""
     if not isinstance(scenario.world, str) or not scenario.world.strip():
         yield _problem("world", scenario.world, "a file, a bare name, or XML text")
     yield from _validate_numbers("", scenario, duration=False, timeout=True, wall_timeout=True)
     for key, least in (("seed", 0), ("picture", 8)):
         value = getattr(scenario, key)
         if not isinstance(value, int) or isinstance(value, bool) or value < least:
-            yield _problem(key, value, f"a whole number of at least {least}")
+            yield _problem(key, value, f"an integer >= {least}")
     for key in ("name", "until"):
         if not _is_valid_text(scenario, key):
-            yield _problem(key, getattr(scenario, key), "a text")
+            yield _problem(key, getattr(scenario, key), "a string")
     for key in _TEXT_FIELDS:
         value = getattr(scenario, key)
         if not isinstance(value, (tuple, list)) or not all(isinstance(one, str) for one in value):
-            yield _problem(key, value, "a tuple of texts")
+            yield _problem(key, value, "a tuple of strings")
     yield from _validate_commands(scenario.commands)
     for key, kind in (("checks", Check), ("tolerances", Tolerance)):
         value = getattr(scenario, key)
@@ -49,13 +49,13 @@ def _validate_check(label: str, check: Check) -> Iterator[str]:
     if check.kind not in _CHECK_KINDS:
         yield _problem(f"{label}kind", check.kind, f"one of {', '.join(_CHECK_KINDS)}")
     yield from (
-        _problem(f"{label}{key}", getattr(check, key), "a text")
+        _problem(f"{label}{key}", getattr(check, key), "a string")
         for key in ("name", "expression", "topic", "hint")
         if not _is_valid_text(check, key)
     )
     models: object = check.models
     if not isinstance(models, (tuple, list)) or not all(isinstance(one, str) for one in models):
-        yield _problem(f"{label}models", models, "a tuple of texts")
+        yield _problem(f"{label}models", models, "a tuple of strings")
     yield from _validate_numbers(label, check, by=True, after=False, rate=True, tolerance=False, points=False)
 
 
@@ -64,11 +64,10 @@ def _validate_numbers(label: str, of: object, **may_be_none: bool) -> Iterator[s
         value = getattr(of, key)
         number = finite_number(value)
         if (number is None or number < 0.0) and not (is_free and value is None):
-            yield _problem(f"{label}{key}", value, "a number of at least 0" + (", or None" if is_free else ""))
+            yield _problem(f"{label}{key}", value, "a number >= 0" + (", or None" if is_free else ""))
 
 
 def _validate_commands(commands: object) -> Iterator[str]:
-
     if not isinstance(commands, (tuple, list)) or not all(isinstance(one, Mapping) for one in commands):
         yield _problem("commands", commands, "a tuple of mappings with at, topic and message")
         return
@@ -83,34 +82,34 @@ def _is_valid_text(of: object, key: str) -> bool:
 
 
 def _problem(key: str, value: object, allowed: str) -> str:
-    return f"{key}: found {value!r:.60}, allowed is {allowed}"
+    return f"{key}: found {value!r:.60}, expected {allowed}"
 
 
 def load_python_scenario(file: Path, diagnostics: Diagnostics) -> RunSpec:
-    """The `scenario` of a Python file, which is run.
+    """Run a Python file and return its `scenario`.
 
     Raises:
-        LoadError: SK-SCEN-001 there is no such file; SK-SCEN-005 it failed, or has no scenario; SK-SCEN-003 for
-            every value of it that is not of those that are allowed.
+        LoadError: SK-SCEN-001 the file does not exist; SK-SCEN-005 running it failed, or it has no scenario;
+            SK-SCEN-003 for every invalid value.
     """
     where = Where(str(file))
     problem: Callable[..., None] = diagnostics.error
     found: Any = None
     spec = importlib.util.spec_from_file_location(f"simkit_scenario_{file.stem}", file)
     if spec is None or spec.loader is None or not file.is_file():
-        problem("SK-SCEN-001", "cannot be read: no such file", where)
+        problem("SK-SCEN-001", "cannot be read: the file does not exist", where)
         raise LoadError(tuple(diagnostics))
     module = importlib.util.module_from_spec(spec)
     try:
         spec.loader.exec_module(module)
     except (Exception, SystemExit) as error:
         line = _error_line(error, file)
-        problem("SK-SCEN-005", f"running it failed: {type(error).__name__}: {error}", Where(str(file), line))
+        problem("SK-SCEN-005", f"running the file failed: {type(error).__name__}: {error}", Where(str(file), line))
         raise LoadError(tuple(diagnostics)) from error
     found = getattr(module, "scenario", None)
     if not isinstance(found, RunSpec):
         hint = "from simkit import RunSpec; scenario = RunSpec(world=..., duration=...)"
-        problem("SK-SCEN-005", f"'scenario' is {short_repr(found)}, allowed is a RunSpec", where, hint)
+        problem("SK-SCEN-005", f"'scenario' is {short_repr(found)}, expected a RunSpec", where, hint)
         raise LoadError(tuple(diagnostics))
     for message in validate_scenario(found):
         problem("SK-SCEN-003", message, where)
@@ -122,7 +121,7 @@ def load_python_scenario(file: Path, diagnostics: Diagnostics) -> RunSpec:
 
 
 def _error_line(error: BaseException, file: Path) -> int | None:
-    """The last line of a file that an error came through."""
+    """Return the last line of a file in the traceback of an error."""
     if isinstance(error, SyntaxError) and error.filename == str(file):
         return error.lineno
     line, trace = None, error.__traceback__

@@ -1,6 +1,6 @@
-"""Scenario files: YAML, or Python with a `scenario`.
+"""Scenario files: YAML, or Python with a variable `scenario`.
 
-All problems of a file are reported in one pass, with file and line.
+All problems of a file are reported at once, with file and line.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ KEYS: Final = (
     *_CHECKS,
     *_LOADING_KEYS,
 )
-"""What a scenario file may say."""
+"""Keys of a scenario file."""
 _CHECK_KEYS: Final[dict[CheckKind, tuple[str, ...]]] = {
     "goal": ("name", "that", "by", "points", "hint"),
     "always": ("name", "that", "after", "points", "hint"),
@@ -47,18 +47,18 @@ TOLERANCE_MODES: Final = ("exact", "ignore", "statistics")
 
 
 def is_scenario_file(source: str | Path) -> bool:
-    """Whether a name is that of a scenario's file rather than of a world."""
+    """Check whether a name is that of a scenario file, by its suffix."""
     return Path(source).suffix.lower() in _SCENARIO_SUFFIXES
 
 
 def read_scenario(path: str | Path) -> RunSpec:
-    """The scenario in a file.
+    """Read a scenario file.
 
     Args:
-        path: a YAML file, or a Python file that has a `scenario = RunSpec(...)`, which is run for it.
+        path: YAML file, or Python file with `scenario = RunSpec(...)`, which is run.
 
     Raises:
-        LoadError: with every problem of the file: SK-SCEN-001 to SK-SCEN-005.
+        LoadError: The file has problems (SK-SCEN-001 to SK-SCEN-005); the error lists all of them.
     """
     file = Path(path)
     diagnostics = Diagnostics()
@@ -75,7 +75,7 @@ def read_scenario(path: str | Path) -> RunSpec:
 
 
 def _check_world(scenario: RunSpec, diagnostics: Diagnostics) -> None:
-    """What is wrong with the world of a faulty scenario: it is told in the same pass."""
+    """Report problems of the world together with those of the scenario file."""
     from simkit.build import read_scene
 
     if not scenario.world:
@@ -89,31 +89,31 @@ def _check_world(scenario: RunSpec, diagnostics: Diagnostics) -> None:
 
 
 def parse_scenario(document: Document, *, also: tuple[str, ...] = ()) -> RunSpec:
-    """What a document says; its problems go into its diagnostics.
+    """Parse a scenario document; problems are added to its diagnostics.
 
     Args:
-        document: of a scenario file.
-        also: keys that somebody else reads.
+        document: Document of a scenario file.
+        also: Additional keys that the caller reads.
     """
     if document.values is None:
         document.values = {}
-    said = document.only(document.values, KEYS + also, "a scenario")
-    if isinstance(document.values, dict) and "world" not in said:
-        document.error("SK-SCEN-004", "a scenario needs 'world'", hint="world: a file, or a bare name that simkit has")
-    return ScenarioReader(document, said).scenario()
+    fields = document.only(document.values, KEYS + also, "a scenario")
+    if isinstance(document.values, dict) and "world" not in fields:
+        document.error("SK-SCEN-004", "missing 'world'", hint="add world: FILE or the name of a bundled world")
+    return ScenarioReader(document, fields).scenario()
 
 
 class ScenarioReader(ValueReader):
-    """Reads the values of a scenario."""
+    """Reader of the values of a scenario."""
 
     def scenario(self) -> RunSpec:
         wall = self._number("wall_timeout", None, above=0.0)
-        if "timeout" in self._said and "until" not in self._said:
-            hint = "duration: S ends a run by itself"
-            self._document.error("SK-SCEN-004", "'timeout' needs 'until': what is waited for", "timeout", hint=hint)
-        if "timeout" in self._said and "duration" in self._said:
-            message = "'timeout' and 'duration' both say when a run ends; 'timeout' does where there is 'until'"
-            self._document.error("SK-SCEN-003", message, "timeout", hint="leave one of them out")
+        if "timeout" in self._fields and "until" not in self._fields:
+            hint = "add until: CONDITION, or use duration: S to end the run at a fixed time"
+            self._document.error("SK-SCEN-004", "'timeout' needs 'until'", "timeout", hint=hint)
+        if "timeout" in self._fields and "duration" in self._fields:
+            message = "'timeout' and 'duration' both define the end of the run"
+            self._document.error("SK-SCEN-003", message, "timeout", hint="with 'until', keep only 'timeout'")
         return RunSpec(
             world=self._text("world", ""),
             duration=self._number("duration", self._played(), least=0.0) or 0.0,
@@ -122,7 +122,7 @@ class ScenarioReader(ValueReader):
             overrides=self._overrides(),
             spawn=tuple(resolve_spawn_file(self._document.path.parent, one) for one in self._texts("spawn")),
             commands=self._commands(),
-            play=str(self._said.get("play", "")),
+            play=str(self._fields.get("play", "")),
             play_topics=self._texts("play_topics"),
             topics=self._texts("topics"),
             skip=self._texts("skip"),
@@ -139,26 +139,25 @@ class ScenarioReader(ValueReader):
             file=self._document.path,
         )
 
-    # ------------------------------------------------------------------ what is loaded and done
+    # ------------------------------------------------------------------ world and inputs
 
     def _overrides(self) -> tuple[str, ...]:
-        if isinstance(self._said.get("set"), dict):
+        if isinstance(self._fields.get("set"), dict):
             return tuple(f"{path}={one}" for path, one in self._written("set").items())
         return self._texts("set")
 
     def _written(self, key: str) -> dict[str, str]:
-        """A mapping's values as texts; those that cannot be one are told of."""
+        """Return the values of a mapping as strings; report values that have no string form."""
         found = {}
         for name, value in self._mapping(key).items():
             if is_scalar_text(value):
                 found[name] = yaml_value_text(value)
             else:
-                self._wrong(value, "a number, a text, true or false, or a list of them", key, name)
+                self._wrong(value, "a number, a string, true or false, or a list of these", key, name)
         return found
 
     def _commands(self) -> tuple[Mapping[str, object], ...]:
-
-        value = self._said.get("commands", ())
+        value = self._fields.get("commands", ())
         try:
             if isinstance(value, str):
                 return tuple(script_items(self._document.path.parent / value))
@@ -172,22 +171,22 @@ class ScenarioReader(ValueReader):
                 where = Where(file, int(number)) if number.isdecimal() else Where(place)
                 self._document.diagnostics.error(error.code, message, where)
             return ()
-        self._wrong(value, "a list of {at, topic, message}, or the name of a file that holds one", "commands")
+        self._wrong(value, "a list of {at, topic, message}, or the name of a file with such a list", "commands")
         return ()
 
     def _played(self) -> float:
-        """How long the recording is that is played [s]; 10 s where none is."""
+        """Return the duration of the bag that is played [s]; 10 s without a bag."""
 
-        said = self._said.get("play")
-        if said is None and "play_topics" in self._said:
-            hint = "play: a bag, whose commands are sent again"
+        fields = self._fields.get("play")
+        if fields is None and "play_topics" in self._fields:
+            hint = "add play: BAG, whose commands are sent again"
             self._document.error("SK-SCEN-004", "'play_topics' needs 'play'", "play_topics", hint=hint)
-        if not isinstance(said, str) or not said.strip():
-            if "play" in self._said:
-                self._wrong(said, "the name of a bag", "play")
+        if not isinstance(fields, str) or not fields.strip():
+            if "play" in self._fields:
+                self._wrong(fields, "the name of a bag", "play")
             return 10.0
         try:
-            with open_bag_to_read(self._document.path.parent / said) as bag:
+            with open_bag_to_read(self._document.path.parent / fields) as bag:
                 return bag.duration
         except InputError as error:
             self._document.error(error.code, f"play: {str(error).removeprefix(error.code).strip()}", "play")
@@ -197,21 +196,21 @@ class ScenarioReader(ValueReader):
         folder = self._document.path.parent
         found: dict[str, object] = {}
         for key in ("resource_paths", "plugin_paths"):
-            if key in self._said:
+            if key in self._fields:
                 found[key] = tuple(folder / one for one in self._texts(key))
-        if "params_files" in self._said:
+        if "params_files" in self._fields:
             found["params_files"] = tuple(_resolve_params_file(folder, one) for one in self._texts("params_files"))
-        if "package_paths" in self._said:
+        if "package_paths" in self._fields:
             found["package_paths"] = {name: folder / one for name, one in self._written("package_paths").items()}
-        if "xacro_args" in self._said:
+        if "xacro_args" in self._fields:
             found["xacro_args"] = self._written("xacro_args")
-        if "base" in self._said:
+        if "base" in self._fields:
             found["base"] = self._text("base", "auto")
             if found["base"] not in ("auto", "fixed", "floating"):
                 self._wrong(found.pop("base"), "auto, fixed or floating", "base")
         return found
 
-    # ------------------------------------------------------------------ what is compared
+    # ------------------------------------------------------------------ comparison
 
     def _tolerances(self) -> list[Tolerance]:
         found = []
@@ -233,9 +232,9 @@ class ScenarioReader(ValueReader):
 
     def _tolerance(self, pattern: str, value: Mapping[str, object], where: str) -> Tolerance:
         keys = ("tolerances", pattern)
-        said = self._document.only(value, _TOLERANCE_KEYS, "a tolerance", *keys)
+        fields = self._document.only(value, _TOLERANCE_KEYS, "a tolerance", *keys)
         found: JsonObject = {}
-        for key, one in said.items():
+        for key, one in fields.items():
             if key in TOLERANCE_MODES:
                 if isinstance(one, bool):
                     found[key] = one
@@ -244,20 +243,20 @@ class ScenarioReader(ValueReader):
             else:
                 found[key] = self._number_of(one, None, (*keys, key), least=-1.0 if key == "ssim" else 0.0)
                 if key in ("share", "ssim") and (found[key] or 0.0) > 1.0:
-                    self._wrong(one, "a number of at most 1", *keys, key)
+                    self._wrong(one, "a number <= 1", *keys, key)
         modes = [key for key in TOLERANCE_MODES if found.get(key)]
         if len(modes) > 1:
-            self._document.error("SK-SCEN-003", f"a tolerance is one of {', '.join(modes)}, not all of them", *keys)
+            self._document.error("SK-SCEN-003", f"a tolerance can have only one of {', '.join(modes)}", *keys)
         return Tolerance(absolute_topic(pattern), where=where, **found)
 
     def _statistics(self) -> list[Tolerance]:
         where = str(self._document.where("statistics"))
         return [Tolerance(absolute_topic(one), statistics=True, where=where) for one in self._texts("statistics")]
 
-    # ------------------------------------------------------------------ what must hold
+    # ------------------------------------------------------------------ checks
 
     def _checks(self, key: str, kind: CheckKind) -> list[Check]:
-        value = self._said.get(key, ())
+        value = self._fields.get(key, ())
         if isinstance(value, dict) and kind == "rate":
             value = [{"topic": topic, "rate": rate} for topic, rate in value.items()]
         if isinstance(value, (str, dict, bool)):
@@ -273,30 +272,30 @@ class ScenarioReader(ValueReader):
         main = "topic" if kind == "rate" else "models" if kind == "apart" else "that"
         if isinstance(value, (str, {"that": bool, "models": list}.get(main, str))):
             value = {main: value}
-        said = self._document.only(value, _CHECK_KEYS[kind], f"an entry of {key}", *keys)
-        if main not in said:
+        fields = self._document.only(value, _CHECK_KEYS[kind], f"an entry of {key}", *keys)
+        if main not in fields:
             if isinstance(value, dict):
                 self._document.error("SK-SCEN-004", f"an entry of {key} needs {main!r}", *keys)
             return None
         number_of = self._number_of
-        wanted = said.get("rate", "own")
+        rate = fields.get("rate", "own")
         return Check(
             kind,
-            name=self._text_of(said.get("name", ""), (*keys, "name")),
-            expression=self._expression(self._text_of(said["that"], (*keys, "that")), *keys) if main == "that" else "",
-            by=number_of(said.get("by"), None, (*keys, "by"), least=0.0),
-            after=number_of(said.get("after", 0.0), 0.0, (*keys, "after"), least=0.0) or 0.0,
-            models=self._models(said["models"], (*keys, "models")) if kind == "apart" else (),
-            topic=absolute_topic(self._text_of(said["topic"], (*keys, "topic"))) if kind == "rate" else "",
-            rate=None if wanted == "own" else number_of(wanted, None, (*keys, "rate"), above=0.0),
-            tolerance=number_of(said.get("tolerance", 0.05), 0.05, (*keys, "tolerance"), least=0.0) or 0.0,
-            points=number_of(said.get("points", 1.0), 1.0, (*keys, "points"), least=0.0) or 0.0,
-            hint=self._text_of(said.get("hint", ""), (*keys, "hint")),
+            name=self._text_of(fields.get("name", ""), (*keys, "name")),
+            expression=self._expression(self._text_of(fields[main], (*keys, main)), *keys) if main == "that" else "",
+            by=number_of(fields.get("by"), None, (*keys, "by"), least=0.0),
+            after=number_of(fields.get("after", 0.0), 0.0, (*keys, "after"), least=0.0) or 0.0,
+            models=self._models(fields["models"], (*keys, "models")) if kind == "apart" else (),
+            topic=absolute_topic(self._text_of(fields["topic"], (*keys, "topic"))) if kind == "rate" else "",
+            rate=None if rate == "own" else number_of(rate, None, (*keys, "rate"), above=0.0),
+            tolerance=number_of(fields.get("tolerance", 0.05), 0.05, (*keys, "tolerance"), least=0.0) or 0.0,
+            points=number_of(fields.get("points", 1.0), 1.0, (*keys, "points"), least=0.0) or 0.0,
+            hint=self._text_of(fields.get("hint", ""), (*keys, "hint")),
             where=str(self._document.where(*keys)),
         )
 
     def _expression(self, text: str, *keys: object) -> str:
-        """An expression that can be read; whether the world has what it names is seen when it is bound to one."""
+        """Validate the syntax of an expression; its names are resolved later, when it is bound to a world."""
         from simkit.testing.conditions import parse
 
         if text:
@@ -310,9 +309,9 @@ class ScenarioReader(ValueReader):
     def _text_of(self, value: object, keys: tuple[object, ...]) -> str:
         if isinstance(value, str) and (value.strip() or keys[-1] not in ("that", "topic")):
             return value
-        if isinstance(value, bool) and keys[-1] == "that":  # YAML reads a bare true or false as such
+        if isinstance(value, bool) and keys[-1] == "that":  # YAML converts an unquoted true or false to a bool
             return str(value).lower()
-        self._wrong(value, "a text (in quotes where YAML takes it for something else)", *keys)
+        self._wrong(value, "a string (add quotes if YAML reads it as another type)", *keys)
         return ""
 
     def _models(self, value: Any, keys: tuple[object, ...]) -> tuple[str, ...]:
@@ -320,30 +319,30 @@ class ScenarioReader(ValueReader):
         are_names = isinstance(listed, list) and all(isinstance(one, str) and one.strip() for one in listed)
         if are_names and len(listed) == len(set(listed)) and len(listed) in (1, 2):
             return tuple(listed)
-        self._wrong(value, "the name of a model or link, or two different ones", *keys)
+        self._wrong(value, "the name of one model or link, or two different names", *keys)
         return ()
 
 
 def absolute_topic(topic: str) -> str:
-    """A topic or a pattern of topics with its leading slash."""
+    """Return a topic or topic pattern with a leading slash."""
     return topic if topic.startswith(("/", "*")) or not topic else "/" + topic
 
 
 def is_scalar_text(value: object) -> bool:
-    """Whether `yaml_value_text` has a text for a YAML value."""
+    """Check whether `yaml_value_text` can convert a YAML value."""
     if isinstance(value, list):
         return all(is_scalar_text(one) and not isinstance(one, list) for one in value)
     return isinstance(value, (str, int, float))
 
 
 def yaml_value_text(value: object) -> str:
-    """A YAML value as one would write it: `true` for a truth, numbers of a list with blanks between."""
+    """Convert a YAML value to text: `true` or `false` for a bool, numbers of a list separated by spaces."""
     if isinstance(value, bool):
         return str(value).lower()
     return " ".join(map(yaml_value_text, value)) if isinstance(value, list) else str(value)
 
 
 def _resolve_params_file(folder: Path, text: str) -> str:
-    """`[MODEL=]FILE` with the file beside the scenario's."""
+    """Resolve the file in `[MODEL=]FILE` relative to the scenario's folder."""
     model, equals, file = text.rpartition("=")
     return f"{model}{equals}{folder / file}"

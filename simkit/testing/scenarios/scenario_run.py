@@ -1,4 +1,4 @@
-"""Open the world of a scenario, send its commands, and run to its end."""
+"""Run of a scenario: load the world, send the commands, evaluate the checks, and stop at the end."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ if TYPE_CHECKING:
     from simkit.testing.conditions import CheckResult
 
 
-_SLICE_SECONDS = 0.25  # [s] of simulated time between two looks at the wall clock
+_SLICE_SECONDS = 0.25  # [s] of simulated time between two checks of the wall clock
 
 
 @dataclass(frozen=True)
 class ScenarioResult:
-    """How a run of a scenario ended.
+    """Result of running a scenario.
 
     Attributes:
         reason: "duration", "until", "timeout" or "wall_timeout".
-        results: of every check, in the scenario's order; that of `until` comes first.
+        results: Results of the checks in the scenario's order, that of `until` first.
     """
 
     reason: str
@@ -34,19 +34,19 @@ class ScenarioResult:
 
     @property
     def passed(self) -> bool:
-        """Whether everything held, and the run was not given up."""
+        """True if all checks passed and the run did not reach its wall-clock limit."""
         return self.reason != "wall_timeout" and all(result.passed for result in self.results)
 
 
 def open_scenario(scenario: RunSpec, **more: Any) -> Simulation:
-    """The world of a scenario, at t = 0.
+    """Load the world of a scenario at t = 0.
 
     Args:
-        scenario: what is opened.
-        more: further keyword arguments of `simkit.load`, which go over the scenario's.
+        scenario: Scenario.
+        more: Further keyword arguments of `simkit.load`, which override those of the scenario.
 
     Raises:
-        LoadError: the world has errors.
+        LoadError: The world has errors.
     """
     from simkit.build import load
 
@@ -60,23 +60,23 @@ def run_scenario(
     *,
     absent: Literal["error", "wait"] = "error",
 ) -> ScenarioResult:
-    """Sends the scenario's commands and runs to its end, with its checks.
+    """Run a scenario to its end with its commands and checks.
 
     Args:
-        scenario: what is done.
-        sim: its world, opened by `open_scenario`.
-        on_slice: called now and then between two steps.
-        absent: what a condition is that names a topic which nobody publishes: an "error", or one that is not known
-            until somebody does ("wait"), so that its check fails.
+        scenario: Scenario.
+        sim: Simulation from `open_scenario`.
+        on_slice: Function that is called between two steps, every 0.25 s of simulated time or more often.
+        absent: Behaviour of a condition on a topic without a publisher: "error", or "wait"; a check that still waits at
+            the end fails.
 
     Raises:
-        InputError: a command or a check does not fit the world.
-        SimulationDiverged: the physics left the numbers.
-        PluginError: a plugin raised.
+        InputError: A command or a check does not fit the world.
+        SimulationDiverged: The state became NaN or infinite.
+        PluginError: A plugin raised an exception.
     """
     from simkit.testing.conditions import Watch
 
-    given_up = None if scenario.wall_timeout is None else time.perf_counter() + scenario.wall_timeout
+    wall_deadline = None if scenario.wall_timeout is None else time.perf_counter() + scenario.wall_timeout
     with (
         ScenarioCommands(scenario, sim) as commands,
         Watch(sim, scenario.checks, until=scenario.until, timeout=scenario.longest, absent=absent) as watch,
@@ -93,7 +93,7 @@ def run_scenario(
             sim.control.pausing.advance(stop - sim.tick)
             if on_slice is not None:
                 on_slice()
-            if given_up is not None and time.perf_counter() > given_up:
+            if wall_deadline is not None and time.perf_counter() > wall_deadline:
                 reason = "wall_timeout"
                 break
         if watch.ended:
@@ -102,14 +102,14 @@ def run_scenario(
 
 
 def resolve_commands(spec: RunSpec, topics: Mapping[str, str]) -> RunSpec:
-    """Return the run with its `velocity` and its `script` among its commands.
+    """Return a run specification whose `velocity` and `script` are converted to commands.
 
     Args:
-        spec: the run.
-        topics: topic -> type of its world.
+        spec: Run specification.
+        topics: Topics of the world with their types.
 
     Raises:
-        InputError: SK-CLI-010 no such speeds, or no topic for them; SK-CLI-011 what is wrong with the script.
+        InputError: SK-CLI-010 invalid velocity, or no topic for it; SK-CLI-011 invalid script.
     """
     if spec.velocity is None and spec.script is None:
         return spec
@@ -122,18 +122,17 @@ def resolve_commands(spec: RunSpec, topics: Mapping[str, str]) -> RunSpec:
 
 
 class ScenarioCommands:
-    """Sends a scenario's commands at their ticks, from the present one on; a context manager.
+    """Sender of a scenario's commands at their ticks, from the present tick on; a context manager.
 
     Args:
-        scenario: what is sent.
-        sim: its world.
+        scenario: Scenario.
+        sim: Simulation of its world.
 
     Raises:
-        InputError: a command does not fit the world, or the recording cannot be played.
+        InputError: A command does not fit the world, or the bag cannot be played.
     """
 
     def __init__(self, scenario: RunSpec, sim: Simulation) -> None:
-
         topics = sim.topics()
         self._commands = Commands(sim, commands_of(resolve_commands(scenario, topics).commands, topics))
         self._played: Playback | None = None
@@ -153,15 +152,15 @@ class ScenarioCommands:
 
     @property
     def next_tick(self) -> int | None:
-        """The tick at which something is to be sent next; None when all is sent."""
+        """Tick of the next command; None after the last one."""
         ticks = [self._commands.next_tick, None if self._played is None else self._played.next_tick]
         return min((tick for tick in ticks if tick is not None), default=None)
 
     def send_due(self) -> None:
-        """Sends what is due at the present tick.
+        """Send all commands that are due at the present tick.
 
         Raises:
-            InputError: a message does not fit its topic, or the recording breaks off.
+            InputError: A message does not fit its topic, or the bag is truncated.
         """
         self._commands.send_due()
         if self._played is not None:

@@ -1,4 +1,4 @@
-"""Read a YAML file into plain values that know their lines, and check the type of each value."""
+"""YAML documents whose values know their line numbers, and a reader that validates the type of each value."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ from typing import Any
 from simkit.diagnostics import Diagnostics, Where, did_you_mean, shorten
 from simkit.yaml_reader import NotYaml, compose_nodes, finite_number, node_value
 
-MAX_BYTES = 1 << 20  # bytes of a file that people write by hand
-_MAX_DEPTH = 6  # levels whose lines are known
+MAX_BYTES = 1 << 20  # limit for a handwritten file [bytes]
+_MAX_DEPTH = 6  # nested levels for which lines are stored
 _BOOLEAN_WORDS = {"on": True, "yes": True, "true": True, "off": False, "no": False, "false": False}
 
 
 class Document:
-    """The values of a YAML file.
+    """Values of a YAML file.
 
     Args:
-        path: of the file.
-        diagnostics: gets what is wrong with it.
+        path: File.
+        diagnostics: Diagnostics for problems in the file.
 
     Attributes:
-        values: plain ones; None where the file is no YAML.
+        values: Plain values; None if the file is not YAML.
     """
 
     def __init__(self, path: Path, diagnostics: Diagnostics) -> None:
@@ -35,46 +35,45 @@ class Document:
             self._read(text)
 
     def where(self, *keys: object) -> Where:
-        """The place of a value, or of the nearest one around it whose line is known."""
+        """Return the place of a value, or of the nearest enclosing value with a known line."""
         while keys and keys not in self._lines:
             keys = keys[:-1]
         return Where(str(self.path), self._lines.get(keys, 1))
 
     def error(self, code: str, message: str, *keys: object, hint: str = "") -> None:
-        """Reports what is wrong with a value."""
+        """Report an error of a value."""
         self.diagnostics.error(code, message, self.where(*keys), hint)
 
     def only(self, value: object, allowed: tuple[str, ...], what: str, *keys: object) -> dict[str, object]:
-        """A mapping with nothing but allowed keys; what else it has is reported, with the closest name."""
+        """Return the allowed keys of a mapping; report other keys and suggest the closest name."""
         if not isinstance(value, dict):
-            self.error("SK-SCEN-003", f"{what}: found {short_repr(value)}, allowed is a mapping", *keys)
+            self.error("SK-SCEN-003", f"{what}: found {short_repr(value)}, expected a mapping", *keys)
             return {}
         for key in value:
             if key not in allowed:
-                hint = did_you_mean(str(key), allowed) or f"there is {', '.join(allowed)}"
+                hint = did_you_mean(str(key), allowed) or f"allowed keys: {', '.join(allowed)}"
                 if isinstance(key, bool):
-                    hint = f"YAML takes a bare on, off, yes and no for true or false; {hint}"
-                self.error("SK-SCEN-002", f"{what} has no {str(key)!r}", *keys, key, hint=hint)
+                    hint = f"YAML reads an unquoted on, off, yes or no as true or false; {hint}"
+                self.error("SK-SCEN-002", f"{what} has no key {str(key)!r}", *keys, key, hint=hint)
         return {key: one for key, one in value.items() if key in allowed}
 
     def _text(self) -> str | None:
         try:
             if self.path.stat().st_size > MAX_BYTES:
-                message = f"the file has more than {MAX_BYTES >> 20} MB"
+                message = f"the file is larger than {MAX_BYTES >> 20} MiB"
                 self.diagnostics.error("SK-SCEN-001", message, Where(str(self.path)))
                 return None
             return self.path.read_text(encoding="utf-8")
         except (OSError, ValueError) as error:
-            why = getattr(error, "strerror", None) or "it is no text in UTF-8"
-            self.diagnostics.error("SK-SCEN-001", f"cannot be read: {why}", Where(str(self.path)))
+            reason = getattr(error, "strerror", None) or "the file is not UTF-8 text"
+            self.diagnostics.error("SK-SCEN-001", f"cannot be read: {reason}", Where(str(self.path)))
             return None
 
     def _read(self, text: str) -> None:
-
         try:
             root = compose_nodes(text)
             if root is not None:
-                self._note_lines(root)  # before values are made, which resolves merges
+                self._note_lines(root)  # before node_value, which resolves merge keys
                 self.values = node_value(root)
         except NotYaml as error:
             where = Where(str(self.path), error.line)
@@ -83,13 +82,13 @@ class Document:
     def _note_lines(self, root: object) -> None:
         for keys, line in _lines_by_path(root, ()):
             if keys in self._lines and keys and not isinstance(keys[-1], int):
-                message = f"{keys[-1]!r} is said twice, at line {self._lines[keys]} too"
+                message = f"duplicate key {keys[-1]!r}, also at line {self._lines[keys]}"
                 self.diagnostics.error("SK-SCEN-003", message, Where(str(self.path), line))
             self._lines[keys] = line
 
 
 def _lines_by_path(node: Any, keys: tuple[object, ...]) -> Iterator[tuple[tuple[object, ...], int]]:
-    """Of every value down to some depth, by its keys; that of a mapping's value is the line of its key."""
+    """Iterate over the keys and lines of all values; the line of a mapping's value is that of its key."""
     import yaml
 
     if not keys:
@@ -109,41 +108,41 @@ def _lines_by_path(node: Any, keys: tuple[object, ...]) -> Iterator[tuple[tuple[
 
 
 def resolve_spawn_file(folder: Path, spawn: str) -> str:
-    """`MODEL:x,y,yaw[:name]` with the file in a folder, where there is such a one; else as it is."""
+    """Resolve the file in `MODEL:x,y,yaw[:name]` relative to a folder, if it exists there."""
     model, colon, rest = spawn.partition(":")
     return f"{folder / model}{colon}{rest}" if model and (folder / model).exists() else spawn
 
 
 def short_repr(value: object) -> str:
-    """A value for a message, short."""
+    """Return a shortened representation of a value for messages."""
     return shorten(repr(value), 60)
 
 
 class ValueReader:
-    """Reads plain values of a document.
+    """Reader of the values of a document.
 
     Args:
-        document: it is told what is wrong.
-        said: its values at some place, by key.
-        at: keys of that place; none for the top.
+        document: Document; it receives the errors.
+        fields: Values by key.
+        at: Keys that lead to the values; empty for the top level.
     """
 
-    def __init__(self, document: Document, said: Mapping[str, object], at: tuple[object, ...] = ()) -> None:
-        self._document, self._said, self._at = document, said, at
+    def __init__(self, document: Document, fields: Mapping[str, object], at: tuple[object, ...] = ()) -> None:
+        self._document, self._fields, self._at = document, fields, at
 
     def _wrong(self, value: object, allowed: str, *keys: object) -> None:
-        label, message = ".".join(map(str, (*self._at, *keys))), f"found {short_repr(value)}, allowed is {allowed}"
+        label, message = ".".join(map(str, (*self._at, *keys))), f"found {short_repr(value)}, expected {allowed}"
         self._document.error("SK-SCEN-003", f"{label}: {message}", *self._at, *keys)
 
     def _text(self, key: str, default: str) -> str:
-        value = self._said.get(key, default)
+        value = self._fields.get(key, default)
         if isinstance(value, str) and (value.strip() or value == default):
             return value
-        self._wrong(value, "a text", key)
+        self._wrong(value, "a string", key)
         return default
 
     def _flag(self, key: str, default: bool) -> bool:
-        value = self._said.get(key, default)
+        value = self._fields.get(key, default)
         if isinstance(value, bool):
             return value
         self._wrong(value, "true or false", key)
@@ -152,7 +151,7 @@ class ValueReader:
     def _number(
         self, key: str, default: float | None, *, least: float = -math.inf, above: float = -math.inf
     ) -> float | None:
-        return self._number_of(self._said.get(key, default), default, (key,), least=least, above=above)
+        return self._number_of(self._fields.get(key, default), default, (key,), least=least, above=above)
 
     def _number_of(
         self,
@@ -163,33 +162,33 @@ class ValueReader:
         least: float = -math.inf,
         above: float = -math.inf,
     ) -> float | None:
-        if value is default:  # nothing was said
+        if value is default:  # the key is missing
             return None if value is None else float(value)
         number = finite_number(value)
         if number is not None and number >= least and number > above:
             return number
-        bound = f" of at least {least:g}" if least > -math.inf else f" above {above:g}" if above > -math.inf else ""
+        bound = f" >= {least:g}" if least > -math.inf else f" > {above:g}" if above > -math.inf else ""
         self._wrong(value, f"a number{bound}", *keys)
         return default
 
     def _whole(self, key: str, default: int, least: int) -> int:
-        value = self._said.get(key, default)
+        value = self._fields.get(key, default)
         if isinstance(value, int) and not isinstance(value, bool) and value >= least:
             return value
-        self._wrong(value, f"a whole number of at least {least}", key)
+        self._wrong(value, f"an integer >= {least}", key)
         return default
 
     def _texts(self, key: str) -> tuple[str, ...]:
-        value = self._said.get(key, ())
+        value = self._fields.get(key, ())
         listed = [value] if isinstance(value, str) else value
         if isinstance(listed, (list, tuple)) and all(isinstance(one, str) and one.strip() for one in listed):
             return tuple(listed)
-        self._wrong(value, "a text, or a list of them", key)
+        self._wrong(value, "a string or a list of strings", key)
         return ()
 
     def _mapping(self, key: str) -> dict[str, object]:
-        value = self._said.get(key, {})
+        value = self._fields.get(key, {})
         if isinstance(value, dict) and all(isinstance(one, str) for one in value):
             return value
-        self._wrong(value, "a mapping with texts before the colons", key)
+        self._wrong(value, "a mapping with string keys", key)
         return {}

@@ -123,15 +123,15 @@ def test_the_first_tick_is_that_of_the_first_mark_that_differs() -> None:
     b = states([1, 2, 9, 9], [0, 0, 0, 0], [[0.0, 1.0], [1.0, 1.5]])
     found = first_different_tick(a, b)
     assert found is not None
-    assert (found.tick, found.is_put_in, found.quantity) == (3, False, "q1 1 → 1.5 at t = 0.04 s")
+    assert (found.tick, found.has_other_input, found.quantity) == (3, False, "q1 1 → 1.5 at t = 0.04 s")
     assert "the same was put in" in found.words
 
 
-def test_what_is_put_in_comes_before_what_follows_from_it() -> None:
+def test_what_has_other_input_comes_before_what_follows_from_it() -> None:
     a = states([1, 2, 3, 4], [0, 0, 0, 0], [[0.0], [1.0]])
     b = states([1, 2, 9, 9], [0, 0, 7, 7], [[0.0], [2.0]])
     found = first_different_tick(a, b)
-    assert found is not None and found.is_put_in
+    assert found is not None and found.has_other_input
     assert found.words.startswith("what plugins and commands put in is other first at tick 3 (t = 0.03 s)")
 
 

@@ -1,7 +1,7 @@
-"""Find the change that a difference between two runs comes from, by running again with single changes undone.
+"""Search for the cause of a difference between two runs: rerun the scenario with single changes undone.
 
-Two records and their comparison enter, an `Explanation` leaves. It knows no list of causes: what differs in the inputs
-is tried out, as long as the time allows. No file is written.
+The inputs are two records and their comparison. The result is an `Explanation`. The search has no list of known causes.
+It tests every difference in the inputs within its time limit. It writes no files.
 """
 
 from __future__ import annotations

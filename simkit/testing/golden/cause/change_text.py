@@ -1,4 +1,4 @@
-"""Changes in words: names as the file has them, numbers with units, and no more digits than tell them apart."""
+"""Texts for changes: names as in the file, numbers with units, and only as many digits as needed."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ _SHORTENED_PREFIXES = re.compile(r"^(params\.|geometry\.|inertial\.|surface\.|su
 _WORDS = tomllib.loads(Path(__file__).with_name("change_words.toml").read_text(encoding="utf-8"))
 _UNITS: Mapping[str, str] = {name: unit for unit, names in _WORDS["units"].items() for name in names}
 _CONTENT = re.compile(r"^[0-9a-f]{16} \((\d+) bytes\)$")
-_LONGEST = 100  # letters of a value
+_LONGEST = 100  # maximum length of a value in characters
 
 
 def attribute_name(attribute: str) -> str:
-    """An attribute by the name that a file gives it."""
+    """Return the name of an attribute in world files."""
     text = re.sub(r"^axes\[(\d+)\]\.", lambda m: "" if m[1] == "0" else f"axis {int(m[1]) + 1} ", attribute)
     text = _SHORTENED_PREFIXES.sub("", text).replace("@", " ").strip()
     found: str = _WORDS["names_in_files"].get(text, text)
@@ -28,28 +28,28 @@ def attribute_name(attribute: str) -> str:
 
 
 def entity_title(owner: str) -> str:
-    """A part of the world: `link robot::wheel`."""
+    """Return kind and name of an entity: `link robot::wheel`."""
     return f"{entity_kind(owner)} {scoped_name(owner)}".strip()
 
 
 def owner_title(edit: Edit) -> str:
-    """Whose a leaf is."""
+    """Return kind and name of the entity that an edit belongs to."""
     return entity_title(edit.owner)
 
 
 def list_names(names: Sequence[str], most: int = 4) -> str:
-    """Names, not too many."""
+    """Join names; count those beyond the limit."""
     shown_ = list(names[: most if len(names) > most + 1 else len(names)])
     more = len(names) - len(shown_)
     return ", ".join(shown_) + (f" and {more} more" if more else "")
 
 
 def edit_text(edit: Edit, leaves: Mapping[str, object]) -> str:
-    """A leaf's change in a sentence: `collision robot::wheel::tyre: radius 0.033 → 0.0333 m (+1 %)`.
+    """Describe an edit: `collision robot::wheel::tyre: radius 0.033 → 0.0333 m (+1 %)`.
 
     Args:
-        edit: the change.
-        leaves: all of the run's, for what a number belongs to.
+        edit: Edit.
+        leaves: All values of the new run's world, needed to find the unit.
     """
     attribute = edit.attribute
     name = attribute_name(attribute)
@@ -59,7 +59,7 @@ def edit_text(edit: Edit, leaves: Mapping[str, object]) -> str:
 
 
 def world_unit(edit: Edit, last: str, leaves: Mapping[str, object]) -> str:
-    """The unit of a number of a world's; "" where it has none, or it is not known."""
+    """Return the unit of a number in a world; empty if it has none or the unit is unknown."""
     attribute = edit.attribute
     if last in ("lower", "upper", "spring_ref", "velocity") and attribute.startswith("axes["):
         is_linear = leaves.get(f"{edit.owner}.type") == "prismatic"
@@ -73,7 +73,7 @@ def world_unit(edit: Edit, last: str, leaves: Mapping[str, object]) -> str:
 
 
 def values_text(golden: Any, run: Any, last: str = "", unit: str = "") -> str:
-    """Two values: `0.033 → 0.0333 m (+1 %)`, `y 1 → 1.01 m`, `is new: 5`."""
+    """Describe two values: `0.033 → 0.0333 m (+1 %)`, `y 1 → 1.01 m`, `is new: 5`."""
     behind = f" {unit}" if unit else ""
     if golden is ABSENT:
         return f"is new: {single_value_text(run)}{behind}"
@@ -86,7 +86,7 @@ def values_text(golden: Any, run: Any, last: str = "", unit: str = "") -> str:
     a, b = _CONTENT.match(str(golden)), _CONTENT.match(str(run))
     if a and b:
         size = f" ({a[1]} → {b[1]} bytes)" if a[1] != b[1] else f" (still {b[1]} bytes)"
-        return "has other content" + size
+        return "has different content" + size
     return f"{single_value_text(golden)} → {single_value_text(run)}{behind}"
 
 
@@ -108,9 +108,9 @@ def _pair(a: Any, b: Any, unit: str) -> str:
 
 
 def _percent_change(golden: float, run: float) -> str:
-    """By how much, in per cent, where that says more than the numbers."""
+    """Return the change in per cent; empty for integers, other signs and changes of 100 % or more."""
     if isinstance(golden, int) and isinstance(run, int):
-        return ""  # a number of something, or of a seed
+        return ""  # a count or a seed
     if not golden or not math.isfinite(golden) or not math.isfinite(run) or golden * run < 0:
         return ""
     percent = (run / golden - 1) * 100
@@ -126,7 +126,7 @@ def _is_number(value: object) -> bool:
 
 
 def single_value_text(value: object) -> str:
-    """One value; a long one is cut."""
+    """Format one value; shorten a long one."""
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, float):

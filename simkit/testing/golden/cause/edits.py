@@ -1,4 +1,4 @@
-"""From leaves that differ to changes as a person made them: one for a moved robot, not one for each of its parts."""
+"""Grouping of values that differ into changes as a person made them, such as one change for a moved robot."""
 
 from __future__ import annotations
 
@@ -29,20 +29,20 @@ from simkit.testing.golden.compare.world_edits import (
 
 WorldValues = Mapping[str, Any]
 _UNGROUPED_ELEMENTS = frozenset(("", "params"))
-"""Elements whose values have little to do with each other."""
-_LEAST_LIKENESS = 0.5  # of the leaves of a part that are alike: it is the same part under another name
+"""Elements whose values are independent of each other."""
+_LEAST_LIKENESS = 0.5  # share of equal values from which two entities count as one that was renamed
 
 
 @dataclass(frozen=True)
 class Change:
-    """One change, with all the leaves that it shows in.
+    """One change with all values that differ because of it.
 
     Attributes:
-        kind: of what.
-        words: in a sentence.
-        path, golden, run: of the leaf that says most.
-        where: `file:line`, where there is one.
-        edits: what is put back with it.
+        kind: Kind of change.
+        words: Sentence about the change.
+        path, golden, run: Path and values of the most informative value.
+        where: `file:line`; empty if unknown.
+        edits: Values to restore when the change is undone.
     """
 
     kind: CauseKind
@@ -55,11 +55,11 @@ class Change:
 
 
 def find_changes(edits: list[Edit], golden: WorldValues, run: WorldValues) -> list[Change]:
-    """The changes of a world.
+    """Group the differences of two worlds into changes.
 
     Args:
-        edits: its leaves that differ.
-        golden, run: all of its leaves.
+        edits: Values that differ.
+        golden, run: All values of both worlds.
     """
     if not edits:
         return []
@@ -71,11 +71,11 @@ def find_changes(edits: list[Edit], golden: WorldValues, run: WorldValues) -> li
     return sorted(found, key=lambda c: min((order.get(e.path, len(order)) for e in c.edits), default=0))
 
 
-# ------------------------------------------------------------------ parts that came, went, or have another name
+# ------------------------------------------------------------------ added, removed and renamed entities
 
 
 def _whole_entities(leaves: WorldValues, others: WorldValues) -> list[str]:
-    """The outermost parts of the world that the other one does not have."""
+    """Return the outermost entities that only the first of two worlds has."""
     mine = dict.fromkeys(p for path in leaves for p in _entity_chain(split_entity_path(path)[0]))
     alone = mine.keys() - {p for path in others for p in _entity_chain(split_entity_path(path)[0])}
     return [p for p in mine if p in alone and parent_path(p) not in alone]
@@ -114,7 +114,7 @@ def _likeness(a: Mapping[str, object], b: Mapping[str, object], old: str, new: s
 
 
 def _rename_in_text(value: object, old: str, new: str) -> object:
-    """A text in which a part has its other name."""
+    """Replace an entity's old name in a value by its new name."""
     if isinstance(value, list):
         return [_rename_in_text(v, old, new) for v in value]
     if not isinstance(value, str):
@@ -128,7 +128,7 @@ def _rename_in_text(value: object, old: str, new: str) -> object:
 def _rename_change(
     old: str, new: str, edits: list[Edit], golden: WorldValues, run: WorldValues
 ) -> tuple[Change, list[Edit]]:
-    """The change that a renaming is, and the edits that are left: those of the part itself under its new name."""
+    """Return the change for a renamed entity and the remaining edits."""
     a, b = scoped_name(old), scoped_name(new)
     mine: list[Edit] = []
     rest: list[Edit] = []
@@ -143,7 +143,7 @@ def _rename_change(
         if not is_same_value(was, now) and not is_same_value(value, now):
             others.append(Edit("model", new + tail, was, now, where))
     others += [Edit("model", new + t, ABSENT, v, where) for t, v in theirs.items() if old + t not in golden]
-    words = "; ".join([f"{entity_title(old)} is called {b} now", *(edit_text(e, run) for e in others[:3])])
+    words = "; ".join([f"{entity_title(old)} was renamed to {b}", *(edit_text(e, run) for e in others[:3])])
     return Change("model", words, new, a, b, where, tuple(mine)), rest
 
 
@@ -170,12 +170,12 @@ def _entity_changes(edits: list[Edit], golden: WorldValues, run: WorldValues) ->
 
 
 def _names_one(edit: Edit, names: list[str]) -> bool:
-    """Whether a leaf is the name of a part that came or went."""
+    """Check whether a value is the name of an added or removed entity."""
     texts = [v for v in (edit.golden, edit.run) if isinstance(v, str)]
     return any(text == name or text.startswith(name + "::") for text in texts for name in names)
 
 
-# ------------------------------------------------------------------ what moved
+# ------------------------------------------------------------------ motions
 
 
 def _motions(edits: list[Edit], golden: WorldValues, run: WorldValues) -> tuple[list[Change], list[Edit]]:
@@ -194,7 +194,7 @@ def _motions(edits: list[Edit], golden: WorldValues, run: WorldValues) -> tuple[
     return changes, rest
 
 
-# ------------------------------------------------------------------ the same in several places
+# ------------------------------------------------------------------ equal changes in several places
 
 
 def _group_equal_changes(edits: list[Edit], golden: WorldValues, run: WorldValues) -> list[Change]:
@@ -225,7 +225,7 @@ def _group_equal_changes(edits: list[Edit], golden: WorldValues, run: WorldValue
 
 
 def _element_changes(edits: list[Edit], golden: WorldValues, run: WorldValues) -> tuple[list[Change], list[Edit]]:
-    """Elements that came, went, or became another kind, with all that is in them; and what is left."""
+    """Return the changes for elements that were added, removed or replaced, and the remaining edits."""
     groups: dict[str, list[Edit]] = {}
     rest = []
     kinds = {e.path for e in edits if ABSENT not in (e.golden, e.run)}
@@ -252,12 +252,12 @@ def _element_changes(edits: list[Edit], golden: WorldValues, run: WorldValues) -
 
 
 def _is_hollow(edit: Edit) -> bool:
-    """Whether it only says that an element has nothing in it, on one side."""
+    """Check whether an edit only states that an element is empty on one side."""
     return (edit.golden, edit.run) in ((ABSENT, ""), ("", ABSENT))
 
 
 def _prefixes(leaves: WorldValues) -> set[str]:
-    """The paths of all leaves and of all that holds some."""
+    """Return the paths of all values and of the elements that contain them."""
     found: set[str] = set()
     for path in leaves:
         owner = split_entity_path(path)[0]
@@ -268,12 +268,12 @@ def _prefixes(leaves: WorldValues) -> set[str]:
 
 
 def _parent_element(path: str) -> str:
-    """A path without its last step."""
+    """Return a path without its last step."""
     return path[: max(path.rfind("."), path.rfind("@"), path.rfind("["), 0)]
 
 
 def _changed_element(edit: Edit, kinds: set[str], others: set[str]) -> str:
-    """The outermost element of its part that only one of the two has, or that is of another kind in both."""
+    """Return the outermost element that only one world has, or whose kind differs; empty if there is none."""
     if ABSENT not in (edit.golden, edit.run) and edit.path not in kinds:
         return ""
     owner = edit.owner
@@ -288,7 +288,7 @@ def _changed_element(edit: Edit, kinds: set[str], others: set[str]) -> str:
 
 
 def _element_change_text(block: str, head: Edit | None, several: list[Edit], run: WorldValues) -> Change:
-    """What became of an element."""
+    """Return the change for an element that was added, removed or replaced."""
     owner, attribute = split_entity_path(block)
     inner = [(e.path[len(block) :].lstrip(".@"), e) for e in several if e.path.startswith((block + ".", block + "@"))]
     every = tuple({e.path: e for e in ([head] if head else []) + several}.values())
@@ -306,7 +306,7 @@ def _element_change_text(block: str, head: Edit | None, several: list[Edit], run
 
 
 def _group_by_element(edits: list[Edit]) -> list[list[Edit]]:
-    """Edits that belong together: those of one element of one part (its inertial, its material, one noise)."""
+    """Group the edits by element, such as an inertial, a material or a noise model."""
     groups: dict[object, list[Edit]] = {}
     for number, edit in enumerate(edits):
         owner, attribute = split_entity_path(edit.path)
@@ -316,7 +316,7 @@ def _group_by_element(edits: list[Edit]) -> list[list[Edit]]:
 
 
 def _group_alike(units: list[list[Edit]]) -> list[list[list[Edit]]]:
-    """Units in which the same became other in the same way."""
+    """Group the elements in which the same values changed in the same way."""
     groups: dict[object, list[list[Edit]]] = {}
     for unit in units:
         groups.setdefault(tuple((_last(e.path), repr(e.golden), repr(e.run)) for e in unit), []).append(unit)
@@ -328,7 +328,7 @@ def _last(path: str) -> str:
 
 
 def _factor(change: Change) -> tuple[str, float] | None:
-    """What a change multiplies a number by, with the number's name."""
+    """Return the name and the factor of a change that multiplies a number; None for other changes."""
     a, b = change.golden, change.run
     if isinstance(a, (int, float)) and isinstance(b, (int, float)) and not isinstance(a, bool) and a and b:
         factor = round(b / a, 9)
@@ -340,7 +340,7 @@ def _change(units: list[list[Edit]], run: WorldValues) -> Change:
     unit = units[0]
     first = unit[0]
     head = owner_title(first) + ": "
-    # of the first the whole path, of the others in the same element the last name
+    # the first text keeps its whole path, further ones in the same element only the last name
     inner = [edit_text(e, run).removeprefix(head) for e in unit]
     block = attribute_name(first.attribute).rpartition(".")[0]
     inner[1:] = [text.removeprefix(block + ".") if block else text for text in inner[1:]]

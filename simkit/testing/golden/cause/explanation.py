@@ -1,4 +1,4 @@
-"""Explain why a run differs from its reference run: which inputs differ, and which of them make the difference."""
+"""Explanation of differences between a run and its golden run: changed inputs, and those that cause the differences."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from simkit.testing.golden.compare.world_edits import model_edits
 from simkit.testing.run_record.record import RunRecord
 
 IsSameRun = Callable[[frozenset[int]], bool | None]
-"""Whether the run with these changes put back gives the golden outputs; None where there is no time left for it."""
+"""Function that tests if the run gives the golden outputs with these changes undone; None without time left."""
 
 
 @dataclass
 class SearchResult:
-    """What putting changes back has shown.
+    """Result of undoing changes.
 
     Attributes:
-        needed: which must be put back for the golden outputs, and are enough for them.
-        idle: which make no difference.
-        all_back: whether everything put back gives the golden outputs; None where that was not tried.
+        needed: Changes that must be undone, and together suffice, for the golden outputs.
+        idle: Changes without effect.
+        all_back: True if undoing all changes gives the golden outputs; None if this was not tested.
     """
 
     needed: list[int] = field(default_factory=list)
@@ -34,11 +34,11 @@ class SearchResult:
 
 
 def find_effective_changes(order: Sequence[int], same: IsSameRun) -> SearchResult:
-    """Finds which changes make the difference.
+    """Find the changes that cause the differences.
 
     Args:
-        order: the changes, the likeliest first.
-        same: runs with some of them put back.
+        order: Indices of the changes, most likely first.
+        same: Function that reruns the scenario with some changes undone.
     """
     every = frozenset(order)
     found = SearchResult(all_back=same(every))
@@ -47,7 +47,7 @@ def find_effective_changes(order: Sequence[int], same: IsSameRun) -> SearchResul
     if len(order) == 1:
         found.needed = list(order)
         return found
-    if same(frozenset(order[:1])):  # nearly always one change is the cause, and the ranking knows which
+    if same(frozenset(order[:1])):  # in most cases one change is the cause, and it is ranked first
         found.needed, found.idle = [order[0]], list(order[1:])
         return found
     _bisect_changes(list(order), every, same, found)
@@ -55,7 +55,7 @@ def find_effective_changes(order: Sequence[int], same: IsSameRun) -> SearchResul
 
 
 def _bisect_changes(group: list[int], every: frozenset[int], same: IsSameRun, found: SearchResult) -> None:
-    """Sorts a group into what is needed and what is idle: it is left as it is, with all others put back."""
+    """Sort a group into needed and idle changes by rerunning with all other changes undone."""
     answer = same(every - frozenset(group))
     if answer is None:
         return
@@ -70,7 +70,7 @@ def _bisect_changes(group: list[int], every: frozenset[int], same: IsSameRun, fo
     _bisect_changes(group[middle:], every, same, found)
 
 
-_MAX_CHANGES = 8  # causes that are written out
+_MAX_CHANGES = 8  # causes listed in full
 
 
 def explain(
@@ -81,14 +81,14 @@ def explain(
     rerun: RunChangedWorld | None = rerun_scenario,
     budget_s: float = 60.0,
 ) -> Explanation:
-    """Why a run is not the golden one.
+    """Explain the differences between a run and its golden run.
 
     Args:
-        golden: what was stored.
-        run: what came now.
-        comparison: of both.
-        rerun: runs a scenario again, in a world that is given a change; None for no proofs.
-        budget_s: wall time for proofs [s].
+        golden: Stored record.
+        run: New record.
+        comparison: Comparison of both.
+        rerun: Function that runs a scenario again in a changed world; None to test nothing.
+        budget_s: Wall-clock limit of all reruns [s].
     """
     changes, beside = changes_outside_world(world_changes(golden, run), golden, run)
     engine = engine_changes(golden, run, changes)
@@ -107,20 +107,20 @@ def explain(
 
 
 def world_changes(golden: RunRecord, run: RunRecord) -> list[Change]:
-    """What is other in the world of a run than in that of the golden one."""
+    """Return the changes of the world between a golden run and a new run."""
     return find_changes(model_edits(golden.leaves, run.leaves, run.leaf_places), golden.leaves, run.leaves)
 
 
 @dataclass
 class _Proof:
-    """What running again has shown.
+    """Results of rerunning the scenario.
 
     Attributes:
-        tried: the numbers of the changes that can be put back.
-        found: by number of the change; None where nothing was run.
-        until: up to where outputs were compared [s].
-        is_whole: whether that is the whole run.
-        quantity: what differs first, at the very tick; "" where that was not looked at.
+        tried: Indices of the changes that can be undone.
+        found: Result of the search; None if nothing was run.
+        until: Simulated time up to which outputs were compared [s].
+        is_whole: True if the whole run was compared.
+        quantity: First quantity that differs; empty if unknown.
     """
 
     tried: list[int]
@@ -131,7 +131,7 @@ class _Proof:
 
 
 def _has_recorded_difference(comparison: Comparison) -> bool:
-    """Whether anything that was recorded is other, so that putting back can show something."""
+    """Check whether a recorded output differs, so that undoing a change can have an effect."""
     return any(difference.kind != "model" for difference in comparison.differences)
 
 
@@ -146,11 +146,11 @@ def _prove(proof: _Proof, again: ScenarioRerun, parted: FirstDifferentTick | Non
         mine = again.record(frozenset(), at)
         theirs = again.record(frozenset(proof.found.needed), at) if mine is not None else None
         if mine is not None and theirs is not None:
-            proof.quantity = largest_final_difference(theirs.states, mine.states, by_input=parted.is_put_in)
+            proof.quantity = largest_final_difference(theirs.states, mine.states, by_input=parted.has_other_input)
 
 
 def _explain_whole_run(proof: _Proof, again: ScenarioRerun) -> None:
-    """Whether what explains the first difference explains the whole run; if not, what else there is to it."""
+    """Check whether the changes that explain the first difference explain the whole run; if not, search again."""
     assert proof.found is not None
     answer = again.same(frozenset(proof.found.needed))
     if answer:
@@ -164,14 +164,14 @@ def _explain_whole_run(proof: _Proof, again: ScenarioRerun) -> None:
 
 
 def _rank_causes(every: Sequence[Change], proof: _Proof) -> list[Cause]:
-    """The causes: proven ones first, then those of which nothing is known, then those that make no difference."""
+    """Order the causes: proven ones, then untested ones, then those without effect."""
     found = []
     search = proof.found or SearchResult()
     for number, change in enumerate(every):
         proven = True if number in search.needed else False if number in search.idle else None
         place = {True: 0, None: 1, False: 3}[proven]
         if proven is None and ((search.needed and search.all_back) or change.kind == "version"):
-            place = 2  # what is proven is enough
+            place = 2  # proven causes suffice, and versions cannot be tested
         cause = Cause(change.kind, change.words, change.path, change.golden, change.run, change.where, proven)
         found.append((place, number, cause))
     return [cause for _, _, cause in sorted(found, key=lambda ranking: ranking[:2])]
@@ -192,28 +192,28 @@ def _lines(
     for cause in proven[:_MAX_CHANGES]:
         lines.append(f"cause: {_sentence(cause)}")
     if proven:
-        what = "this" if len(proven) == 1 else f"these {len(proven)}"
+        what = "this change" if len(proven) == 1 else f"these {len(proven)} changes"
         until = "" if proof.is_whole else f" up to t = {proof.until:g} s"
         close = ", within the tolerances" if comparison.tier == "tolerant" else ""
-        lines.append(f"  proven: with {what} put back the run gives the golden outputs{until}{close}")
+        lines.append(f"  proven: with {what} undone, the run gives the golden outputs{until}{close}")
     elif open_:
         is_only = len(causes) == 1
         for cause in open_[:_MAX_CHANGES]:
             lines.append(f"{'cause' if is_only else 'changed'}: {_sentence(cause)}")
         if is_only:
-            lines.append("  nothing else was changed")
+            lines.append("  no other input changed")
         if proof.found is not None and proof.found.all_back is False:
-            lines.append("  what could be put back was put back, and the outputs still differ")
+            lines.append("  with all changes undone that can be undone, the outputs still differ")
     if not causes:
         lines.append(_no_cause(golden, run))
     elif not _has_recorded_difference(comparison):
-        lines.append("  nothing that is recorded shows it")
+        lines.append("  no recorded output differs")
     if proven:
         others = [c for c in open_ if c.kind != "version"]
-        lines += [f"changed as well: {_sentence(cause)}" for cause in others[:3]]
+        lines += [f"also changed: {_sentence(cause)}" for cause in others[:3]]
     if idle:
         more = f" and {len(idle) - 3} more" if len(idle) > 3 else ""
-        lines.append("changed as well, without effect: " + "; ".join(_sentence(c) for c in idle[:3]) + more)
+        lines.append("also changed, without effect: " + "; ".join(_sentence(c) for c in idle[:3]) + more)
     if len(open_) > _MAX_CHANGES:
         lines.append(f"and {len(open_) - _MAX_CHANGES} more changes")
     if parted is not None:
@@ -222,11 +222,11 @@ def _lines(
             words = words.partition("; first ")[0] + f"; first {proof.quantity}"
         lines.append(words)
     if golden.end != run.end:
-        lines.append(f"the run ended by {_end(run.end)}, the golden one by {_end(golden.end)}")
+        lines.append(f"the run ended by {_end(run.end)}, the golden run by {_end(golden.end)}")
     for code in sorted({*golden.diagnostics, *run.diagnostics}):
         a, b = golden.diagnostics.get(code, 0), run.diagnostics.get(code, 0)
         if a != b:
-            lines.append(f"loading reports {code} {b} times, it was {a}")
+            lines.append(f"loading reports {code} {b} times; in the golden run {a} times")
     return lines
 
 
@@ -236,9 +236,9 @@ def _end(reason: str) -> str:
 
 def _no_cause(golden: RunRecord, run: RunRecord) -> str:
     same = golden.fingerprint == run.fingerprint
-    where = "the same versions on the same machine" if same else "other versions or another machine"
-    return f"nothing that the run is made from was changed, with {where}" + (
-        "; something in it does not repeat: `simkit certify` says what" if same else ""
+    where = "the versions and the machine are the same" if same else "the versions or the machine differ"
+    return f"no input of the run changed; {where}" + (
+        "; the run is not deterministic: `simkit certify` finds the reason" if same else ""
     )
 
 
@@ -247,7 +247,7 @@ def _sentence(cause: Cause) -> str:
 
 
 def _short_path(where: str) -> str:
-    """A place as short as it can be found from here."""
+    """Return a place relative to the working directory, if that is shorter."""
     file, colon, line = where.rpartition(":")
     try:
         near = os.path.relpath(file or where)

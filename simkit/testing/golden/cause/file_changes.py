@@ -18,30 +18,30 @@ from simkit.testing.golden.compare.world_edits import (
 )
 from simkit.testing.run_record.record import RunRecord
 
-_HEAD = 16  # letters of a hash that a leaf has
+_HEAD = 16  # characters of a hash in a world value
 
 
 def changes_outside_world(
     changes: list[Change], golden: RunRecord, run: RunRecord
 ) -> tuple[list[Change], list[Change]]:
-    """The world's changes, with the names of their files, and what is other beside them.
+    """Return the world's changes with the names of their files, and the changes outside the world.
 
     Args:
-        changes: the world's.
-        golden, run: both records.
+        changes: Changes of the world.
+        golden, run: Records of both runs.
     """
     edits = other_edits(golden, run)
     named: list[Change] = []
-    spoken: set[str] = set()
+    named_files: set[str] = set()
     for change in changes:
         old, new = _name(golden, change.golden), _name(run, change.run)
         if old or new:
-            spoken |= {old, new}
+            named_files |= {old, new}
             shown = new if old in (new, "") else old if not new else f"{old} → {new}"
-            named.append(replace(change, words=change.words.replace(" has other", f" {shown} has other", 1)))
+            named.append(replace(change, words=change.words.replace(" has different", f" {shown} has different", 1)))
         else:
             named.append(change)
-    rest = [e for e in edits if not (e.kind in ("file", "code") and e.path in spoken)]
+    rest = [e for e in edits if not (e.kind in ("file", "code") and e.path in named_files)]
     return named, [
         Change(e.kind, _change_text(e), e.path, _short_value(e.golden), _short_value(e.run), e.where, (e,))
         for e in rest
@@ -49,7 +49,7 @@ def changes_outside_world(
 
 
 def _name(record: RunRecord, content: object) -> str:
-    """The file whose content a leaf is."""
+    """Return the file whose content a world value stands for; empty if there is none."""
     if not isinstance(content, str) or not content.endswith(" bytes)"):
         return ""
     return next((name for name, digest in record.sources.items() if digest[:_HEAD] == content[:_HEAD]), "")
@@ -75,14 +75,14 @@ def _change_text(edit: Edit) -> str:
 
 
 def _lists(golden: list[object], run: list[object]) -> str:
-    """What two lists do not have in common."""
+    """Describe the items that only one of two lists has."""
     a, b = [_text(v) for v in golden], [_text(v) for v in run]
     gone, new = [v for v in a if v not in b], [v for v in b if v not in a]
     if len(gone) == len(new) == 1:
         return f"{single_value_text(gone[0])} → {single_value_text(new[0])}"
     parts = [f"without {single_value_text(v)}" for v in gone[:2]] + [f"with {single_value_text(v)}" for v in new[:2]]
     more = len(gone[2:]) + len(new[2:])
-    return (", ".join(parts) or "in another order") + (f" and {more} more" if more else "")
+    return (", ".join(parts) or "has another order") + (f" and {more} more" if more else "")
 
 
 def _text(value: Any) -> str:
@@ -97,22 +97,22 @@ _DERIVED_FIELDS = frozenset(
         *("ipos", "iquat", "inertia", "margin", "M0", "Madr", "pos0", "poscom0", "mat0", "dir0", "gravcomp"),
     )
 )
-"""Fields that the engine's compiler can work out of others: they are said where there is nothing else."""
+"""Fields that the engine's compiler derives from others; they are reported only if no other field differs."""
 
 
 def engine_changes(golden: RunRecord, run: RunRecord, changes: Sequence[Change]) -> list[Change]:
-    """Fields of the compiled model that are other, though nothing of their part of the scene is.
+    """Return fields of the compiled model that differ although the scene does not.
 
     Args:
-        golden, run: both records.
-        changes: the world's.
+        golden, run: Records of both runs.
+        changes: Changes of the world.
     """
     if not golden.fields or not run.fields:
         return []
     if any(change.kind == "model" for change in changes):
         return []
-    spoken = {edit.entity for change in changes for edit in change.edits}
-    edits = [e for e in field_edits(golden, run) if not _is_explained_by_scene(e.path, spoken)]
+    named_files = {edit.entity for change in changes for edit in change.edits}
+    edits = [e for e in field_edits(golden, run) if not _is_explained_by_scene(e.path, named_files)]
     first = [e for e in edits if e.path.rpartition(" ")[2] not in _DERIVED_FIELDS] or edits
     groups: dict[tuple[str, str, str], list[Edit]] = {}
     for edit in first:
@@ -120,21 +120,21 @@ def engine_changes(golden: RunRecord, run: RunRecord, changes: Sequence[Change])
     return [_engine_change(several) for several in groups.values()]
 
 
-def _is_explained_by_scene(path: str, spoken: set[str]) -> bool:
+def _is_explained_by_scene(path: str, named_files: set[str]) -> bool:
     name = path.split(" ", 1)[-1].rpartition(" ")[0]
-    return any(part and (name == part or name.startswith(part + "::") or part.startswith(name)) for part in spoken)
+    return any(part and (name == part or name.startswith(part + "::") or part.startswith(name)) for part in named_files)
 
 
 def _engine_change(several: list[Edit]) -> Change:
     first = several[0]
     part, _, field = first.path.rpartition(" ")
     a, b = _plain_number(first.golden), _plain_number(first.run)
-    words = f"{field} {values_text(a, b, {'pos': 'position'}.get(field, field))}, as the engine has it"
+    words = f"{field} {values_text(a, b, {'pos': 'position'}.get(field, field))} in the compiled model"
     if len(several) == 1:
         words = f"{part}: {words}"
     else:
         words += f", in {len(several)} places: {list_names([e.path.rpartition(' ')[0] for e in several])}"
-    # nothing is put back with it: a compiled model is made anew for every run
+    # no edits: the compiled model is built anew for every run, so its fields cannot be restored
     return Change("model", words, first.path, a, b, "", ())
 
 

@@ -1,4 +1,4 @@
-"""The first tick at which two runs part, and what parts there."""
+"""First tick at which two runs differ, and the quantity that differs."""
 
 from __future__ import annotations
 
@@ -12,40 +12,43 @@ from simkit.testing.run_record.record import States
 Numbers = npt.NDArray[np.float64]
 
 _ROUNDING = 1e-9
-"""Of a quantity whose own size says nothing: differences below this are shown as tiny, and come last."""
+"""Smallest scale of a quantity, so that differences below it are ranked last."""
 
 
 @dataclass(frozen=True)
 class FirstDifferentTick:
-    """Where the physics of two runs parts.
+    """First difference in the physics of two runs.
 
     Attributes:
-        tick: the first at which the state differs, counted from 1: the state after that many steps; 0 where the two
-            begin differently.
-        time: of that [s].
-        is_put_in: whether plugins or commands put in something else at that tick or before.
-        quantity: what differs there first, in words; "" where that is not known.
-        words: all of it in a sentence.
+        tick: First tick at which the state differs, as a number of steps; 0 if the initial states differ.
+        time: Simulated time of the tick [s].
+        has_other_input: True if an input from plugins or commands differs at this tick or earlier.
+        quantity: First quantity that differs, in words; empty if unknown.
+        words: Complete description.
     """
 
     tick: int
     time: float
-    is_put_in: bool
+    has_other_input: bool
     quantity: str
     words: str
 
 
 def first_different_tick(golden: States, run: States) -> FirstDifferentTick | None:
-    """Where the physics of two runs parts; None where it does not.
+    """Find the first difference in the physics of two runs; None if there is none.
 
-    A mark is one byte, so that one in 256 differing ticks is taken for equal; the next one then shows it.
+    A mark is a hash of one byte. One in 256 differing ticks therefore appears equal, and the next tick shows the
+    difference.
     """
-    state, put_in = _first_different_mark(golden.marks, run.marks), _first_different_mark(golden.inputs, run.inputs)
-    if state is None and put_in is None and golden.digest == run.digest:
+    state, input_index = (
+        _first_different_mark(golden.marks, run.marks),
+        _first_different_mark(golden.inputs, run.inputs),
+    )
+    if state is None and input_index is None and golden.digest == run.digest:
         return None
-    index = min(i for i in (state, put_in, len(golden.marks)) if i is not None)
+    index = min(i for i in (state, input_index, len(golden.marks)) if i is not None)
     starts = _initial_states_differ(golden, run)
-    by_input = put_in is not None and (state is None or put_in <= state) and not starts
+    by_input = input_index is not None and (state is None or input_index <= state) and not starts
     tick = 0 if starts else index + 1
     time = tick * (run.timestep or golden.timestep)
     quantity = _quantity(golden, run, tick, by_input)
@@ -55,14 +58,14 @@ def first_different_tick(golden: States, run: States) -> FirstDifferentTick | No
 
 
 def _first_different_mark(golden: npt.NDArray[np.uint8], run: npt.NDArray[np.uint8]) -> int | None:
-    """Of the first mark that differs; where one run is the beginning of the other there is none."""
+    """Return the index of the first mark that differs within the common length; None if there is none."""
     count = min(len(golden), len(run))
     differing = np.flatnonzero(np.asarray(golden[:count]) != np.asarray(run[:count]))
     return int(differing[0]) if differing.size else None
 
 
 def _initial_states_differ(golden: States, run: States) -> bool:
-    """Whether the two begin in different states."""
+    """Check whether the initial states differ."""
     if not (len(golden.ticks) and len(run.ticks)) or golden.ticks[0] or run.ticks[0]:
         return False
     names, mine, other = _common_quantities(golden, run, False)
@@ -73,16 +76,18 @@ def _description(
     tick: int, time: float, by_input: bool, state_same: bool, golden: States, run: States, quantity: str
 ) -> str:
     if golden.names != run.names:
-        return "the physics has other quantities: " + _other_names(golden.names, run.names)
+        return "the physics has different quantities: " + _other_names(golden.names, run.names)
     if tick == 0:
-        return "the run starts in another state" + (f": {quantity}" if quantity else "")
+        return "the initial state differs" + (f": {quantity}" if quantity else "")
     when = "from the first step on" if tick == 1 else f"first at tick {tick} (t = {_time(time)} s)"
     if by_input:
-        said = f"what plugins and commands put in is other {when}"
-        said += "; the state stays the same" if state_same else ""
+        text = f"the inputs from plugins and commands differ {when}"
+        text += "; the state stays the same" if state_same else ""
     else:
-        said = f"the state is other {when}; up to there the same was put in: the model, the engine or the start"
-    return said + (f"; first {quantity}" if quantity else "")
+        text = (
+            f"the state differs {when}; until then all inputs are equal, so the model, the engine or the start differs"
+        )
+    return text + (f"; first {quantity}" if quantity else "")
 
 
 def _other_names(golden: list[str], run: list[str]) -> str:
@@ -91,11 +96,11 @@ def _other_names(golden: list[str], run: list[str]) -> str:
     for names, word in ((gone, "gone"), (new, "new")):
         if names:
             parts.append(", ".join(names[:3]) + (f" and {len(names) - 3} more" if len(names) > 3 else "") + f" {word}")
-    return "; ".join(parts) or "in another order"
+    return "; ".join(parts) or "different order"
 
 
 def _quantity(golden: States, run: States, tick: int, by_input: bool) -> str:
-    """What differs most, against what it has done so far, at the first kept state that differs."""
+    """Describe the largest relative difference in the first recorded state that differs."""
     names, mine, other = _common_quantities(golden, run, by_input)
     if not names:
         return ""
@@ -111,7 +116,7 @@ def _quantity(golden: States, run: States, tick: int, by_input: bool) -> str:
 
 
 def largest_final_difference(golden: States, run: States, *, by_input: bool) -> str:
-    """What differs most in the last states of two runs up to the tick at which they part."""
+    """Describe the largest relative difference in the last states of two runs."""
     names, mine, other = _common_quantities(golden, run, by_input)
     if not names or np.array_equal(mine[-1], other[-1], equal_nan=True):
         return ""
@@ -119,7 +124,7 @@ def largest_final_difference(golden: States, run: States, *, by_input: bool) -> 
 
 
 def _common_quantities(golden: States, run: States, by_input: bool) -> tuple[list[str], Numbers, Numbers]:
-    """The quantities that both have, and their values in both; what is put in is nothing where it has no entry."""
+    """Return the common quantities and their values in both runs; a missing input counts as 0."""
     if by_input:
         names = sorted({*golden.input_names, *run.input_names})
         mine, other = (_columns(names, states.input_names, states.input_values, 0.0) for states in (golden, run))
@@ -141,12 +146,12 @@ def _columns(names: list[str], have: list[str], values: Numbers, absent: float) 
 def largest_difference_text(
     names: list[str], golden: npt.ArrayLike, run: npt.ArrayLike, sizes: Numbers | None = None
 ) -> str:
-    """The quantity that differs most for its size, in words: `robot::wheel velocity 1 → 1.01`.
+    """Describe the quantity with the largest relative difference: `robot::wheel velocity 1 → 1.01`.
 
     Args:
-        names: of the quantities.
-        golden, run: their values, (quantities,).
-        sizes: how large each gets, (quantities,); None for as large as these two.
+        names: Names of the quantities.
+        golden, run: Values, shape (quantities,).
+        sizes: Scale of each quantity, shape (quantities,); None for the size of these values.
     """
     a, b = np.asarray(golden, dtype=np.float64), np.asarray(run, dtype=np.float64)
     scale = np.maximum(np.abs(a), np.abs(b)) if sizes is None else np.maximum(sizes, np.abs(b))
@@ -156,9 +161,9 @@ def largest_difference_text(
 
 
 def distinct_digits(golden: float, run: float) -> str:
-    """Two numbers with as many digits as tell them apart."""
+    """Format two numbers with enough digits to show their difference."""
     exact = (f"{golden:.6g}", f"{run:.6g}")
-    if [float(text) for text in exact] == [golden, run]:  # as somebody may have written them
+    if [float(text) for text in exact] == [golden, run]:  # numbers with few digits, as written by a person
         return f"{exact[0]} → {exact[1]}"
     for digits in (3, 4, 5, 6, 8, 10, 13, 17):
         a, b = f"{golden:.{digits}g}", f"{run:.{digits}g}"
@@ -168,7 +173,7 @@ def distinct_digits(golden: float, run: float) -> str:
 
 
 def _keeps_distance(a: float, b: float, golden: float, run: float) -> bool:
-    """Whether the rounded two are as far apart as the real two, to a hundredth."""
+    """Check whether rounding changes the difference by at most 1 %."""
     wanted = run - golden
     return not np.isfinite(wanted) or abs((b - a) - wanted) <= 0.01 * abs(wanted)
 

@@ -1,4 +1,4 @@
-"""What moved, as a rigid body does: of a robot that stands elsewhere the robot is named, and not its forty parts."""
+"""Rigid motions between two worlds: a moved robot is reported once instead of once for each of its parts."""
 
 from __future__ import annotations
 
@@ -14,23 +14,23 @@ from simkit.testing.golden.cause.first_tick import distinct_digits
 from simkit.testing.golden.compare.world_edits import Edit, entity_kind, parent_path, scoped_name, split_entity_path
 
 _LOCAL_FIELDS = {"pose_world": "pose_link", "xyz_world": "xyz_joint", "direction_world": "direction"}
-"""What follows from where the owner is -> what a file says instead."""
+"""Values derived from the owner's pose -> values that a file states instead."""
 _CLOSE = 1e-9  # [m and rad], per metre from the origin
 _FARTHEST = 1e15  # [m]
 _STRAIGHT = 1e-6
-_SMALL = 0.1  # [m]: below this millimetres are said
+_SMALL = 0.1  # [m]; smaller lengths are written in millimetres
 
 
 @dataclass
 class Motion:
-    """A part that stands elsewhere.
+    """Entity that was moved.
 
     Attributes:
-        owner: path of the part.
-        words: how it moved.
-        numbers: the coordinates that are other, as a file has them; may be empty.
-        along: what moved with it; may be empty.
-        edits: all leaves that follow from it, its own first.
+        owner: Path of the entity.
+        words: Description of the motion.
+        numbers: Coordinates that differ, as in a file; may be empty.
+        along: Description of entities that moved with it; may be empty.
+        edits: All values that follow from the motion, the entity's own first.
     """
 
     owner: str
@@ -41,25 +41,25 @@ class Motion:
 
     @property
     def where(self) -> str:
-        """Its place in the file."""
+        """Place in the file."""
         return next((e.where for e in self.edits if e.where), "")
 
 
 def find_motions(
     edits: list[Edit], golden: Mapping[str, object], run: Mapping[str, object]
 ) -> tuple[list[Motion], list[Edit]]:
-    """What moved, and the edits that say something else.
+    """Return the motions and the remaining edits.
 
     Args:
-        edits: leaves that differ.
-        golden, run: all leaves.
+        edits: Values that differ.
+        golden, run: All values of both worlds.
     """
     poses = [e for e in edits if e.attribute in ("pose_world", "pose_link") and _is_pose(e.golden) and _is_pose(e.run)]
-    # what follows from another leaf of its part and from where the part's owner is
+    # values that follow from another value of the entity and from the pose of its owner
     derived = [e for e in edits if local_path(e.path) in run]
     rest = [e for e in edits if e not in derived and e not in poses]
     in_world = {e.owner: e for e in poses if e.attribute == "pose_world" and f"{e.owner}.pose_link" not in run}
-    # how the world must be moved to take the part along
+    # motion of the world frame that would move the entity in the same way
     deltas = {owner: _pose(edit.run) @ _pose(edit.golden).inverse() for owner, edit in in_world.items()}
     carriers = _carrying_entities(run, set(in_world))
     found: dict[str, Motion] = {}
@@ -88,7 +88,7 @@ def find_motions(
 
 
 def _is_pose(value: object) -> bool:
-    """Whether it is a position and a quaternion; a golden run may come from anybody."""
+    """Check whether a value is a position and a quaternion; a golden run may come from an untrusted source."""
     if not isinstance(value, list) or len(value) != 7:
         return False
     if not all(isinstance(v, (int, float)) and abs(v) < _FARTHEST for v in value):
@@ -97,13 +97,13 @@ def _is_pose(value: object) -> bool:
 
 
 def local_path(path: str) -> str:
-    """The leaf that says in a part's own frame what this one says in the world; empty where there is no such."""
+    """Return the path of the local value that corresponds to a world value; empty if there is none."""
     beginning, dot, last = path.rpartition(".")
     return f"{beginning}{dot}{_LOCAL_FIELDS[last]}" if last in _LOCAL_FIELDS else ""
 
 
 def _owner_motion(owner: str, found: Mapping[str, Motion], roots: Mapping[str, str]) -> str | None:
-    """The motion that a part took part in: its own, or that of what it belongs to."""
+    """Return the motion of an entity: its own or that of the entity that carries it."""
     while True:
         if owner in found:
             return owner
@@ -119,7 +119,7 @@ def _pose(numbers: Any) -> Pose:
 
 
 def _carrying_entities(run: Mapping[str, object], moved: set[str]) -> dict[str, list[str]]:
-    """What a part goes along with, the nearest last: its model, the link that its joint hangs it on, a joint's link."""
+    """Return what carries each entity, nearest last: its model, its joint's parent link, or a joint's link."""
     owners = [split_entity_path(path)[0] for path in run if split_entity_path(path)[1] == "pose_world"]
     links = {scoped_name(owner): owner for owner in owners if entity_kind(owner) == "link"}
     found: dict[str, list[str]] = {owner: [parent_path(owner)] for owner in moved}
@@ -136,7 +136,7 @@ def _carrying_entities(run: Mapping[str, object], moved: set[str]) -> dict[str, 
 
 
 def _root_motion(owner: str, deltas: Mapping[str, Pose], carriers: Mapping[str, list[str]]) -> str:
-    """What took a part along; itself where nothing did."""
+    """Return the outermost entity that carried an entity along; the entity itself if there is none."""
     seen = {owner}
     at = owner
     while True:
@@ -157,19 +157,19 @@ def _is_same_motion(a: Pose, b: Pose) -> bool:
 def _simplest_motion(
     edit: Edit, owner: str, golden: Mapping[str, object], run: Mapping[str, object], carriers: Mapping[str, list[str]]
 ) -> tuple[str, str]:
-    """A motion in the frame in which it is simplest: the owner's, that of the link that carries it, or the world's."""
+    """Describe a motion in the frame with the shortest text: the owner's, the carrying link's, or the world's."""
     frames = [parent_path(owner), *reversed(carriers.get(owner, [])), ""]
-    told = []
+    candidates = []
     for frame in dict.fromkeys(frames):
         a, b = golden.get(f"{frame}.pose_world"), run.get(f"{frame}.pose_world")
         base_a, base_b = (_pose(a), _pose(b)) if _is_pose(a) and _is_pose(b) else (Pose(), Pose())
         words, numbers = _motion_text(base_a.inverse() @ _pose(edit.golden), base_b.inverse() @ _pose(edit.run))
-        told.append((words.count(" along ") + words.count("("), len(words), words, numbers))
-    return min(told, key=lambda t: t[:1])[2:]
+        candidates.append((words.count(" along ") + words.count("("), len(words), words, numbers))
+    return min(candidates, key=lambda t: t[:1])[2:]
 
 
 def _motion_text(golden: Pose, run: Pose) -> tuple[str, str]:
-    """How a pose became another one: words, and the coordinates that are other."""
+    """Describe the change of a pose and the coordinates that differ."""
     moved = run.position - golden.position
     turn = (run @ golden.inverse()).quaternion
     words, numbers = [], []
@@ -204,7 +204,7 @@ def _length(metres: float) -> str:
 
 
 def _axis(direction: Vector) -> str:
-    """An axis by its letter, where it is one."""
+    """Return the letter of an axis, or its components."""
     letter = _letter(direction)
     return letter or "(" + ", ".join(f"{v:.3g}" if abs(v) > _STRAIGHT else "0" for v in direction) + ")"
 
@@ -217,13 +217,13 @@ def _letter(direction: Vector) -> str:
 
 
 def _rotation_axis(axis: Vector, golden: Pose) -> str:
-    """About what it turned: an axis of its frame, or of its own, where it is one of them."""
+    """Describe a rotation axis: an axis of the frame, an axis of the entity, or components."""
     own = golden.inverse().rotate(axis)
     return f"its own {_letter(own)}" if not _letter(axis) and _letter(own) else _axis(axis)
 
 
 def _count_carried(motion: Motion) -> str:
-    """How many others were taken along that a file might have named instead."""
+    """Describe the number of other links and models that moved along."""
     owners = {e.owner for e in motion.edits} - {motion.owner}
     links = [o for o in owners if entity_kind(o) in ("link", "model") and not o.startswith(motion.owner + ".")]
     return f", with {len(links)} more on it" if links else ""

@@ -1,4 +1,4 @@
-"""Runs a scenario again with something put back, and says whether it gives what is golden."""
+"""Rerun of a scenario with changes undone, and the test of its outputs against the golden run."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ _NOTHING = hashlib.sha256().hexdigest()
 
 
 def rerun_scenario(scenario: RunSpec, change_world: ChangeWorld | None) -> RunRecord:
-    """Runs a scenario from the beginning in a changed world; nothing of it is left open.
+    """Run a scenario from the beginning in a changed world and close its simulation.
 
     Args:
-        scenario: what is run.
-        change_world: makes what is built of what the files mean; None leaves it.
+        scenario: Scenario to run.
+        change_world: Function that returns a changed world; None for no change.
 
     Raises:
-        SimkitError: the world, or what is done in it, cannot be used.
+        SimkitError: The world or a command of the scenario is invalid.
     """
     from simkit.testing.run_record.run_recorder import run_record
 
@@ -49,14 +49,14 @@ def rerun_scenario(scenario: RunSpec, change_world: ChangeWorld | None) -> RunRe
 
 
 class ScenarioRerun:
-    """The run again with changes put back, as long as there is time for it.
+    """Reruns with changes undone, within a time limit.
 
     Args:
-        golden, run: both records.
-        comparison: of them.
-        changes: that can be put back.
-        rerun: runs a scenario.
-        budget: wall time for all of it [s].
+        golden, run: Records of both runs.
+        comparison: Comparison of both.
+        changes: Changes that can be undone.
+        rerun: Function that runs a scenario.
+        budget: Wall-clock limit of all reruns [s].
     """
 
     def __init__(
@@ -71,19 +71,19 @@ class ScenarioRerun:
         self._golden, self.run, self._comparison = golden, run, comparison
         self._changes, self._rerun = changes, rerun
         self._end = time.perf_counter() + budget
-        self._begin = self._pace = 0.0  # wall time of a run [s], and that of a simulated second [s/s]
+        self._begin = self._pace = 0.0  # wall time of loading [s], and of one simulated second [s/s]
         self._known: dict[frozenset[int], bool | None] = {}
         self.horizon = self._first_horizon()
 
     def same(self, chosen: frozenset[int]) -> bool | None:
-        """Whether the run with these changes put back gives the golden outputs; None where that was not tried."""
+        """Check whether the run with these changes undone gives the golden outputs; None if this was not tested."""
         if chosen not in self._known:
             record = self.record(chosen, self.horizon)
             self._known[chosen] = None if record is None else self._is_golden(record)
         return self._known[chosen]
 
     def record(self, chosen: frozenset[int], duration: float) -> RunRecord | None:
-        """The run with these changes put back; None where there is no time for it, or it cannot be done."""
+        """Return the record of the run with these changes undone; None without time left or if it failed."""
         begun = time.perf_counter()
         if begun + self._begin + self._pace * duration > self._end:
             return None
@@ -95,7 +95,7 @@ class ScenarioRerun:
         change = (lambda world: patch_world(world, now, values, order=self._golden.leaves)) if values else None
         try:
             return self._rerun(scenario, change)
-        except Exception:  # noqa: BLE001 - what is put back comes from a file, and may be anything
+        except Exception:  # noqa: BLE001 - golden values come from a file and may cause any error
             return None
         finally:
             taken = time.perf_counter() - begun
@@ -103,7 +103,7 @@ class ScenarioRerun:
             self._pace = max(self._pace, (taken - self._begin) / max(duration, 1e-9))
 
     def go_on(self) -> bool:
-        """Has the whole run count from now on, where it did not; what was found so far is forgotten."""
+        """Extend the reruns to the whole run and discard earlier results; return False if they cover it already."""
         whole = self.run.scenario.longest
         if self.horizon >= whole:
             return False
@@ -113,10 +113,10 @@ class ScenarioRerun:
         self._known.clear()
         return True
 
-    # ------------------------------------------------------------------ what counts as golden
+    # ------------------------------------------------------------------ comparison with the golden run
 
     def _first_horizon(self) -> float:
-        """Up to where it is run [s]: the end of the second in which the first difference is."""
+        """Return the end of the rerun [s]: the end of the second with the first difference."""
         whole = self.run.scenario.longest
         differences = self._comparison.differences
         if any(d.kind == "statistics" for d in differences) or not differences:
@@ -152,7 +152,7 @@ def _same_bits(golden: RunRecord, run: RunRecord, until: float) -> bool:
 
 
 def _chunks(stream: Stream | None, seconds: int) -> list[str]:
-    """Of the whole seconds, without those at the end in which nothing came."""
+    """Return the hashes of whole seconds without trailing seconds that have no message."""
     found = list(stream.chunks[:seconds]) if stream is not None else []
     while found and found[-1] == _NOTHING:
         found.pop()
@@ -160,7 +160,7 @@ def _chunks(stream: Stream | None, seconds: int) -> list[str]:
 
 
 def cut_record(record: RunRecord, until: float) -> RunRecord:
-    """A record up to a time [s], that excluded."""
+    """Return a record up to a time [s], exclusive."""
     limit = round(until * 1e9)
     streams = {name: _cut_stream(stream, limit) for name, stream in record.streams.items()}
     states = record.states
@@ -201,7 +201,7 @@ def _cut_column(column: Column, count: int) -> Column:
 
 
 def can_be_put_back(change: Change, run: RunRecord) -> bool:
-    """Whether it is worth trying: the golden values are all there is to it, and what is built is made from them."""
+    """Check whether a change can be undone: its golden values are complete, and the world is built from them."""
     if change.kind == "scenario":
         return all(edit.path not in ("world", "plugins", "options") for edit in change.edits)
     if change.kind != "model" or not change.edits:

@@ -1,4 +1,4 @@
-"""A world in which some leaves have other values: as they were in the golden run."""
+"""Copies of a world in which some values are restored to those of the golden run."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ _KEPT_FIELDS = frozenset(("mjcf", "moved_by"))
 
 
 class CannotPatch(Exception):
-    """A leaf's golden value is not enough to make it again: the content of a file, say."""
+    """Golden value that is not sufficient to restore the object, such as the hash of a file."""
 
 
 class _PatchNode:
-    """What a node is to be: its own leaf's value, and what is below it, by step.
+    """Requested state of a world node: its own value and its children.
 
     Attributes:
-        value: of its leaf; ABSENT where it has none.
-        below: field, or key in brackets -> node.
-        is_touched: whether anything of it is to be other than it is.
+        value: Value of the node; ABSENT if it has none.
+        below: Field, or key in brackets -> child node.
+        is_touched: True if the node or a descendant must change.
     """
 
     __slots__ = ("below", "is_touched", "value")
@@ -42,11 +42,11 @@ class _PatchNode:
 
     @property
     def is_there(self) -> bool:
-        """Whether it has a leaf at all."""
+        """True if the node or a descendant has a value."""
         return self.value is not ABSENT or any(one.is_there for one in self.below.values())
 
     def reach(self, path: str, *, touch: bool) -> _PatchNode:
-        """The node of a path."""
+        """Return the node at a path; create missing nodes."""
         node = self
         node.is_touched |= touch
         for step in _steps(path):
@@ -64,17 +64,17 @@ def patch_world(
     files: Iterable[Path] | None = None,
     order: Iterable[str] = (),
 ) -> SceneWorld:
-    """The world with other values of some leaves.
+    """Return a copy of a world with changed values.
 
     Args:
-        world: what is changed; it stays as it is.
-        now: its leaves, as `simkit.testing.run_record.world_values` gives them.
-        values: path -> value, ABSENT for what is not to be there.
-        files: for leaves that are the content of a file; None for those that the world names.
-        order: paths in the order of the file in which they stood, so that what comes back has its old place.
+        world: World; it is not modified.
+        now: Values of the world from `simkit.testing.run_record.world_values`.
+        values: Path -> new value; ABSENT removes the value.
+        files: Files whose content may be restored; None for the files that the world uses.
+        order: Paths in file order, so that a restored element gets its old position.
 
     Raises:
-        CannotPutBack: a value is not enough to make the thing again.
+        CannotPatch: A value is not sufficient to restore the object.
     """
     root = _PatchNode()
     for path in order:
@@ -88,7 +88,7 @@ def patch_world(
     try:
         changed = _PatchedBuilder(by_content).changed(world, root, "")
     except (TypeError, ValueError, AttributeError, KeyError, IndexError) as error:
-        raise CannotPatch(str(error)) from error  # leaves of another version, or of a file that was tampered with
+        raise CannotPatch(str(error)) from error  # values of another version, or from a manipulated file
     assert isinstance(changed, SceneWorld)
     return changed
 
@@ -104,40 +104,40 @@ def _steps(path: str) -> tuple[str, ...]:
 
 
 class _PatchedBuilder:
-    """Makes nodes with other leaves.
+    """Builder of changed world nodes.
 
     Args:
-        files: what there is, by content.
+        files: Available files by content.
     """
 
     def __init__(self, files: Mapping[str, Path]) -> None:
         self._files = files
 
-    def changed(self, node: Any, wanted: _PatchNode, owner: str) -> object:
-        """A dataclass with other values of some fields.
+    def changed(self, node: Any, patch: _PatchNode, owner: str) -> object:
+        """Return a copy of a dataclass with changed fields.
 
         Args:
-            node: what it is now.
-            wanted: of it.
-            owner: scoped name of the part of the world that it belongs to.
+            node: Present node.
+            patch: Requested state.
+            owner: Scoped name of the entity that contains the node.
         """
         owner = getattr(node, "scoped", None) or owner
         others = {}
         for one in fields(node):
-            inner = wanted.below.get(one.name)
+            inner = patch.below.get(one.name)
             if inner is not None and inner.is_touched:
                 others[one.name] = self._field(type(node), one, getattr(node, one.name), inner, owner)
         return replace(node, **others) if others else node
 
-    def made(self, kind: type, wanted: _PatchNode, owner: str, key: str) -> object:
-        """A node that is not there now, of its leaves."""
+    def made(self, kind: type, patch: _PatchNode, owner: str, key: str) -> object:
+        """Create a node that does not exist yet from its values."""
         name = re.sub(r"#\d+$", "", key)
         whole = owner if kind.__name__ == "ScenePlugin" else (f"{owner}::{name}" if owner and name else name or owner)
         given: dict[str, object] = {}
         hints = _hints(kind)
         words = {"name": name, "scoped": whole, "parent": owner, "uri": ""}
         for one in fields(kind):
-            inner = wanted.below.get(one.name)
+            inner = patch.below.get(one.name)
             default = default_of(one)
             if inner is not None and inner.is_there:
                 given[one.name] = self._field(kind, one, None if default is MISSING else default, inner, whole)
@@ -145,38 +145,38 @@ class _PatchedBuilder:
                 given[one.name] = words[one.name]
             elif hints[one.name] is Params:
                 given[one.name] = Params(one.name)
-            else:  # without a leaf there is nothing
+            else:  # no value: the field is empty
                 given[one.name] = self._nothing(one, hints[one.name])
         return kind(**given)
 
-    def _field(self, kind: type, one: Field[Any], now: Any, wanted: _PatchNode, owner: str) -> object:
+    def _field(self, kind: type, one: Field[Any], now: Any, patch: _PatchNode, owner: str) -> object:
         hint = _hints(kind)[one.name]
         if one.name in _KEPT_FIELDS:
             raise CannotPatch(one.name)
         if hint is Params:
-            return self._params(now if isinstance(now, Params) else Params(one.name), wanted)
-        if typing.get_origin(hint) is tuple and any(step.startswith("[") for step in wanted.below):
-            return self._elements(now or (), _node_kinds(hint), wanted, owner)
-        if not wanted.is_there:
+            return self._params(now if isinstance(now, Params) else Params(one.name), patch)
+        if typing.get_origin(hint) is tuple and any(step.startswith("[") for step in patch.below):
+            return self._elements(now or (), _node_kinds(hint), patch, owner)
+        if not patch.is_there:
             return self._nothing(one, hint)
         if isinstance(now, Mapping) or typing.get_origin(hint) in (Mapping, dict):
-            return self._mapping(now or {}, wanted)
+            return self._mapping(now or {}, patch)
         kinds = _node_kinds(hint)
         if kinds:
-            return self._node(kinds, now, wanted, owner)
-        return self._value(wanted.value, hint)
+            return self._node(kinds, now, patch, owner)
+        return self._value(patch.value, hint)
 
-    def _node(self, kinds: Mapping[str, type], now: object, wanted: _PatchNode, owner: str) -> object:
-        """A node of one of several kinds: the one that there is, where it is of the right one."""
-        if isinstance(wanted.value, str):
-            kind = kinds.get(wanted.value)
+    def _node(self, kinds: Mapping[str, type], now: object, patch: _PatchNode, owner: str) -> object:
+        """Return a node of one of several types; reuse the present node if it has the right type."""
+        if isinstance(patch.value, str):
+            kind = kinds.get(patch.value)
             if kind is None:
-                raise CannotPatch(wanted.value)
+                raise CannotPatch(patch.value)
         else:
             kind = type(now) if is_dataclass(now) else next(iter(kinds.values()))
         if type(now) is kind:
-            return self.changed(now, wanted, owner)
-        return self.made(kind, wanted, owner, "")
+            return self.changed(now, patch, owner)
+        return self.made(kind, patch, owner, "")
 
     def _nothing(self, one: Field[Any], hint: object) -> object:
         if _may_be_none(hint):
@@ -189,13 +189,13 @@ class _PatchedBuilder:
         return default
 
     def _elements(
-        self, now: Sequence[Any], kinds: Mapping[str, type], wanted: _PatchNode, owner: str
+        self, now: Sequence[Any], kinds: Mapping[str, type], patch: _PatchNode, owner: str
     ) -> tuple[object, ...]:
-        """The items of a list, without those that are gone; new ones come behind those that they stood behind."""
+        """Return the items of a list without removed ones; added items follow their former predecessors."""
         there = dict(zip(item_keys(now), now, strict=True))
         found: dict[str, object] = {}
         for key, item in there.items():
-            inner = wanted.below.get(f"[{key}]")
+            inner = patch.below.get(f"[{key}]")
             if inner is None or not inner.is_touched:
                 found[key] = item
             elif inner.is_there:
@@ -203,7 +203,7 @@ class _PatchedBuilder:
                 found[key] = self._params(item, inner) if is_block else self.changed(item, inner, owner)
         places = list(found)
         before = ""
-        for step, inner in wanted.below.items():
+        for step, inner in patch.below.items():
             key = step[1:-1]
             if step.startswith("[") and key not in there and inner.is_there:
                 if not kinds:
@@ -214,9 +214,9 @@ class _PatchedBuilder:
                 before = key
         return tuple(found[key] for key in places)
 
-    def _mapping(self, now: Mapping[str, object], wanted: _PatchNode) -> dict[str, object]:
+    def _mapping(self, now: Mapping[str, object], patch: _PatchNode) -> dict[str, object]:
         found = dict(now)
-        for step, inner in wanted.below.items():
+        for step, inner in patch.below.items():
             if inner.is_touched:
                 if inner.below:
                     raise CannotPatch(step)
@@ -225,12 +225,12 @@ class _PatchedBuilder:
                     found[step[1:-1]] = _as_scene_value(inner.value, None)
         return found
 
-    def _params(self, now: Params, wanted: _PatchNode) -> Params:
-        """A block of parameters; it is a copy that nobody has read yet."""
+    def _params(self, now: Params, patch: _PatchNode) -> Params:
+        """Return a changed copy of a parameter block, in which no parameter counts as read."""
         attributes = dict(now.attributes)
         children: list[Params] = []
         taken = set()
-        elements, given = self._split(wanted)
+        elements, given = self._split(patch)
         for key, child in zip(element_keys(now.children), now.children, strict=True):
             inner = elements.get(key)
             taken.add(key)
@@ -247,17 +247,17 @@ class _PatchedBuilder:
                 if inner.is_there:
                     attributes[name] = _element_text(inner.value)
         text = now.value
-        if wanted.is_touched and wanted.value is not ABSENT and _text_value(text) != wanted.value:
-            text = self._text_of(wanted.value)
-        elif wanted.value is ABSENT and not (now.value == "" or elements):
+        if patch.is_touched and patch.value is not ABSENT and _text_value(text) != patch.value:
+            text = self._text_of(patch.value)
+        elif patch.value is ABSENT and not (now.value == "" or elements):
             text = ""
         return Params(now.name, text, attributes, children, now.where, now.diagnostics)
 
-    def _split(self, wanted: _PatchNode) -> tuple[dict[str, _PatchNode], dict[str, _PatchNode]]:
-        """Elements by key, and attributes by name."""
+    def _split(self, patch: _PatchNode) -> tuple[dict[str, _PatchNode], dict[str, _PatchNode]]:
+        """Return the child elements by key and the attributes by name."""
         elements: dict[str, _PatchNode] = {}
         given: dict[str, _PatchNode] = {}
-        for step, inner in wanted.below.items():
+        for step, inner in patch.below.items():
             if step.startswith("@"):
                 given[step[1:]] = inner
                 continue
@@ -287,7 +287,7 @@ class _PatchedBuilder:
 
 
 def default_of(one: Field[Any]) -> object:
-    """A field's default; MISSING where it has none."""
+    """Return the default of a field; MISSING if it has none."""
     return one.default_factory() if one.default_factory is not MISSING else one.default
 
 
@@ -301,7 +301,7 @@ def _text_value(text: str) -> object:
 
 
 def _as_scene_value(value: object, hint: object) -> object:
-    """Lists as the scene has them, and whole numbers as it has them."""
+    """Convert lists to tuples and integers to floats where the scene requires it."""
     if isinstance(value, list):
         inner = [a for a in typing.get_args(hint) if a is not Ellipsis]
         return tuple(_as_scene_value(v, inner[0] if inner else None) for v in value)
@@ -315,7 +315,7 @@ def _element_text(value: object) -> str:
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, float) and value == int(value) and abs(value) < 1e15:
-        return str(int(value))  # of what was written as a whole number some readers take nothing else
+        return str(int(value))  # some parsers accept only an integer text for integer values
     return str(value)
 
 
@@ -325,7 +325,7 @@ def _may_be_none(hint: object) -> bool:
 
 @lru_cache(maxsize=256)
 def _node_kinds(hint: Any) -> Mapping[str, type]:
-    """The dataclasses that may stand in a field, by name."""
+    """Return the dataclasses that a field accepts, by name."""
     if is_dataclass(hint) and isinstance(hint, type) and hint is not Pose:
         return {hint.__name__: hint}
     if typing.get_origin(hint) in (tuple, typing.Union, types.UnionType):
@@ -339,7 +339,7 @@ def _hints(kind: type) -> dict[str, object]:
 
 
 def files_named_by(value: object) -> list[Path]:
-    """The files that a world, or a part of one, names."""
+    """Return the files that a world or a part of it uses."""
     if isinstance(value, Path):
         return [value]
     if is_dataclass(value) and not isinstance(value, type):

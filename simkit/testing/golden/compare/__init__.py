@@ -1,5 +1,5 @@
-"""Compare two records of runs: topics, numbers, pictures, noise, physics and inputs.
+"""Comparison of two run records: topics, numbers, pictures, noise, physics and inputs.
 
-Two `RunRecord`s enter, a `Comparison` leaves: the first difference of each field, with its tolerance, in words. No
-simulation is run here, and nothing is said of where a difference comes from.
+The inputs are two `RunRecord` objects. The result is a `Comparison` with the first difference of each field and its
+tolerance, in words. This package runs no simulation and does not search for causes.
 """

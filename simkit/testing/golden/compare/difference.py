@@ -1,4 +1,4 @@
-"""What a comparison finds, and what it comes from."""
+"""Data types for differences, their causes, and the verdict on a golden run."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ CauseKind = Literal["model", "file", "code", "version", "scenario", "input"]
 
 @dataclass(frozen=True)
 class Difference:
-    """The first thing in which a topic's field differs.
+    """First difference in a field of a topic.
 
     Attributes:
-        topic: which; empty for the state.
-        field: path within the message; empty for the whole topic.
-        kind: of difference.
-        time: of the first one [s].
-        size: the largest, in the field's unit; nan where there is none.
-        unit: of `size`.
-        words: in a sentence: `/scan.ranges: 14 of 360 rays +12 mm from t = 3.20 s`.
-        allowed: the tolerance, in words.
-        index: of the first message that differs; -1 where that says nothing.
-        columns: paths of the columns that `field` is made of, where it is no column itself (an orientation).
+        topic: Topic; empty for the physics state.
+        field: Path of the field within the message; empty for the whole topic.
+        kind: Kind of difference.
+        time: Time of the first difference [s].
+        size: Largest difference in the field's unit; NaN if it has no size.
+        unit: Unit of `size`.
+        words: Sentence such as `/scan.ranges: 14 of 360 rays +12 mm from t = 3.20 s`.
+        allowed: Tolerance in words.
+        index: Index of the first message that differs; -1 if not applicable.
+        columns: Paths of the columns that form `field`, if it is not a column itself (an orientation).
     """
 
     topic: str
@@ -46,15 +46,15 @@ class Difference:
 
 @dataclass
 class Comparison:
-    """Two records side by side.
+    """Result of comparing two records.
 
     Attributes:
-        tier: "exact" where the same machine and versions must give the same bits, else "tolerant".
-        differences: that count, by time, then topic; empty for a pass.
-        notes: what is other and does not count, in sentences.
-        machine: what of the fingerprint is other: name -> (golden, run).
-        topics: how many topics were compared.
-        messages: how many messages.
+        tier: "exact" if the same machine and versions must give the same bits, else "tolerant".
+        differences: Differences beyond their tolerance, by time, then topic; empty for a pass.
+        notes: Sentences about differences within their tolerance.
+        machine: Entries of the fingerprint that differ: name -> (golden, run).
+        topics: Number of compared topics.
+        messages: Number of compared messages.
     """
 
     tier: Literal["exact", "tolerant"]
@@ -66,22 +66,22 @@ class Comparison:
 
     @property
     def passed(self) -> bool:
-        """Whether nothing differs that may not."""
+        """True if no difference exceeds its tolerance."""
         return not self.differences
 
 
 @dataclass(frozen=True)
 class Cause:
-    """A change that lies behind differences.
+    """Change that may have caused the differences.
 
     Attributes:
-        kind: what was changed.
-        words: in a sentence: `wheel_left_link::collision: radius 0.033 → 0.0333`.
-        path: of the leaf, the file or the version.
-        golden, run: its values.
-        where: `file:line` of the run's; empty where there is none.
-        proven: True where the run with this put back gives the golden outputs, False where it does not, None where it
-            was not tried.
+        kind: Kind of change.
+        words: Sentence such as `wheel_left_link::collision: radius 0.033 → 0.0333`.
+        path: Path of the world value, the file or the version.
+        golden, run: Values in both runs.
+        where: `file:line` in the files of the run; empty if unknown.
+        proven: True if the run with this change undone gives the golden outputs, False if it does not, None if this was
+            not tested.
     """
 
     kind: CauseKind
@@ -95,14 +95,14 @@ class Cause:
 
 @dataclass
 class Explanation:
-    """Where differences come from.
+    """Causes of the differences.
 
     Attributes:
-        causes: the likeliest first.
-        tick: the first at which the physics differs; None where it does not.
-        time: of that [s].
-        quantity: what differs there first, in words; "" where nothing does.
-        lines: the whole in sentences, as a report shows them.
+        causes: Causes, most likely first.
+        tick: First tick at which the physics differs; None if it does not differ.
+        time: Simulated time of that tick [s].
+        quantity: First state quantity that differs, in words; empty if there is none.
+        lines: Complete explanation, as shown in reports.
     """
 
     causes: list[Cause] = field(default_factory=list)
@@ -114,15 +114,15 @@ class Explanation:
 
 @dataclass
 class Verdict:
-    """One golden run that was checked.
+    """Result of checking one golden run.
 
     Attributes:
-        name: of the golden.
-        golden, run: both records.
-        comparison: of them.
-        explanation: None for a pass.
-        checks: the scenario's own.
-        elapsed: wall time of the run [s].
+        name: Name of the golden run.
+        golden, run: Records of both runs.
+        comparison: Comparison of the records.
+        explanation: Causes of the differences; None for a pass.
+        checks: Results of the scenario's own checks.
+        elapsed: Wall time of the run [s].
     """
 
     name: str
@@ -135,5 +135,5 @@ class Verdict:
 
     @property
     def passed(self) -> bool:
-        """Whether outputs are the golden ones and every check held."""
+        """True if the outputs equal the golden run and every check passed."""
         return self.comparison.passed and all(check.passed for check in self.checks)

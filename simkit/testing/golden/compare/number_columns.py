@@ -1,4 +1,4 @@
-"""Compare columns of numbers and orientations: the first message that differs, by how much, and what follows."""
+"""Comparison of number columns and orientations: the first message that differs, the size and the development."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ _NAMES = ("child_frame_id", "name", "names", "joint_names", "link_name", "id")
 
 
 def _largest_deviation(shift: Floats, counted: Flags, messages: npt.NDArray[np.intp]) -> tuple[float, int]:
-    """The largest finite difference and its message; nan and -1 where there is none."""
+    """Return the largest finite difference and its message; NaN and -1 if there is none."""
     off = np.where(counted & np.isfinite(shift), np.abs(shift), -1.0)
     at = int(np.argmax(off))
     return (float(shift[at]), int(messages[at])) if off[at] >= 0.0 else (math.nan, -1)
 
 
 def _setting_text(terms: FieldTerms, golden: FlatValues, run: FlatValues, first: int, failing: Flags) -> str:
-    """`3.5 m became 4 m`, of a setting that says the same all along."""
+    """Describe the change of a constant setting: `3.5 m became 4 m`; empty if the field is not constant."""
     width = int(golden.widths[0])
     if is_colour(terms.field) or first or not failing.all() or (golden.widths != width).any():
         return ""
@@ -44,11 +44,11 @@ def _setting_text(terms: FieldTerms, golden: FlatValues, run: FlatValues, first:
     if width == 1:
         return words[0]
     names = _value_names(terms, width, 0) or [f"value {i}" for i in range(width)]
-    return ", ".join(f"{names[i]} {said}" for i, said in zip(changed.tolist(), words, strict=True))
+    return ", ".join(f"{names[i]} {text}" for i, text in zip(changed.tolist(), words, strict=True))
 
 
 def _which_values(terms: FieldTerms, numbers: npt.NDArray[np.intp], width: int, index: int) -> str:
-    """Which values of the message: `14 of 360 rays (45 to 58) `."""
+    """Describe the values of a message that differ: `14 of 360 rays (45 to 58) `."""
     names = _value_names(terms, width, index)
     if width == 1 and not names:
         return ""
@@ -67,7 +67,7 @@ def _which_values(terms: FieldTerms, numbers: npt.NDArray[np.intp], width: int, 
 
 
 def _value_names(terms: FieldTerms, width: int, index: int) -> list[str]:
-    """What the values of a message are called, by a field of names beside theirs."""
+    """Return the names of a message's values from a neighbouring field of names; empty if there is none."""
     if width > 64:
         return []
     parts = terms.field.split(".")
@@ -90,7 +90,7 @@ def _deviation_text(terms: FieldTerms, shift: Floats, golden: Array, run: Array,
 
 
 def _signed(shift: Floats, unit: str, error: float) -> str:
-    """`+12 mm` where nearly all go one way, else `up to ±12 mm`."""
+    """Return `+12 mm` if more than 80 % of the differences have the same sign, else `up to ±12 mm`."""
     positive = float((shift > 0).mean())
     if 0.2 < positive < 0.8:
         return f"up to ±{quantity_text(float(np.abs(shift).max()), unit, signed=False, error=error)}"
@@ -103,26 +103,26 @@ def _typical(shift: Floats) -> float:
 
 
 def _finiteness_text(golden: Array, run: Array, *, only: bool, single: bool) -> list[str]:
-    """What became infinite, finite or no number."""
+    """Describe values that became infinite, finite or NaN."""
     a, b = golden.astype(np.float64), run.astype(np.float64)
     kinds = (
-        ("no number any more", np.isnan(b)),
-        ("a number now", np.isnan(a) & ~np.isnan(b)),
-        ("infinite now", np.isinf(b) & ~np.isnan(a)),
-        ("finite now", np.isinf(a) & np.isfinite(b)),
+        ("became NaN", np.isnan(b)),
+        ("no longer NaN", np.isnan(a) & ~np.isnan(b)),
+        ("became infinite", np.isinf(b) & ~np.isnan(a)),
+        ("became finite", np.isinf(a) & np.isfinite(b)),
     )
-    told = []
+    texts = []
     for words, which in kinds:
         number = int(which.sum())
         if number:
-            told.append(words if (only and number == len(a)) or single else f"{number} {words}")
-    return told
+            texts.append(words if (only and number == len(a)) or single else f"{number} {words}")
+    return texts
 
 
 def _duration_text(
     terms: FieldTerms, first: int, failing: Flags, typical: float, largest: float, at: int, error: float
 ) -> str:
-    """From when on, in how many messages, and how large it gets."""
+    """Describe the first time, the number of messages and the largest difference."""
     rest = len(failing) - first
     number = int(failing[first:].sum())
     if number == 1 and rest > 1:
@@ -136,11 +136,11 @@ def _duration_text(
 
 
 HALF_STEP: Final = 0.5 * (1.0 + 1e-9)
-"""Of a step: how far rounding moves a value."""
+"""Largest error from rounding, as a multiple of the rounding step."""
 
 
 def compare_column(terms: FieldTerms, golden: Column, run: Column) -> FieldFinding:
-    """Compares a field of numbers."""
+    """Compare a field of numbers."""
     mine, other = FlatValues.of(golden, terms.count), FlatValues.of(run, terms.count)
     uneven = np.flatnonzero(mine.widths != other.widths)
     first = int(uneven[0]) if uneven.size else terms.count
@@ -151,7 +151,7 @@ def compare_column(terms: FieldTerms, golden: Column, run: Column) -> FieldFindi
     found = field_finding(terms, shift, limit, mine, other, HALF_STEP * (golden.step + run.step))
     if found.difference is not None or not uneven.size:
         return found
-    # a message that has more or fewer values
+    # the first message with more or fewer values
     a, b, time = int(golden.of(first).size), int(run.of(first).size), terms.time(first)
     things = item_name(terms.stream.type_name, terms.field)
     words, size = f"{terms.name}: {a} {things} became {b} at {time_text(time)}", float(abs(b - a))
@@ -163,14 +163,14 @@ def compare_column(terms: FieldTerms, golden: Column, run: Column) -> FieldFindi
 def field_finding(
     terms: FieldTerms, shift: Floats, limit: Floats, golden: FlatValues, run: FlatValues, rounding: float
 ) -> FieldFinding:
-    """What there is to say of values that are off.
+    """Evaluate differences against their limits.
 
     Args:
-        terms: of the comparison.
-        shift: run less golden, a number for each value.
-        limit: how far each may be off.
-        golden, run: the values themselves.
-        rounding: how far off rounding alone may make a value.
+        terms: Settings of the comparison.
+        shift: Run minus golden, for each value.
+        limit: Largest allowed difference of each value.
+        golden, run: Values of both runs.
+        rounding: Largest difference that rounding alone can cause.
     """
     off = np.abs(shift)
     bad = ~(off <= limit)
@@ -181,19 +181,19 @@ def field_finding(
         if not failing.any():
             ratio = np.nan_to_num(off / limit, nan=0.0, posinf=0.0)
             return FieldFinding(None, float(ratio[~bad].max(initial=0.0)), largest_off)
-        ratio = off[bad] / _tolerance_text(terms.tolerance, golden.values[bad])
+        ratio = off[bad] / _tolerances(terms.tolerance, golden.values[bad])
         excess = float(np.nan_to_num(ratio, nan=np.inf, posinf=np.inf).max(initial=0.0))
     first = int(np.argmax(failing))
     counted = bad & failing[golden.messages]
     largest, at = _largest_deviation(shift, counted, golden.messages)
-    said = _setting_text(terms, golden, run, first, failing)
-    if not said:
+    text = _setting_text(terms, golden, run, first, failing)
+    if not text:
         here = counted & (golden.messages == first)
         numbers = np.flatnonzero(here) - int(golden.widths[:first].sum())
-        said = _which_values(terms, numbers, int(golden.widths[first]), first)
-        said += _deviation_text(terms, shift[here], golden.values[here], run.values[here], rounding)
-        said += _duration_text(terms, first, failing, _typical(shift[here]), largest, at, rounding)
-    topic, words = terms.stream.topic, f"{terms.name}: {said}"
+        text = _which_values(terms, numbers, int(golden.widths[first]), first)
+        text += _deviation_text(terms, shift[here], golden.values[here], run.values[here], rounding)
+        text += _duration_text(terms, first, failing, _typical(shift[here]), largest, at, rounding)
+    topic, words = terms.stream.topic, f"{terms.name}: {text}"
     difference = Difference(
         topic, terms.field, "value", terms.time(first), abs(largest), terms.unit, words, terms.allowed, first
     )
@@ -204,13 +204,13 @@ def field_finding(
 
 
 def _deviation(terms: FieldTerms, golden: Array, run: Array) -> Floats:
-    """Run less golden; 0 where both are the same infinity or both no number, infinite where only one is finite."""
+    """Subtract golden from run; 0 for equal infinities or two NaN, infinite if only one value is finite."""
     if not golden.size:
         return np.zeros(0)
     if is_colour(terms.field) and golden.dtype == run.dtype and golden.dtype.itemsize == 4:
         return _colour_deviation(golden, run)
     if golden.dtype.kind in "iub" and run.dtype.kind in "iub":
-        if golden.dtype == np.int64:  # times [ns] are too large for a float
+        if golden.dtype == np.int64:  # times [ns] exceed the integer precision of a float
             return np.asarray((run.astype(np.int64) - golden).astype(np.float64))
         return run.astype(np.float64) - golden.astype(np.float64)
     a, b = golden.astype(np.float64), run.astype(np.float64)
@@ -226,7 +226,7 @@ def _deviation(terms: FieldTerms, golden: Array, run: Array) -> Floats:
 
 
 def _colour_deviation(golden: Array, run: Array) -> Floats:
-    """The largest difference of a channel, of colours that are four bytes each."""
+    """Return the largest channel difference of four-byte colours."""
     a = np.ascontiguousarray(golden).view(np.uint8).reshape(-1, 4).astype(np.float64)
     b = np.ascontiguousarray(run).view(np.uint8).reshape(-1, 4)
     shift = b - a
@@ -235,7 +235,7 @@ def _colour_deviation(golden: Array, run: Array) -> Floats:
 
 
 def _limit(terms: FieldTerms, golden: Column, run: Column, values: Array) -> Floats:
-    """How far each value may be off."""
+    """Return the largest allowed difference of each value."""
     rounding = HALF_STEP * (golden.step + run.step)
     limit = np.full(values.shape, rounding)
     if terms.is_exact:
@@ -249,22 +249,22 @@ def _limit(terms: FieldTerms, golden: Column, run: Column, values: Array) -> Flo
     return limit
 
 
-def _tolerance_text(tolerance: Tolerance, values: Array) -> Floats:
-    """What a tolerance allows values to be off, whether it counts here or not."""
+def _tolerances(tolerance: Tolerance, values: Array) -> Floats:
+    """Return the tolerance of each value, also where bits must be equal."""
     with np.errstate(invalid="ignore"):
         part = (tolerance.relative or 0.0) * np.nan_to_num(np.abs(values.astype(np.float64)), posinf=0.0)
     return np.asarray((tolerance.absolute or 0.0) + part)
 
 
 def quaternion_paths(columns: Sequence[str]) -> list[str]:
-    """Paths under which there are x, y, z and w."""
+    """Return the paths that have x, y, z and w columns."""
     known = set(columns)
     bases = [path[:-2] for path in columns if path.endswith(".w")]
     return [base for base in bases if all(f"{base}.{axis}" in known for axis in "xyz")]
 
 
 def compare_orientation(terms: FieldTerms, golden: list[Column], run: list[Column]) -> FieldFinding | None:
-    """Compares x, y, z, w as turns; None where they are none (not of length 1, or of other numbers)."""
+    """Compare quaternions x, y, z, w as rotations; None if they are not unit quaternions or differ in number."""
     mine, other = [FlatValues.of(c, terms.count) for c in golden], [FlatValues.of(c, terms.count) for c in run]
     widths = mine[0].widths
     if any(len(f.widths) != len(widths) or (f.widths != widths).any() for f in (*mine, *other)):
@@ -284,8 +284,8 @@ def compare_orientation(terms: FieldTerms, golden: list[Column], run: list[Colum
         limit = np.full(angle.shape, (terms.tolerance.absolute or 0.0) + 2.0 * step)
     axis = np.argmax(np.abs(vector), axis=-1)
     along = np.take_along_axis(vector * np.where(scalar < 0.0, -1.0, 1.0)[:, None], axis[:, None], axis=-1)[:, 0]
-    said = replace(mine[0], values=np.zeros(angle.shape))  # what there is to say is said of the angle
-    found = field_finding(terms, np.where(along < 0.0, -angle, angle), limit, said, said, 2.0 * step)
+    angles = replace(mine[0], values=np.zeros(angle.shape))  # only shape and messages of these values are used
+    found = field_finding(terms, np.where(along < 0.0, -angle, angle), limit, angles, angles, 2.0 * step)
     if found.difference is None:
         return found
     return FieldFinding(_with_axis(terms, found.difference, mine[0], vector, axis, 2.0 * step), found.excess, found.off)
@@ -294,14 +294,14 @@ def compare_orientation(terms: FieldTerms, golden: list[Column], run: list[Colum
 def _with_axis(
     terms: FieldTerms, difference: Difference, values: FlatValues, vector: Floats, axis: Array, rounding: float
 ) -> Difference:
-    """The same, with the axis that it turns about."""
+    """Add the rotation axis to the description of a difference."""
     start = int(values.widths[: difference.index].sum())
     here = slice(start, start + max(1, int(values.widths[difference.index])))
     most = start + int(np.argmax(np.linalg.norm(vector[here], axis=-1)))
     length = float(np.linalg.norm(vector[most]))
     words = difference.words
     if difference.size <= rounding:
-        words = f"{terms.name}: the same turn with the other sign from {time_text(difference.time)}"
+        words = f"{terms.name}: the same rotation with opposite quaternion sign from {time_text(difference.time)}"
     elif abs(float(vector[most][axis[most]])) > 0.98 * length:
         words = words.replace("° ", f"° about {'xyz'[int(axis[most])]} ", 1)
     columns = tuple(f"{terms.field}.{part}" for part in "xyzw")
@@ -309,7 +309,7 @@ def _with_axis(
 
 
 def _rotation_between(a: Floats, b: Floats) -> tuple[Floats, Floats]:
-    """The turn from a to b, in a's frame: vector and scalar part; quaternions are x, y, z, w."""
+    """Return the rotation from a to b in a's frame as vector and scalar part; quaternions are x, y, z, w."""
     av, aw, bv, bw = a[:, :3], a[:, 3], b[:, :3], b[:, 3]
     vector = aw[:, None] * bv - bw[:, None] * av - np.cross(av, bv)
     return vector, aw * bw + (av * bv).sum(axis=-1)

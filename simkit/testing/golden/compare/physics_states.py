@@ -1,4 +1,4 @@
-"""The physics of two runs side by side: the first tick that is other, and what is other there."""
+"""Comparison of the physics of two runs: the first tick that differs, and the quantity that differs most."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from simkit.testing.golden.compare.difference import Difference
 from simkit.testing.golden.compare.units import joint_unit, quantity_text, time_text
 from simkit.testing.run_record.record import States
 
-_TINY: Final = 1e-9  # of a quantity that has hardly moved, where its own size says nothing
-# absolute, and part of the largest value, on another machine; by what the quantity's name says
+_TINY: Final = 1e-9  # smallest scale, for a quantity that has hardly moved
+# absolute tolerance, and share of the largest value, on another machine; by a word in the quantity's name
 _ALLOWED: Final[tuple[tuple[str, float, float], ...]] = (
     ("velocity", 2e-2, 1e-2),
     ("position", 1e-3, 1e-3),
@@ -26,7 +26,7 @@ Floats = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class _StateDifferences:
-    """The states that both kept, of the quantities that both have."""
+    """States of the ticks and quantities that both runs recorded."""
 
     names: list[str]
     times: Floats
@@ -38,20 +38,20 @@ class _StateDifferences:
 def compare_physics(
     golden: States, run: States, is_exact: bool, joints: Mapping[str, str] | None = None
 ) -> Difference | None:
-    """Compares the physics of two runs; None where nothing is other that may not be.
+    """Compare the physics of two runs; return None without a difference beyond the tolerance.
 
     Args:
-        golden, run: of the same scenario.
-        is_exact: whether bits must be equal; else the states that were kept are compared with tolerances.
-        joints: unit of each joint's position, by its name.
+        golden, run: States of runs of the same scenario.
+        is_exact: True if bits must be equal; otherwise the recorded states are compared with tolerances.
+        joints: Unit of each joint's position, by joint name.
     """
     if golden.timestep != run.timestep:
         steps = [quantity_text(s.timestep, "s", signed=False) for s in (golden, run)]
-        words = f"physics: a step of {steps[0]} became one of {steps[1]}"
+        words = f"physics: time step {steps[0]} became {steps[1]}"
         return _state(words, 0.0, abs(run.timestep - golden.timestep), "s", "")
     parts = _entity_changes(golden, run)
     if parts:
-        return _state(f"physics: moving parts are other: {parts}", 0.0, float("nan"), "", "")
+        return _state(f"physics: different moving entities: {parts}", 0.0, float("nan"), "", "")
     kept = _state_differences(golden, run, joints or {})
     return _bits(golden, run, kept) if is_exact else _values(kept)
 
@@ -61,30 +61,30 @@ def _state(words: str, time: float, size: float, unit: str, name: str, allowed: 
 
 
 def _entity_changes(golden: States, run: States) -> str:
-    """`new: crate; gone: pillar`, by the names of quantities without what they say of them."""
-    told = []
+    """List added and removed entities, such as `new: crate; gone: pillar`."""
+    groups = []
     for words, names in (("new", set(run.names) - set(golden.names)), ("gone", set(golden.names) - set(run.names))):
         owners = sorted({_quantity_owner(name) for name in names})
         if owners:
             more = f" and {len(owners) - 3} more" if len(owners) > 3 else ""
-            told.append(f"{words}: {', '.join(owners[:3])}{more}")
-    return "; ".join(told)
+            groups.append(f"{words}: {', '.join(owners[:3])}{more}")
+    return "; ".join(groups)
 
 
 def _quantity_owner(name: str) -> str:
-    """A quantity's name without what it is: `crate` of `crate angular velocity x`."""
+    """Return the entity of a quantity: `crate` for `crate angular velocity x`."""
     for word in (" position", " orientation", " angular velocity", " velocity", " activation"):
         if word in name:
             return name[: name.index(word)]
     return name
 
 
-# ---------------------------------------------------------------------- the same bits
+# ---------------------------------------------------------------------- same machine
 
 
 def _bits(golden: States, run: States, kept: _StateDifferences) -> Difference | None:
     if len(kept.times) and kept.times[0] <= 0.0 and kept.shift[0].any():
-        return _largest_difference(kept, 0, "physics: begins in another state", 0.0, "the same bits")
+        return _largest_difference(kept, 0, "physics: initial state differs", 0.0, "the same bits")
     both = min(len(golden.marks), len(run.marks))
     apart = np.flatnonzero(golden.marks[:both] != run.marks[:both])
     if not apart.size:
@@ -96,12 +96,12 @@ def _bits(golden: States, run: States, kept: _StateDifferences) -> Difference | 
     words = f"physics: state differs from {time_text(time)} (tick {tick})"
     first = next((i for i in range(len(kept.times)) if kept.times[i] >= time and kept.shift[i].any()), None)
     if first is None:
-        return _state(f"{words}, and not in the states that were kept", time, 0.0, "", "")
+        return _state(f"{words}, but not in the recorded states", time, 0.0, "", "")
     return _largest_difference(kept, first, words, time, "the same bits")
 
 
 def _largest_difference(kept: _StateDifferences, index: int, words: str, time: float, allowed: str) -> Difference:
-    """The quantity that differs most for its size, at a state that was kept."""
+    """Describe the quantity with the largest difference relative to its size, in one recorded state."""
     scale = np.maximum(np.abs(kept.golden).max(axis=0), _TINY)
     at = int(np.argmax(np.abs(kept.shift[index]) / scale))
     name, unit = kept.names[at], unit_of_quantity(kept.names[at], kept.joints)
@@ -138,7 +138,7 @@ def _limit(name: str, size: float) -> float:
 
 
 def _state_differences(golden: States, run: States, joints: Mapping[str, str]) -> _StateDifferences:
-    """Differences of the states that both kept, at the same ticks; where only one is a number they are infinite."""
+    """Subtract the states that both runs recorded; a difference is infinite if only one value is a number."""
     names = [name for name in golden.names if name in set(run.names)]
     ticks = np.intersect1d(golden.ticks, run.ticks)
     mine = golden.values[np.searchsorted(golden.ticks, ticks)][:, [golden.names.index(name) for name in names]]
@@ -151,11 +151,11 @@ def _state_differences(golden: States, run: States, joints: Mapping[str, str]) -
 
 
 def unit_of_quantity(name: str, joints: Mapping[str, str]) -> str:
-    """The unit of a quantity of the state.
+    """Return the unit of a state quantity.
 
     Args:
-        name: of the quantity.
-        joints: unit of each joint's position, by its name.
+        name: Name of the quantity.
+        joints: Unit of each joint's position, by joint name.
     """
     if "angular velocity" in name:
         return "rad/s"

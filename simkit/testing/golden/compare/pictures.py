@@ -1,4 +1,4 @@
-"""Pictures side by side: which part changed, by how much, and whether the structure is the same."""
+"""Comparison of pictures: the changed part, the size of the change, and the structural similarity."""
 
 from __future__ import annotations
 
@@ -23,20 +23,21 @@ Ranked = list[tuple[float, Difference]]
 def compare_pictures(
     golden: Stream, run: Stream, tolerance: Tolerance, is_exact: bool, count: int, notes: list[str]
 ) -> Ranked:
-    """Compares the pictures of a topic.
+    """Compare the pictures of a topic.
 
     Args:
-        golden, run: of one topic.
-        tolerance: of the topic.
-        is_exact: whether bits must be equal.
-        count: how many messages are compared.
-        notes: where what is other and allowed is told.
+        golden, run: Streams of one topic.
+        tolerance: Tolerance of the topic.
+        is_exact: True if bits must be equal.
+        count: Number of messages to compare.
+        notes: List to which differences within the tolerance are appended.
     """
     mine, other = golden.pictures, run.pictures
     if tolerance.ignore or not count:
         return []
     if mine is None or other is None:
-        notes.append(f"{run.topic}: only {'the golden' if other is None else 'the run'} has small pictures of it")
+        holder = "the golden run" if other is None else "the new run"
+        notes.append(f"{run.topic}: only {holder} stores small pictures; they are not compared")
         return []
     form = _format_difference(run, mine, other)
     if form is not None:
@@ -57,14 +58,14 @@ def compare_pictures(
 
 @dataclass(frozen=True)
 class _CommonPictures:
-    """The pictures that both kept, of the same messages.
+    """Pictures of the messages for which both runs stored them.
 
     Attributes:
-        stream: the run's.
-        golden, run: pictures of the golden stream and of the run's.
-        tolerance, is_exact, count: as of `compare_pictures`.
-        messages: of which both kept the picture.
-        changed: messages whose pictures are other, kept or not; None where that is not known.
+        stream: Stream of the new run.
+        golden, run: Pictures of the golden run and of the new run.
+        tolerance, is_exact, count: See `compare_pictures`.
+        messages: Messages whose pictures both runs stored.
+        changed: Messages whose pictures differ, stored or not; None if unknown.
     """
 
     stream: Stream
@@ -78,53 +79,53 @@ class _CommonPictures:
 
     @property
     def all_kept(self) -> bool:
-        """Whether all pictures are kept."""
+        """True if the pictures of all messages are stored."""
         return len(self.messages) == self.count
 
     def seconds(self, row: int) -> float:
-        """When the message of a row came."""
+        """Return the time of a row's message [s]."""
         return float(self.stream.times_ns[int(self.messages[row])]) * 1e-9
 
     def when(self, row: int) -> str:
-        """The same in words."""
+        """Return the time of a row's message as text."""
         return time_text(self.seconds(row))
 
     def similarity(self, row: int) -> float:
-        """Of a row's pictures."""
+        """Return the structural similarity of a row's pictures."""
         return structural_similarity(self.golden.small[row], self.run.small[row])
 
 
 def _format_difference(run: Stream, mine: Pictures, other: Pictures) -> Difference | None:
-    """Another size or encoding."""
-    said = []
+    """Compare size and encoding."""
+    changes = []
     if mine.shape != other.shape:
-        said.append(f"{mine.shape[1]} × {mine.shape[0]} px became {other.shape[1]} × {other.shape[0]} px")
+        changes.append(f"{mine.shape[1]} × {mine.shape[0]} px became {other.shape[1]} × {other.shape[0]} px")
     if mine.encoding != other.encoding:
-        said.append(f"encoding {mine.encoding} became {other.encoding}")
-    if not said and mine.small.shape[1:] != other.small.shape[1:]:
-        said.append("pictures are kept in another size (picture: in the scenario)")
-    if not said:
+        changes.append(f"encoding {mine.encoding} became {other.encoding}")
+    if not changes and mine.small.shape[1:] != other.small.shape[1:]:
+        changes.append("the stored size of pictures changed (picture: in the scenario)")
+    if not changes:
         return None
     time = float(run.times_ns[0]) * 1e-9 if len(run.times_ns) else 0.0
-    words = f"{run.topic}: {', '.join(said)}"
+    words = f"{run.topic}: {', '.join(changes)}"
     return Difference(run.topic, "", "picture", time, math.nan, "", words, "the same size and encoding", 0)
 
 
 def _with_hashes(met: _CommonPictures, ranked: Ranked) -> Ranked:
-    """Dates what differs by the first picture that is other, which need not be among those that were kept."""
+    """Correct the time of the first difference by the hashes of all pictures, because only some pictures are stored."""
     if met.changed is None or not met.changed.size:
         return ranked
     first = int(met.changed[0])
     time = float(met.stream.times_ns[first]) * 1e-9
     if not ranked:
         words = f"{met.stream.topic}: pictures differ from {time_text(time)}, in {len(met.changed)} of {met.count}"
-        words += "" if met.all_kept else ", and in none that a golden keeps"
+        words += "" if met.all_kept else ", but in no stored picture"
         difference = Difference(met.stream.topic, "", "picture", time, math.nan, "", words, "the same bits", first)
         return [(1.0, difference)]
-    excess, told = ranked[0]
-    if first < told.index:
-        words = f"{told.words}; the first that is other came at {time_text(time)} and is not kept"
-        ranked = [(excess, replace(told, time=time, index=first, words=words)), *ranked[1:]]
+    excess, difference = ranked[0]
+    if first < difference.index:
+        words = f"{difference.words}; the first picture that differs, at {time_text(time)}, is not stored"
+        ranked = [(excess, replace(difference, time=time, index=first, words=words)), *ranked[1:]]
     return ranked
 
 
@@ -162,7 +163,7 @@ def _colours(met: _CommonPictures, notes: list[str]) -> Ranked:
 
 
 def _changed_tiles(met: _CommonPictures) -> npt.NDArray[np.bool_]:
-    """Which tiles of each picture are other, shape (messages, tiles)."""
+    """Compare the tiles of each picture; the result has shape (messages, tiles)."""
     a, b = met.golden.tiles, met.run.tiles
     if a.shape != b.shape:
         return np.zeros((len(met.messages), 1), bool)
@@ -170,7 +171,7 @@ def _changed_tiles(met: _CommonPictures) -> npt.NDArray[np.bool_]:
 
 
 def _changed_part_text(changed: npt.NDArray[np.bool_], mine: Pictures) -> str:
-    """`12 of 300 tiles changed (left, top)`."""
+    """Describe the changed tiles: `12 of 300 tiles changed (x 0 to 64, y 0 to 48 px)`."""
     number, total = int(changed.sum()), changed.size
     if not number:
         return "pictures changed"
@@ -185,11 +186,11 @@ def _changed_part_text(changed: npt.NDArray[np.bool_], mine: Pictures) -> str:
 
 
 def _brightness(met: _CommonPictures, row: int) -> str:
-    """By how much values are other, and whether they became brighter or darker."""
+    """Describe the mean change and whether the picture became brighter or darker."""
     shift = met.run.small[row].astype(np.float64) - met.golden.small[row]
     mean, size = float(shift.mean()), float(np.abs(shift).mean())
     if size < 0.005:
-        return ", too little to be seen when small"
+        return ", not visible in the reduced picture"
     words = f" by {size:.2g} of 255 on average"
     if abs(mean) > 0.8 * size:
         words += ", brighter" if mean > 0 else ", darker"
@@ -200,7 +201,7 @@ def _brightness(met: _CommonPictures, row: int) -> str:
 
 
 def _depths(met: _CommonPictures, notes: list[str]) -> Ranked:
-    """Depths are numbers [m]; where the small ones are equal, tiles tell of the large ones."""
+    """Compare depths [m]; if the reduced pictures are equal, compare the tiles of the full pictures."""
     mine, other, topic = met.golden.small, met.run.small, met.stream.topic
     kept = replace(met.stream, times_ns=met.stream.times_ns[met.messages], words={})
     terms = FieldTerms(kept, "", met.tolerance, met.is_exact, len(met.messages), "m")
@@ -215,13 +216,13 @@ def _depths(met: _CommonPictures, notes: list[str]) -> Ranked:
         return []
     first = int(np.argmax(changed.any(axis=1)))
     part = _changed_part_text(changed[first], met.golden)
-    words = f"{topic}: {part}, too little to be seen when small, from {met.when(first)}"
+    words = f"{topic}: {part}, not visible in the reduced picture, from {met.when(first)}"
     index = int(met.messages[first])
     return [(1.0, Difference(topic, "", "picture", met.seconds(first), math.nan, "m", words, "the same bits", index))]
 
 
 def _rounding_step(depths: Array) -> float:
-    """What depths are rounded to: a golden keeps them so."""
+    """Return the step to which stored depths are rounded; 0 if they are not rounded."""
     finite = depths[np.isfinite(depths)]
     return _DEPTH if np.array_equal(finite, np.rint(finite / _DEPTH) * _DEPTH) else 0.0
 
@@ -230,10 +231,10 @@ def _rounding_step(depths: Array) -> float:
 
 
 def _development_text(met: _CommonPictures, failing: npt.NDArray[np.intp], apart: Array) -> str:
-    """From when on, in how many pictures, and how large it gets."""
+    """Describe the first time, the number of pictures and the largest difference."""
     first = int(failing[0])
-    number, rest, things = len(failing), len(met.messages) - first, "pictures" if met.all_kept else "kept pictures"
-    if met.is_exact and met.changed is not None:  # of all of them, kept or not
+    number, rest, things = len(failing), len(met.messages) - first, "pictures" if met.all_kept else "stored pictures"
+    if met.is_exact and met.changed is not None:  # hashes exist for all pictures, stored or not
         index = int(met.messages[first])
         number, rest, things = int((met.changed >= index).sum()), met.count - index, "pictures"
     words = f"{'from' if number > 1 else 'at'} {met.when(first)}"
@@ -246,14 +247,14 @@ def _development_text(met: _CommonPictures, failing: npt.NDArray[np.intp], apart
 
 
 def structural_similarity(golden: Array, run: Array, peak: float = 255.0) -> float:
-    """Structural similarity of two pictures of one size, up to 1 for equal ones.
+    """Return the structural similarity of two pictures of the same size; 1 for equal pictures.
 
     Args:
-        golden, run: shape (height, width) or (height, width, channels).
-        peak: greatest value.
+        golden, run: Pictures of shape (height, width) or (height, width, channels).
+        peak: Largest possible value.
 
-    Source: Wang, Bovik, Sheikh, Simoncelli, "Image quality assessment: from error visibility to structural
-    similarity", IEEE Trans. Image Processing 13(4), 2004: Gaussian window of 11 px, 1.5 px; K = 0.01, 0.03.
+    Source: Wang, Bovik, Sheikh, Simoncelli, "Image quality assessment: from error visibility to structural similarity",
+    IEEE Trans. Image Processing 13(4), 2004: Gaussian window of 11 px, 1.5 px; K = 0.01, 0.03.
     """
     import cv2
 

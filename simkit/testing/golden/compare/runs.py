@@ -1,4 +1,4 @@
-"""Compare two records of runs: the first difference of each field that is not allowed."""
+"""Comparison of two run records: the first difference of each field beyond its tolerance."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ from simkit.testing.run_record.fingerprint import fingerprint_differences
 from simkit.testing.run_record.record import RunRecord, Stream
 
 _PICTURES = ("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage")
-_NOTES = 12  # of one kind that are told
+_NOTES = 12  # maximum number of notes about topics
 
 
 def compare(golden: RunRecord, run: RunRecord, *, exact: bool | None = None) -> Comparison:
-    """Compares what a run gave with what is golden, by the tolerances of the run's scenario.
+    """Compare a new run with a golden run, using the tolerances of the new run's scenario.
 
     Args:
-        golden: what was stored.
-        run: what came now, of the same scenario.
-        exact: whether bits must be equal; None for where the machine and the versions are the same, unless the run's
-            scenario says that tolerances count there too.
+        golden: Stored record.
+        run: New record of the same scenario.
+        exact: True if bits must be equal, False for tolerances. If None, bits must be equal on the same machine with
+            the same versions, unless the scenario of the new run requests tolerances.
     """
 
     if exact is None and not run.scenario.bits:
@@ -34,15 +34,15 @@ def compare(golden: RunRecord, run: RunRecord, *, exact: bool | None = None) -> 
     same = not fingerprint_differences(golden.fingerprint, run.fingerprint) if exact is None else exact
     same_pictures = not fingerprint_differences(golden.fingerprint, run.fingerprint, True) if exact is None else exact
     is_reordered = exact is None and same and _is_reordered(golden, run)
-    if is_reordered:  # the engine adds up in the order of the file
+    if is_reordered:  # the engine sums in file order, so rounding differs
         same = same_pictures = False
     found = Comparison("exact" if same else "tolerant")
     if is_reordered:
-        found.notes.append("the world's parts come in another order, so that bits need not be equal")
+        found.notes.append("the entities of the world have another order, so bits need not be equal")
     found.machine = fingerprint_differences(
         golden.fingerprint, run.fingerprint, any(map(_is_rendered, run.streams.values()))
     )
-    with np.errstate(all="ignore"):  # what is compared may hold any number
+    with np.errstate(all="ignore"):  # compared values may be NaN or infinite
         _compare_topics(golden, run, same, same_pictures, found)
     if run.scenario.state:
         physics = compare_physics(golden.states, run.states, same, joint_units(run))
@@ -57,7 +57,7 @@ def compare(golden: RunRecord, run: RunRecord, *, exact: bool | None = None) -> 
 
 
 def _is_reordered(golden: RunRecord, run: RunRecord) -> bool:
-    """Whether what both worlds have stands in another order in their files."""
+    """Check whether the common values of both worlds have different orders in their files."""
     mine = [path for path in golden.leaves if path in run.leaves]
     return mine != [path for path in run.leaves if path in golden.leaves]
 
@@ -66,7 +66,7 @@ _JOINT = re.compile(r"joints\[([^\]]+)\]\.type$")
 
 
 def joint_units(record: RunRecord) -> dict[str, str]:
-    """The unit of each joint's position, by the joint's name; "" of a name that joints of both kinds have."""
+    """Return the unit of each joint's position, by joint name; empty if joints of both types share the name."""
     found: dict[str, str] = {}
     for path, kind in record.leaves.items():
         match = _JOINT.search(path)
@@ -98,12 +98,12 @@ def _compare_topics(golden: RunRecord, run: RunRecord, same: bool, same_pictures
             notes += result.notes
             found.topics += 1
             found.messages += len(mine.times_ns)
-    more = [f"{len(notes) - _NOTES} more are other and allowed"] if len(notes) > _NOTES else []
+    more = [f"{len(notes) - _NOTES} more differences are within their tolerance"] if len(notes) > _NOTES else []
     found.notes += notes[:_NOTES] + more
 
 
 def _missing_topic(stream: Stream, is_new: bool, golden: RunRecord, run: RunRecord) -> Difference:
-    """A topic that only one of the two has."""
+    """Describe a topic that only one of the two runs has."""
     number = len(stream.times_ns)
     messages = f"{number} message{'' if number == 1 else 's'} of {stream.type_name}"
     kind: DifferenceKind = "extra" if is_new else "missing"
@@ -115,15 +115,15 @@ def _missing_topic(stream: Stream, is_new: bool, golden: RunRecord, run: RunReco
 
 
 def _is_rendered(stream: Stream) -> bool:
-    """Whether a renderer has part in it."""
+    """Check whether a renderer produced the topic."""
     return stream.pictures is not None or stream.type_name in _PICTURES
 
 
-# ---------------------------------------------------------------------- the end, the meaning, the report of loading
+# ---------------------------------------------------------------------- end, world, diagnostics
 
 
 def _compare_ends(golden: RunRecord, run: RunRecord, found: Comparison) -> None:
-    """Why the runs ended, and when."""
+    """Compare the reasons and times at which the runs ended."""
     ticks = len(golden.states.marks), len(run.states.marks)
     time = min(ticks) * run.states.timestep
     if golden.end != run.end:
@@ -137,49 +137,49 @@ def _compare_ends(golden: RunRecord, run: RunRecord, found: Comparison) -> None:
 
 
 def _compare_meaning(golden: RunRecord, run: RunRecord, found: Comparison) -> None:
-    """What the world means: a difference even where nothing that is recorded shows it."""
+    """Compare the values of the worlds; a change is a difference even if no recorded output differs."""
     other_version = golden.fingerprint.get("simkit") != run.fingerprint.get("simkit")
     common = golden.leaves.keys() & run.leaves.keys()
     leaves = sorted(path for path in common if not _is_same_value(golden.leaves[path], run.leaves[path]))
     alone = sorted(golden.leaves.keys() ^ run.leaves.keys()) if golden.leaves and run.leaves else []
     if other_version and alone:
-        words = f"{len(alone)} values of the world are known to one version of simkit only: {_listed(alone)}"
+        words = f"{len(alone)} values of the world exist in only one version of simkit: {_listed(alone)}"
         found.notes.append(words)
         alone = []
     names = sorted(golden.sources.keys() | run.sources.keys())
     changed = [*leaves, *alone, *(name for name in names if golden.sources.get(name) != run.sources.get(name))]
     if changed:
-        said = _count_text(golden, run, changed)
-        found.differences.append(_unrecorded_difference("the world", len(changed), changed[0], said))
+        text = _count_text(golden, run, changed)
+        found.differences.append(_unrecorded_difference("the world", len(changed), changed[0], text))
     elif found.tier == "exact" and golden.fields and run.fields:
-        # a world that says the same as before may have parts that are the engine's own language
+        # equal scene values may hide changes in parts that are written in MuJoCo's own format
         edits = field_edits(golden, run)
         if edits:
-            said = _listed([f"{edit.path} {edit.golden} → {edit.run}" for edit in edits])
-            found.differences.append(_unrecorded_difference("the compiled model", len(edits), edits[0].path, said))
+            text = _listed([f"{edit.path} {edit.golden} → {edit.run}" for edit in edits])
+            found.differences.append(_unrecorded_difference("the compiled model", len(edits), edits[0].path, text))
 
 
-def _unrecorded_difference(what: str, count: int, path: str, said: str) -> Difference:
+def _unrecorded_difference(what: str, count: int, path: str, text: str) -> Difference:
     places = "place" if count == 1 else "places"
-    words = f"{what} is another in {count} {places}, and nothing that is recorded shows it: {said}"
-    return Difference("", path, "model", 0.0, math.nan, "", words, "the same meaning (model: false allows others)")
+    words = f"{what} changed in {count} {places}, but no recorded output differs: {text}"
+    return Difference("", path, "model", 0.0, math.nan, "", words, "the same world (model: false allows changes)")
 
 
 def _count_text(golden: RunRecord, run: RunRecord, changed: list[str]) -> str:
-    said = []
+    texts = []
     for path in changed[:3]:
         if path in golden.leaves and path in run.leaves:
-            said.append(f"{path} {golden.leaves[path]} → {run.leaves[path]}")
+            texts.append(f"{path} {golden.leaves[path]} → {run.leaves[path]}")
         elif path in golden.leaves or path in run.leaves:
-            said.append(f"{path} is {'new' if path in run.leaves else 'gone'}")
+            texts.append(f"{path} is {'new' if path in run.leaves else 'gone'}")
         else:
-            said.append(f"{path} has other contents")
-    more = len(changed) - len(said)
-    return ", ".join(said) + (f" and {more} more" if more else "")
+            texts.append(f"{path} has different content")
+    more = len(changed) - len(texts)
+    return ", ".join(texts) + (f" and {more} more" if more else "")
 
 
 def _is_same_value(a: object, b: object) -> bool:
-    """Whether two leaves are equal, not-a-numbers included."""
+    """Check whether two values are equal; NaN equals NaN."""
     if isinstance(a, float) and isinstance(b, float):
         return a == b or (math.isnan(a) and math.isnan(b))
     if isinstance(a, list | tuple) and isinstance(b, list | tuple):
@@ -191,7 +191,7 @@ def _note_diagnostics(golden: RunRecord, run: RunRecord, found: Comparison) -> N
     for code in sorted(golden.diagnostics.keys() | run.diagnostics.keys()):
         counts = golden.diagnostics.get(code, 0), run.diagnostics.get(code, 0)
         if counts[0] != counts[1]:
-            found.notes.append(f"loading reports {code} {counts[1]} times, with the golden one {counts[0]} times")
+            found.notes.append(f"loading reports {code} {counts[1]} times; in the golden run {counts[0]} times")
 
 
 def _listed(names: list[str], most: int = 3) -> str:

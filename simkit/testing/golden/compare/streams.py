@@ -1,4 +1,4 @@
-"""Compare two streams of one topic: times, fields, texts, noise statistics and bits."""
+"""Comparison of two streams of one topic: times, fields, texts, noise statistics and bits."""
 
 from __future__ import annotations
 
@@ -19,19 +19,19 @@ from simkit.testing.golden.compare.units import joint_unit, quantity_text, time_
 from simkit.testing.run_record.noise_statistics import NoiseStatistics, StatisticDifference, statistic_differences
 from simkit.testing.run_record.record import Column, Stream
 
-_REGULAR = 0.02  # part by which intervals may be other at a steady rate: a rate need not divide the step
-_EVENTS = 0.02  # part of messages that may be more or fewer on another machine, of topics without a rate
+_REGULAR = 0.02  # relative deviation of intervals at a steady rate, because a period need not be a multiple of the step
+_EVENTS = 0.02  # share of messages that may be missing or additional on another machine, for topics without a rate
 
 Times = npt.NDArray[np.int64]
 
 
 def compare_times(golden: Stream, run: Stream, timestep: float, is_exact: bool) -> tuple[int, Difference | None]:
-    """How many messages from the first on can be laid side by side, and how times are other.
+    """Return the number of first messages whose times match, and the first difference in time.
 
     Args:
-        golden, run: of one topic.
-        timestep: of the physics [s]; on another machine an event may be a step off.
-        is_exact: whether times must be equal.
+        golden, run: Streams of one topic.
+        timestep: Physics time step [s]; on another machine an event may shift by one step.
+        is_exact: True if times must be equal.
     """
     a, b = golden.times_ns, run.times_ns
     both = min(len(a), len(b))
@@ -47,7 +47,7 @@ def compare_times(golden: Stream, run: Stream, timestep: float, is_exact: bool) 
 
 
 def shift_allowed(timestep: float) -> int:
-    """By how much an event may come at another time on another machine [ns]: a step."""
+    """Return the time by which an event may shift on another machine [ns]: one step with a margin of 50 %."""
     return int(timestep * 1.5e9)
 
 
@@ -67,23 +67,23 @@ def _first_time_difference(
     elif same == len(b):
         words = f"ends at {_time_text(b[-1])}: {counts}"
     elif same == len(a):
-        words = f"goes on after {_time_text(a[-1])}: {counts}"
+        words = f"continues after {_time_text(a[-1])}: {counts}"
     elif len(a) == len(b) and np.ptp(b - a) == 0:
-        words, same = f"every message comes {_later(int(b[0] - a[0]))}", 0
+        words, same = f"every message is sent {_later(int(b[0] - a[0]))}", 0
     else:
-        words = f"message {same + 1} comes {_later(int(b[same] - a[same]))} at {_time_text(b[same])}; {counts}"
+        words = f"message {same + 1} is sent {_later(int(b[same] - a[same]))} at {_time_text(b[same])}; {counts}"
     return Difference(topic, "", kind, _seconds(b, same, a), size, unit, f"{topic}: {words}", "the same times", same)
 
 
 def _rate(times: Times) -> float | None:
-    """Messages per second of a steady topic; None of one that is not."""
+    """Return the rate of a steady topic [Hz]; None if the topic is not steady."""
     if len(times) < 3:
         return None
-    gaps = np.diff(times)[1:]  # the first reading is taken after the first step, which is no multiple of the period
+    gaps = np.diff(times)[1:]  # the first reading follows the first step, which is not a multiple of the period
     mean = float(gaps.mean())
     if mean <= 0.0 or float(np.abs(gaps - np.median(gaps)).mean()) > max(_REGULAR * mean, 1e6):
         return None
-    rate, error = 1e9 / mean, 2e6 / float(gaps.sum())  # readings come with a step, at most some milliseconds off
+    rate, error = 1e9 / mean, 2e6 / float(gaps.sum())  # readings wait for a step, so they are up to 2 ms late
     return float(round(rate)) if abs(rate - round(rate)) <= error * rate else rate
 
 
@@ -96,7 +96,7 @@ def _seconds(times: Times, index: int, others: Times) -> float:
 
 
 def begin_time(stream: Stream) -> float:
-    """When the first message came [s]; 0 without one."""
+    """Return the time of the first message [s]; 0 without messages."""
     return float(stream.times_ns[0]) * 1e-9 if len(stream.times_ns) else 0.0
 
 
@@ -110,7 +110,7 @@ def _later(nanoseconds: int) -> str:
 
 
 def difference_in_bits(golden: Stream, run: Stream) -> Difference:
-    """`bits differ from t in 3–4 s, by less than 31 µm`: found by the hashes of each second."""
+    """Describe a difference that only hashes show: `bits differ from t in 3–4 s, by less than 31 µm`."""
     both = min(len(golden.chunks), len(run.chunks))
     second = next((i for i in range(both) if golden.chunks[i] != run.chunks[i]), both)
     times = run.times_ns
@@ -118,7 +118,7 @@ def difference_in_bits(golden: Stream, run: Stream) -> Difference:
     words = f"{run.topic}: bits differ from t in {second}–{second + 1} s"
     rounding = rounding_text(golden)
     if golden.pictures is not None or any(path.startswith("points.") for path in golden.columns):
-        words += ", in what a golden does not keep"
+        words += ", in data that golden runs do not store"
     elif rounding:
         words += f", by less than {rounding}"
     time = float(times[first]) * 1e-9 if first >= 0 else float(second)
@@ -126,28 +126,28 @@ def difference_in_bits(golden: Stream, run: Stream) -> Difference:
 
 
 def rounding_text(stream: Stream) -> str:
-    """What numbers of a stream are rounded to, in words: `31 µm of ranges`; "" where nothing is."""
+    """Return half the rounding steps of a stream's numbers as text, such as `31 µm`; empty if none is rounded."""
     by_unit: dict[str, float] = {}
     for path, column in stream.columns.items():
         if column.step:
             unit = unit_of(stream.type_name, path)
             by_unit[unit] = max(by_unit.get(unit, 0.0), column.step / 2.0)
-    told = [quantity_text(step, unit, signed=False) for unit, step in sorted(by_unit.items())]
-    return ", ".join(told[:3])
+    texts = [quantity_text(step, unit, signed=False) for unit, step in sorted(by_unit.items())]
+    return ", ".join(texts[:3])
 
 
 Ranked = list[tuple[float, Difference]]
 
-_NOTED_SHARE = 0.1  # part of a tolerance from which a difference within it is worth a note
+_NOTED_SHARE = 0.1  # differences below this share of the tolerance are not noted
 
 
 @dataclass
 class StreamComparison:
-    """What comparing two streams gave.
+    """Result of comparing two streams.
 
     Attributes:
-        differences: that count, the largest against its tolerance first.
-        notes: of what is other and allowed.
+        differences: Differences beyond the tolerance, the largest relative to its tolerance first.
+        notes: Sentences about differences within the tolerance.
     """
 
     differences: list[Difference] = field(default_factory=list)
@@ -156,14 +156,14 @@ class StreamComparison:
 
 @dataclass(frozen=True)
 class StreamPair:
-    """A topic of both runs, and how it is compared.
+    """Streams of one topic in both runs, and the settings of their comparison.
 
     Attributes:
-        golden, run: of the same topic.
-        scenario: whose tolerances count.
-        is_exact: whether bits must be equal.
-        timestep: of the physics [s].
-        joints: unit of each joint's position, by its name.
+        golden, run: Streams of the same topic.
+        scenario: Scenario with the tolerances.
+        is_exact: True if bits must be equal.
+        timestep: Physics time step [s].
+        joints: Unit of each joint's position, by joint name.
     """
 
     golden: Stream
@@ -174,15 +174,15 @@ class StreamPair:
     joints: Mapping[str, str] = field(default_factory=dict)
 
     def tolerance(self, path: str) -> Tolerance:
-        """What is allowed a field."""
+        """Return the tolerance of a field."""
         return tolerance_of(self.scenario, self.golden.topic, self.golden.type_name, path)
 
     def terms(self, path: str, count: int) -> FieldTerms:
-        """How a field is compared.
+        """Return the settings for comparing a field.
 
         Args:
-            path: of the field.
-            count: how many messages from the first on.
+            path: Path of the field.
+            count: Number of first messages to compare.
         """
         tolerance, unit = self.tolerance(path), unit_of(self.golden.type_name, path)
         if unit == "ns" and not self.is_exact and not tolerance.absolute:
@@ -192,14 +192,14 @@ class StreamPair:
         return FieldTerms(self.run, path, tolerance, self.is_exact or tolerance.exact, count, unit)
 
     def _unit_of_joints(self, unit: str) -> str:
-        """Of a field of joints that all turn, or all slide, one unit."""
+        """Return the unit of a joint field, if all joints rotate or all joints slide."""
         names = next((texts[0].split(", ") for path, texts in self.run.words.items() if path == "name" and texts), [])
         kinds = {self.joints.get(name, "") for name in names}
         return joint_unit(unit, kinds.pop() if len(kinds) == 1 else "")
 
 
 def compare_stream(pair: StreamPair) -> StreamComparison:
-    """Compares what a topic gave."""
+    """Compare the streams of a topic."""
     golden, run = pair.golden, pair.run
     found = StreamComparison()
     if golden.digest and golden.digest == run.digest and np.array_equal(golden.times_ns, run.times_ns):
@@ -230,32 +230,32 @@ def compare_stream(pair: StreamPair) -> StreamComparison:
 
 
 def _compare_numbers(pair: StreamPair, count: int, found: StreamComparison) -> Ranked:
-    """All columns, orientations as one."""
+    """Compare all columns of numbers; treat the four columns of an orientation as one."""
     golden, run = pair.golden.columns, pair.run.columns
     ranked: Ranked = []
     common = [path for path in golden if path in run]
-    told: set[str] = set()
+    compared: set[str] = set()
     for base in quaternion_paths(common):
         terms = pair.terms(base, count)
         parts = [f"{base}.{axis}" for axis in "xyzw"]
         if terms.tolerance.ignore:
-            told.update(parts)
+            compared.update(parts)
             continue
         result = compare_orientation(terms, [golden[part] for part in parts], [run[part] for part in parts])
         if result is not None:
-            told.update(parts)
+            compared.update(parts)
             _keep_first(result, terms, ranked, found)
     for path in common:
-        if path in told or pair.tolerance(path).ignore:
+        if path in compared or pair.tolerance(path).ignore:
             continue
-        is_setting = _is_setting(golden[path]) and _is_setting(run[path])  # does not depend on when it is said
+        is_setting = _is_setting(golden[path]) and _is_setting(run[path])  # constant, so message times do not matter
         terms = pair.terms(path, min(len(golden[path].values), len(run[path].values)) if is_setting else count)
         _keep_first(compare_column(terms, golden[path], run[path]), terms, ranked, found)
     return ranked
 
 
 def _is_setting(column: Column) -> bool:
-    """Whether it says the same in every message."""
+    """Check whether a column has the same value in every message."""
     values = column.values
     return column.lengths is None and values.ndim == 1 and len(values) > 1 and bool((values == values[0]).all())
 
@@ -269,10 +269,10 @@ def _keep_first(result: FieldFinding, terms: FieldTerms, ranked: Ranked, found: 
 
 
 def _missing_fields(pair: StreamPair) -> Ranked:
-    """Fields that only one of the two has."""
+    """Find fields that only one of the two runs has."""
     golden, run = pair.golden, pair.run
     if not len(golden.times_ns) or not len(run.times_ns):
-        return []  # without a message there is no field; that is told already
+        return []  # a topic without messages has no fields, and the missing messages are already reported
     ranked: Ranked = []
     for path in sorted(golden.columns.keys() ^ run.columns.keys()):
         tolerance = pair.tolerance(path)
@@ -286,7 +286,7 @@ def _missing_fields(pair: StreamPair) -> Ranked:
 
 
 def _compare_texts(pair: StreamPair, count: int) -> Ranked:
-    """Words: the first message in which they are other."""
+    """Compare text fields and find the first message that differs."""
     run = pair.run
     ranked: Ranked = []
     for path, mine in pair.golden.words.items():
@@ -313,7 +313,7 @@ def _compare_texts(pair: StreamPair, count: int) -> Ranked:
 
 
 def _compare_statistics(pair: StreamPair, found: StreamComparison) -> Ranked:
-    """Statistics of the noise, where both have them."""
+    """Compare noise statistics, where both runs have them."""
 
     golden, run = pair.golden, pair.run
     ranked: Ranked = []
@@ -322,8 +322,8 @@ def _compare_statistics(pair: StreamPair, found: StreamComparison) -> Ranked:
             continue
         mine, other = golden.statistics.get(path), run.statistics.get(path)
         if mine is None or other is None:
-            holder = "the golden" if other is None else "the run"
-            found.notes.append(f"{run.topic}.{path}: only {holder} has statistics of it; it is not compared")
+            holder = "the golden run" if other is None else "the new run"
+            found.notes.append(f"{run.topic}.{path}: only {holder} has noise statistics; they are not compared")
             continue
         for deviance in statistic_differences(mine, other, *_allowed_by_scenario(pair.scenario, golden.topic, path)):
             ranked.append((math.inf, statistic_text(deviance, run, path, mine, other)))
@@ -331,23 +331,23 @@ def _compare_statistics(pair: StreamPair, found: StreamComparison) -> Ranked:
 
 
 def _allowed_by_scenario(scenario: RunSpec, topic: str, path: str) -> tuple[float, float]:
-    """What a scenario itself allows beside chance."""
-    said = [t for t in scenario.tolerance(topic, path) if t.absolute is not None or t.relative is not None]
-    return (said[0].absolute or 0.0, said[0].relative or 0.0) if said else (0.0, 0.0)
+    """Return the absolute and relative tolerance that a scenario adds to the statistical one."""
+    tolerances = [t for t in scenario.tolerance(topic, path) if t.absolute is not None or t.relative is not None]
+    return (tolerances[0].absolute or 0.0, tolerances[0].relative or 0.0) if tolerances else (0.0, 0.0)
 
 
 def _compare_bits(pair: StreamPair, found: StreamComparison) -> None:
-    """All that was kept agrees, and the bits do not."""
+    """Compare the digests of streams whose stored values are equal."""
     loose = sorted(_loose_fields(pair))
     if pair.is_exact and not loose:
         found.differences.append(difference_in_bits(pair.golden, pair.run))
     elif pair.is_exact:
         left = ", ".join(loose[:3]) + (" …" if len(loose) > 3 else "")
-        found.notes.append(f"{pair.run.topic}: bits differ, and nothing that is compared ({left} left out)")
+        found.notes.append(f"{pair.run.topic}: bits differ, but only in fields that are not compared ({left})")
 
 
 def _loose_fields(pair: StreamPair) -> set[str]:
-    """Fields whose samples are not looked at, which the digest of the messages covers all the same."""
+    """Return the fields whose samples are not compared, although the digest covers them."""
     golden, run = pair.golden, pair.run
     of_noise = {*golden.statistics, *run.statistics}
     fields = {*golden.columns, *run.columns, *golden.words, *run.words}
@@ -357,13 +357,15 @@ def _loose_fields(pair: StreamPair) -> set[str]:
 def statistic_text(
     deviance: StatisticDifference, run: Stream, path: str, golden: NoiseStatistics, other: NoiseStatistics
 ) -> Difference:
-    """`/imu.angular_velocity.x: noise's deviation 0.0002 rad/s became 0.00024 rad/s (+20 %) in 6000 samples`.
+    """Describe a difference in noise statistics.
+
+    Example: `/imu.angular_velocity.x: noise's deviation 0.0002 rad/s became 0.00024 rad/s (+20 %) in 6000 samples`.
 
     Args:
-        deviance: what is other.
-        run: the stream.
-        path: of its field.
-        golden, other: statistics of it; the run's are the other ones.
+        deviance: Statistic that differs.
+        run: Stream of the new run.
+        path: Path of the field.
+        golden, other: Statistics of the golden run and of the new run.
     """
     unit = unit_of(run.type_name, path)
     place = f"[{deviance.component}]" if golden.mean.size > 1 else ""
@@ -372,22 +374,22 @@ def statistic_text(
     a, b = value_text(deviance.golden, unit, 4), value_text(deviance.run, unit, 4)
     size, allowed = abs(deviance.run - deviance.golden), ""
     if deviance.what == "count":
-        said = f"{deviance.golden:g} samples of the noise became {deviance.run:g}"
+        text = f"{deviance.golden:g} samples of the noise became {deviance.run:g}"
         unit, allowed = "samples", "enough samples on both sides"
     elif deviance.what == "mean":
-        said = f"the noise's mean {a} became {b} {samples}"
+        text = f"the noise's mean {a} became {b} {samples}"
         allowed = f"{quantity_text(deviance.limit, unit, signed=False)} by chance"
     elif deviance.what == "distribution":
         at = value_text(deviance.at, unit, 3)
-        said = f"{100 * deviance.golden:.1f} % of the noise below {at} from its mean became {100 * deviance.run:.1f} %"
-        said += f" {samples}: another distribution"
+        text = f"{100 * deviance.golden:.1f} % of the noise below {at} from its mean became {100 * deviance.run:.1f} %"
+        text += f" {samples}: another distribution"
         allowed, unit = f"{100 * deviance.limit:.2g} % by chance", ""
     else:
         what = "deviation" if deviance.what == "deviation" else f"Allan deviation over {deviance.at:g} s"
-        said = f"the noise's {what} {a} became {b}{_percent(deviance)} {samples}"
+        text = f"the noise's {what} {a} became {b}{_percent(deviance)} {samples}"
         allowed = f"{100 * (deviance.limit - 1):.2g} % by chance"
     time = float(run.times_ns[0]) * 1e-9 if len(run.times_ns) else 0.0
-    words = f"{run.topic}.{path}{place}: {said}"
+    words = f"{run.topic}.{path}{place}: {text}"
     return Difference(run.topic, path, "statistics", time, size, unit, words, allowed)
 
 

@@ -1,4 +1,4 @@
-"""How far readings may be from the reference run on another machine, and how one field is compared."""
+"""Tolerances for readings on another machine, and the settings for comparing one field."""
 
 from __future__ import annotations
 
@@ -18,22 +18,22 @@ from simkit.testing.golden.compare.difference import Difference
 from simkit.testing.golden.compare.units import is_colour, plain_path, quantity_text, unit_of
 from simkit.testing.run_record.record import Array, Column, Stream
 
-_STEPS_PER_TOLERANCE = 8  # of a tolerance that a stored number is rounded to
+_STEPS_PER_TOLERANCE = 8  # stored numbers are rounded to an eighth of the tolerance
 
 _TABLES: Final = tomllib.loads(Path(__file__).with_name("default_tolerances.toml").read_text(encoding="utf-8"))
 IMAGE: Final = 2.0
-"""Mean difference of a picture's values that is allowed, 0 to 255."""
+"""Default tolerance for the mean difference of pixel values, 0 to 255."""
 SSIM: Final = 0.98
-"""Least structural similarity."""
+"""Default lower limit of the structural similarity."""
 
 
 @cache
 def default_tolerance(type_name: str, field: str) -> Tolerance:
-    """What is allowed where a scenario says nothing: every number is given.
+    """Return the tolerance of a field without a scenario; every number in it is set.
 
     Args:
-        type_name: the message's ROS type.
-        field: path of the field within it.
+        type_name: ROS type of the message.
+        field: Path of the field within the message.
     """
     path, by_unit = plain_path(field), _TABLES["by_unit"]
     absolute, relative = by_unit.get(unit_of(type_name, field), by_unit[""])
@@ -46,32 +46,32 @@ def default_tolerance(type_name: str, field: str) -> Tolerance:
 
 
 def tolerance_of(scenario: RunSpec, topic: str, type_name: str, field: str) -> Tolerance:
-    """What a scenario allows a field of a topic: of each number the first tolerance that names it, or the default.
+    """Return the tolerance of a field: each number from the first matching tolerance of the scenario, else the default.
 
-    A scenario that gives an absolute tolerance means that alone: no relative one is added, and the other way round.
+    A scenario that sets only an absolute tolerance has no relative tolerance, and vice versa.
     """
     found = default_tolerance(type_name, field)
-    said = scenario.tolerance(topic, field)
-    if not said:
+    tolerances = scenario.tolerance(topic, field)
+    if not tolerances:
         return found
-    first = said[0]
+    first = tolerances[0]
     for name in ("share", "image", "ssim", "statistics"):
-        value = next((getattr(t, name) for t in said if getattr(t, name) is not None), getattr(found, name))
+        value = next((getattr(t, name) for t in tolerances if getattr(t, name) is not None), getattr(found, name))
         first = replace(first, **{name: value})
-    sizes = next((t for t in said if t.absolute is not None or t.relative is not None), None)
+    sizes = next((t for t in tolerances if t.absolute is not None or t.relative is not None), None)
     if sizes is None:
         return replace(first, absolute=found.absolute, relative=found.relative)
     return replace(first, absolute=sizes.absolute or 0.0, relative=sizes.relative or 0.0)
 
 
 def storage_step(type_name: str, field: str, scenario: RunSpec | None = None, topic: str = "") -> float:
-    """What numbers of a field are rounded to in a golden: a power of two; 0 where they are kept exactly.
+    """Return the step to which golden runs round a field: a power of two; 0 for exact storage.
 
     Args:
-        type_name: the message's ROS type.
-        field: path of the field within it.
-        scenario: whose tolerances count; None for the defaults.
-        topic: of the message, which the scenario's tolerances are by.
+        type_name: ROS type of the message.
+        field: Path of the field within the message.
+        scenario: Scenario with tolerances; None for the defaults.
+        topic: Topic of the message, to select the scenario's tolerances.
     """
     found = tolerance_of(scenario, topic, type_name, field) if scenario else default_tolerance(type_name, field)
     if found.exact or not found.absolute or is_colour(field):
@@ -80,7 +80,7 @@ def storage_step(type_name: str, field: str, scenario: RunSpec | None = None, to
 
 
 def allowed_text(tolerance: Tolerance, unit: str) -> str:
-    """Describe what a tolerance allows."""
+    """Return a tolerance in words."""
     parts = []
     if tolerance.absolute:
         parts.append(quantity_text(tolerance.absolute, unit, signed=False))
@@ -92,15 +92,15 @@ def allowed_text(tolerance: Tolerance, unit: str) -> str:
 
 @dataclass(frozen=True)
 class FieldTerms:
-    """How one field of a topic is compared.
+    """Settings for comparing one field of a topic.
 
     Attributes:
-        stream: the run's.
-        field: path of the field.
-        tolerance: with every number given.
-        is_exact: whether bits must be equal.
-        count: how many messages are compared, from the first on.
-        unit: SI.
+        stream: Stream of the new run.
+        field: Path of the field.
+        tolerance: Tolerance in which every number is set.
+        is_exact: True if bits must be equal.
+        count: Number of first messages to compare.
+        unit: SI unit of the field.
     """
 
     stream: Stream
@@ -112,27 +112,27 @@ class FieldTerms:
 
     @property
     def name(self) -> str:
-        """Topic and field."""
+        """Topic and field, for messages."""
         return f"{self.stream.topic}.{self.field}" if self.field else self.stream.topic
 
     @property
     def allowed(self) -> str:
-        """In words."""
+        """Tolerance in words."""
         return "the same bits" if self.is_exact else allowed_text(self.tolerance, self.unit)
 
     def time(self, index: int) -> float:
-        """Of a message [s]."""
+        """Return the time of a message [s]."""
         return float(self.stream.times_ns[index]) * 1e-9
 
 
 @dataclass(frozen=True)
 class FieldFinding:
-    """What comparing a field gave.
+    """Result of comparing a field.
 
     Attributes:
-        difference: None where nothing is further off than allowed.
-        excess: how many times what is allowed the largest difference is; up to 1 for a pass, inf where nothing is.
-        off: the largest difference of all values that rounding does not explain, in the field's unit.
+        difference: Difference; None if all values are within the tolerance.
+        excess: Ratio of the largest difference to its tolerance; up to 1 for a pass, infinite if the tolerance is 0.
+        off: Largest difference that rounding does not explain, in the field's unit.
     """
 
     difference: Difference | None
@@ -142,7 +142,7 @@ class FieldFinding:
 
 @dataclass(frozen=True)
 class FlatValues:
-    """All values of a column one after the other, and which message each belongs to."""
+    """Values of a column in one array, with the message of each value."""
 
     values: Array
     messages: npt.NDArray[np.intp]
@@ -150,7 +150,7 @@ class FlatValues:
 
     @staticmethod
     def of(column: Column, count: int) -> FlatValues:
-        """Those of the first messages of a column."""
+        """Return the values of a column's first messages."""
         if column.lengths is None:
             table = column.values[:count].reshape(count, -1) if count else np.zeros((0, 1))
             widths = np.full(count, table.shape[1], np.int64)
@@ -159,6 +159,6 @@ class FlatValues:
         return FlatValues(column.values[: int(widths.sum())], np.repeat(np.arange(count), widths), widths)
 
     def first(self, count: int) -> FlatValues:
-        """Those of the first messages."""
+        """Return the values of the first messages."""
         end = int(self.widths[:count].sum())
         return FlatValues(self.values[:end], self.messages[:end], self.widths[:count])

@@ -1,4 +1,4 @@
-"""Units of messages' fields, and numbers with them in words."""
+"""Units of message fields, and texts for numbers with units."""
 
 from __future__ import annotations
 
@@ -18,27 +18,27 @@ _SMALLER: Final = {"m": ("µm", 1e6), "T": ("nT", 1e9), "s": ("µs", 1e6)}
 
 
 def plain_path(field: str) -> str:
-    """A path without indices and names in brackets: `transforms[base].transform` as `transforms.transform`."""
+    """Remove indices and names in brackets from a path: `transforms[base].transform` gives `transforms.transform`."""
     return _INDEX.sub("", field)
 
 
 @cache
 def unit_of(type_name: str, field: str) -> str:
-    """The SI unit of a field; "" for a number without one.
+    """Return the SI unit of a field; empty for a number without a unit.
 
-    Orientations are compared as angles, so theirs is rad. A joint's position is in rad or m, which the message does not
-    say.
+    Orientations are compared as angles, so their unit is rad. The position of a joint is in rad or m; the message does
+    not state which.
 
     Args:
-        type_name: the message's ROS type.
-        field: path of the field within it; indices do not count.
+        type_name: ROS type of the message.
+        field: Path of the field within the message; indices are ignored.
     """
     by_field = ([".*", of_field, unit] for of_field, unit in _TABLES["by_field"])
-    return _first_that_fits([*_TABLES["by_type"], *by_field], type_name, field, "")
+    return _first_match([*_TABLES["by_type"], *by_field], type_name, field, "")
 
 
-def _first_that_fits(rows: Sequence[Sequence[str]], type_name: str, field: str, otherwise: str) -> str:
-    """The last column of the first row whose expressions for type and field fit."""
+def _first_match(rows: Sequence[Sequence[str]], type_name: str, field: str, otherwise: str) -> str:
+    """Return the last column of the first row whose expressions match the type and the field."""
     path = plain_path(field)
     for of_type, of_field, found in rows:
         if re.fullmatch(of_type, type_name) and re.fullmatch(of_field, path):
@@ -47,9 +47,9 @@ def _first_that_fits(rows: Sequence[Sequence[str]], type_name: str, field: str, 
 
 
 def period_of(type_name: str, field: str) -> float:
-    """After which an angle is the same again, in its unit; 0 for what does not come round.
+    """Return the period of an angle in its unit; 0 for other fields.
 
-    A joint's position counts its turns, and does not.
+    The position of a joint counts full rotations and therefore has no period.
     """
     unit = unit_of(type_name, field)
     if not re.search(r"(^|\.)(track|heading|yaw|theta)$", plain_path(field)):
@@ -58,16 +58,16 @@ def period_of(type_name: str, field: str) -> float:
 
 
 def is_colour(field: str) -> bool:
-    """Whether numbers of a field are colours, a byte for each channel."""
+    """Check whether the numbers of a field are colours with one byte per channel."""
     return plain_path(field) in ("points.rgb", "points.rgba")
 
 
 def joint_unit(unit: str, position: str) -> str:
-    """The unit of a joint's quantity, once it is known whether it turns or slides.
+    """Select the unit of a joint quantity by the type of the joint.
 
     Args:
-        unit: as `unit_of` gives it: `rad/s or m/s`.
-        position: unit of the joint's position: "rad", "m", or "" where it is not known.
+        unit: Result of `unit_of`, such as `rad/s or m/s`.
+        position: Unit of the joint's position: "rad", "m", or empty if unknown.
     """
     turns, _, slides = unit.partition(" or ")
     return {"rad": turns, "m": slides or unit}.get(position, unit)
@@ -75,20 +75,20 @@ def joint_unit(unit: str, position: str) -> str:
 
 @cache
 def item_name(type_name: str, field: str) -> str:
-    """What the values of an array are: rays, points, pixels, joints, contacts, or values."""
-    return _first_that_fits(_TABLES["item_names"], type_name, field, "values")
+    """Return the name of an array's values: rays, points, pixels, joints, contacts, or values."""
+    return _first_match(_TABLES["item_names"], type_name, field, "values")
 
 
 def quantity_text(value: float, unit: str, signed: bool = True, error: float = 0.0) -> str:
-    """A number with its unit, three digits of it: `+12 mm`, `−1.5°`, `0.2 m/s²`.
+    """Format a number with its unit and three digits: `+12 mm`, `−1.5°`, `0.2 m/s²`.
 
     Lengths under a metre are in mm, angles in degrees, magnetic fields in µT.
 
     Args:
-        value: in `unit`.
-        unit: SI, as `unit_of` gives it.
-        signed: whether a plus is written.
-        error: how far off the number may be, in `unit`; digits below that are left out.
+        value: Number in `unit`.
+        unit: SI unit from `unit_of`.
+        signed: Write a plus sign.
+        error: Uncertainty of the number in `unit`; digits below it are omitted.
     """
     sign = "−" if value < 0 else "+" if signed else ""
     size = abs(value)
@@ -110,7 +110,7 @@ def quantity_text(value: float, unit: str, signed: bool = True, error: float = 0
 
 
 def value_text(value: float, unit: str, digits: int = 6) -> str:
-    """A value as such, with as many digits as it has, up to some."""
+    """Format a value with its unit and at most the given number of digits."""
     number = float(value)
     if unit == "ns":
         return f"{number * 1e-9:.9g} s"
@@ -120,13 +120,13 @@ def value_text(value: float, unit: str, digits: int = 6) -> str:
 
 
 def time_text(time: float) -> str:
-    """A time in words: `t = 3.20 s`; milliseconds where it is between hundredths."""
+    """Format a time: `t = 3.20 s`; use more decimals if the time is not a multiple of 10 ms."""
     hundredths = round(time * 100.0, 6)
     return f"t = {time:.2f} s" if hundredths == round(hundredths) else f"t = {time:.6f}".rstrip("0") + " s"
 
 
 def _digits(size: float, error: float) -> str:
-    """Three digits or as many as are certain, without an exponent where that stays short."""
+    """Format a number with three digits, or fewer if uncertain; avoid an exponent if the result is short."""
     if size == 0.0:
         return "0"
     if size >= 99_999.5 or size < 1e-3:

@@ -1,4 +1,4 @@
-"""Differences of the inputs of two runs, value by value, and the entity that each belongs to."""
+"""Differences between the inputs of two runs, value by value, with the entity that each value belongs to."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _ENTITY_FIELDS = frozenset(
 
 
 class _Absent:
-    """Type of ABSENT: the value of a path that one of two worlds does not have."""
+    """Type of ABSENT, the value of a path that one of two worlds does not have."""
 
     def __repr__(self) -> str:
         return "nothing"
@@ -34,7 +34,7 @@ ABSENT = _Absent()
 
 @lru_cache(maxsize=65536)
 def split_entity_path(path: str) -> tuple[str, str]:
-    """A path's beginning that names a part of the world, and the rest of it: what of the part."""
+    """Split a path into the path of an entity and the attribute of that entity."""
     at = 0
     while True:
         end = _entity_step_end(path, at)
@@ -45,7 +45,7 @@ def split_entity_path(path: str) -> tuple[str, str]:
 
 
 def _entity_step_end(path: str, at: int) -> int:
-    """Where a step that names a part ends; `at` where there is none."""
+    """Return the end of a path step that names an entity; `at` if there is none."""
     opened = path.find("[", at)
     if opened < 0 or path[at:opened] not in _ENTITY_FIELDS:
         return at
@@ -57,42 +57,42 @@ def _entity_step_end(path: str, at: int) -> int:
 
 @lru_cache(maxsize=65536)
 def scoped_name(owner: str) -> str:
-    """The scoped name of a part that a path names; empty for the world."""
+    """Return the scoped name of the entity at a path; empty for the world."""
     return "::".join(key for _, key in split_path(owner))
 
 
 def entity_kind(owner: str) -> str:
-    """What a part is: model, link, …; "world" for the world."""
+    """Return the kind of an entity: model, link, …; "world" for the world."""
     found = split_path(owner)
     return found[-1][0].removesuffix("s") if found else "world"
 
 
 def parent_path(owner: str) -> str:
-    """The path of the part that a part belongs to; empty for the world."""
+    """Return the path of the entity's parent; empty for the world."""
     closed = owner.rfind("].")
     return owner[: closed + 1] if closed >= 0 else ""
 
 
 def is_within(owner: str, outer: str) -> bool:
-    """Whether a part is another one, or belongs to it."""
+    """Check whether an entity is another one or a descendant of it."""
     return not outer or owner == outer or owner.startswith(outer + ".")
 
 
 _REPORT_FIELDS = frozenset(
     ("folder", "file", "name", "test", "topics", "skip", "tolerances", "state", "model", "picture", "bits")
 )
-"""What a scenario says of what is looked at, which changes no run; and where it stands."""
+"""Fields of a scenario that select outputs or name files, and therefore do not change the run."""
 
 
 @dataclass(frozen=True)
 class Edit:
-    """One leaf that is other.
+    """Value of the world or scenario that differs.
 
     Attributes:
-        kind: of what.
-        path: of the leaf; of a file or a version its name.
-        golden, run: its values; ABSENT where it is not there.
-        where: `file:line` in the run's files; empty where there is none.
+        kind: Kind of change.
+        path: Path of the value, or the name of a file or version.
+        golden, run: Values in both runs; ABSENT if missing.
+        where: `file:line` in the files of the new run; empty if unknown.
     """
 
     kind: CauseKind
@@ -103,27 +103,27 @@ class Edit:
 
     @property
     def entity(self) -> str:
-        """Scoped name of the part of the world."""
+        """Scoped name of the entity."""
         return scoped_name(self.owner)
 
     @property
     def owner(self) -> str:
-        """Path of that part."""
+        """Path of the entity."""
         return split_entity_path(self.path)[0]
 
     @property
     def attribute(self) -> str:
-        """What of that part."""
+        """Attribute of the entity."""
         return split_entity_path(self.path)[1]
 
 
 def model_edits(golden: Mapping[str, object], run: Mapping[str, object], places: Mapping[str, str]) -> list[Edit]:
-    """The leaves of the world that are other, in the run's order."""
+    """Return the values of the world that differ, in the order of the new run."""
     return [Edit("model", path, old, new, places.get(path, "")) for path, old, new in _unequal(golden, run)]
 
 
 def other_edits(golden: RunRecord, run: RunRecord) -> list[Edit]:
-    """What is other beside the world: the scenario, files, code and versions."""
+    """Return the differences outside the world: scenario, files, code and versions."""
     found = [Edit("scenario", name, a, b) for name, (a, b) in _scenario(golden.scenario, run.scenario).items()]
     code = (".py", ".so", ".pyc")
     for name, a, b in _unequal(golden.sources, run.sources):
@@ -132,7 +132,7 @@ def other_edits(golden: RunRecord, run: RunRecord) -> list[Edit]:
 
 
 def field_edits(golden: RunRecord, run: RunRecord) -> list[Edit]:
-    """The compiled model's fields that are other."""
+    """Return the fields of the compiled model that differ."""
     found = []
     for name, a, b in _pairs(golden.fields, run.fields):
         if a is ABSENT or b is ABSENT:
@@ -143,7 +143,7 @@ def field_edits(golden: RunRecord, run: RunRecord) -> list[Edit]:
 
 
 def is_same_value(a: object, b: object) -> bool:
-    """Whether two leaves are equal; not a number is equal to itself."""
+    """Check whether two values are equal; NaN equals NaN."""
     if a is b:
         return True
     if a is ABSENT or b is ABSENT:
@@ -183,12 +183,12 @@ def _class_of(plugin: object) -> str:
 
 
 def _world_name(world: str) -> str:
-    """What a world is called, wherever it lies; text in full."""
+    """Return the name of a world without its folder; XML text unchanged."""
     return world if "<" in world else world.replace("\\", "/").rstrip("/").rpartition("/")[2]
 
 
 def _plain(value: Any) -> object:
-    """Of the same form, whether it came from a file or not."""
+    """Convert a value to plain data, so that values from files and from Python compare equal."""
     if isinstance(value, Mapping):
         return {str(k): _plain(v) for k, v in value.items() if k != "where"}
     if isinstance(value, (list, tuple)):
@@ -199,7 +199,7 @@ def _plain(value: Any) -> object:
 
 
 def _pairs(golden: Mapping[str, Any], run: Mapping[str, Any]) -> Iterator[tuple[str, Any, Any]]:
-    """Each name with its values in both, in the run's order; ABSENT where one does not have it."""
+    """Iterate over names with their values in both mappings, in the run's order; ABSENT if missing."""
     for name in [*run, *(name for name in golden if name not in run)]:
         yield name, golden.get(name, ABSENT), run.get(name, ABSENT)
 

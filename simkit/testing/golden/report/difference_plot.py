@@ -1,4 +1,4 @@
-"""Figures of what differs: charts of numbers, and images side by side."""
+"""Figures of differences: charts of numbers, and images side by side."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from simkit.testing.run_record.record import Array, Column, Pictures, States, St
 
 _Value = TypeVar("_Value")
 _DIFFERENCE_HEIGHT: Final = 110  # [px]: height of a chart of differences
-_QUANTITIES: Final = 3  # of the state that are drawn
+_QUANTITIES: Final = 3  # state quantities drawn
 
 
 @dataclass(frozen=True)
@@ -26,10 +26,10 @@ class PlotFigure:
     """Charts and table of one difference.
 
     Attributes:
-        words: the difference.
-        caption: what the charts show.
-        charts: lines of the classes "golden", "run" and "difference".
-        heads, rows: a table above the charts; empty for none.
+        words: Description of the difference.
+        caption: Content of the charts.
+        charts: Charts whose lines have the classes "golden", "run" and "difference".
+        heads, rows: Table above the charts; empty for no table.
     """
 
     words: str
@@ -40,16 +40,16 @@ class PlotFigure:
 
     @property
     def roles(self) -> set[str]:
-        """Classes of the lines that have something to show."""
+        """Classes of the lines that have data."""
         return {role for chart in self.charts for line, role in chart.lines if line.count}
 
 
 def plot_figure(verdict: Verdict, difference: Difference) -> PlotFigure | None:
-    """Return what can be drawn of a difference; None where that is nothing.
+    """Draw a difference; return None if it cannot be drawn.
 
     Args:
-        verdict: the difference's.
-        difference: any but one of pictures.
+        verdict: Verdict that contains the difference.
+        difference: Difference of any kind except pictures.
     """
     if difference.kind == "state":
         return _state_figure(verdict.golden.states, verdict.run.states, difference)
@@ -78,7 +78,7 @@ def _column_figure(
 ) -> PlotFigure | None:
     a, b = columns
     count = min(_message_count(a, golden), _message_count(b, run))
-    packed = field.endswith((".rgb", ".rgba")) and a.values.dtype.kind == "f"  # colours in the bits of a number
+    packed = field.endswith((".rgb", ".rgba")) and a.values.dtype.kind == "f"  # colours stored in the bits of a float
     if count == 0 or packed or a.values.dtype.kind not in "biuf" or b.values.dtype.kind not in "biuf":
         return None
     title = f"{difference.topic}.{field}"
@@ -94,7 +94,7 @@ def _column_figure(
 def _array_figure(
     difference: Difference, golden: Stream, a: Column, b: Column, count: int, title: str
 ) -> PlotFigure | None:
-    """The first message that differs as a profile, and how far each message is off."""
+    """Draw the first message that differs as a profile, and the largest difference of every message."""
     far = np.zeros(count)
     for index in range(count):
         ours, theirs = _as_vector(a.of(index)), _as_vector(b.of(index))
@@ -127,7 +127,7 @@ def _array_figure(
     ]
     return PlotFigure(
         difference.words,
-        f"message {first} at {seconds[first]:.6g} s; below: the largest of each message",
+        f"message {first} at {seconds[first]:.6g} s; below: the largest difference in each message",
         parts,
     )
 
@@ -147,7 +147,7 @@ def _difference_chart(line: Series, title: str, x_label: str, unit: str, mark: f
 
 
 def _rate_chart(golden: Stream, run: Stream) -> PageChart:
-    """Messages in each second of simulated time; the last second, which need not be whole, is left out."""
+    """Draw the number of messages in each simulated second, without the last second, which may be incomplete."""
     lines = []
     seconds = max([1, *(int(stream.times_ns[-1]) // 10**9 for stream in (golden, run) if len(stream.times_ns))])
     for stream, role in ((golden, "golden"), (run, "run")):
@@ -158,7 +158,7 @@ def _rate_chart(golden: Stream, run: Stream) -> PageChart:
 
 
 def _state_figure(golden: States, run: States, difference: Difference) -> PlotFigure | None:
-    """The quantities that are furthest off at the first kept state that differs."""
+    """Draw the quantities with the largest differences at the first stored state that differs."""
     shared = sorted(set(golden.names) & set(run.names))
     ticks, ours_at, theirs_at = np.intersect1d(golden.ticks, run.ticks, return_indices=True)
     if not shared or len(ticks) == 0:
@@ -180,14 +180,16 @@ def _state_figure(golden: States, run: States, difference: Difference) -> PlotFi
         line = _line(seconds, _difference(theirs[:, number], ours[:, number]))
         below = _difference_chart(line, f"{shared[number]}: difference", "time [s]", "")
         parts.append(replace(below, caption=shared[number]))
-    return PlotFigure(difference.words, "the quantities that differ most where the first kept state does", parts)
+    return PlotFigure(
+        difference.words, "the quantities with the largest differences in the first state that differs", parts
+    )
 
 
 def _noise_figure(difference: Difference, golden: NoiseStatistics, run: NoiseStatistics) -> PlotFigure | None:
     rows = []
     for number in range(min(len(golden.mean), len(run.mean))):
-        told = [(s.mean[number], s.deviation[number]) for s in (golden, run)]
-        rows.append([str(number), *(f"{mean:.6g} ± {deviation:.6g}" for mean, deviation in told)])
+        moments = [(s.mean[number], s.deviation[number]) for s in (golden, run)]
+        rows.append([str(number), *(f"{mean:.6g} ± {deviation:.6g}" for mean, deviation in moments)])
     unit = _unit(difference)
     worst = _worst_component(golden, run)
     parts = []
@@ -219,7 +221,7 @@ def _line(x: Array, y: Array) -> Series:
 
 
 def _common_field(golden: Mapping[str, _Value], run: Mapping[str, _Value], field: str) -> tuple[_Value, _Value] | None:
-    """Return what both have of a field, of a part of it, or of the field around it."""
+    """Return the values of a field in both runs; else those of a related field (part of it, or containing it)."""
     both = sorted(golden.keys() & run.keys())
     near = [name for name in both if name == field]
     near += [name for name in both if field and field.startswith((f"{name}.", f"{name}["))]
@@ -236,7 +238,7 @@ def _as_vector(values: npt.ArrayLike) -> Array:
 
 
 def _difference(run: Array, golden: Array) -> Array:
-    """Run less golden; 0 where both are the same infinity, nan where one of them is not finite."""
+    """Subtract golden from run; 0 where both are the same infinity, NaN where only one is finite."""
     with np.errstate(invalid="ignore"):
         off = run - golden
     same = (run == golden) | (np.isnan(run) & np.isnan(golden))
@@ -251,13 +253,13 @@ def _unit(difference: Difference) -> str:
     return f" [{difference.unit}]" if difference.unit and difference.kind != "count" else ""
 
 
-_LARGEST: Final = 256  # [px]: a kept picture that is larger is shown smaller
+_LARGEST: Final = 256  # [px], larger pictures are shown reduced
 _BLUE_FIRST: Final = ("bgr", "8UC3")
 
 
 @dataclass(frozen=True)
 class ImageRow:
-    """Images of one message: name and `data:` address of each."""
+    """Images of one message, each with a name and a `data:` URL."""
 
     images: Sequence[tuple[str, str]]
     caption: str
@@ -272,11 +274,11 @@ class ImageFigure:
 
 
 def image_figure(verdict: Verdict, difference: Difference) -> ImageFigure | None:
-    """Return the first images that differ: golden, run, and the difference, brighter; None where there are none.
+    """Show the first images that differ: golden, run, and the amplified difference; None without images.
 
     Args:
-        verdict: the difference's.
-        difference: of a topic of images.
+        verdict: Verdict that contains the difference.
+        difference: Difference in a topic of images.
     """
     streams = [record.streams.get(difference.topic) for record in (verdict.golden, verdict.run)]
     if streams[0] is None or streams[1] is None or streams[0].pictures is None or streams[1].pictures is None:
@@ -287,7 +289,7 @@ def image_figure(verdict: Verdict, difference: Difference) -> ImageFigure | None
     if count == 0:
         return None
     golden, run = golden.at(messages), run.at(messages)
-    # the first that was kept at or after the first that differs
+    # the first stored picture at or after the first that differs
     index = int(np.searchsorted(messages, difference.index)) if difference.index >= 0 else -1
     times = streams[0].times_ns
     rows = []
@@ -299,7 +301,7 @@ def image_figure(verdict: Verdict, difference: Difference) -> ImageFigure | None
 
 
 def _shown_messages(golden: Pictures, run: Pictures, count: int, index: int) -> list[int]:
-    """The first that differs, and the one that differs most."""
+    """Select the first picture that differs and the one that differs most."""
     if golden.small.shape[1:] != run.small.shape[1:]:
         return [index if 0 <= index < count else 0]
     far = np.array([_mean_difference(_pixel_difference(golden.small[i], run.small[i])) for i in range(count)])
@@ -328,8 +330,8 @@ def _image_row(golden: Pictures, run: Pictures, index: int, caption: str) -> Ima
 def _tile_text(golden: Pictures, run: Pictures, index: int) -> str:
     if index >= min(len(golden.tiles), len(run.tiles)) or golden.tiles.shape[1:] != run.tiles.shape[1:]:
         return ""
-    other = golden.tiles[index] != run.tiles[index]
-    return f"; {int(other.sum())} of {other.size} tiles of the whole picture differ" if other.size else ""
+    differing = golden.tiles[index] != run.tiles[index]
+    return f"; {int(differing.sum())} of {differing.size} tiles of the whole picture differ" if differing.size else ""
 
 
 def _downsample(image: Array) -> Array:
@@ -338,7 +340,7 @@ def _downsample(image: Array) -> Array:
 
 
 def _value_range(*images: Array) -> tuple[float, float]:
-    """Lowest and highest of all values that are finite, zero left out where it is the lowest of depths."""
+    """Return the lowest and highest of all finite values."""
     values = [image[np.isfinite(image)] if image.dtype.kind == "f" else image.reshape(-1) for image in images]
     values = [v for v in values if v.size]
     low = min((float(v.min()) for v in values), default=0.0)
@@ -347,17 +349,17 @@ def _value_range(*images: Array) -> tuple[float, float]:
 
 
 def _pixel_difference(ours: Array, theirs: Array) -> Array:
-    """Difference without its sign; 0 where neither is finite, nan where one of them is."""
+    """Return the absolute difference; 0 where neither value is finite, NaN where only one is."""
     return np.abs(_difference(np.asarray(theirs, np.float64), np.asarray(ours, np.float64)))
 
 
 def _mean_difference(apart: Array) -> float:
-    """Mean of a difference; a pixel that is finite in one image only counts as far."""
+    """Return the mean of a difference; a pixel that is finite in one image only counts as 255."""
     return float(np.nan_to_num(apart, nan=255.0).mean()) if apart.size else 0.0
 
 
 def _amplified_difference(apart: Array, full: float) -> tuple[float, Array]:
-    """Return the factor by which the difference is brightened, and that image; values that are not finite are white."""
+    """Return an amplification factor and the amplified difference; values that are not finite are white."""
     most = float(apart[np.isfinite(apart)].max(initial=0.0))
     factor = max(1.0, full / most) if most > 0.0 else 1.0
     scaled = np.where(np.isfinite(apart), apart * factor * 255.0 / full, 255.0)

@@ -1,4 +1,4 @@
-"""Write the HTML report of golden runs: one file that loads nothing and runs nothing."""
+"""HTML report of golden runs: one file that loads no other files and runs no code."""
 
 from __future__ import annotations
 
@@ -14,7 +14,8 @@ from simkit.diagnostics import shorten
 from simkit.recording.charts.page_chart import PageChart, page_chart_svg
 from simkit.testing.golden.compare.difference import Cause, Comparison, Verdict
 from simkit.testing.golden.report.difference_plot import ImageFigure, PlotFigure, image_figure, plot_figure
-from simkit.testing.golden.report.text import (
+from simkit.testing.golden.report.text_report import (
+    PROOF_PREFIX,
     REGULAR_ENDINGS,
     allowed_text,
     cause_lines,
@@ -30,11 +31,11 @@ if TYPE_CHECKING:
     from jinja2 import Template
 
 _TEMPLATE: Final = Path(__file__).with_name("report.html.j2")
-_LONGEST: Final = 2_000  # letters of a text
-_PLOTS: Final = 8  # of one golden run
-_ALL_PLOTS: Final = 80  # of a page
-_ROWS: Final = 200  # of a table
-_BLESS: Final = 'simkit golden check GOLDEN --bless "why it is meant"'
+_LONGEST: Final = 2_000  # characters of a text
+_PLOTS: Final = 8  # figures of one golden run
+_ALL_PLOTS: Final = 80  # figures of a page
+_ROWS: Final = 200  # rows of a table
+_BLESS: Final = 'simkit golden check GOLDEN --bless "reason for the change"'
 
 
 @dataclass(frozen=True)
@@ -47,14 +48,14 @@ class _MachineRow:
 
 @dataclass(frozen=True)
 class _VerdictView:
-    """Data that the page shows of one golden run, beside its verdict.
+    """Data that the page shows of one golden run, in addition to the verdict.
 
     Attributes:
-        number: of its place on the page.
-        found: what was found, in one sentence.
-        ending: how the run ended; empty where that needs no word.
-        codes: of diagnostics that both runs do not have equally often.
-        tier: how equal the machines are, in words.
+        number: Position on the page.
+        found: Result in one sentence.
+        ending: End of the run; empty if the run ended regularly.
+        codes: Diagnostic codes whose counts differ between the runs.
+        tier: Description of the comparison between the machines.
     """
 
     number: int
@@ -69,12 +70,12 @@ class _VerdictView:
 
 
 def write_html(path: str | os.PathLike[str], verdicts: Iterable[Verdict], *, bless: str = _BLESS) -> None:
-    """Writes the page; it is there as a whole or not at all.
+    """Write the page atomically.
 
     Args:
-        path: of the file; folders on the way are made.
-        verdicts: in any order; those that did not pass come first.
-        bless: the command that makes what differs the new golden run.
+        path: File to write; missing folders are created.
+        verdicts: Verdicts in any order; those that did not pass are shown first.
+        bless: Command that makes the new run golden.
 
     Raises:
         InputError: SK-CLI-016 the file cannot be written.
@@ -83,11 +84,11 @@ def write_html(path: str | os.PathLike[str], verdicts: Iterable[Verdict], *, ble
 
 
 def report_page(verdicts: Sequence[Verdict], *, bless: str = _BLESS) -> str:
-    """Return the page as text: HTML that is XML too."""
+    """Return the page as HTML text that is valid XML too."""
     ordered = sorted(verdicts, key=lambda verdict: verdict.passed)
     failed = sum(not verdict.passed for verdict in verdicts)
     all_ = f"{len(verdicts)} golden run" + ("" if len(verdicts) == 1 else "s")
-    title = f"{failed} of {all_} differ" + ("s" if failed == 1 else "") if failed else f"{all_} as before"
+    title = f"{failed} of {all_} differ" + ("s" if failed == 1 else "") if failed else f"{all_} unchanged"
     views, plots = [], _ALL_PLOTS
     for number, verdict in enumerate(ordered):
         views.append(_verdict_view(verdict, number, min(_PLOTS, plots)))
@@ -96,7 +97,7 @@ def report_page(verdicts: Sequence[Verdict], *, bless: str = _BLESS) -> str:
 
 
 def _template() -> Template:
-    from jinja2 import Environment, StrictUndefined  # for who writes a page only
+    from jinja2 import Environment, StrictUndefined  # slow to import, and only pages need it
     from markupsafe import Markup
 
     def clean(value: object) -> object:
@@ -132,18 +133,18 @@ def _verdict_view(verdict: Verdict, number: int, most_plots: int) -> _VerdictVie
 
 
 def _proof(cause: Cause) -> str:
-    return proof_text(cause).removeprefix("; put back, ") or "not tried"
+    return proof_text(cause).removeprefix(PROOF_PREFIX) or "not tested"
 
 
 def _figures(verdict: Verdict, most: int) -> Iterator[PlotFigure | ImageFigure]:
-    """Drawings of the first difference of each topic, then of the others; no two of one field."""
+    """Draw the first difference of each topic, then the further ones; each field at most once."""
     seen: set[tuple[str, str]] = set()
     before: Counter[str] = Counter()
-    turns = []
+    ranked_differences = []
     for difference in verdict.comparison.differences:
-        turns.append((before[difference.topic], difference))
+        ranked_differences.append((before[difference.topic], difference))
         before[difference.topic] += 1
-    for _, difference in sorted(turns, key=lambda turn: turn[0]):
+    for _, difference in sorted(ranked_differences, key=lambda ranked_difference: ranked_difference[0]):
         if len(seen) >= most:
             return
         what = (difference.topic, difference.field)
@@ -157,10 +158,10 @@ def _figures(verdict: Verdict, most: int) -> Iterator[PlotFigure | ImageFigure]:
 
 def _tier(comparison: Comparison) -> str:
     if comparison.tier == "exact":
-        return "the same in what counts: bits must be equal"
+        return "same machine and versions: bits must be equal"
     if not comparison.machine:
-        return "the same in what counts, and numbers must be within the tolerances"
-    return f"other ({machine_text(comparison) or 'see the table'}): numbers must be within the tolerances"
+        return "same machine and versions; numbers must be within the tolerances"
+    return f"other machine ({machine_text(comparison) or 'see the table'}): numbers must be within the tolerances"
 
 
 def _machine_rows(verdict: Verdict) -> list[_MachineRow]:

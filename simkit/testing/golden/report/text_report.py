@@ -1,4 +1,4 @@
-"""A verdict as lines of text for a terminal, and as cases of JUnit XML."""
+"""Text report of a verdict for a terminal, and JUnit XML test cases."""
 
 from __future__ import annotations
 
@@ -11,26 +11,27 @@ from simkit.testing.golden.compare.difference import Cause, Comparison, Differen
 from simkit.testing.junit import JunitCase
 
 REGULAR_ENDINGS: Final = frozenset({"duration", "until", "timeout", "wall_timeout", ""})
-"""Of a run that ended as it was meant to, or by its scenario's clock; anything else is an error's text."""
+"""Ends of a run that are not errors; any other end is the text of an error."""
 MAX_DIFFERENCES: Final = 12
-"""Differences, checks and notes that a text lists; of more it says how many there are."""
-_SAME_BITS: Final = "the same bits"  # what a comparison says is allowed on one machine
-_LABEL: Final = 7  # letters that the words before a line's text take
+"""Maximum number of differences, checks and notes in a text; further ones are counted."""
+_SAME_BITS: Final = "the same bits"  # text of `Difference.allowed` on one machine
+PROOF_PREFIX: Final = "; with this change undone, "
+_LABEL: Final = 7  # width of the label in front of a line
 _OWN_LABEL: Final = re.compile(r"([a-z]{3,7}): ")
-# what XML cannot hold, and the marks that turn the order of letters round, which could make a name read as another
+# characters that XML cannot hold, and marks that reverse the text direction, which could disguise a name
 _ILLEGAL: Final = re.compile(
     "[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff\u202a-\u202e\u2066-\u2069\u200e\u200f]"
 )
 
 
 def text_report(verdict: Verdict, width: int = 100, *, most: int = MAX_DIFFERENCES, mark: str = "FAILED") -> list[str]:
-    """Return the report of a check as lines, the most important first.
+    """Return the report of a check as lines, most important first.
 
     Args:
-        verdict: of one golden run.
-        width: letters of a line; a longer one goes on below, under its own text.
-        most: differences, checks and notes that are listed of each.
-        mark: what the report of one that did not pass begins with; empty for what differs alone.
+        verdict: Verdict on one golden run.
+        width: Line width in characters; a longer line is wrapped and indented.
+        most: Maximum number of differences, of checks and of notes.
+        mark: First word of the report if the verdict did not pass; empty for the differences alone.
     """
     if verdict.passed:
         lines = [("ok", f"{verdict.name}: {passed_text(verdict)}")]
@@ -53,16 +54,16 @@ def passed_text(verdict: Verdict) -> str:
 
 
 def headline(verdict: Verdict) -> str:
-    """The one thing to know of a verdict that did not pass."""
+    """Return the most important fact about a verdict that did not pass."""
     if run_failed(verdict):
-        said = [line.strip() for line in verdict.run.end.splitlines() if line.strip()]
-        return f"the run failed: {said[0] if said else 'no reason is known'}"
+        lines = [line.strip() for line in verdict.run.end.splitlines() if line.strip()]
+        return f"the run failed: {lines[0] if lines else 'reason unknown'}"
     first, explanation = first_difference(verdict.comparison), verdict.explanation
     if first is not None:
         if first.kind == "model" and explanation is not None and explanation.causes:
             more = len(explanation.causes) - 1
-            told = explanation.causes[0].words + (f" and {more} more" if more else "")
-            return f"the world is another, and nothing that is recorded shows it: {told}"
+            cause = explanation.causes[0].words + (f" and {more} more" if more else "")
+            return f"the world changed, but no recorded output differs: {cause}"
         return first.words
     for check in verdict.checks:
         if not check.passed:
@@ -71,13 +72,13 @@ def headline(verdict: Verdict) -> str:
 
 
 def first_difference(comparison: Comparison) -> Difference | None:
-    """The first of a topic: what a sensor gives says more than a number of the physics, which is earlier mostly."""
+    """Return the first difference of a topic; sensor readings are more informative than state values."""
     of_topics = (one for one in comparison.differences if one.topic)
     return next(of_topics, comparison.differences[0] if comparison.differences else None)
 
 
 def cause_lines(explanation: Explanation | None) -> list[str]:
-    """Return sentences on where the differences come from."""
+    """Return sentences about the causes of the differences."""
     if explanation is None:
         return []
     if explanation.lines:
@@ -91,31 +92,31 @@ def cause_lines(explanation: Explanation | None) -> list[str]:
 
 
 def cause_text(cause: Cause) -> str:
-    """A cause with its place and whether it was proven."""
+    """Return a cause with its place and the result of its test."""
     place = f" ({cause.where})" if cause.where and cause.where not in cause.words else ""
     return f"{cause.words}{place}{proof_text(cause)}"
 
 
 def proof_text(cause: Cause) -> str:
-    """Describe the run with the change reverted; empty where it was not tried."""
+    """Describe the outputs of the run with the change undone; empty if this was not tested."""
     if cause.proven is None:
         return ""
-    return "; put back, the outputs are the golden ones" if cause.proven else "; put back, the outputs still differ"
+    return PROOF_PREFIX + ("the outputs equal the golden run" if cause.proven else "the outputs still differ")
 
 
 def difference_text(difference: Difference, *, exact: bool = False) -> str:
-    """A difference with what is allowed; of bits that must be equal everywhere that goes without saying."""
+    """Return a difference with its tolerance; omit the tolerance if all bits must be equal."""
     allowed = allowed_text(difference, exact=exact)
     return difference.words + (f" (allowed: {allowed})" if allowed and allowed not in difference.words else "")
 
 
 def allowed_text(difference: Difference, *, exact: bool) -> str:
-    """Describe what is allowed, unless the tier asks it of all."""
+    """Return the tolerance of a difference; empty if all bits must be equal."""
     return "" if exact and difference.allowed == _SAME_BITS else difference.allowed
 
 
 def machine_text(comparison: Comparison) -> str:
-    """Describe how the machine differs; empty where it does not."""
+    """List the properties of the machine that differ; empty if none do."""
     return ", ".join(
         f"{name} {golden or 'none'} → {run or 'none'}" for name, (golden, run) in comparison.machine.items()
     )
@@ -136,16 +137,16 @@ def _body_lines(verdict: Verdict, most: int) -> Iterator[tuple[str, str]]:
     allowed = allowed_text(first, exact=exact) if first is not None else ""
     if allowed and allowed not in head and not run_failed(verdict):
         yield "allowed", allowed
-    told_already = first is not None and (first.words == head or first.kind == "model")
-    rest = [one for one in comparison.differences if not (one is first and told_already)]
+    is_in_headline = first is not None and (first.words == head or first.kind == "model")
+    rest = [one for one in comparison.differences if not (one is first and is_in_headline)]
     for number, line in enumerate(
         _limited_lines([difference_text(one, exact=exact) for one in rest], most, "differences")
     ):
         yield "then" if number == 0 else "", line
-    wrong = [check for check in verdict.checks if not check.passed]
-    told = [f"{check.check.title}: {check.message}" for check in wrong]
-    hints = {text: check.check.hint for text, check in zip(told, wrong, strict=True) if check.check.hint}
-    for line in _limited_lines([text for text in told if text != head or text in hints], most, "checks"):
+    failed = [check for check in verdict.checks if not check.passed]
+    texts = [f"{check.check.title}: {check.message}" for check in failed]
+    hints = {text: check.check.hint for text, check in zip(texts, failed, strict=True) if check.check.hint}
+    for line in _limited_lines([text for text in texts if text != head or text in hints], most, "checks"):
         yield "check", line + (f" – {hints[line]}" if line in hints else "")
     if verdict.run.end not in REGULAR_ENDINGS:
         for line in _limited_lines(verdict.run.end.strip().splitlines(), most, "lines"):
@@ -182,18 +183,16 @@ def _count(number: int, what: str) -> str:
 
 
 def junit_cases(verdicts: Verdict | Iterable[Verdict]) -> list[JunitCase]:
-    """Return the cases that `simkit.testing.junit.write_junit` writes.
+    """Return the test cases for `simkit.testing.junit.write_junit`.
 
-    A golden run is a class. Its first case, `run`, has the run's time and fails where the run did; then comes every
-    topic that either run had, the physics state and the world's meaning where they differ, and every check of the
-    scenario.
+    A golden run is one class. Its first case, `run`, has the run's wall time and fails if the run failed. Further cases
+    are every topic of either run, the physics state and the world if they differ, and every check of the scenario.
     """
     found = [verdicts] if isinstance(verdicts, Verdict) else verdicts
     return [case for verdict in found for case in _cases_of_verdict(verdict)]
 
 
 def _cases_of_verdict(verdict: Verdict) -> list[JunitCase]:
-
     scenario = verdict.run.scenario
     classname, file = f"golden.{verdict.name}", str(scenario.file) if scenario.file is not None else ""
     whole = "\n".join(text_report(verdict))
@@ -210,8 +209,8 @@ def _cases_of_verdict(verdict: Verdict) -> list[JunitCase]:
     for name, differences in by_topic.items():
         failure = None
         if differences:
-            said = [difference_text(difference, exact=exact) for difference in differences]
-            failure = (said[0], "\n".join([*said, "", *causes]).strip())
+            texts = [difference_text(difference, exact=exact) for difference in differences]
+            failure = (texts[0], "\n".join([*texts, "", *causes]).strip())
         cases.append(JunitCase(name, classname, failure=failure, file=file))
     for check in verdict.checks:
         hint = f"\n{check.check.hint}" if check.check.hint else ""
@@ -222,5 +221,5 @@ def _cases_of_verdict(verdict: Verdict) -> list[JunitCase]:
 
 
 def clean_text(text: str) -> str:
-    """A text without what a terminal or a reader would take for more than letters."""
+    """Replace control characters that a terminal or XML reader would interpret."""
     return _ILLEGAL.sub("\ufffd", text)
