@@ -1,4 +1,4 @@
-"""The pytest fixtures `simkit_world` and `sensor_regression`.
+"""Pytest fixtures `simkit_world` and `sensor_regression`.
 
 A test opens a world in one line; the fixture closes it when the test ends:
 

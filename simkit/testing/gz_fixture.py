@@ -1,4 +1,4 @@
-"""Run a world from a script as gz-sim does; `gz.sim` offers `TestFixture`, `Server` and `ServerConfig` from here."""
+"""Runner for worlds in scripts, as in gz-sim; `gz.sim` exports `TestFixture`, `Server` and `ServerConfig` from here."""
 
 from __future__ import annotations
 
@@ -18,26 +18,29 @@ _EMPTY: Final = "<sdf version='1.9'><world name='default'/></sdf>"
 
 
 class ServerConfig:
-    """What a server is to run."""
+    """Configuration of a server: the world and the seed."""
 
     def __init__(self) -> None:
         self._source: str = _EMPTY
         self._seed = 0
 
     def set_sdf_file(self, path: object) -> bool:
+        """Set the world file."""
         self._source = str(path)
         return True
 
     def set_sdf_string(self, text: str) -> bool:
+        """Set the world as SDF text."""
         self._source = str(text)
         return True
 
     def set_seed(self, seed: int) -> None:
+        """Set the seed of the sensor noise."""
         self._seed = int(seed)
 
 
 class _Callbacks:
-    """The system that a fixture hangs on its world: it calls what the script gave. A reset takes nothing of it back."""
+    """System that calls the callbacks of a fixture; a reset does not change it."""
 
     __slots__ = ("given", "hooks", "is_final", "steps")
 
@@ -73,10 +76,10 @@ class _Callbacks:
 
 
 class Server:
-    """Runs a world in this process.
+    """Runner of a world in this process.
 
     Attributes:
-        simulation: simkit's own simulation underneath.
+        simulation: simkit's simulation of the world.
     """
 
     def __init__(self, config: ServerConfig | None = None, callbacks: _Callbacks | None = None) -> None:
@@ -90,18 +93,19 @@ class Server:
     # ------------------------------------------------------------------ running
 
     def run(self, blocking: bool = False, iterations: int = 0, paused: bool = True) -> bool:
-        """Runs so many iterations; 0 is for ever.
+        """Run a number of iterations; 0 runs endlessly.
 
-        A number of iterations is run at once and to the end, also where `blocking` is false: the outcome is the same,
-        and `is_running` is false afterwards. For ever and not blocking is a thread of its own, until `stop`.
+        A fixed number of iterations always runs to its end before the method returns, even if `blocking` is false. The
+        result is the same, and `is_running` is false afterwards. An endless run that does not block uses a separate
+        thread until `stop`.
 
         Args:
-            blocking: of an endless run whether to wait for its end.
-            iterations: how many.
-            paused: hooks are called, and the physics stands still.
+            blocking: Wait for the end of an endless run.
+            iterations: Number of iterations.
+            paused: Call the hooks without stepping the physics.
 
         Returns:
-            Whether it ran; false where a thread runs already.
+            True if it ran; false if a thread is already running.
         """
         if self.is_running():
             return False
@@ -110,7 +114,7 @@ class Server:
                 self._go(iterations, paused)
             except KeyboardInterrupt:
                 if iterations:
-                    raise  # only an endless run is meant to end so
+                    raise  # Ctrl-C is the regular end of an endless run only
             return True
         self._stops = False
         self._thread = threading.Thread(target=self._go, args=(0, paused), daemon=True, name="gz-server")
@@ -118,13 +122,14 @@ class Server:
         return True
 
     def run_once(self, paused: bool = False) -> bool:
+        """Run one iteration."""
         return self.run(True, 1, paused)
 
     def _go(self, iterations: int, paused: bool) -> None:
         done, sim, calls = 0, self.simulation, self._callbacks
         if not paused and iterations:
             end = calls.steps + iterations
-            while calls.steps < end:  # who resets within a callback has the rest of the iterations after it
+            while calls.steps < end:  # a callback may reset the simulation; the remaining iterations follow the reset
                 sim._advance(sim.tick + end - calls.steps, is_served=True)
             return
         while not self._stops and (not iterations or done < iterations):
@@ -135,49 +140,56 @@ class Server:
             done += 1
 
     def stop(self) -> None:
-        """Ends a run that has a thread of its own."""
+        """Stop a run in a separate thread."""
         self._stops = True
         if self._thread is not None:
             self._thread.join()
         self._thread = None
 
     def is_running(self, runner: int = 0) -> bool:
-        """Whether a thread runs it now."""
+        """Check whether a thread is running the world."""
         return self._thread is not None and self._thread.is_alive()
 
     def reset_all(self) -> None:
-        """Back to the start."""
+        """Reset the simulation."""
         self.simulation.reset()
 
-    # ------------------------------------------------------------------ what is in it
+    # ------------------------------------------------------------------ entities
 
     @contextmanager
     def ecm(self, runner: int = 0) -> Iterator[EntityComponentManager]:
-        """The entities of the world, of which there is one; ValueError for another."""
+        """Yield the entity component manager of the only world, number 0.
+
+        Raises:
+            ValueError: The number is not 0.
+        """
         if runner != 0:
-            raise ValueError(f"there is one world, number 0, not {runner}")
+            raise ValueError(f"there is no world {runner}; the only world has number 0")
         yield manager_of(self.simulation)
 
     def has_entity(self, name: str, runner: int = 0) -> bool:
-        """Whether something has that name."""
+        """Check whether an entity has this name."""
         return any(record.name == name for record in manager_of(self.simulation).sync())
 
     def entity_by_name(self, name: str, runner: int = 0) -> int | None:
+        """Return the entity with this name; None if there is none."""
         found = (record.entity for record in manager_of(self.simulation).sync() if record.name == name)
         return next(found, None)
 
     def entity_count(self, runner: int = 0) -> int:
+        """Return the number of entities."""
         return manager_of(self.simulation).entity_count()
 
     def system_count(self, runner: int = 0) -> int:
-        """The plugins of the world, those that simkit adds by itself included."""
+        """Return the number of plugins, including those that simkit adds."""
         return len(self.simulation.engine.structure.all_plugins())
 
     def iteration_count(self, runner: int = 0) -> int:
+        """Return the number of steps since loading or the last reset."""
         return self.simulation.tick
 
     def current_info(self, runner: int = 0) -> UpdateInfo | None:
-        """The time now; None for a world that there is not."""
+        """Return the present time; None for an unknown world."""
         if runner != 0:
             return None
         sim = self.simulation
@@ -185,9 +197,12 @@ class Server:
 
 
 class TestFixture:
-    """A world with callbacks on it: `on_pre_update` and the others, then `finalize`, then `server().run(…)`."""
+    """World with callbacks.
 
-    __test__: ClassVar[bool] = False  # pytest would take it for a test
+    Register callbacks with `on_pre_update` and similar methods, then call `finalize` and `server().run(…)`.
+    """
+
+    __test__: ClassVar[bool] = False  # the name begins with "Test", but pytest must not collect it
 
     def __init__(self, path_or_config: object) -> None:
         self._callbacks = _Callbacks()
@@ -198,6 +213,7 @@ class TestFixture:
         self._server = Server(config, self._callbacks)
 
     def server(self) -> Server:
+        """Return the server of the world."""
         return self._server
 
     def _on(self, hook: str, callback: Callable[..., None]) -> TestFixture:
@@ -205,23 +221,27 @@ class TestFixture:
         return self
 
     def on_configure(self, callback: Callable[..., None]) -> TestFixture:
-        """Called with (entity, element, manager, events) by `finalize`."""
+        """Register a callback that `finalize` calls with (entity, element, manager, events)."""
         return self._on("configure", callback)
 
     def on_pre_update(self, callback: Callable[..., None]) -> TestFixture:
+        """Register a callback before each physics step."""
         return self._on("pre_update", callback)
 
     def on_update(self, callback: Callable[..., None]) -> TestFixture:
+        """Register a callback at each physics step."""
         return self._on("update", callback)
 
     def on_post_update(self, callback: Callable[..., None]) -> TestFixture:
+        """Register a callback after each physics step."""
         return self._on("post_update", callback)
 
     def on_reset(self, callback: Callable[..., None]) -> TestFixture:
+        """Register a callback for resets."""
         return self._on("reset", callback)
 
     def finalize(self) -> TestFixture:
-        """From now on the callbacks are called."""
+        """Activate the callbacks."""
         if not self._callbacks.is_final:
             self._callbacks.is_final = True
             self._callbacks.call("configure", *self._callbacks.given)

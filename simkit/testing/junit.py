@@ -1,4 +1,4 @@
-"""Write results as JUnit XML, which GitHub's actions, GitLab and Jenkins read."""
+"""Writer of JUnit XML, which GitHub Actions, GitLab and Jenkins read."""
 
 from __future__ import annotations
 
@@ -13,29 +13,29 @@ from simkit.diagnostics import shorten
 from simkit.writers.atomic_output import write_atomically
 
 LONGEST: Final = 100_000
-"""Letters of one text that are kept: the beginning and the end, with a word on what is left out."""
+"""Maximum length of a text in characters; of a longer text the beginning and the end are kept."""
 
-# what XML 1.0 cannot hold, also not as a character reference; and halves of a pair, which UTF-8 cannot
+# characters that XML 1.0 cannot hold, not even as a character reference, and surrogates, which UTF-8 cannot hold
 _ILLEGAL: Final = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 _COLOURS: Final = re.compile("\x1b\\[[0-9;?]*[ -/]*[@-~]|\x1b\\][^\x07\x1b]*(?:\x07|\x1b\\\\)")
-_LONGEST_NAME: Final = 2_000  # letters of a name or of a message
+_LONGEST_NAME: Final = 2_000  # maximum length of a name or a message in characters
 
 
 @dataclass(frozen=True)
 class JunitCase:
     """Result of one test.
 
-    At most one of `failure`, `error` and `skipped` is given; without any it passed.
+    At most one of `failure`, `error` and `skipped` is set. A case without any of them passed.
 
     Attributes:
-        name: of the case within its class.
-        classname: what it belongs to; dots group it in most viewers.
-        seconds: wall time that it took [s].
-        failure: it did not hold: one line, and the whole text.
-        error: it could not be tried: one line, and the whole text.
-        skipped: why it was not tried.
-        output: what else there is to say.
-        file: where it is written, for viewers that link to it.
+        name: Name of the case within its class.
+        classname: Class of the case; most viewers group it at dots.
+        seconds: Wall time [s].
+        failure: Summary line and full text of a failure.
+        error: Summary line and full text of an error that prevented the test.
+        skipped: Reason why the test was skipped.
+        output: Further output.
+        file: Source file, for viewers with links.
     """
 
     name: str
@@ -49,12 +49,12 @@ class JunitCase:
 
 
 def write_junit(path: str | os.PathLike[str], suite: str, cases: Sequence[JunitCase]) -> None:
-    """Writes a file of results; it is there as a whole or not at all.
+    """Write a file of results atomically.
 
     Args:
-        path: of the file; folders on the way are made.
-        suite: what the cases are, in a word or two.
-        cases: in the order in which they are shown.
+        path: File to write; missing folders are created.
+        suite: Short name of the test suite.
+        cases: Cases in display order.
 
     Raises:
         InputError: SK-CLI-016 the file cannot be written.
@@ -63,7 +63,7 @@ def write_junit(path: str | os.PathLike[str], suite: str, cases: Sequence[JunitC
 
 
 def junit_text(suite: str, cases: Sequence[JunitCase]) -> str:
-    """The whole file as text; equal for equal cases, no time of day is in it."""
+    """Return the content of the file; it has no time of day, so equal cases give equal texts."""
     counts = {
         "tests": len(cases),
         "failures": sum(case.failure is not None for case in cases),
@@ -87,9 +87,11 @@ def _case(case: JunitCase) -> list[str]:
     head = "".join(f' {name}="{_attribute_text(value)}"' for name, value in attributes.items() if value)
     head += f' time="{_seconds(_finite_seconds(case))}"'
     inside = []
-    for tag, told in (("error", case.error), ("failure", case.failure)):
-        if told is not None:
-            inside.append(f'<{tag} message="{_attribute_text(told[0])}" type="simkit">{_element_text(told[1])}</{tag}>')
+    for tag, result in (("error", case.error), ("failure", case.failure)):
+        if result is not None:
+            inside.append(
+                f'<{tag} message="{_attribute_text(result[0])}" type="simkit">{_element_text(result[1])}</{tag}>'
+            )
     if case.skipped is not None:
         inside.append(f'<skipped message="{_attribute_text(case.skipped)}"/>')
     if case.output:
@@ -108,14 +110,14 @@ def _seconds(value: float) -> str:
 
 
 def _element_text(text: str) -> str:
-    """Text between tags: what XML cannot hold is shown as a mark, colours are left out."""
+    """Escape a text between tags; replace characters that XML cannot hold, and remove colours."""
     text = _COLOURS.sub("", text.replace("\r\n", "\n").replace("\r", "\n"))
     if len(text) > LONGEST:
-        text = f"{text[: LONGEST // 2]}\n… {len(text) - LONGEST} letters left out …\n{text[-LONGEST // 2 :]}"
+        text = f"{text[: LONGEST // 2]}\n… {len(text) - LONGEST} characters left out …\n{text[-LONGEST // 2 :]}"
     return _ILLEGAL.sub("\ufffd", text).replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
 
 
 def _attribute_text(text: str) -> str:
-    """Text of an attribute: one line."""
+    """Escape the text of an attribute and join its lines."""
     line = " ".join(_COLOURS.sub("", text).split())
     return _element_text(shorten(line, _LONGEST_NAME)).replace('"', "&quot;")

@@ -173,7 +173,6 @@ def write_bag(path: Path, messages: Iterator[WindowMessage], latched: frozenset[
         messages: Messages in order.
         latched: Topics whose last message late subscribers receive.
     """
-
     bag = McapBag(path)
     try:
         for message in messages:

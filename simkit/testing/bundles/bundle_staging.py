@@ -49,11 +49,12 @@ def packed_run_spec(
 
     Args:
         folder: Folder with the files.
-        world, spawn, params: Entries of the manifest.
+        world: World file, as in the manifest.
+        spawn: Spawned models, as in the manifest.
+        params: Parameter files, as in the manifest.
         original: Specification with the seed, overrides and options of the run.
         code: Folders of plugins whose code may run.
     """
-
     options: LoadOptions = {
         "base": original.options.get("base", "auto"),
         "sleep": original.options.get("sleep", True),
@@ -76,7 +77,6 @@ def load_packed_world(spec: RunSpec) -> Simulation:
     Raises:
         LoadError, PluginError: See `simkit.load`.
     """
-
     with _without_user_folders():
         return load(spec.world, **spec.load_arguments())
 
@@ -181,7 +181,6 @@ class WorldStager:
 
     def _vendored(self, source: Any, target: str, base: str = "auto") -> str:
         """Copy a file and all files that it refers to; return its name in the stage folder."""
-
         spec, paths = self._spec, self._paths
         with tempfile.TemporaryDirectory() as folder:
             if isinstance(source, str) and "<" in source:
@@ -208,7 +207,6 @@ class WorldStager:
 
     def _found(self, uri: str) -> Path:
         """Resolve a URI to a file or folder."""
-
         path, _ = Resolver(self._paths, package_paths=self._spec.options.get("package_paths", {})).search(uri, None)
         if path is None:
             raise InputError(f"{UNPACKED} {uri} no longer exists", UNPACKED)

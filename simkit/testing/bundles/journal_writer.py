@@ -139,9 +139,7 @@ class JournalWriter:
         return found
 
     def hears(self, topic: str, subscription: object) -> None:
-        """Count messages of a new outside subscriber, so that the inputs of its callback can be placed in the
-        journal.
-        """
+        """Count the messages of a new outside subscriber, so that its inputs can be placed in the journal."""
         if not self._is_outside:
             return
         count = self._new_callback_counter()

@@ -1,7 +1,7 @@
-"""Certificates of determinism: one run in several fresh processes whose surroundings differ, and hashes side by side.
+"""Certificates of determinism: one run in several fresh processes with different environments, compared by hashes.
 
-A run specification enters, a `Certificate` leaves: what differed first, and which plugin or sensor began it. Messages
-and states are kept as hashes only.
+The input is a run specification. The result is a `Certificate` with the first difference and the plugin or sensor that
+caused it. Messages and states are stored as hashes only.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""One run of a certificate, in its own process: `python -m simkit.testing.certify REQUEST RESULT`."""
+"""Child process for one run of a certificate: `python -m simkit.testing.certify REQUEST RESULT`."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from simkit.testing.certify.outcome import STACK_FILE, read_pickle, write_pickle
 
 
 def main(request: str, result: str) -> None:
-    """Reads the request, runs it, writes the result, and ends at once, whatever threads plugins began.
+    """Read the request, run it, write the result, and exit at once, even if plugins have running threads.
 
-    Where it stood when its time was over, or when it was ended by something else, is left in a file beside the result.
+    If the run times out or is ended, its stack trace is written to a file beside the result.
     """
     exit_with_parent()
-    asked: ChildRequest = read_pickle(Path(request))
+    child_request: ChildRequest = read_pickle(Path(request))
     with open(Path(result).with_name(STACK_FILE), "w", encoding="utf-8") as stack:
         faulthandler.enable(stack)
-        if asked.limit is not None:
-            faulthandler.dump_traceback_later(asked.limit, exit=True, file=stack)
+        if child_request.limit is not None:
+            faulthandler.dump_traceback_later(child_request.limit, exit=True, file=stack)
         try:
-            write_pickle(Path(result), run_child(asked))
-        except BaseException as ended:  # what a plugin ends programs with
+            write_pickle(Path(result), run_child(child_request))
+        except BaseException as ended:  # includes SystemExit, which a plugin may raise
             frames = reversed(traceback.extract_tb(ended.__traceback__))
             stack.writelines(f'  File "{f.filename}", line {f.lineno} in {f.name}\n' for f in frames)
             raise

@@ -1,4 +1,4 @@
-"""A determinism certificate: runs side by side, their differences, and its text for a terminal."""
+"""Determinism certificate: compared runs, their differences, and the text for a terminal."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ FORMAT: Final = 1
 
 @dataclass(frozen=True)
 class Row:
-    """One run.
+    """Run of a certificate.
 
     Attributes:
-        variation: its surroundings.
-        outcome: what came of it.
-        streams: one hash of all topics; empty where nobody listened. Of a run that listened later it is of the
-            messages from then on.
-        same: whether it is what the first run was.
+        variation: Environment of the run.
+        outcome: Result of the run.
+        streams: Hash of all topics; empty without subscribers. For a run with late subscribers, the hash covers the
+            later messages.
+        same: True if the run equals the first run.
     """
 
     variation: Variation
@@ -37,17 +37,17 @@ class Row:
 
 @dataclass(frozen=True)
 class Difference:
-    """The first thing that was other in a run.
+    """First difference of a run.
 
     Attributes:
-        variation: which run.
-        words: what differs, in a sentence: `/odom: message 37 at t = 1.233 s`.
-        tick: the first at which something differs; None where that is not of one tick.
-        time: of that [s].
-        owner: the plugin or sensor that began it: `plugin 'drive' (robot.sdf:12)`; empty where it is not known.
-        how: what it did, in words.
-        hints: places in its code that often are to blame.
-        more: what else differs, in sentences.
+        variation: Environment of the run.
+        words: Sentence such as `/odom: message 37 at t = 1.233 s`.
+        tick: First tick that differs; None if the difference has no tick.
+        time: Simulated time of that tick [s].
+        owner: Plugin or sensor that caused it: `plugin 'drive' (robot.sdf:12)`; empty if unknown.
+        how: Description of the cause.
+        hints: Places in its code that often cause such differences.
+        more: Sentences about further differences.
     """
 
     variation: Variation
@@ -62,15 +62,15 @@ class Difference:
 
 @dataclass
 class Certificate:
-    """Runs side by side.
+    """Certificate of several runs.
 
     Attributes:
-        name: of the scenario.
-        world, duration, seed: what was run.
-        rows: the runs; the others are compared with the first.
-        differences: of each run that was other; empty for a pass.
-        notes: what is other and does not count.
-        fingerprint: of the machine, which it holds for.
+        name: Name of the scenario.
+        world, duration, seed: World, simulated duration [s] and seed of the runs.
+        rows: Runs; all are compared with the first.
+        differences: First difference of each run that differs; empty for a pass.
+        notes: Sentences about differences that do not count.
+        fingerprint: Fingerprint of the machine for which the certificate is valid.
     """
 
     name: str
@@ -84,11 +84,11 @@ class Certificate:
 
     @property
     def passed(self) -> bool:
-        """Whether all runs gave the same bits."""
+        """True if all runs gave the same bits."""
         return not self.differences
 
     def to_dict(self) -> JsonObject:
-        """For programs; holds nothing of the wall clock, so that two of one world are equal where it is."""
+        """Return JSON data without wall-clock times, so that equal runs give equal data."""
         first = self.rows[0].outcome
         topics = {
             topic: {"type": heard.type_name, "count": len(heard.digests), "sha256": heard.digest}
@@ -134,7 +134,7 @@ def _difference_dict(one: Difference) -> JsonObject:
 
 
 def streams_hash(outcome: RunOutcome) -> str:
-    """One hash of all that was heard; empty where nobody listened."""
+    """Return one hash of all received messages; empty without subscribers."""
     if not outcome.heard:
         return ""
     whole = hashlib.sha256()
@@ -147,16 +147,16 @@ def streams_hash(outcome: RunOutcome) -> str:
     return whole.hexdigest()
 
 
-_HASH_WIDTH: Final = 12  # letters of a hash
+_HASH_WIDTH: Final = 12  # characters of a hash
 
 
 def table_header() -> str:
-    """Of the table."""
-    return f"{'run':<12}  {'state':<{_HASH_WIDTH}}  {'streams':<{_HASH_WIDTH}}  {'':<9}  what is other"
+    """Return the header line of the table."""
+    return f"{'run':<12}  {'state':<{_HASH_WIDTH}}  {'streams':<{_HASH_WIDTH}}  {'':<9}  what differs"
 
 
 def table_row(row: Row) -> str:
-    """One run."""
+    """Return the line of a run."""
     outcome = row.outcome
     state = outcome.state[:_HASH_WIDTH] if outcome.state else "-"
     streams = ("second half" if outcome.heard_from else row.streams[:_HASH_WIDTH]) or "-"
@@ -166,15 +166,15 @@ def table_row(row: Row) -> str:
 
 
 def conclusion_text(made: Certificate) -> list[str]:
-    """What stands below the table, the most important first."""
+    """Return the lines below the table, most important first."""
     first = made.rows[0].outcome
     lines: list[str] = []
     for number, (one, also) in enumerate(_group_alike(made.differences)):
         lines += _difference_text(one, also, is_first=number == 0)
     if made.passed:
         messages = sum(len(heard.digests) for heard in first.heard.values())
-        told = f"{first.ticks} steps ({made.duration:g} s), {messages} messages on {len(first.heard)} topics"
-        lines.append(f"the same bits in {len(made.rows)} runs: {told}, seed {made.seed}")
+        size = f"{first.ticks} steps ({made.duration:g} s), {messages} messages on {len(first.heard)} topics"
+        lines.append(f"the same bits in {len(made.rows)} runs: {size}, seed {made.seed}")
         if first.end:
             lines.append(f"every run ended with: {first.end}")
     else:
@@ -185,7 +185,7 @@ def conclusion_text(made: Certificate) -> list[str]:
 
 
 def _group_alike(differences: Sequence[Difference]) -> list[tuple[Difference, list[str]]]:
-    """Differences that somebody else began, each with the names of the other runs that show the same."""
+    """Group differences with the same cause; return each with the names of the other runs."""
     found: dict[object, tuple[Difference, list[str]]] = {}
     for one in differences:
         key = (one.owner, one.hints) if one.owner else (one.words, one.how)
@@ -200,7 +200,7 @@ def _difference_text(one: Difference, also: Sequence[str], *, is_first: bool) ->
     lines = [f"{one.variation.name}: {one.words}" + (f"; and in: {', '.join(also)}" if also else "")]
     if one.owner:
         when = "" if one.tick is None else f" at tick {one.tick} (t = {one.time:.6g} s)"
-        lines.append(f"    begun by {one.owner}{when}" + (f": {one.how}" if one.how else ""))
+        lines.append(f"    caused by {one.owner}{when}" + (f": {one.how}" if one.how else ""))
     elif one.how:
         lines.append(f"    {one.how}")
     lines += [f"    hint: {hint.where}: {hint.text}" for hint in one.hints]
@@ -209,6 +209,6 @@ def _difference_text(one: Difference, also: Sequence[str], *, is_first: bool) ->
 
 
 def _relative_paths(text: str) -> str:
-    """With paths below the working directory as they are from there."""
+    """Replace absolute paths below the working directory by relative paths."""
     here = f"{Path.cwd()}{os.sep}"
     return text.replace(here, "")

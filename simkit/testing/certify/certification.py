@@ -1,4 +1,4 @@
-"""Run a scenario in fresh processes with other surroundings, and put what they gave side by side."""
+"""Certification: runs a scenario in fresh processes with different environments, and compares the results."""
 
 from __future__ import annotations
 
@@ -24,22 +24,23 @@ from simkit.testing.certify.outcome_comparison import Culprit, differences, find
 from simkit.testing.certify.variations import Variation, choose_variations
 
 _FOLDERS: Final = ("resource_paths", "plugin_paths")
-_LEAST_LIMIT, _TIMES = 60.0, 10.0  # a run has so many seconds, or so many times as long as the first took
-_WATCHED: Final = 5.0  # times as long, where every call is noted
-_SPARE_SECONDS: Final = 20.0  # [s] that a process has to end by itself after its limit
+_LEAST_LIMIT, _TIMES = 60.0, 10.0  # limit of a run: 60 s or ten times as long as the first run
+_WATCHED: Final = 5.0  # factor on the limit if every plugin call is recorded
+_SPARE_SECONDS: Final = 20.0  # [s], time for a process to end itself after its limit
 _FRAME: Final = re.compile(r'^  File "(.*)", line (\d+) in (.*)$', re.MULTILINE)
 
 
 class ProcessRunner:
-    """Runs a scenario in surroundings.
+    """Runner of a scenario in given environments.
 
     Args:
-        scenario: what is run.
-        apart: whether each run has a process of its own.
-        limit: wall time of a run [s]; where not given the first has none, and sets that of the others.
+        scenario: Scenario.
+        apart: Use a separate process for each run.
+        limit: Wall-clock limit of a run [s]. If None, the first run has no limit, and its duration sets that of the
+            others.
 
     Raises:
-        InputError: SK-CERT-002 plugins that no other process can have.
+        InputError: SK-CERT-002 the plugins cannot be transferred to another process.
     """
 
     def __init__(self, scenario: RunSpec, *, apart: bool, limit: float | None) -> None:
@@ -48,24 +49,24 @@ class ProcessRunner:
         self._limit = limit
 
     def first(self, variation: Variation) -> RunOutcome:
-        """The run that the others are compared with, to the scenario's end."""
+        """Run the reference run to the scenario's end."""
         found = self.run(variation)
         if self._limit is None:
             self._limit = max(_LEAST_LIMIT, _TIMES * found.seconds)
         return found
 
     def run(self, variation: Variation, ticks: int | None = None) -> RunOutcome:
-        """One run, to a tick; to the scenario's end where that is None."""
+        """Run the scenario to a tick, or to its end if that is None."""
         request = ChildRequest(self._scenario, variation, ticks, plugins_from=self._plugins_from, limit=self._limit)
         return self._run(request)
 
     def watch(self, variation: Variation, ticks: int, half: int) -> RunOutcome:
-        """One run whose plugins are watched at every call."""
+        """Run the scenario and record every plugin call."""
         limit = None if self._limit is None else self._limit * _WATCHED
         return self._run(ChildRequest(self._scenario, variation, ticks, True, half, self._plugins_from, limit))
 
     def end(self) -> None:
-        """Ends what runs, and begins nothing more."""
+        """End all running processes and start no more."""
         if self._processes is not None:
             self._processes.end()
 
@@ -74,7 +75,7 @@ class ProcessRunner:
 
 
 def _run_in_process(request: ChildRequest, processes: ChildProcesses) -> RunOutcome:
-    """Runs a request in a fresh process."""
+    """Run a request in a fresh process."""
     with tempfile.TemporaryDirectory(prefix="simkit-certify-", ignore_cleanup_errors=True) as made:
         folder = Path(made)
         own = folder / "here"
@@ -96,36 +97,36 @@ def _run_in_process(request: ChildRequest, processes: ChildProcesses) -> RunOutc
 
 
 def _outcome_of_stopped_process(ended: ProcessResult, limit: float | None, stack: Path) -> RunOutcome:
-    """What is known of a run that gave no result."""
+    """Return the outcome of a run that gave no result."""
     text = ""
     with suppress(OSError):
         text = stack.read_text(encoding="utf-8", errors="replace")
-    main_thread = text.rpartition("\nThread ")[2]  # of several, the newest come first
+    main_thread = text.rpartition("\nThread ")[2]  # the trace lists the newest threads first
     places = [CodePosition(file, int(line), name) for file, line, name in _FRAME.findall(main_thread)]
     if ended.is_late or text.startswith("Timeout"):
-        said = f"it was still running after {limit:g} s of wall time and was ended; --wall-timeout gives it longer"
-        return RunOutcome(stopped=said, stack=places)
-    last = (ended.last_lines(1) or ["nothing was said"])[0]
+        reason = f"still running after {limit:g} s of wall time, stopped; use --wall-timeout for a longer limit"
+        return RunOutcome(stopped=reason, stack=places)
+    last = (ended.last_lines(1) or ["no output"])[0]
     code = f"with {ended.code}"
     if ended.code < 0:
         known = -ended.code in set(signal.Signals)
         code = f"by signal {signal.Signals(-ended.code).name if known else -ended.code}"
-    return RunOutcome(stopped=f"its process was ended {code}: {last}", stack=places)
+    return RunOutcome(stopped=f"the process ended {code}: {last}", stack=places)
 
 
 def _plugin_file(scenario: RunSpec) -> Path | None:
-    """The Python file that a fresh process can take the scenario's plugins from."""
+    """Return the Python file from which a fresh process can load the scenario's plugins."""
     if not scenario.plugins:
         return None
     if scenario.file is not None and scenario.file.suffix.lower() == ".py":
         return scenario.file.absolute()
-    message = "a fresh process cannot have plugins that were made in this one"
+    message = "plugins made in Python cannot be transferred to a fresh process"
     hint = "write the scenario as a Python file with `scenario = RunSpec(..., plugins=(MyPlugin(),))`"
-    raise InputError(f"SK-CERT-002 {message}; {hint}", "SK-CERT-002")
+    raise InputError(f"SK-CERT-002 {message}\n    help: {hint}", "SK-CERT-002")
 
 
 def _with_absolute_paths(scenario: RunSpec) -> RunSpec:
-    """The scenario with paths that mean the same in every working directory."""
+    """Return the scenario with absolute paths, which are valid in every working directory."""
 
     def absolute(place: Any) -> str:
         return str(Path(place).expanduser().absolute())
@@ -151,7 +152,7 @@ def _with_absolute_paths(scenario: RunSpec) -> RunSpec:
 
 
 def _absolute_file(text: Any, mark: str = "=") -> Any:
-    """A file's name, with what may stand before or behind it, as an absolute path; what is no file stays."""
+    """Make the file in a text such as `MODEL=FILE` or `FILE:POSE` absolute; return other texts unchanged."""
     if not isinstance(text, (str, Path)):
         return text
     if Path(text).exists():
@@ -164,8 +165,8 @@ def _absolute_file(text: Any, mark: str = "=") -> Any:
     return text
 
 
-_WATCH_ATTEMPTS: Final = 2  # looks at a difference that does not show when it is looked at
-_TICK_MARGIN: Final = 2  # ticks after the first that differs
+_WATCH_ATTEMPTS: Final = 2  # attempts to reproduce a difference while recording plugin calls
+_TICK_MARGIN: Final = 2  # ticks to run after the first that differs
 
 ProgressCallback = Callable[[Row], None]
 
@@ -180,38 +181,41 @@ def certify(
     wall_timeout: float | None = None,
     told: ProgressCallback | None = None,
 ) -> Certificate:
-    """Runs a scenario several times, each in a fresh process with other surroundings, and compares what came of it.
+    """Run a scenario several times, each in a fresh process with another environment, and compare the results.
 
     Args:
-        scenario: what is run.
-        runs: how many runs; the first ones of `VARIATIONS`, then those again with other hash seeds.
-        variations: the surroundings instead, the first being what the others are compared with.
-        jobs: how many processes at a time.
-        apart: whether each has a process of its own. In this one, where a debugger can look, only who listens and what
-            is done on the way can be other, and nothing has a limit.
-        wall_timeout: of each run, in wall time [s]. Where not given the first has none, and the others have ten times
-            as long as it took, at least a minute.
-        told: called with each run once it is there.
+        scenario: Scenario.
+        runs: Number of runs: the first ones of `VARIATIONS`, then these again with other hash seeds.
+        variations: Environments to use instead; the first run is the reference.
+        jobs: Number of parallel processes.
+        apart: Use a separate process for each run. In one process, where a debugger works, only subscribers and detours
+            vary, and there is no time limit.
+        wall_timeout: Wall-clock limit of each run [s]. If None, the first run has no limit, and the others have ten
+            times its duration, at least one minute.
+        told: Function that is called with each run when it is complete.
+
+    Returns:
+        Certificate of all runs.
 
     Raises:
-        InputError: SK-CERT-001 fewer than two runs; SK-CERT-002 plugins that no other process can have; SK-CERT-004
-            the first process ended, or did not end in time.
-        LoadError: the world does not open.
-        PluginError: a plugin of it does not.
+        InputError: SK-CERT-001 fewer than two runs; SK-CERT-002 plugins that cannot be transferred to another process;
+            SK-CERT-004 the first process ended early or timed out.
+        LoadError: The world has errors.
+        PluginError: A plugin raised an exception during loading.
     """
     chosen = choose_variations(runs) if variations is None else list(variations)
     if len(chosen) < 2:
-        message = f"SK-CERT-001 found {len(chosen)} runs, allowed are at least 2: the first is compared with others"
+        message = f"SK-CERT-001 cannot certify with {len(chosen)} runs\n    help: use --runs 2 or more"
         raise InputError(message, "SK-CERT-001")
     runner = ProcessRunner(scenario, apart=apart, limit=wall_timeout)
     first = runner.first(chosen[0])
     if first.failure is not None:
         raise first.failure
     if first.stopped:
-        place = f" It stood at {first.stack[0]}." if first.stack else ""
-        message = f"SK-CERT-004 the run {chosen[0].name!r} gave nothing: {first.stopped}.{place}"
+        place = f"; it was at {first.stack[0]}" if first.stack else ""
+        message = f"SK-CERT-004 the run {chosen[0].name!r} gave no result: {first.stopped}{place}"
         raise InputError(message, "SK-CERT-004")
-    # how far the others are to go: where the first was stopped by an error, one step further than it came
+    # if an error stopped the first run, the others run one step further to reach the same error
     ticks = first.ticks + (1 if first.end else 0)
     told = told or (lambda _: None)
     rows = [Row(chosen[0], first, streams_hash(first), True)]
@@ -222,7 +226,7 @@ def certify(
             for variation, outcome in zip(chosen[1:], outcomes, strict=True):
                 rows.append(Row(variation, outcome, streams_hash(outcome), not differences(first, outcome)))
                 told(rows[-1])
-        except BaseException:  # Ctrl-C too: the pool waits for its threads, and they for their processes
+        except BaseException:  # includes Ctrl-C: without this, the pool would wait for all processes
             runner.end()
             raise
     known: dict[int, Difference] = {}
@@ -231,19 +235,20 @@ def certify(
     return Certificate(scenario.title, scenario.world, duration, scenario.seed, rows, found, notes, first.fingerprint)
 
 
-# ---------------------------------------------------------------------- what differs
+# ---------------------------------------------------------------------- causes
 
 
 def _explain_difference(
     row: Row, first: Row, runner: ProcessRunner, ticks: int, known: dict[int, Difference]
 ) -> Difference:
-    """The first difference of a run, and who began it.
+    """Return the first difference of a run and its cause.
 
     Args:
-        row, first: the run, and what it is compared with.
-        runner: for running both again.
-        ticks: how far they go.
-        known: differences that are explained, by their first tick; this one is put there.
+        row: Run.
+        first: Reference run.
+        runner: Runner, to repeat both.
+        ticks: Number of steps.
+        known: Explained differences by first tick; the new one is added.
     """
     found = differences(first.outcome, row.outcome)
     tick, step = first_tick(found), first.outcome.timestep
@@ -253,7 +258,7 @@ def _explain_difference(
         return _code_at_timeout(plain, row.outcome, first.outcome)
     if row.outcome.failure is not None:
         return plain
-    if tick is not None and tick in known:  # no need to run it twice more
+    if tick is not None and tick in known:  # the same tick has the same cause; save two more runs
         return replace(known[tick], variation=row.variation, words=found[0].words, more=more)
     end, who = ticks if tick is None else min(ticks, tick + _TICK_MARGIN), None
     for _ in range(_WATCH_ATTEMPTS):
@@ -268,7 +273,7 @@ def _explain_difference(
 
 def _culprit_of_error(plain: Difference, who: Culprit | None, first: RunOutcome, owner: str) -> Difference:
     if who is None and not owner:
-        how = "no plugin or sensor was seen to begin it; it did not show when it was looked at again"
+        how = "no plugin or sensor is known to cause it; the difference did not occur again while recording calls"
         return replace(plain, how=how)
     name = who.owner if who is not None else owner
     file, start, end = first.sources.get(name, ("", 0, 0))
@@ -280,17 +285,17 @@ def _culprit_of_error(plain: Difference, who: Culprit | None, first: RunOutcome,
 
 
 def _code_at_timeout(plain: Difference, stopped: RunOutcome, first: RunOutcome) -> Difference:
-    """With whose code it was that a run stood in when its time was over."""
+    """Return the difference with the plugin whose code was running when the run timed out."""
     for place in stopped.stack:
         for name, (file, start, end) in first.sources.items():
             if place.file == file and start <= place.line < end:
                 hints = tuple(hints_in(file, start, end))
-                return replace(plain, owner=name, how=f"it stood in {place.function} at {place}", hints=hints)
-    return replace(plain, how=f"it stood at {stopped.stack[0]}") if stopped.stack else plain
+                return replace(plain, owner=name, how=f"it was in {place.function} at {place}", hints=hints)
+    return replace(plain, how=f"it was at {stopped.stack[0]}") if stopped.stack else plain
 
 
 def _attribute_notes(rows: Sequence[Row]) -> list[str]:
-    """Plugins that remember something else at the end though nothing that comes out shows it."""
+    """Return notes on plugins whose attributes differ at the end although all outputs are equal."""
     first = rows[0].outcome
     notes: dict[str, None] = {}
     for row in rows[1:]:
@@ -300,6 +305,6 @@ def _attribute_notes(rows: Sequence[Row]) -> list[str]:
             others = row.outcome.remembered.get(owner, {})
             names = [n for n in attributes if n in others and others[n] != attributes[n]]
             if names:
-                said = f"remembers something else from run to run ({', '.join(names[:4])}); nothing shows it"
-                notes[f"{owner} {said}"] = None
+                note = f"has different attributes from run to run ({', '.join(names[:4])}); no output differs"
+                notes[f"{owner} {note}"] = None
     return list(notes)

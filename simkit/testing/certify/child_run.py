@@ -31,8 +31,8 @@ from simkit.testing.run_record.fingerprint import fingerprint
 from simkit.testing.scenarios.scenario_file import read_scenario
 from simkit.testing.scenarios.scenario_run import ScenarioCommands, open_scenario, run_scenario
 
-_SLICE: Final = 0.25  # [s] of simulated time between two looks at what was kept
-_DETOUR: Final = 0.5  # [s] of it
+_SLICE: Final = 0.25  # [s] of simulated time between two collections of messages
+_DETOUR: Final = 0.5  # [s] of simulated time
 _DETOUR_MODEL: Final = (
     '<sdf version="1.9"><model name="simkit_certify_box"><pose>0 0 1000 0 0 0</pose><link name="l"><inertial><mass>1'
     '</mass></inertial><collision name="c"><geometry><box><size>.1 .1 .1</size></box></geometry></collision></link>'
@@ -42,16 +42,16 @@ _DETOUR_MODEL: Final = (
 
 @dataclass
 class ChildRequest:
-    """What a process is asked to do.
+    """Request to a child process.
 
     Attributes:
-        scenario: with absolute paths.
-        variation: of its surroundings.
-        ticks: how many steps; None for the scenario's own end, `until` included.
-        is_watched: whether every call of a plugin is noted.
-        half: the tick at which it begins to listen, or takes its way; the middle where not given.
-        plugins_from: a Python file whose scenario's plugins are taken.
-        limit: wall time after which it is ended [s]; None for none.
+        scenario: Scenario with absolute paths.
+        variation: Environment of the run.
+        ticks: Number of steps; None for the scenario's own end, including `until`.
+        is_watched: True if every plugin call is recorded.
+        half: Tick at which subscribers are added or the detour begins; None for half of the run.
+        plugins_from: Python scenario file from which the plugins are loaded.
+        limit: Wall-clock limit [s]; None for no limit.
     """
 
     scenario: RunSpec
@@ -64,7 +64,7 @@ class ChildRequest:
 
 
 def run_child(request: ChildRequest) -> RunOutcome:
-    """Runs the scenario and says what came of it."""
+    """Run the scenario and return its outcome."""
     started = time.perf_counter()
     outcome = RunOutcome()
     with ExitStack() as stack:
@@ -86,29 +86,29 @@ def run_child(request: ChildRequest) -> RunOutcome:
 
 
 def _picklable_error(error: SimkitError) -> SimkitError:
-    """An error without what cannot leave its process."""
+    """Return an error that can be pickled."""
     error.__cause__ = error.__context__ = None
-    with suppress(Exception):  # a plugin's own kind of error, or what it put into one
+    with suppress(Exception):  # a plugin's own exception class or attributes may not be picklable
         if type(error).__module__ == SimkitError.__module__ and pickle.dumps(error):
             return error
     return InputError(str(error), error.code)
 
 
 class _ChildRun:
-    """A run from its first tick to its last."""
+    """Run from its first tick to its last."""
 
     def __init__(
         self, request: ChildRequest, sim: Simulation, witness: PluginCallRecorder, outcome: RunOutcome
     ) -> None:
         self._request, self._scenario, self._sim = request, request.scenario, sim
         self._variation, self._witness, self._outcome = request.variation, witness, outcome
-        self._ears: TopicHashes | None = None
+        self._topic_hashes: TopicHashes | None = None
         self._marks = TickHashes(sim)
         self._end = sim.engine.clock.ticks(self._scenario.longest) if request.ticks is None else request.ticks
         self._half = self._end // 2 if request.half is None else request.half
 
     def run(self) -> None:
-        """Fills the outcome."""
+        """Run and fill the outcome."""
         outcome = self._outcome
         try:
             if self._variation.detour == "reset":
@@ -116,11 +116,11 @@ class _ChildRun:
             if self._variation.listening != "late":
                 self._listen()
             if self._request.ticks is None and self._scenario.until:
-                # only `run_scenario` knows when the run is over
-                run_scenario(self._scenario, self._sim, self._take)
+                # only `run_scenario` evaluates the condition
+                run_scenario(self._scenario, self._sim, self._collect_messages)
             else:
                 self._run_to(self._end)
-        except InputError as error:  # a command or a condition does not fit the world: nothing to certify
+        except InputError as error:  # a command or a condition does not fit the world
             outcome.failure = _picklable_error(error)
             return
         except SimkitError as error:
@@ -135,7 +135,7 @@ class _ChildRun:
         slice_ = max(1, sim.engine.clock.ticks(_SLICE))
         with ScenarioCommands(self._scenario, sim) as commands:
             while sim.tick < end:
-                if self._ears is None and sim.tick >= self._half:
+                if self._topic_hashes is None and sim.tick >= self._half:
                     self._listen()
                 if not has_turned and sim.tick >= self._half:
                     has_turned = True
@@ -145,15 +145,15 @@ class _ChildRun:
                 stops += [self._half] if sim.tick < self._half else []
                 stops += [max(commands.next_tick, sim.tick + 1)] if commands.next_tick is not None else []
                 sim.step(min(stops) - sim.tick)
-                self._take()
+                self._collect_messages()
 
     def _reset(self) -> None:
-        """Lives a little, and begins anew."""
-        self._look_away(True)
+        """Run for a short time, then reset the simulation."""
+        self._set_paused(True)
         with suppress(SimkitError), ScenarioCommands(self._scenario, self._sim) as commands:
-            self._some_life(commands)  # what ends it comes again, if it is to
+            self._run_detour(commands)  # an error here would occur again after the reset
         self._sim.reset()
-        self._look_away(False)
+        self._set_paused(False)
         self._marks.state.clear()
         self._marks.inputs.clear()
         if self._request.is_watched:
@@ -161,19 +161,19 @@ class _ChildRun:
             self._witness.loaded(self._sim)
 
     def _detour(self) -> None:
-        """Goes on, with a box that was not there, and comes back as if nothing had been."""
-        self._take()
+        """Continue with an additional box, then restore the state from before."""
+        self._collect_messages()
         snapshot = self._sim.snapshot()
-        self._look_away(True)
+        self._set_paused(True)
         with suppress(SimkitError):
-            self._some_life(None)
+            self._run_detour(None)
         self._sim.restore(snapshot)
-        self._take()
-        self._look_away(False)
+        self._collect_messages()
+        self._set_paused(False)
 
-    def _some_life(self, commands: ScenarioCommands | None) -> None:
+    def _run_detour(self, commands: ScenarioCommands | None) -> None:
         sim = self._sim
-        left = max(self._end, 2 * self._half) - sim.tick  # beyond its end the scenario promises nothing
+        left = max(self._end, 2 * self._half) - sim.tick  # the scenario is undefined beyond its end
         for part in range(2):
             end = sim.tick + min(sim.engine.clock.ticks(_DETOUR / 2), left // 2)
             while sim.tick < end:
@@ -184,29 +184,28 @@ class _ChildRun:
                 with suppress(InputError):
                     sim.spawn(_DETOUR_MODEL)
 
-    def _look_away(self, is_away: bool) -> None:
+    def _set_paused(self, is_away: bool) -> None:
         self._marks.is_away = self._witness.is_away = is_away
-        if self._ears is not None:
-            self._ears.is_deaf = is_away
+        if self._topic_hashes is not None:
+            self._topic_hashes.is_paused = is_away
 
-    # ------------------------------------------------------------------ what came of it
+    # ------------------------------------------------------------------ outcome
 
     def _listen(self) -> None:
         scenario = self._scenario
         self._outcome.heard_from = self._sim.tick
-        self._ears = TopicHashes(self._sim, self._variation.listening, scenario.topics, scenario.skip)
+        self._topic_hashes = TopicHashes(self._sim, self._variation.listening, scenario.topics, scenario.skip)
 
-    def _take(self) -> None:
-        if self._ears is not None:
-            self._ears.take()
+    def _collect_messages(self) -> None:
+        if self._topic_hashes is not None:
+            self._topic_hashes.take()
 
     def _gather(self) -> None:
-
         sim, outcome = self._sim, self._outcome
         outcome.ticks, outcome.timestep = sim.tick, sim.timestep
         outcome.state = state_hash(sim)
         outcome.marks, outcome.inputs = self._marks.rows(sim.tick)
-        outcome.heard = self._ears.heard() if self._ears is not None else {}
+        outcome.heard = self._topic_hashes.heard() if self._topic_hashes is not None else {}
         for sensor in sim.engine.structure.all_sensors():
             latest = _latest_reading(sensor)
             outcome.latest[plugin_title(sensor)] = 0 if latest is None else short_hash(msgs.serialize(latest))
@@ -221,12 +220,12 @@ class _ChildRun:
 def _latest_reading(sensor: Any) -> Any:
     try:
         return sensor.latest
-    except SimkitError:  # no renderer: it has been told
+    except SimkitError:  # no renderer, which is already reported
         return None
 
 
 def _class_source(part: Any) -> tuple[str, int, int]:
-    """File, first line and last line of the class of a plugin or a sensor; empty where there is none."""
+    """Return file, first line and last line of the class of a plugin or a sensor; empty if unknown."""
     cls = type(getattr(part, "system", None) or part)
     try:
         lines, first = inspect.getsourcelines(cls)

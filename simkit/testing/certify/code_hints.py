@@ -1,4 +1,4 @@
-"""Places in a plugin's code that often make runs differ; a hint for who looks, and never a proof."""
+"""Hints at places in a plugin's code that often make runs differ; a hint is not a proof."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ _CALL_HINTS: Final = tomllib.loads(Path(__file__).with_name("call_hints.toml").r
 _CALLS: Final[dict[str, str]] = {name: hint for hint, names in _CALL_HINTS.items() for name in names}
 _RANDOM: Final = ("random.", "np.random.", "numpy.random.")
 _SEEDED: Final = ("Random", "default_rng", "RandomState", "Generator", "SeedSequence", "PCG64")
-_NOT_KEPT: Final = "no snapshot and no reset brings it back; keep it in an attribute of self"
+_NOT_KEPT: Final = "snapshots and resets do not restore it; store it in an attribute of self"
 _CHANGING: Final = ("append", "add", "update", "pop", "setdefault", "extend", "insert", "clear", "remove", "discard")
 _MOST: Final = 6
 
 
 @dataclass(frozen=True)
 class CodeHint:
-    """One place.
+    """Hint at one place.
 
     Attributes:
         where: `file:line`.
-        text: what stands there and what it does.
+        text: Code at this place and its effect.
     """
 
     where: str
@@ -32,11 +32,12 @@ class CodeHint:
 
 
 def hints_in(file: str, first: int, last: int) -> list[CodeHint]:
-    """What stands out between two lines of a Python file, calls of the module's own functions not followed.
+    """Return hints for a range of lines in a Python file, and for functions of the module if the range has none.
 
     Args:
-        file: its path.
-        first, last: lines of the class.
+        file: Path of the file.
+        first: First line of the class.
+        last: Last line of the class.
     """
     try:
         tree = ast.parse(Path(file).read_text(encoding="utf-8"))
@@ -65,22 +66,22 @@ def _find_hints(tree: ast.Module, span: tuple[int, int]) -> Iterator[tuple[int, 
             if words:
                 yield node.lineno, f"{name}() {words}"
         elif isinstance(node, ast.Attribute) and _dotted_name(node) == "os.environ":
-            yield node.lineno, "os.environ depends on where the program was started"
+            yield node.lineno, "os.environ depends on the shell that started the program"
         elif isinstance(node, ast.Attribute) and node.attr == "wanted":
-            yield node.lineno, f"{_dotted_name(node)} depends on who listens; it may save work and change nothing"
+            yield node.lineno, f"{_dotted_name(node)} depends on the subscribers; use it only to skip unused work"
         elif isinstance(node, (ast.Global, ast.Nonlocal)):
             yield node.lineno, f"{type(node).__name__.lower()} {', '.join(node.names)}: {_NOT_KEPT}"
         elif isinstance(node, (ast.Yield, ast.YieldFrom)):
-            yield node.lineno, f"how far a generator has come: {_NOT_KEPT}"
+            yield node.lineno, f"position of a generator: {_NOT_KEPT}"
         elif isinstance(node, ast.ClassDef) and span[0] <= node.lineno <= span[1]:
             for line, name in _container_assignments(node.body):
-                yield line, f"{name} is the class's, not the instance's: {_NOT_KEPT}"
+                yield line, f"{name} belongs to the class, not to the instance: {_NOT_KEPT}"
         elif isinstance(node, (ast.For, ast.comprehension)) and _is_set(node.iter, sets):
-            yield node.iter.lineno, "goes through a set, whose order is another in every process; sorted() gives it one"
+            yield node.iter.lineno, "iterates over a set, whose order differs between processes; use sorted()"
 
 
 def _module_container_writes(tree: ast.Module) -> Iterator[tuple[int, str]]:
-    """Where lists, dicts and sets of a module are written to."""
+    """Find writes to lists, dicts and sets of the module."""
     names = {name for _, name in _container_assignments(tree.body)}
     for node in ast.walk(tree):
         if isinstance(node, ast.Subscript) and isinstance(node.ctx, (ast.Store, ast.Del)):
@@ -90,11 +91,11 @@ def _module_container_writes(tree: ast.Module) -> Iterator[tuple[int, str]]:
         else:
             continue
         if name in names:
-            yield line, f"{name} is the module's: {_NOT_KEPT}"
+            yield line, f"{name} belongs to the module: {_NOT_KEPT}"
 
 
 def _container_assignments(statements: list[ast.stmt]) -> Iterator[tuple[int, str]]:
-    """Line and name of what a list, a dict or a set is given to."""
+    """Return line and name of assignments of lists, dicts and sets."""
     containers = (ast.List, ast.Dict, ast.Set, ast.ListComp, ast.DictComp, ast.SetComp)
     for statement in statements:
         if isinstance(statement, (ast.Assign, ast.AnnAssign)) and isinstance(statement.value, containers):
@@ -106,7 +107,7 @@ def _targets(statement: ast.Assign | ast.AnnAssign) -> list[ast.expr]:
 
 
 def _imported_names(node: ast.AST) -> Iterator[tuple[str, str]]:
-    """A name of the file -> what it stands for: `now` -> `time.time`."""
+    """Return imported names with their full names: `now` -> `time.time`."""
     if isinstance(node, ast.Import):
         yield from ((alias.asname, alias.name) for alias in node.names if alias.asname)
     elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
@@ -119,12 +120,12 @@ def _call_hint(name: str, has_arguments: bool) -> str:
     if not name.startswith(_RANDOM):
         return ""
     if name.rpartition(".")[2] in _SEEDED:
-        return "" if has_arguments else "has no seed; self.random(channel) belongs to the simulation's"
-    return "" if name.endswith(".seed") else "draws from a generator that no seed of the simulation sets"
+        return "" if has_arguments else "has no seed; use self.random(channel) for the simulation's seed"
+    return "" if name.endswith(".seed") else "uses a generator without the simulation's seed; use self.random(channel)"
 
 
 def _names_of_sets(node: ast.AST) -> Iterator[str]:
-    """What a statement gives a set to."""
+    """Return the names that a statement assigns a set to."""
     if isinstance(node, (ast.Assign, ast.AnnAssign)) and node.value is not None and _is_set(node.value, set()):
         yield from map(_dotted_name, _targets(node))
 
@@ -141,7 +142,7 @@ def _is_set(node: ast.expr, names: set[str]) -> bool:
 
 
 def _dotted_name(node: ast.expr) -> str:
-    """`a.b.c` of such an expression; empty of another."""
+    """Return a name such as `a.b.c`; empty for other expressions."""
     if isinstance(node, ast.Name):
         return node.id
     if isinstance(node, ast.Attribute):

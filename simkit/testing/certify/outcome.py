@@ -1,4 +1,4 @@
-"""What one process found, and its file."""
+"""Outcome of one run in a child process, and its file."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ import numpy.typing as npt
 from simkit.errors import SimkitError
 
 STACK_FILE: Final = "stack"
-"""The file in which a process says where it stood when it was ended, as `faulthandler` writes it."""
+"""File to which `faulthandler` writes the stack trace of a process that is ended."""
 
 Numbers = npt.NDArray[np.uint64]
 
 
 @dataclass
 class TopicOutcome:
-    """What one topic gave.
+    """Received messages of one topic.
 
     Attributes:
-        type_name: its ROS type.
-        digests: a short hash of each message as CDR, (messages,).
-        ticks: when each arrived, (messages,); -1 where that was not seen, since messages were looked at later.
-        digest: SHA-256 of all of them, hexadecimal.
-        owner: who publishes it: `plugin 'drive' (robot.sdf:12)`.
+        type_name: ROS type.
+        digests: Short hash of each message in CDR, shape (messages,).
+        ticks: Tick of arrival, shape (messages,); -1 if messages were collected later.
+        digest: Hexadecimal SHA-256 of all messages.
+        owner: Publisher: `plugin 'drive' (robot.sdf:12)`.
     """
 
     type_name: str
@@ -40,15 +40,15 @@ class TopicOutcome:
 
 @dataclass
 class PluginCall:
-    """A plugin that was called.
+    """Call of a plugin.
 
     Attributes:
-        tick: when.
-        owner: who, with its place.
-        hook: what was called, in words.
-        before, after: short hashes of what plugins can write to, before the call and after it.
-        changed: hashes of the attributes that are other than at its call before; 0 for one that is gone.
-        shown: their values, where they are short.
+        tick: Tick of the call.
+        owner: Plugin with its place.
+        hook: Name of the hook.
+        before, after: Short hashes of the writable state before and after the call.
+        changed: Hashes of attributes changed since the previous call; 0 for a deleted attribute.
+        shown: Short values of these attributes.
     """
 
     tick: int
@@ -62,11 +62,11 @@ class PluginCall:
 
 @dataclass(frozen=True)
 class CodePosition:
-    """A line of code that a run stood in.
+    """Line of code that a run was executing.
 
     Attributes:
-        file, line: where.
-        function: its name.
+        file, line: Position.
+        function: Name of the function.
     """
 
     file: str
@@ -79,26 +79,26 @@ class CodePosition:
 
 @dataclass
 class RunOutcome:
-    """What one run gave.
+    """Outcome of one run.
 
     Attributes:
-        failure: why the world did not open; None where it did.
-        stopped: why its process gave nothing: it ended, or had to be ended; empty where it did give something.
-        stack: where it stood then, the innermost first.
-        end: how the run ended: "", or what it was stopped by.
-        ticks: how many steps it had.
-        timestep: of one [s].
-        state: the hash of the physics at the end, as `simkit run` prints it.
-        marks: a short hash of the physics after each tick, (ticks,).
-        inputs: the same of what was put in, (ticks,).
-        heard: by topic.
-        heard_from: the tick after which messages count.
-        latest: a hash of the newest reading of each sensor at the end, by its scoped name.
-        remembered: hashes of each plugin's attributes at the end, by plugin.
-        sources: file of the code of each plugin, by plugin.
-        fingerprint: of the machine.
-        events: calls of plugins, where they were watched.
-        seconds: wall time of the run.
+        failure: Error of loading the world; None if it was loaded.
+        stopped: Reason why the process gave no result; empty if it gave one.
+        stack: Code positions at that time, innermost first.
+        end: Error that ended the run; empty for a regular end.
+        ticks: Number of steps.
+        timestep: Time step [s].
+        state: Hash of the physics at the end, as `simkit run` prints it.
+        marks: Short hash of the physics after each tick, shape (ticks,).
+        inputs: Short hash of the inputs at each tick, shape (ticks,).
+        heard: Received messages by topic.
+        heard_from: Tick after which messages count.
+        latest: Hash of each sensor's newest reading at the end, by scoped name.
+        remembered: Hashes of each plugin's attributes at the end, by plugin.
+        sources: File and lines of each plugin's code, by plugin.
+        fingerprint: Fingerprint of the machine.
+        events: Plugin calls, if they were recorded.
+        seconds: Wall time of the run [s].
     """
 
     failure: SimkitError | None = None
@@ -121,12 +121,12 @@ class RunOutcome:
 
 
 def write_pickle(path: Path, value: object) -> None:
-    """Hands something to the other process, as a whole; both are of the same user, and the folder is nobody else's."""
+    """Write an object for the other process atomically; both processes have the same user and a private folder."""
     beside = path.with_suffix(".part")
     beside.write_bytes(pickle.dumps(value))
     os.replace(beside, path)  # noqa: PTH105 - atomic on every platform
 
 
 def read_pickle(path: Path) -> Any:
-    """What the other process handed over."""
+    """Read the object that the other process wrote."""
     return pickle.loads(path.read_bytes())

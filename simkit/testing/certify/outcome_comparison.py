@@ -1,4 +1,4 @@
-"""What of two runs is other, and which plugin or sensor began it."""
+"""Comparison of two runs: their differences, and the plugin or sensor that caused the first one."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ _MAX_LISTED: Final = 5
 
 @dataclass(frozen=True)
 class OutcomeDifference:
-    """One thing that is other.
+    """Difference between two runs.
 
     Attributes:
-        words: in a sentence.
-        tick: at which it shows first; None where that is not of one tick.
-        owner: whose doing it is, where that is plain.
+        words: Sentence.
+        tick: First tick that differs; None if the difference has no tick.
+        owner: Plugin or sensor that caused it; empty if unknown.
     """
 
     words: str
@@ -28,11 +28,11 @@ class OutcomeDifference:
 
 
 def differences(one: RunOutcome, other: RunOutcome) -> list[OutcomeDifference]:
-    """All that is other in the other run, the earliest first."""
+    """Return all differences of another run, earliest first."""
     if other.stopped:
         return [OutcomeDifference(other.stopped)]
     if other.failure is not None:
-        return [OutcomeDifference(f"the world does not open: {other.failure}")]
+        return [OutcomeDifference(f"the world cannot be loaded: {other.failure}")]
     found = [
         *_physics_differences(one, other),
         *_topic_differences(one, other),
@@ -44,7 +44,7 @@ def differences(one: RunOutcome, other: RunOutcome) -> list[OutcomeDifference]:
 
 
 def first_tick(found: list[OutcomeDifference]) -> int | None:
-    """The first tick at which anything shows."""
+    """Return the first tick of all differences."""
     return min((f.tick for f in found if f.tick is not None), default=None)
 
 
@@ -53,12 +53,14 @@ def _physics_differences(one: RunOutcome, other: RunOutcome) -> list[OutcomeDiff
     state, inputs = _first_different_row(one.marks, other.marks), _first_different_row(one.inputs, other.inputs)
     if inputs is not None and (state is None or inputs <= state):
         tick = inputs + 1
-        found.append(OutcomeDifference(f"what plugins put in (controls, forces) at {tick_text(tick, one)}", tick))
+        found.append(
+            OutcomeDifference(f"inputs from plugins (controls, forces) differ at {tick_text(tick, one)}", tick)
+        )
     if state is not None:
-        same = "" if inputs is not None and inputs <= state else "; what was put in was the same until then"
-        found.append(OutcomeDifference(f"the physics from {tick_text(state + 1, one)}{same}", state + 1))
+        same = "" if inputs is not None and inputs <= state else "; until then all inputs are equal"
+        found.append(OutcomeDifference(f"the physics differs from {tick_text(state + 1, one)}{same}", state + 1))
     elif one.state != other.state:
-        found.append(OutcomeDifference("the state hash at the end"))
+        found.append(OutcomeDifference("the state hash at the end differs"))
     return found
 
 
@@ -86,7 +88,7 @@ def _topic_differences(one: RunOutcome, other: RunOutcome) -> list[OutcomeDiffer
 
 
 def _first_message(mine: TopicOutcome, theirs: TopicOutcome, after: int) -> tuple[int | None, int | None]:
-    """Index and tick of the first message that is other, of those after a tick."""
+    """Return index and tick of the first message that differs after a tick."""
     left, right = _after_tick(mine, after), _after_tick(theirs, after)
     index = _first_different_row(mine.digests[left], theirs.digests[right])
     if index is None:
@@ -104,20 +106,20 @@ def _after_tick(heard: TopicOutcome, tick: int) -> np.ndarray[tuple[int], np.dty
 
 def _ending_differences(one: RunOutcome, other: RunOutcome) -> list[OutcomeDifference]:
     if one.end != other.end:
-        said = f"it ended with: {other.end}" if other.end else f"it ran through; the first run ended with: {one.end}"
-        return [OutcomeDifference(said, min(one.ticks, other.ticks))]
+        text = f"ended with: {other.end}" if other.end else f"ended regularly; the first run ended with: {one.end}"
+        return [OutcomeDifference(text, min(one.ticks, other.ticks))]
     if one.ticks != other.ticks:
-        return [OutcomeDifference(f"it ended after {other.ticks} steps, the first run after {one.ticks}", None)]
+        return [OutcomeDifference(f"ended after {other.ticks} steps, the first run after {one.ticks}", None)]
     return []
 
 
 def _latest_differences(one: RunOutcome, other: RunOutcome) -> list[OutcomeDifference]:
     names = [n for n in one.latest if one.latest[n] != other.latest.get(n)]
-    return [OutcomeDifference(f"{name}: its last reading", None, name) for name in names[:_MAX_LISTED]]
+    return [OutcomeDifference(f"{name}: the last reading differs", None, name) for name in names[:_MAX_LISTED]]
 
 
 def _first_different_row(one: Numbers, other: Numbers) -> int | None:
-    """The first place at which two rows differ."""
+    """Return the index of the first difference of two rows; None if they are equal."""
     count = min(len(one), len(other))
     unequal = np.flatnonzero(one[:count] != other[:count])
     if len(unequal):
@@ -126,22 +128,22 @@ def _first_different_row(one: Numbers, other: Numbers) -> int | None:
 
 
 def tick_text(tick: int, outcome: RunOutcome) -> str:
-    """A tick with its time."""
+    """Format a tick with its time."""
     return f"tick {tick} (t = {tick * outcome.timestep:.6g} s)"
 
 
-# ---------------------------------------------------------------------- who began
+# ---------------------------------------------------------------------- cause
 
 
 @dataclass(frozen=True)
 class Culprit:
-    """The plugin or sensor that began.
+    """Plugin or sensor that caused the first difference.
 
     Attributes:
-        owner: which.
-        tick: when.
-        how: what it did, in words.
-        matters: whether it changed what others see, or only what it remembers.
+        owner: Plugin or sensor.
+        tick: Tick of the cause.
+        how: Description of the cause.
+        matters: True if the state or an output changed, false if only an attribute did.
     """
 
     owner: str
@@ -151,17 +153,17 @@ class Culprit:
 
 
 def find_culprit(one: RunOutcome, other: RunOutcome) -> Culprit | None:
-    """Who began, of two runs whose plugins were watched; None where no plugin or sensor did."""
+    """Find the plugin or sensor that caused the first difference of two runs with recorded calls; None if unknown."""
     called = _first_different_call(one.events, other.events, one)
     ticks = {f.tick: f for f in reversed(_topic_differences(one, other)) if f.owner and f.tick is not None}
     tick = min(ticks, default=None)
     if tick is None or (called is not None and called.tick <= tick):
         return called
-    return Culprit(ticks[tick].owner, tick, f"what it publishes is other: {ticks[tick].words}")
+    return Culprit(ticks[tick].owner, tick, f"its output differs: {ticks[tick].words}")
 
 
 def _first_different_call(ours: list[PluginCall], theirs: list[PluginCall], outcome: RunOutcome) -> Culprit | None:
-    """The first call with another effect; one that only remembers something else counts if there is no such."""
+    """Return the first call with a different effect on the state, else the first with a different attribute."""
     remembers: Culprit | None = None
     known: set[str] = set()
     for mine, yours in zip(ours, theirs, strict=False):
@@ -169,26 +171,26 @@ def _first_different_call(ours: list[PluginCall], theirs: list[PluginCall], outc
             early = min(mine, yours, key=lambda event: event.tick)
             if remembers and remembers.owner == early.owner:
                 return remembers
-            words = f"its {early.hook} is called at {tick_text(early.tick, outcome)} in one of the runs only"
+            words = f"its {early.hook} is called at {tick_text(early.tick, outcome)} in only one of the runs"
             return Culprit(early.owner, early.tick, words)
         if mine.before != yours.before:
             return remembers
         attributes = _other_attributes(mine, yours)
         if attributes and mine.owner not in known:
             known.add(mine.owner)
-            words = f"after its {mine.hook} at {tick_text(mine.tick, outcome)} it remembers something else"
+            words = f"after its {mine.hook} at {tick_text(mine.tick, outcome)} its attributes differ"
             remembers = remembers or Culprit(mine.owner, mine.tick, f"{words}: {attributes}", matters=False)
         if mine.after != yours.after:
-            began = f"; {remembers.how}" if remembers and remembers.owner == mine.owner else ""
-            return Culprit(mine.owner, mine.tick, f"in its {mine.hook} it puts in something else{began}")
+            cause = f"; {remembers.how}" if remembers and remembers.owner == mine.owner else ""
+            return Culprit(mine.owner, mine.tick, f"its {mine.hook} gives different inputs{cause}")
     return remembers
 
 
 def _other_attributes(mine: PluginCall, yours: PluginCall) -> str:
-    """`phase (0.25, not 0.75), seen`."""
+    """Describe the attributes that differ: `phase (0.25, not 0.75), seen`."""
     names = [n for n in sorted({*mine.changed, *yours.changed}) if mine.changed.get(n) != yours.changed.get(n)]
-    said = []
+    texts = []
     for name in names[:3]:
         here, there = mine.shown.get(name, ""), yours.shown.get(name, "")
-        said.append(f"{name} ({there}, not {here})" if here and there and here != there else name)
-    return ", ".join(said) + (f" and {len(names) - 3} more" if len(names) > 3 else "")
+        texts.append(f"{name} ({there}, not {here})" if here and there and here != there else name)
+    return ", ".join(texts) + (f" and {len(names) - 3} more" if len(names) > 3 else "")

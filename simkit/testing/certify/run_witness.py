@@ -1,4 +1,4 @@
-"""Witness a run: what its subscribers get, what its plugins are called for, change and remember, in short hashes."""
+"""Recorders of a run in short hashes: received messages, plugin calls, state changes and plugin attributes."""
 
 from __future__ import annotations
 
@@ -33,22 +33,22 @@ _OWN_NAMES: Final = ("scoped", "topic", "name")
 
 
 def short_hash(content: bytes) -> int:
-    """A hash of 64 bits."""
+    """Return a hash of 64 bits."""
     return int.from_bytes(hashlib.blake2b(content, digest_size=8).digest(), "little")
 
 
 def value_hash(value: object) -> int:
-    """A hash of a value and of all that is in it; equal for equal values of two processes."""
+    """Return a hash of a value and all its parts; equal values have equal hashes in different processes."""
     return _update_hash(value, {}, 0)
 
 
 def attribute_hashes(state: Mapping[str, object]) -> dict[str, int]:
-    """The hash of each attribute."""
+    """Return the hash of each attribute."""
     return {str(name): value_hash(value) for name, value in state.items()}
 
 
 def short_value_text(value: object) -> str:
-    """A value as a report says it, where it is short; else empty."""
+    """Return a value as short text; empty if it is too long."""
     if isinstance(value, (bool, int, float, str, np.number)):
         text = repr(value.item() if isinstance(value, np.number) else value)
         return text if len(text) <= 60 else text[:57] + "..."
@@ -72,7 +72,7 @@ def _update_hash(value: Any, seen: dict[int, tuple[int, object]], depth: int) ->
         return short_hash(value.dtype.str.encode() + value.tobytes())
     if id(value) in seen or depth > _MAX_DEPTH:
         return short_hash(f"again {seen.get(id(value), (-1,))[0]}".encode())
-    seen[id(value)] = len(seen), value  # and it stays: another may not come to lie where it lay
+    seen[id(value)] = len(seen), value  # keep a reference, so that the id is not reused
     return _update_hash_of_items(value, seen, depth + 1)
 
 
@@ -98,13 +98,13 @@ def _update_hash_of_items(value: Any, seen: dict[int, tuple[int, object]], depth
 
 
 def _is_handle(value: object) -> bool:
-    """What stands for itself when a state is copied: links, publishers, plugins, the simulation."""
+    """Check whether copies of a state refer to the same object: links, publishers, plugins, the simulation."""
     copy = getattr(type(value), "__deepcopy__", None)
     return copy is not None and getattr(copy, "__module__", "").startswith("simkit.")
 
 
 def _attributes(value: object) -> dict[str, object] | None:
-    """What an object has; None of functions, modules, classes and what is made in C."""
+    """Return the attributes of an object; None for functions, modules, classes and C objects."""
     if callable(value) and hasattr(value, "__qualname__"):
         return None
     listed = [vars(cls).get("__slots__", ()) for cls in type(value).__mro__]
@@ -121,37 +121,37 @@ UNKNOWN = -1
 
 
 class TopicHashes:
-    """Subscriptions to all topics of a run, those that come later included.
+    """Subscriptions to all topics of a run, including later topics.
 
-    Topics that a bus has aside (`/stats`, whose fields are of the wall clock) are left out unless they are named.
+    Internal topics of the bus (`/stats`, which has wall-clock fields) are left out unless they are named.
 
     Args:
-        sim: the simulation.
-        how: they hear.
-        topics: shell patterns of what is heard; empty for all.
-        skip: shell patterns of what is not.
+        sim: Simulation.
+        how: Kind of subscription.
+        topics: Shell patterns of topics; empty for all.
+        skip: Shell patterns of topics to leave out.
     """
 
     def __init__(self, sim: Simulation, how: Listening, topics: Sequence[str] = (), skip: Sequence[str] = ()) -> None:
         self._sim, self._how, self._topics, self._skip = sim, how, tuple(topics), tuple(skip)
         self._streams: dict[str, _TopicHash] = {}
-        self.is_deaf = False
+        self.is_paused = False
         if how != "none":
             TopicTaps(sim, self._receiver_of).open()
 
     def take(self) -> None:
-        """Looks at what was kept; to be called now and then between two steps."""
+        """Hash the collected messages; call this method from time to time between two steps."""
         for stream in self._streams.values():
             stream.take()
 
     def heard(self) -> dict[str, TopicOutcome]:
-        """What came, by topic."""
+        """Return the received messages by topic."""
         self.take()
         owners = _topic_publishers(self._sim)
         return {topic: stream.heard(owners.get(topic, "")) for topic, stream in sorted(self._streams.items())}
 
     def _receiver_of(self, topic: str, type_name: str) -> Callable[[Message], None] | None:
-        if topic in self._streams or not self._is_wanted(topic):
+        if topic in self._streams or not self._is_selected(topic):
             return None
         stream = self._streams[topic] = _TopicHash(self, self._sim, type_name)
         if self._how == "kept":
@@ -160,36 +160,35 @@ class TopicHashes:
         if self._how == "late":
             self._sim.subscribe(topic, lambda _: None, keep=3)
             self._sim.subscribe(topic, keep=2)
-        return None  # real subscriptions, so that how a topic is heard differs from run to run
+        return None  # use real subscriptions, so that the kind of subscription varies between runs
 
-    def _is_wanted(self, topic: str) -> bool:
+    def _is_selected(self, topic: str) -> bool:
         if topic in self._sim.communication.bus.aside and topic not in self._topics:
             return False
         return not matches_topic(topic, self._skip) and (not self._topics or matches_topic(topic, self._topics))
 
 
 class _TopicHash:
-    """One topic."""
+    """Hashes of one topic."""
 
-    def __init__(self, ears: TopicHashes, sim: Simulation, type_name: str) -> None:
-        self._ears, self._sim, self._type_name = ears, sim, type_name
+    def __init__(self, owner_hashes: TopicHashes, sim: Simulation, type_name: str) -> None:
+        self._owner, self._sim, self._type_name = owner_hashes, sim, type_name
         self._digests: list[int] = []
         self._ticks: list[int] = []
         self._kept: list[Message] = []
         self._all = hashlib.sha256()
 
     def receive(self, message: object) -> None:
-        """Called back with a message."""
-        if not self._ears.is_deaf:
+        """Hash a message; used as a subscriber callback."""
+        if not self._owner.is_paused:
             self._count(message, self._sim.tick)
 
     def keep(self, message: object) -> None:
-        """Given a message, or what will be one."""
-        if not self._ears.is_deaf:
+        """Store a message or lazy message for later."""
+        if not self._owner.is_paused:
             self._kept.append(message)
 
     def take(self) -> None:
-
         kept, self._kept = self._kept, []
         for message in kept:
             made = message.get() if type(message) is LazyMessage else message
@@ -208,7 +207,7 @@ class _TopicHash:
 
 
 def _topic_publishers(sim: Simulation) -> dict[str, str]:
-    """Who publishes each topic."""
+    """Return the publishers of each topic."""
     found: dict[str, list[str]] = {}
     for topic, end, _, does in sim.communication.bus.endpoints():
         if does == "publishes" and end.owner is not None:
@@ -217,7 +216,7 @@ def _topic_publishers(sim: Simulation) -> dict[str, str]:
 
 
 def plugin_title(part: Any) -> str:
-    """A plugin or a sensor as a report calls it: `plugin 'drive' (robot.sdf:12)`."""
+    """Return the name of a plugin or sensor for reports: `plugin 'drive' (robot.sdf:12)`."""
     where = getattr(part, "where", None) or getattr(getattr(part, "scene", None), "where", None)
     kind = "plugin" if hasattr(part, "has_hook") else "sensor" if hasattr(part, "scene") else ""
     if not kind:
@@ -230,10 +229,10 @@ def plugin_title(part: Any) -> str:
 
 
 class PluginCallRecorder:
-    """Notes every call of a plugin.
+    """Recorder of every plugin call.
 
     Attributes:
-        is_away: whether it looks the other way.
+        is_away: True while recording is paused.
     """
 
     def __init__(self) -> None:
@@ -244,7 +243,7 @@ class PluginCallRecorder:
     def call(
         self, engine: EngineState, plugin: object, hook: str, method: Callable[..., object], values: tuple[object, ...]
     ) -> Any:
-        """Calls something of a plugin, and notes what it did."""
+        """Call a method of a plugin and record its effect."""
         if self.is_away or not hasattr(plugin, "has_hook"):
             return method(*values)
         before, tick = writable_state_hash(engine.physics.data), engine.tick
@@ -254,12 +253,12 @@ class PluginCallRecorder:
             self._note(engine.physics.data, plugin, hook, tick, before)
 
     def loaded(self, sim: Simulation) -> None:
-        """Notes what plugins remember once the world is open."""
+        """Record the attributes of all plugins after loading."""
         for plugin in sim.engine.structure.all_plugins():
             self._note(sim.mj_data, plugin, "load", 0, writable_state_hash(sim.mj_data))
 
     def again(self) -> None:
-        """After a reset: nothing of before counts."""
+        """Discard all recorded calls after a reset."""
         self.events.clear()
         self._known.clear()
 
@@ -270,16 +269,15 @@ class PluginCallRecorder:
         self._known[id(plugin)] = now
         changed = {name: value for name, value in now.items() if known.get(name) != value}
         changed.update({name: 0 for name in known if name not in now})
-        said = {name: short_value_text(state[name]) for name in changed if name in state}
+        shown = {name: short_value_text(state[name]) for name in changed if name in state}
         self.events.append(
-            PluginCall(tick, plugin_title(plugin), hook, before, writable_state_hash(data), changed, said)
+            PluginCall(tick, plugin_title(plugin), hook, before, writable_state_hash(data), changed, shown)
         )
 
 
 @contextmanager
 def record_plugin_calls(witness: PluginCallRecorder) -> Iterator[None]:
-    """Has every call of a plugin go by a witness; for simulations that are opened within."""
-
+    """Redirect every plugin call to a recorder, for simulations that are loaded in this context."""
     task, guard, least = PluginFaults.task, PluginFaults.guard, step_tasks.MIN_GROUP_SIZE
 
     def watched_task(self: Any, plugin: Any, hook: str) -> Callable[[int], None]:
@@ -301,14 +299,14 @@ def record_plugin_calls(witness: PluginCallRecorder) -> Iterator[None]:
 
 
 def plugin_attributes(plugin: Any) -> JsonObject:
-    """A plugin's attributes, as a snapshot keeps them."""
+    """Return a plugin's attributes, as in a snapshot."""
     try:
         state = plugin.get_state()
     except Exception:  # noqa: BLE001 - a plugin may raise anything
         return {}
     if not isinstance(state, Mapping):
         return {"state": state}
-    inner = state.get("variables")  # of a system of gz
+    inner = state.get("variables")  # gz systems
     return dict(inner if isinstance(inner, Mapping) else state)
 
 
@@ -321,21 +319,20 @@ def writable_state_hash(data: mujoco.MjData) -> int:
 
 
 class TickHashes:
-    """A short hash of the physics, and of what was put in, for every tick.
+    """Short hashes of the physics and of the inputs for every tick.
 
     Attributes:
-        is_away: whether it looks the other way.
+        is_away: True while recording is paused.
     """
 
     def __init__(self, sim: Simulation) -> None:
         self._sim, self.is_away = sim, False
         self.state: dict[int, int] = {}
         self.inputs: dict[int, int] = {}
-        self._told = object()
         sim.communication.on_demand.add(lambda: True, None, self._mark, "after")
 
     def rows(self, ticks: int) -> tuple[npt.NDArray[np.uint64], npt.NDArray[np.uint64]]:
-        """Both as arrays of so many ticks."""
+        """Return both hashes as arrays with one entry per tick."""
         wanted = range(1, ticks + 1)
         state, inputs = ([of.get(tick, 0) for tick in wanted] for of in (self.state, self.inputs))
         return np.array(state, np.uint64), np.array(inputs, np.uint64)

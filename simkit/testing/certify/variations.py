@@ -1,4 +1,4 @@
-"""What is other from run to run, and may change nothing."""
+"""Environments of the runs of a certificate, which must not change any output."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import Final, Literal
 
 Listening = Literal["called", "kept", "none", "late"]
-"""How messages are heard: called back with each; kept and looked at later; by nobody; from half of the run, twice."""
+"""Kind of subscription: callbacks; collected for later; no subscribers; two subscribers from half of the run on."""
 
 Detour = Literal["", "restore", "reset"]
-"""What the run does on its way: half of it, a snapshot, a second of something else, and back; or a reset."""
+"""Detour during the run: at half time a snapshot, further steps and a restore; or a reset at the beginning."""
 
 _THREADS: Final = (
     *("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMEXPR_NUM_THREADS", "VECLIB_MAXIMUM_THREADS"),
@@ -23,17 +23,17 @@ _THREADS: Final = (
 
 @dataclass(frozen=True)
 class Variation:
-    """The surroundings of one run.
+    """Environment of one run.
 
     Attributes:
-        name: what the table calls it.
-        words: what is other, in words.
-        hash_seed: of Python's hashes of texts.
-        threads: for whatever computes on several (OpenMP, BLAS, software rendering).
-        render_thread: whether pictures are drawn beside the physics.
-        listening: how its messages are heard.
-        elsewhere: whether working directory, home, time zone, language and temporary folder are others.
-        detour: what it does on its way.
+        name: Name in the table.
+        words: Description of the differences.
+        hash_seed: Seed of Python's string hashes.
+        threads: Number of threads for OpenMP, BLAS and software rendering.
+        render_thread: True if pictures are rendered in parallel with the physics.
+        listening: Kind of subscription.
+        elsewhere: True if working directory, home, time zone, language and temporary folder differ.
+        detour: Detour during the run.
     """
 
     name: str
@@ -46,10 +46,10 @@ class Variation:
     detour: Detour = ""
 
     def environment(self, folder: Path) -> dict[str, str]:
-        """The variables of its process.
+        """Return the environment variables of the process.
 
         Args:
-            folder: an empty one of its own.
+            folder: Empty folder for this process.
         """
         found = dict(os.environ)
         found["PYTHONHASHSEED"] = str(self.hash_seed)
@@ -58,7 +58,7 @@ class Variation:
         if self.elsewhere:
             home = folder / "home"
             home.mkdir()
-            # where models that Gazebo fetched lie, so that another HOME does not take a world's parts away
+            # folders of models that Gazebo downloaded, so that another HOME does not hide them
             fetched = (Path.home() / name / "fuel" for name in (".gz", ".ignition"))
             caches = [found.get("GZ_FUEL_CACHE_PATH", ""), *(str(place) for place in fetched if place.is_dir())]
             found["GZ_FUEL_CACHE_PATH"] = os.pathsep.join(place for place in caches if place)
@@ -68,27 +68,33 @@ class Variation:
         return found
 
     def working_directory(self, folder: Path) -> Path:
-        """Where its process stands."""
+        """Return the working directory of the process."""
         return folder if self.elsewhere else Path.cwd()
 
 
 VARIATIONS: Final = (
     Variation("as it is", "hash seed 0, one thread, a callback on every topic"),
     Variation(
-        "elsewhere", "other hash seed, working directory, HOME, TZ, LANG; messages kept", 4711, 2, True, "kept", True
+        "elsewhere",
+        "other hash seed, working directory, HOME, TZ, LANG; messages collected",
+        4711,
+        2,
+        True,
+        "kept",
+        True,
     ),
-    Variation("unheard", "nobody subscribes; other hash seed, pictures drawn beside", 17, 4, True, "none"),
-    Variation("late", "two subscribers on each topic from half way; other hash seed", 99, 2, False, "late"),
+    Variation("not received", "no subscribers; other hash seed, pictures rendered in parallel", 17, 4, True, "none"),
+    Variation("late", "two subscribers on each topic from half time on; other hash seed", 99, 2, False, "late"),
     Variation(
-        "restored", "half way: snapshot, go on, spawn, restore; other hash seed", 5, 1, True, "kept", detour="restore"
+        "restored", "half time: snapshot, go on, spawn, restore; other hash seed", 5, 1, True, "kept", detour="restore"
     ),
-    Variation("reset", "runs a little, then reset; other hash seed", 23, 1, False, "called", detour="reset"),
+    Variation("reset", "short run, then reset; other hash seed", 23, 1, False, "called", detour="reset"),
 )
-"""The first is what the others are compared with."""
+"""Environments; the first run is the reference."""
 
 
 def choose_variations(runs: int) -> list[Variation]:
-    """So many variations: the first ones, and from then on repetitions with other hash seeds."""
+    """Return a number of variations: the first ones, then repetitions with other hash seeds."""
     repeated = (
         replace(variation, name=f"{variation.name} {round_}", hash_seed=variation.hash_seed + 7919 * round_)
         for round_ in count(2)

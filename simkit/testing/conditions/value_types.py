@@ -79,7 +79,6 @@ def is_orientation_like(kind: ValueType) -> bool:
 @cache
 def fields_of(type_name: str) -> dict[str, tuple[str, ValueType]]:
     """Return the fields of a message type: name -> attribute and type."""
-
     name = msgs.full_name(type_name)
     found: dict[str, tuple[str, ValueType]] = {}
     attributes = list(msgs.type_of(name).__dataclass_fields__)

@@ -192,7 +192,6 @@ class WorldView:
 
     def scoped(self, name: str, source: str, span: Span) -> str:
         """Return the scoped name of a model, a link or a collision."""
-
         if name in collision_table(self.sim.engine.structure.compiled).names:
             return name
         found: str = self._find(("model", "link"), name, source, span).scoped

@@ -266,7 +266,7 @@ def _undo_prediction(residual: Array, order: str) -> Array:
 
 
 def _zigzag(numbers: Array) -> Array:
-    """Map signed to unsigned numbers so that small magnitudes stay small: 0, -1, 1, -2, … become 0, 1, 2, 3, …"""
+    """Map signed to unsigned numbers so that small magnitudes stay small: 0, -1, 1, -2 become 0, 1, 2, 3."""
     flat = numbers.reshape(-1)
     return ((flat << 1) ^ (flat >> 63)).view(np.uint64)
 

@@ -92,7 +92,6 @@ def _run_today(golden: RunRecord, scenario: RunSpec) -> Iterator[tuple[RunRecord
 
 def _append_world_changes(error: InputError, golden: RunRecord, scenario: RunSpec) -> InputError:
     """Add the changes of the world to an error, because a change may have removed a topic that the scenario needs."""
-
     still = replace(scenario, commands=(), play="", play_topics=(), checks=(), until="", timeout=None, duration=0.0)
     try:
         run = run_record(still)

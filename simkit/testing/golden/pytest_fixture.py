@@ -149,7 +149,10 @@ class SensorRegression:
 
         Args:
             sim: Simulation in any state.
-            name, topics, skip, tolerances: See `__call__`.
+            name: See `__call__`.
+            topics: See `__call__`.
+            skip: See `__call__`.
+            tolerances: See `__call__`.
             duration: Approximate duration of the run [s]; it determines the interval between recorded states.
 
         Raises:

@@ -1,4 +1,4 @@
-"""Fingerprint of everything besides the scenario that a run depends on: versions, processor, renderer, and file hashes."""
+"""Fingerprint of the conditions of a run besides its scenario: versions, processor, renderer, file hashes."""
 
 from __future__ import annotations
 
@@ -80,8 +80,7 @@ def _version(package: str) -> str:
 
 
 def _cpu_features() -> str:
-    """Return the processor features by which NumPy and the maths library select their code: the widest of each family."""
-
+    """Return the processor features by which NumPy and libm select their code: the widest of each family."""
     try:
         features = import_module("numpy._core._multiarray_umath").__cpu_features__
     except (ImportError, AttributeError):  # some NumPy versions hide the table
@@ -123,7 +122,6 @@ def source_hashes(sim: Simulation) -> dict[str, str]:
 
     A file name includes as many parent folders as necessary to be unique.
     """
-
     of_plugins = plugin_value_files(sim)
     are_leaves = values_of_files(of_plugins)[2]
     paths = dict.fromkeys(

@@ -31,7 +31,6 @@ def tile_hashes(image: Array, tile: int = TILE) -> npt.NDArray[np.uint32]:
         image: Picture of any type, shape (height, width) or (height, width, channels).
         tile: Side length of a tile [px].
     """
-
     rows, columns = -(-image.shape[0] // tile), -(-image.shape[1] // tile)
     found = np.empty((rows, columns), np.uint32)
     for row in range(rows):

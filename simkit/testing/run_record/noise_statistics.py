@@ -12,8 +12,10 @@ import numpy.typing as npt
 Floats = npt.NDArray[np.float64]
 
 FALSE_ALARM: Final = 1e-11
-"""Probability that one test reports equal noise as different. A field has about ten tests, so 10 000 checks of a robot
-with 100 fields raise no false alarm with a probability of more than 99.9 %.
+"""Probability that one test reports equal noise as different.
+
+A field has about ten tests. Therefore 10 000 checks of a robot with 100 fields raise no false alarm with a probability
+of more than 99.9 %.
 """
 QUANTILES: Final = 129
 _COMPONENTS: Final = 16  # components with separate statistics; a covariance has 9
@@ -110,7 +112,8 @@ def statistic_differences(
     """Return the statistics that prove two samples to differ, each with a false-alarm probability of `FALSE_ALARM`.
 
     Args:
-        golden, run: Statistics of the same field.
+        golden: Statistics of the golden run.
+        run: Statistics of the new run, of the same field.
         absolute: Additional tolerance for means, in the field's unit.
         relative: Additional relative tolerance for deviations.
     """
@@ -163,8 +166,7 @@ def _mean_difference(
 def _deviation_difference(
     golden: NoiseStatistics, run: NoiseStatistics, c: int, relative: float
 ) -> StatisticDifference | None:
-    """Compare deviations by the logarithm of their ratio, whose variance is (kurtosis - 1) / 4 by the number of
-    samples.
+    """Compare deviations by the logarithm of their ratio, with variance (kurtosis - 1) / 4 by the number of samples.
 
     Source: Shoemaker, "Fixing the F test for equal variances", The American Statistician 57(2), 2003.
     """

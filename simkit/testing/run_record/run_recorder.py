@@ -98,7 +98,7 @@ def _sort_points(part: Any, fields: tuple[str, ...]) -> object:
 
 
 def _without_entity_numbers(contact: Message) -> object:
-    """Return a contact without entity numbers, which depend on the order in the file; the names identify the entities."""
+    """Return a contact without entity numbers, which depend on the order in the file; names are sufficient."""
     wrenches = [
         replace(w, body_1_id=replace(w.body_1_id, data=0), body_2_id=replace(w.body_2_id, data=0))
         for w in contact.wrenches
@@ -188,7 +188,6 @@ class RunRecorder:
         Args:
             end: End of the run.
         """
-
         published = {topic for topic, _, _, does in self._sim.communication.bus.endpoints() if does == "publishes"}
         streams = {}
         for topic in sorted(self._streams):

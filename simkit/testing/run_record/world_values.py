@@ -34,7 +34,6 @@ def values_of_simulation(sim: Simulation) -> tuple[WorldValues, dict[str, str]]:
     Returns:
         Path -> number, text, or list of numbers (a pose is x, y, z and a quaternion w, x, y, z); path -> `file:line`.
     """
-
     leaves, places = values_of_world(sim.world)
     in_files, their_places, _ = values_of_files(plugin_value_files(sim))
     return {**leaves, **in_files}, {**places, **their_places}

@@ -278,7 +278,6 @@ def _run_json(outcome: RunGrade) -> JsonObject:
 
 def junit_cases(graded: Grade) -> list[JunitCase]:
     """Return one JUnit test case for each check of each run."""
-
     suite = graded.label or Path(graded.hand_in).stem or graded.exercise.file.stem
     return [
         JunitCase(

@@ -176,7 +176,6 @@ class ScenarioReader(ValueReader):
 
     def _played(self) -> float:
         """Return the duration of the bag that is played [s]; 10 s without a bag."""
-
         fields = self._fields.get("play")
         if fields is None and "play_topics" in self._fields:
             hint = "add play: BAG, whose commands are sent again"

@@ -59,7 +59,8 @@ def find_changes(edits: list[Edit], golden: WorldValues, run: WorldValues) -> li
 
     Args:
         edits: Values that differ.
-        golden, run: All values of both worlds.
+        golden: All values of the golden world.
+        run: All values of the new world.
     """
     if not edits:
         return []

@@ -28,7 +28,8 @@ def changes_outside_world(
 
     Args:
         changes: Changes of the world.
-        golden, run: Records of both runs.
+        golden: Record of the golden run.
+        run: Record of the new run.
     """
     edits = other_edits(golden, run)
     named: list[Change] = []
@@ -104,7 +105,8 @@ def engine_changes(golden: RunRecord, run: RunRecord, changes: Sequence[Change])
     """Return fields of the compiled model that differ although the scene does not.
 
     Args:
-        golden, run: Records of both runs.
+        golden: Record of the golden run.
+        run: Record of the new run.
         changes: Changes of the world.
     """
     if not golden.fields or not run.fields:

@@ -150,7 +150,8 @@ def largest_difference_text(
 
     Args:
         names: Names of the quantities.
-        golden, run: Values, shape (quantities,).
+        golden: Values in the golden run, shape (quantities,).
+        run: Values in the new run, shape (quantities,).
         sizes: Scale of each quantity, shape (quantities,); None for the size of these values.
     """
     a, b = np.asarray(golden, dtype=np.float64), np.asarray(run, dtype=np.float64)

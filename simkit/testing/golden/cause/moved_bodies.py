@@ -52,7 +52,8 @@ def find_motions(
 
     Args:
         edits: Values that differ.
-        golden, run: All values of both worlds.
+        golden: All values of the golden world.
+        run: All values of the new world.
     """
     poses = [e for e in edits if e.attribute in ("pose_world", "pose_link") and _is_pose(e.golden) and _is_pose(e.run)]
     # values that follow from another value of the entity and from the pose of its owner

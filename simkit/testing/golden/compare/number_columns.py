@@ -169,7 +169,8 @@ def field_finding(
         terms: Settings of the comparison.
         shift: Run minus golden, for each value.
         limit: Largest allowed difference of each value.
-        golden, run: Values of both runs.
+        golden: Values of the golden run.
+        run: Values of the new run.
         rounding: Largest difference that rounding alone can cause.
     """
     off = np.abs(shift)

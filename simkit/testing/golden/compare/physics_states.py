@@ -41,7 +41,8 @@ def compare_physics(
     """Compare the physics of two runs; return None without a difference beyond the tolerance.
 
     Args:
-        golden, run: States of runs of the same scenario.
+        golden: States of the golden run.
+        run: States of the new run, of the same scenario.
         is_exact: True if bits must be equal; otherwise the recorded states are compared with tolerances.
         joints: Unit of each joint's position, by joint name.
     """

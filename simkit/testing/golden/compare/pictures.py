@@ -26,7 +26,8 @@ def compare_pictures(
     """Compare the pictures of a topic.
 
     Args:
-        golden, run: Streams of one topic.
+        golden: Stream of the golden run.
+        run: Stream of the new run, of the same topic.
         tolerance: Tolerance of the topic.
         is_exact: True if bits must be equal.
         count: Number of messages to compare.
@@ -250,7 +251,8 @@ def structural_similarity(golden: Array, run: Array, peak: float = 255.0) -> flo
     """Return the structural similarity of two pictures of the same size; 1 for equal pictures.
 
     Args:
-        golden, run: Pictures of shape (height, width) or (height, width, channels).
+        golden: Picture of shape (height, width) or (height, width, channels).
+        run: Picture of the same shape.
         peak: Largest possible value.
 
     Source: Wang, Bovik, Sheikh, Simoncelli, "Image quality assessment: from error visibility to structural similarity",

@@ -28,7 +28,6 @@ def compare(golden: RunRecord, run: RunRecord, *, exact: bool | None = None) -> 
         exact: True if bits must be equal, False for tolerances. If None, bits must be equal on the same machine with
             the same versions, unless the scenario of the new run requests tolerances.
     """
-
     if exact is None and not run.scenario.bits:
         exact = False
     same = not fingerprint_differences(golden.fingerprint, run.fingerprint) if exact is None else exact

@@ -29,7 +29,8 @@ def compare_times(golden: Stream, run: Stream, timestep: float, is_exact: bool) 
     """Return the number of first messages whose times match, and the first difference in time.
 
     Args:
-        golden, run: Streams of one topic.
+        golden: Stream of the golden run.
+        run: Stream of the new run, of the same topic.
         timestep: Physics time step [s]; on another machine an event may shift by one step.
         is_exact: True if times must be equal.
     """
@@ -314,7 +315,6 @@ def _compare_texts(pair: StreamPair, count: int) -> Ranked:
 
 def _compare_statistics(pair: StreamPair, found: StreamComparison) -> Ranked:
     """Compare noise statistics, where both runs have them."""
-
     golden, run = pair.golden, pair.run
     ranked: Ranked = []
     for path in sorted(golden.statistics.keys() | run.statistics.keys()):
@@ -365,7 +365,8 @@ def statistic_text(
         deviance: Statistic that differs.
         run: Stream of the new run.
         path: Path of the field.
-        golden, other: Statistics of the golden run and of the new run.
+        golden: Statistics of the golden run.
+        other: Statistics of the new run.
     """
     unit = unit_of(run.type_name, path)
     place = f"[{deviance.component}]" if golden.mean.size > 1 else ""
