@@ -72,7 +72,7 @@ def test_an_endless_text_keeps_its_beginning_and_its_end() -> None:
     assert text.startswith("first")
     assert text.endswith("last")
     assert len(text) < LONGEST + 100
-    assert "letters left out" in text
+    assert "characters left out" in text
 
 
 def test_a_time_that_is_no_number_counts_as_none() -> None:

@@ -58,7 +58,7 @@ class LatestMessage(_TopicListener):
         """
         message = self._subscription.latest if self._subscription is not None else None
         if message is None:
-            raise UndecidedValue(f"no message has come on {self.topic}")
+            raise UndecidedValue(f"no message received on {self.topic}")
         return message
 
 

@@ -241,8 +241,7 @@ def points_of_cloud(message: Message) -> Any:
 
 
 class _NoiseRecorder(MessageRecorder):
-    """Recorder of all fields that replaces some fields by statistics of the difference between reading and ground
-    truth.
+    """Recorder that replaces some fields by noise statistics of reading minus ground truth.
 
     Args:
         sensor: Publishing sensor.

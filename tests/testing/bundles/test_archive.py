@@ -58,18 +58,18 @@ def refused(path: Path, code: str, text: str = "") -> None:
 @pytest.mark.parametrize(
     ("name", "why"),
     [
-        ("../escape.sdf", "leaves its folder"),
-        ("world/../../escape.sdf", "leaves its folder"),
+        ("../escape.sdf", "leads out of its folder"),
+        ("world/../../escape.sdf", "leads out of its folder"),
         ("/etc/passwd", "absolute"),
         ("world/a\\..\\b", "characters"),
         ("C:/windows", "characters"),
         ("world/a\nb", "characters"),
         ("world/" + "a" * 300, "too long"),
         ("world/" + "a/" * 600 + "b", "too long"),
-        ("world//a", "leaves its folder"),
-        ("setup.py", "no part"),
-        ("plugins/a.py", "no part"),
-        ("world", "no part"),
+        ("world//a", "leads out of its folder"),
+        ("setup.py", "is not a file that a bundle can contain"),
+        ("plugins/a.py", "is not a file that a bundle can contain"),
+        ("world", "is not a file that a bundle can contain"),
     ],
 )
 def test_a_name_that_leads_elsewhere_is_refused(sound: Path, tmp_path: Path, name: str, why: str) -> None:
@@ -92,7 +92,7 @@ def test_a_name_that_is_there_twice_is_refused(sound: Path, tmp_path: Path) -> N
         with zipfile.ZipFile(path, "a") as archive, warnings.catch_warnings():
             warnings.simplefilter("ignore")
             archive.writestr(other, WORLD)
-        refused(path, "SK-BUNDLE-003", "twice")
+        refused(path, "SK-BUNDLE-003", "duplicate")
 
 
 def test_a_file_that_is_a_folder_too_is_refused(sound: Path, tmp_path: Path) -> None:
@@ -156,10 +156,10 @@ def _with(**changes: Any) -> Callable[[Any], Any]:
 @pytest.mark.parametrize(
     ("page", "text"),
     [
-        (_with(world="../outside.sdf"), "not among its files"),
-        (_with(world="commands.jsonl"), "not among its files"),
-        (_with(spawn=[{"file": "/etc/passwd", "place": None, "name": None}]), "not among its files"),
-        (_with(models={"ball": "world/none.sdf"}), "not among its files"),
+        (_with(world="../outside.sdf"), "which is not a file in"),
+        (_with(world="commands.jsonl"), "which is not a file in"),
+        (_with(spawn=[{"file": "/etc/passwd", "place": None, "name": None}]), "which is not a file in"),
+        (_with(models={"ball": "world/none.sdf"}), "which is not a file in"),
         (_with(seed="1"), "seed"),
         (_with(seed=-1), "seed"),
         (_with(seed=1e300), "seed"),
@@ -169,8 +169,8 @@ def _with(**changes: Any) -> Callable[[Any], Any]:
         (_with(marks=[["a", 1]]), "marks"),
         (_with(streams={"/a": 1}), "streams"),
         (_with(fingerprint={"a": 1}), "fingerprint"),
-        (_with(code=["code/0/a.py"]), "not among its files"),
-        (lambda words: [words], "no bundle"),
+        (_with(code=["code/0/a.py"]), "which is not a file in"),
+        (lambda words: [words], "is not a simkit bundle"),
         (lambda words: {"format": 1}, "name"),
     ],
 )

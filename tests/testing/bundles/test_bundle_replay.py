@@ -220,8 +220,8 @@ def test_another_outcome_is_told_with_the_second_and_the_topic(tmp_path: Path) -
     _rewritten(path, forged, lambda line: line.replace(b'"x": 0.2', b'"x": 0.3'))
     found = replay(forged)
     assert not found.is_same
-    assert "equal up to 1 s, other at 2 s" in found.differences[0]
-    assert any(text.startswith("/go: other bits from t = 1.5 s on") for text in found.differences)
+    assert "equal up to 1 s, differs at 2 s" in found.differences[0]
+    assert any(text.startswith("/go: content differs from t = 1.5 s on") for text in found.differences)
 
 
 def _rewritten(path: Path, target: Path, change: Any) -> None:
@@ -244,7 +244,7 @@ def test_a_world_that_was_edited_meanwhile_is_told(tmp_path: Path) -> None:
         sim.run(0.1)
         world.write_text(WORLD.replace("<mass>2</mass>", "<mass>3</mass>"))
         with open_bundle(packed(sim, tmp_path)) as bundle:
-            assert any("changed since the run began" in text for text in bundle.manifest.missing)
+            assert any("edited after the run began" in text for text in bundle.manifest.missing)
 
 
 def test_what_stands_elsewhere_is_packed(tmp_path: Path) -> None:

@@ -78,24 +78,24 @@ def test_what_is_steady_is_the_same_in_every_surrounding(tmp_path: Path) -> None
     [
         (
             "if self.sim.tick >= 40:\n    self.link.apply_wrench((time.time() % 1, 0, 0))",
-            *("elsewhere", 40, "puts in", "wall"),
+            *("elsewhere", 40, "gives different inputs", "wall"),
         ),
         (
             "if self.sim.tick == 20:\n    self.drawn = random.random()\n"
             "if self.sim.tick > 60:\n    self.link.apply_wrench((self.drawn, 0, 0))",
-            *("elsewhere", 61, "remembers something else: drawn (", "no seed"),
+            *("elsewhere", 61, "attributes differ: drawn (", "without the simulation's seed"),
         ),
         (
             "if self.sim.tick % 10 == 5:\n    names = {'alpha', 'beta', 'gamma', 'delta', 'epsilon'}\n"
             "    self.out.publish({'data': ' '.join(n for n in names)})",
-            *("elsewhere", 5, "what it publishes is other: /told", "sorted()"),
+            *("elsewhere", 5, "its output differs: /told", "sorted()"),
         ),
         (
             "if self.out.wanted and self.sim.tick == 30:\n    self.link.apply_wrench((1, 0, 0))",
-            *("unheard", 30, "puts in", "who listens"),
+            *("not received", 30, "gives different inputs", "depends on the subscribers"),
         ),
-        (COUNTED, "restored", 50, "puts in", "no snapshot"),
-        (COUNTED, "reset", 0, "puts in", "no snapshot"),
+        (COUNTED, "restored", 50, "gives different inputs", "snapshots and resets do not restore it"),
+        (COUNTED, "reset", 0, "gives different inputs", "snapshots and resets do not restore it"),
     ],
     ids=["clock", "dice", "set", "listener", "restore", "reset"],
 )  # fmt: skip
@@ -125,7 +125,7 @@ def test_an_error_that_comes_in_every_run_at_the_same_tick_is_the_same(tmp_path:
 
 
 def test_an_error_of_one_run_only_is_a_difference(tmp_path: Path) -> None:
-    made = certified(tmp_path, "if not self.out.wanted:\n    raise ValueError('nobody')", "unheard")
+    made = certified(tmp_path, "if not self.out.wanted:\n    raise ValueError('nobody')", "not received")
     (found,) = made.differences
     assert any("nobody" in text for text in (found.words, *found.more))
 
@@ -157,7 +157,7 @@ def test_the_command_says_who_and_exits_with_5(tmp_path: Path, in_this_process: 
     given = ["certify", str(tmp_path / "w.sdf"), "--plugin-path", str(tmp_path), "--duration", "0.05", "--runs", "2"]
     done = CliRunner().invoke(app, given)
     assert done.exit_code == 5
-    assert "DIFFERENT" in done.stdout and "begun by plugin 'm::mine'" in done.stdout and "hint:" in done.stdout
+    assert "DIFFERENT" in done.stdout and "caused by plugin 'm::mine'" in done.stdout and "hint:" in done.stdout
 
 
 def test_a_world_with_errors_says_all_of_them_as_every_command_does(tmp_path: Path, in_this_process: None) -> None:
@@ -174,9 +174,9 @@ def test_an_error_that_comes_in_every_run_does_not_stop_the_life_before_a_reset(
 
 
 def test_a_run_whose_process_ends_is_other_and_says_where(tmp_path: Path) -> None:
-    made = certified(tmp_path, "if not self.out.wanted:\n    os._exit(7)", "unheard", apart=True)
+    made = certified(tmp_path, "if not self.out.wanted:\n    os._exit(7)", "not received", apart=True)
     (found,) = made.differences
-    assert found.words == "its process was ended with 7: nothing was said"
+    assert found.words == "the process ended with 7: no output"
 
 
 def test_a_run_that_hangs_is_blamed_on_the_code_it_stood_in(tmp_path: Path) -> None:
@@ -185,11 +185,11 @@ def test_a_run_that_hangs_is_blamed_on_the_code_it_stood_in(tmp_path: Path) -> N
         '\nThread 0x1 (most recent call first):\n  File "a.py", line 7 in inner\n  File "b.py", line 9 in outer\n'
     )
     found = _outcome_of_stopped_process(ProcessResult(1, ""), 2.0, tmp_path / "stack")
-    assert found.stopped.startswith("it was still running after 2 s of wall time")
+    assert found.stopped.startswith("still running after 2 s of wall time")
     assert [str(place) for place in found.stack] == ["a.py:7", "b.py:9"]
     first = RunOutcome(sources={"plugin 'p'": ("b.py", 5, 12)})
     made = _code_at_timeout(Difference(VARIATIONS[1], "it hangs"), found, first)
-    assert made.owner == "plugin 'p'" and made.how == "it stood in outer at b.py:9"
+    assert made.owner == "plugin 'p'" and made.how == "it was in outer at b.py:9"
 
 
 def test_more_runs_are_the_same_again_with_other_hash_seeds() -> None:

@@ -20,8 +20,8 @@ def hints(folder: Path, body: str) -> list[str]:
     [
         ("def f(self): return time.time()", "wall clock"),
         ("def f(self): return datetime.datetime.now()", "wall clock"),
-        ("def f(self): return random.gauss(0, 1)", "no seed"),
-        ("def f(self): return np.random.normal()", "no seed"),
+        ("def f(self): return random.gauss(0, 1)", "without the simulation's seed"),
+        ("def f(self): return np.random.normal()", "without the simulation's seed"),
         ("def f(self): return np.random.default_rng()", "has no seed"),
         ("def f(self): return os.urandom(4)", "every process"),
         ("def f(self): return id(self)", "every process"),
@@ -29,12 +29,12 @@ def hints(folder: Path, body: str) -> list[str]:
         ("def f(self):\n    for n in {1, 2}: pass", "a set"),
         ("def f(self):\n    self.x = set()\n    return [n for n in self.x]", "a set"),
         ("def f(self):\n    for n in set(a) | set(b): pass", "a set"),
-        ("def f(self): return os.environ['HOME']", "where the program was started"),
-        ("def f(self):\n    global count\n    count = 1", "no snapshot"),
+        ("def f(self): return os.environ['HOME']", "the shell that started the program"),
+        ("def f(self):\n    global count\n    count = 1", "snapshots and resets do not restore it"),
         ("def f(self):\n    def g():\n        nonlocal n\n        n = 1", "nonlocal n"),
-        ("def f(self):\n    yield 1", "how far a generator has come"),
-        ("def f(self): open('seen.txt', 'a')", "a file stays"),
-        ("seen = []", "the class's"),
+        ("def f(self):\n    yield 1", "position of a generator"),
+        ("def f(self): open('seen.txt', 'a')", "files keep"),
+        ("seen = []", "belongs to the class"),
     ],
 )
 def test_a_place_is_found(body: str, word: str, tmp_path: Path) -> None:
@@ -49,7 +49,7 @@ def test_names_that_stand_for_others_and_what_a_module_keeps_are_known(tmp_path:
     )
     texts = " ".join(hint.text for hint in hints_in(str(tmp_path / "a.py"), 5, 8))
     assert all(
-        word in texts for word in ("now() reads", "gauss() draws", "dice.normal() draws", "SEEN is the module's")
+        word in texts for word in ("now() reads", "gauss() uses", "dice.normal() uses", "SEEN belongs to the module")
     )
 
 

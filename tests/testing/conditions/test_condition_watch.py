@@ -47,7 +47,7 @@ def test_a_condition_that_is_not_reached_says_how_near_it_came(yard: Any) -> Non
     assert ended.reason == "timeout" and not ended.passed
     message = ended.results[0].message
     assert message.startswith("was not reached by t = 1 s: pose('ball').z was 0.2499")
-    assert message.endswith("nearest, at t = 0.204 s, pose('ball').z was 0.452082")
+    assert message.endswith("nearest at t = 0.204 s: pose('ball').z was 0.452082")
 
 
 def test_each_kind_of_check_says_when_and_why(yard: Any) -> None:
@@ -67,7 +67,7 @@ def test_each_kind_of_check_says_when_and_why(yard: Any) -> None:
     assert said[0].startswith("was reached at t = 0.5")
     assert said[1].startswith("was not reached by t = 0.2 s: pose('ball').x was 0.20")
     assert said[3].startswith("did not hold at t = 0.75") and found[3].time == pytest.approx(0.75, abs=0.005)
-    assert said[4] == "was never looked at: the run ended at t = 2 s, before t = 5 s"
+    assert said[4] == "was never evaluated: the run ended at t = 2 s, before t = 5 s"
     assert said[7] == ("time was 2, contact('ball', 'ground') was true (ball::base touches ground::l) at t = 2 s")
 
 
@@ -130,8 +130,8 @@ def test_topics_tick_at_the_rate_they_are_set_to(yard: Any) -> None:
     ]
     found = results(yard(), 2.0, *checks)
     assert [result.passed for result in found] == [True, True, False, True, False]
-    assert found[2].message.startswith("/imu: 50.0") and found[2].message.endswith("wanted are 60 Hz ± 5 %")
-    assert found[4].message == "nobody publishes on /skan; did you mean '/scan'?"
+    assert found[2].message.startswith("/imu: 50.0") and found[2].message.endswith("expected 60 Hz ± 5 %")
+    assert found[4].message == "no publisher on /skan; did you mean '/scan'?"
 
 
 def test_a_topic_that_stops_before_the_end_does_not_tick(yard: Any) -> None:
@@ -190,7 +190,7 @@ def test_a_topic_that_comes_later_may_be_waited_for(yard: Any) -> None:
         publisher.publish(simkit.msgs.make("std_msgs/msg/Int32", data=42))
         found = watch.results("duration")
     assert [result.passed for result in found] == [True, False, False]
-    assert "did you mean 'data'?" in found[1].message and "nobody publishes on /never" in found[2].message
+    assert "did you mean 'data'?" in found[1].message and "no publisher on /never" in found[2].message
 
 
 def test_who_looks_changes_no_bits_and_nobody_else_misses_a_message(yard: Any) -> None:
@@ -252,7 +252,7 @@ def test_a_limit_on_what_was_removed_says_until_when_it_held(yard: Any) -> None:
         sim.remove("ball")
         sim.run(0.1)
         (result,) = watch.results("duration")
-    assert result.message == ("held from t = 0 s to t = 0.1 s, then: pose('ball').z is not known: ball was removed")
+    assert result.message == ("held from t = 0 s to t = 0.1 s, then: pose('ball').z is unknown: ball was removed")
 
 
 def test_a_condition_of_nothing_but_numbers_says_what_it_was(yard: Any) -> None:

@@ -123,19 +123,19 @@ def test_speed_ahead_is_that_along_its_own_axes(yard: Any) -> None:
     [
         ("", "SK-COND-001", "", "empty"),
         ("pose('ball).x > 1", "SK-COND-001", "'ball).x > 1", "close it with '"),
-        ("time >", "SK-COND-001", "", "a value is missing"),
+        ("time >", "SK-COND-001", "", "missing value"),
         ("time = 1", "SK-COND-001", "=", "=="),
         ("time > 1 && tick > 1", "SK-COND-001", "&&", "write: and"),
         ("time > 30s", "SK-COND-001", "30s", "SI units"),
-        ("(time > 1", "SK-COND-001", "(", "never closed"),
-        ("time > 1)", "SK-COND-001", ")", "not expected"),
-        ("1 if time else 2", "SK-COND-001", "if", "no word of this language"),
+        ("(time > 1", "SK-COND-001", "(", "is not closed"),
+        ("time > 1)", "SK-COND-001", ")", "unexpected"),
+        ("1 if time else 2", "SK-COND-001", "if", "not part of this language"),
         ("pose 'ball'", "SK-COND-001", "'ball'", "pose('ball')"),
         ("pose('ball').", "SK-COND-001", "", "after the dot"),
         ("pose('ball')('x')", "SK-COND-001", "pose('ball')", "only functions"),
         ("time > 1; tick", "SK-COND-001", ";", "and"),
         ("__import__('os').system('true')", "SK-COND-001", "__import__('os').system", "only functions"),
-        ("__import__('os') == 1", "SK-COND-002", "__import__", "no function"),
+        ("__import__('os') == 1", "SK-COND-002", "__import__", "unknown function"),
         ("pos('ball').x > 1", "SK-COND-002", "pos", "'pose'"),
         ("tim > 1", "SK-COND-002", "tim", "'time'"),
         ("ball.x > 1", "SK-COND-002", "ball.x", "pose('ball').x"),
@@ -149,21 +149,21 @@ def test_speed_ahead_is_that_along_its_own_axes(yard: Any) -> None:
         ("time and tick > 1", "SK-COND-004", "time", "compare it"),
         ("not time", "SK-COND-004", "time", "compare it"),
         ("'a' > 'b'", "SK-COND-004", "'a'", "== or !="),
-        ("'a' == 1", "SK-COND-004", "1", "a text is compared with a number"),
+        ("'a' == 1", "SK-COND-004", "1", "cannot compare a text with a number"),
         ("scan('/scan') > 1", "SK-COND-004", "scan('/scan')", "ranges"),
         ("scan('/imu').ranges[0] > 1", "SK-COND-004", "'/imu'", "sensor_msgs/msg/Imu"),
-        ("pose('ball').position + 1 > 1", "SK-COND-004", "pose('ball').position + 1", "means nothing"),
-        ("distance('ball', 3) > 1", "SK-COND-004", "3", "no place"),
+        ("pose('ball').position + 1 > 1", "SK-COND-004", "pose('ball').position + 1", "cannot compute"),
+        ("distance('ball', 3) > 1", "SK-COND-004", "3", "not a point"),
         ("norm((1, 'a')) > 1", "SK-COND-004", "'a'", "a text"),
-        ("(1, 2 > 1", "SK-COND-001", "(", "never closed"),
+        ("(1, 2 > 1", "SK-COND-001", "(", "is not closed"),
         ("pose('bal').x > 1", "SK-COND-005", "'bal'", "'ball'"),
-        ("pose('l').x > 1", "SK-COND-005", "'l'", "whole name"),
+        ("pose('l').x > 1", "SK-COND-005", "'l'", "scoped name"),
         ("joint('hing').position > 1", "SK-COND-005", "'hing'", "'hinge'"),
         ("count('/imus') > 1", "SK-COND-006", "'/imus'", "'/imu'"),
         ("pose('ball').zz > 1", "SK-COND-007", "zz", "'z'"),
         ("topic('/imu').acceleration > 1", "SK-COND-007", "acceleration", "linear_acceleration"),
         ("topic('/imu').orientation_covariance[9] > 1", "SK-COND-007", "9", "9 items"),
-        ("scan('/scan').ranges[0.5] > 1", "SK-COND-004", "0.5", "whole numbers"),
+        ("scan('/scan').ranges[0.5] > 1", "SK-COND-004", "0.5", "must be an integer"),
         ("1 " * 1200, "SK-COND-008", "", "2000"),
         ("(" * 200, "SK-COND-008", "", "levels"),
         ("1" + " + 1" * 300, "SK-COND-008", "", "levels"),
@@ -192,7 +192,7 @@ def test_a_short_circuit_decides_over_what_is_not_known(yard: Any) -> None:
         assert value("min(scan('/scan')) > 0.2 or time < 1", view) is True
         assert value("min(scan('/scan')) > 0.2 and time > 1", view) is False
         for text in ("min(scan('/scan')) > 0.2", "not min(scan('/scan')) > 0.2", "rate('/imu') > 1", "age('/imu') > 1"):
-            with pytest.raises(UndecidedValue, match=r"no message has come|fewer than two"):
+            with pytest.raises(UndecidedValue, match=r"no message received|fewer than two"):
                 value(text, view)
 
 

@@ -111,7 +111,7 @@ def test_one_change_is_named_and_proven(explained: Explained, old: str, new: str
     assert words in found.lines[0], found.lines
     assert [c.proven for c in found.causes] == [True], found.lines
     assert re.search(r"w\.sdf:\d+\)$", found.lines[0])
-    assert found.lines[1].endswith("with this put back the run gives the golden outputs")
+    assert found.lines[1].endswith("with this change undone, the run gives the golden outputs")
 
 
 def test_a_link_that_moves_with_its_sensors_and_joint_is_one_change(explained: Explained) -> None:
@@ -139,8 +139,8 @@ def test_of_several_changes_those_that_make_the_difference_are_told_from_those_t
         "stddev": True,
         "ambient": False,
     }
-    assert "proven: with these 2 put back" in found.lines[2]
-    assert found.lines[3].startswith("changed as well, without effect: visual arm::rod::look: material.ambient")
+    assert "proven: with these 2 changes undone" in found.lines[2]
+    assert found.lines[3].startswith("also changed, without effect: visual arm::rod::look: material.ambient")
 
 
 def test_a_model_that_is_gone_or_new_is_one_change(explained: Explained) -> None:
@@ -153,7 +153,7 @@ def test_a_model_that_is_gone_or_new_is_one_change(explained: Explained) -> None
 
 def test_another_name_is_called_that(explained: Explained) -> None:
     found = explained(('sensor name="imu"', 'sensor name="imu_2"'))
-    assert found.causes[0].words == "sensor arm::rod::imu is called arm::rod::imu_2 now"
+    assert found.causes[0].words == "sensor arm::rod::imu was renamed to arm::rod::imu_2"
     assert found.causes[0].proven  # its noise is another by its name
 
 
@@ -175,7 +175,7 @@ def test_a_change_that_nothing_recorded_shows_is_said_to_be_one(explained: Expla
     assert found.lines[0].startswith(
         "cause: visual arm::rod::look: material.ambient r 0.5 → 0.6 (+20 %), diffuse r 0.5 → 0.6 (+20 %)"
     )
-    assert found.lines[1:] == ["  nothing else was changed", "  nothing that is recorded shows it"]
+    assert found.lines[1:] == ["  no other input changed", "  no recorded output differs"]
     assert found.tick is None
 
 
@@ -188,7 +188,7 @@ def test_the_first_tick_and_quantity_are_those_of_the_change(explained: Explaine
     found = explained(("<damping>0.1<", "<damping>0.11<"))
     assert found.tick is not None and found.tick <= 3
     assert found.quantity.startswith("arm::hinge ")
-    assert "the same was put in" in found.lines[-1]
+    assert "all inputs are equal" in found.lines[-1]
 
 
 def test_a_seed_is_named(golden: RunRecord, tmp_path: Path) -> None:
@@ -231,4 +231,4 @@ def test_code_that_a_plugin_imports_is_named_with_the_tick_at_which_it_put_in_so
     found = explain(before, run, compare(before, run), rerun=None)
     assert found.lines[0] == "cause: the code of strength.py was changed"
     assert found.tick == 52  # the step that begins at t = 0.102 s is the first that is pushed
-    assert found.lines[2].startswith("what plugins and commands put in is other first at tick 52")
+    assert found.lines[2].startswith("the inputs from plugins and commands differ first at tick 52")

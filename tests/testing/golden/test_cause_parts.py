@@ -124,7 +124,7 @@ def test_the_first_tick_is_that_of_the_first_mark_that_differs() -> None:
     found = first_different_tick(a, b)
     assert found is not None
     assert (found.tick, found.has_other_input, found.quantity) == (3, False, "q1 1 → 1.5 at t = 0.04 s")
-    assert "the same was put in" in found.words
+    assert "all inputs are equal" in found.words
 
 
 def test_what_has_other_input_comes_before_what_follows_from_it() -> None:
@@ -132,7 +132,7 @@ def test_what_has_other_input_comes_before_what_follows_from_it() -> None:
     b = states([1, 2, 9, 9], [0, 0, 7, 7], [[0.0], [2.0]])
     found = first_different_tick(a, b)
     assert found is not None and found.has_other_input
-    assert found.words.startswith("what plugins and commands put in is other first at tick 3 (t = 0.03 s)")
+    assert found.words.startswith("the inputs from plugins and commands differ first at tick 3 (t = 0.03 s)")
 
 
 def test_runs_that_start_elsewhere_are_said_to() -> None:
@@ -140,7 +140,7 @@ def test_runs_that_start_elsewhere_are_said_to() -> None:
     b = states([5, 6], [0, 0], [[0.5], [1.0]])
     found = first_different_tick(a, b)
     assert found is not None and found.tick == 0
-    assert found.words == "the run starts in another state: q0 0 → 0.5"
+    assert found.words == "the initial state differs: q0 0 → 0.5"
 
 
 def test_equal_runs_do_not_part() -> None:

@@ -83,12 +83,12 @@ def test_a_scenario_that_the_world_no_longer_serves_says_what_has_changed(tmp_pa
     (tmp_path / "w.sdf").write_text(heavy)
     code, said = simkit("golden", "check", tmp_path / "g")
     assert code == 2 and "push.yaml:4: SK-CLI-011 no topic '/world/w/wrench'" in said
-    changed = [line.strip() for line in said.splitlines() if "since it was golden" in line]
+    changed = [line.strip() for line in said.splitlines() if "changed since the golden run" in line]
     assert any("ApplyLinkWrench is gone" in line for line in changed), said
     assert any("mass" in line and "2 → 3" in line and "w.sdf:1" in line for line in changed), said
     (tmp_path / "w.sdf").write_text("<sdf")
     code, said = simkit("golden", "check", tmp_path / "g")
-    assert code == 2 and "since it was golden" not in said
+    assert code == 2 and "changed since the golden run" not in said
 
 
 def test_a_blessing_needs_a_reason_and_keeps_it(golden: Path, tmp_path: Path) -> None:

@@ -105,7 +105,7 @@ def test_both_ways_and_rays_that_hit_nothing_any_more_are_named() -> None:
 
     said = words(golden_of(scan()), record(scan(mixed)))[0]
     assert said == (
-        "/scan.ranges: 14 of 360 rays up to ±20 mm, 1 no number any more, 2 infinite now, 1 finite now from t = 0.40 s"
+        "/scan.ranges: 14 of 360 rays up to ±20 mm, 1 became NaN, 2 became infinite, 1 became finite from t = 0.40 s"
     )
 
 
@@ -165,7 +165,7 @@ def test_a_stream_that_ends_early_and_one_that_comes_late() -> None:
     short = words(golden_of(imu()), record(imu(when=times(300, 200.0))))
     assert any(s == "/imu: ends at t = 1.495 s: 400 messages became 300" for s in short)
     late = words(golden_of(imu()), record(imu(when=times(400, 200.0) + 3_000_000)))
-    assert late == ["/imu: every message comes 3 ms later"]
+    assert late == ["/imu: every message is sent 3 ms later"]
 
 
 def test_values_are_compared_up_to_where_times_part() -> None:
@@ -176,7 +176,7 @@ def test_values_are_compared_up_to_where_times_part() -> None:
     when[8:] += 50_000_000
     found = compare(golden_of(scan()), record(scan(near_the_end, when=when))).differences
     assert [d.kind for d in found] == ["time"]
-    assert found[0].words == "/scan: message 9 comes 50 ms later at t = 0.95 s; 20 messages as before"
+    assert found[0].words == "/scan: message 9 is sent 50 ms later at t = 0.95 s; 20 messages as before"
 
 
 def test_a_topic_that_is_gone_and_a_new_one_are_both_named() -> None:
@@ -245,7 +245,7 @@ def test_an_orientation_is_one_angle_about_an_axis() -> None:
 def test_a_quaternion_and_its_negative_are_the_same_turn() -> None:
     assert not words(golden_of(odom()), record(odom(sign=-1.0)), exact=False)
     (said,) = words(golden_of(odom()), record(odom(sign=-1.0)))
-    assert "the same turn with the other sign" in said
+    assert "the same rotation with opposite quaternion sign" in said
 
 
 def test_what_is_no_orientation_is_compared_by_its_numbers() -> None:
@@ -349,7 +349,7 @@ def test_parts_in_another_order_are_compared_with_tolerances() -> None:
     golden = record(leaves={"models[a].x": 1, "models[b].x": 2})
     run = record(leaves={"models[b].x": 2, "models[a].x": 1}, states=states(1e-12))
     found = compare(golden, run)
-    assert found.passed and found.tier == "tolerant" and "in another order" in found.notes[0]
+    assert found.passed and found.tier == "tolerant" and "have another order" in found.notes[0]
     assert not compare(golden, replace(run, leaves=golden.leaves)).passed
     assert not compare(golden, replace(run, leaves={"models[b].x": 3, "models[a].x": 1})).passed
 
@@ -374,7 +374,7 @@ def test_on_another_machine_the_states_that_were_kept_are_compared_with_toleranc
 def test_moving_parts_that_are_new_or_gone_are_named() -> None:
     other = states(names=("cart position x", "crate orientation w"))
     (said,) = words(record(), record(states=other))
-    assert said == "physics: moving parts are other: new: crate; gone: arm"
+    assert said == "physics: different moving entities: new: crate; gone: arm"
 
 
 def test_the_physics_is_left_alone_where_the_scenario_says_so() -> None:
@@ -387,8 +387,8 @@ def test_a_world_that_means_something_else_is_a_difference_even_where_nothing_sh
     other = record(leaves={"a.size": 0.2, "a.pose": [0.0, math.nan]}, sources={"mesh.stl": "2"})
     assert compare(golden, same).passed
     (found,) = compare(golden, other).differences
-    assert found.kind == "model" and "nothing that is recorded shows it" in found.words
-    assert "a.size 0.1 → 0.2" in found.words and "mesh.stl has other contents" in found.words
+    assert found.kind == "model" and "no recorded output differs" in found.words
+    assert "a.size 0.1 → 0.2" in found.words and "mesh.stl has different content" in found.words
     assert compare(golden, replace(other, scenario=replace(other.scenario, model=False))).passed
 
 
@@ -400,7 +400,7 @@ def test_where_outputs_show_a_change_the_meaning_is_no_second_difference() -> No
 def test_a_newer_simkit_that_knows_more_of_a_world_is_a_note() -> None:
     newer = {**OTHER_MACHINE, "simkit": "2"}
     found = compare(record(leaves={"a": 1}), record(leaves={"a": 1, "b": 2}, machine=newer))
-    assert found.passed and "known to one version of simkit only: b" in found.notes[0]
+    assert found.passed and "exist in only one version of simkit: b" in found.notes[0]
 
 
 def test_a_run_that_ends_otherwise_comes_first() -> None:
@@ -413,7 +413,7 @@ def test_a_run_that_ends_otherwise_comes_first() -> None:
 
 def test_what_loading_reports_is_a_note() -> None:
     found = compare(record(diagnostics={"SK-A-001": 1}), record(diagnostics={"SK-A-001": 3}))
-    assert found.passed and found.notes == ["loading reports SK-A-001 3 times, with the golden one 1 times"]
+    assert found.passed and found.notes == ["loading reports SK-A-001 3 times; in the golden run 1 times"]
 
 
 def test_a_topic_without_a_message_is_equal_to_itself() -> None:

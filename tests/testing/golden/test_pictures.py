@@ -96,7 +96,7 @@ def test_what_is_too_small_to_be_seen_when_small_is_still_a_difference_on_the_sa
     golden, run = camera([scene()] * 3), camera([scene(), scene(), other])
     (found,) = compare(record(golden), record(run)).differences
     assert found.kind == "picture" and found.index == 2
-    assert "1 of 15 tiles changed" in found.words and "too little to be seen" in found.words
+    assert "1 of 15 tiles changed" in found.words and "not visible in the reduced picture" in found.words
 
 
 def test_on_another_renderer_a_mean_and_a_structure_decide() -> None:
@@ -134,7 +134,7 @@ def test_depths_are_compared_as_lengths() -> None:
     (said,) = words(golden, camera([depth, off, off], "32FC1"))
     assert said == "/camera: 1536 of 3072 pixels +12 mm from t = 0.10 s"
     (said,) = words(golden, camera([hit] * 3, "32FC1"))
-    assert said == "/camera: 384 of 3072 pixels infinite now from t = 0.00 s"
+    assert said == "/camera: 384 of 3072 pixels became infinite from t = 0.00 s"
 
 
 def test_another_size_or_encoding_is_told_instead_of_pixels() -> None:
@@ -159,7 +159,7 @@ def test_pictures_of_runs_that_kept_others_are_met_by_their_messages() -> None:
     (found,) = compare(record(golden), record(run)).differences
     # of those that both kept 24 is the first, by 6 · 30 columns of 96 · 160 pixels
     assert "from t = 2.40 s" in found.words and "in " not in found.words.partition("from")[2].partition(";")[0]
-    assert found.words.endswith("; the first that is other came at t = 2.10 s and is not kept")
+    assert found.words.endswith("; the first picture that differs, at t = 2.10 s, is not stored")
     assert found.index == 21 and found.time == pytest.approx(2.1)
     assert image_figure(Verdict("g", record(golden), record(run), compare(record(golden), record(run))), found)
     machine = {**OTHER_MACHINE, "renderer": "another"}
@@ -171,7 +171,7 @@ def test_one_picture_that_is_other_and_not_kept_is_found_by_its_hash() -> None:
     images = [scene(i) for i in range(40)]
     other = [*images[:9], scene(30), *images[10:]]
     (found,) = compare(record(strided(images, 2)), record(strided(other, 2))).differences
-    assert found.words == "/camera: pictures differ from t = 0.90 s, in 1 of 40, and in none that a golden keeps"
+    assert found.words == "/camera: pictures differ from t = 0.90 s, in 1 of 40, but in no stored picture"
     assert found.kind == "picture" and found.index == 9
 
 

@@ -85,7 +85,7 @@ def test_a_plugin_that_raises_gets_the_line_that_did(folder):
 def test_a_plugin_that_ends_the_process_gets_nothing_and_harms_nobody(folder):
     file = hand_in(folder, "__import__('os')._exit(0)")
     graded = grade(read_exercise(folder / "push.yaml"), file)
-    assert graded.points == 0.0 and "its process ended with 0" in graded.outcomes[1].error
+    assert graded.points == 0.0 and "the process ended with 0" in graded.outcomes[1].error
 
 
 def test_a_file_without_a_plugin_says_so(folder):
@@ -134,8 +134,8 @@ HOSTILE = {
     "raise KeyboardInterrupt": "KeyboardInterrupt ended the run\npush.py:",
     "raise simkit.InputError('mine', 'SK-X-001')": "push.py:",
     "self.advertise('/out', 'std_msgs/msg/String')": "a text is compared with a number",
-    "import json; json.dumps = lambda found: '{}'": "its process ended with 0 in the middle of the run",
-    "from simkit.testing.conditions import Watch; Watch.results = lambda self, reason: ()": "its process ended with 0",
+    "import json; json.dumps = lambda found: '{}'": "the process ended with 0 in the middle of the run",
+    "from simkit.testing.conditions import Watch; Watch.results = lambda self, reason: ()": "the process ended with 0",
 }
 
 
