@@ -127,7 +127,7 @@ def test_a_replay_that_differs_exits_with_5(folder: Path) -> None:
     found = simkit("replay", "other.zip")
     assert found.exit_code == 5
     assert "state " in found.stdout
-    assert "/model/sled/cmd_vel: other bits from t = 0.1 s on" in found.stdout
+    assert "/model/sled/cmd_vel: content differs from t = 0.1 s on" in found.stdout
     assert "mujoco is" in found.stdout
     assert "\x1b" not in found.stdout
 

@@ -122,4 +122,4 @@ def test_a_plugin_that_never_comes_back_is_interrupted_and_named(tmp_path: Path)
 def test_a_condition_that_is_empty_asks_for_nothing_and_is_no_success(yard: Path, option: str) -> None:
     """As of a variable of a script that was never set."""
     done = run(yard, "--duration", 0.1, option, "")
-    assert done.exit_code == 2 and "an expression is empty" in done.stderr
+    assert done.exit_code == 2 and "the expression is empty" in done.stderr

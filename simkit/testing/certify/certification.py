@@ -260,28 +260,28 @@ def _explain_difference(
         return plain
     if tick is not None and tick in known:  # the same tick has the same cause; save two more runs
         return replace(known[tick], variation=row.variation, words=found[0].words, more=more)
-    end, who = ticks if tick is None else min(ticks, tick + _TICK_MARGIN), None
+    end, culprit = ticks if tick is None else min(ticks, tick + _TICK_MARGIN), None
     for _ in range(_WATCH_ATTEMPTS):
-        who = find_culprit(*(runner.watch(r.variation, end, ticks // 2) for r in (first, row)))
-        if who is not None:
+        culprit = find_culprit(*(runner.watch(r.variation, end, ticks // 2) for r in (first, row)))
+        if culprit is not None:
             break
-    made = _culprit_of_error(plain, who, first.outcome, found[0].owner)
+    made = _culprit_of_error(plain, culprit, first.outcome, found[0].owner)
     if tick is not None and made.owner:
         known[tick] = made
     return made
 
 
-def _culprit_of_error(plain: Difference, who: Culprit | None, first: RunOutcome, owner: str) -> Difference:
-    if who is None and not owner:
+def _culprit_of_error(plain: Difference, culprit: Culprit | None, first: RunOutcome, owner: str) -> Difference:
+    if culprit is None and not owner:
         how = "no plugin or sensor is known to cause it; the difference did not occur again while recording calls"
         return replace(plain, how=how)
-    name = who.owner if who is not None else owner
+    name = culprit.owner if culprit is not None else owner
     file, start, end = first.sources.get(name, ("", 0, 0))
     hints = tuple(hints_in(file, start, end)) if file else ()
-    if who is None:
+    if culprit is None:
         return replace(plain, owner=name, hints=hints)
-    tick = who.tick if plain.tick is None or (who.matters and who.tick < plain.tick) else plain.tick
-    return replace(plain, owner=name, how=who.how, hints=hints, tick=tick, time=tick * first.timestep)
+    tick = culprit.tick if plain.tick is None or (culprit.matters and culprit.tick < plain.tick) else plain.tick
+    return replace(plain, owner=name, how=culprit.how, hints=hints, tick=tick, time=tick * first.timestep)
 
 
 def _code_at_timeout(plain: Difference, stopped: RunOutcome, first: RunOutcome) -> Difference:

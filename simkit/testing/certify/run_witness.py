@@ -333,8 +333,8 @@ class TickHashes:
 
     def rows(self, ticks: int) -> tuple[npt.NDArray[np.uint64], npt.NDArray[np.uint64]]:
         """Return both hashes as arrays with one entry per tick."""
-        wanted = range(1, ticks + 1)
-        state, inputs = ([of.get(tick, 0) for tick in wanted] for of in (self.state, self.inputs))
+        all_ticks = range(1, ticks + 1)
+        state, inputs = ([of.get(tick, 0) for tick in all_ticks] for of in (self.state, self.inputs))
         return np.array(state, np.uint64), np.array(inputs, np.uint64)
 
     def _mark(self, _: int) -> None:

@@ -69,31 +69,31 @@ def _join_texts(values: Any) -> str:
     return ", ".join(value_text(v.item() if hasattr(v, "item") else v) for v in values)
 
 
-def findings(source: str, part: BoundNode, *, wanted: bool = True) -> list[str]:
+def findings(source: str, part: BoundNode, *, expected: bool = True) -> list[str]:
     """Return the values that make a condition true or false: `min(scan('/scan')) was 0.098`.
 
     Args:
         source: Text of the expression.
         part: Node that is true or false.
-        wanted: Expected value.
+        expected: Expected value.
     """
     texts: dict[str, None] = {}
-    _collect_findings(source, part, wanted, texts)
+    _collect_findings(source, part, expected, texts)
     if not texts:  # constant condition, such as `1 > 2`
         _finding_text(source, part, texts)
     return list(texts)
 
 
-def _collect_findings(source: str, part: BoundNode, wanted: bool, texts: dict[str, None]) -> None:
+def _collect_findings(source: str, part: BoundNode, expected: bool, texts: dict[str, None]) -> None:
     node = part.node
     if isinstance(node, syntax.Not):
-        _collect_findings(source, part.below[0], not wanted, texts)
+        _collect_findings(source, part.below[0], not expected, texts)
     elif isinstance(node, syntax.Junction):
         # if all operands must have the expected value, only those that do not have it matter
-        is_all = (node.word == "and") == wanted
+        is_all = (node.word == "and") == expected
         for operand in part.below:
-            if not is_all or _current_value(operand) is not wanted:
-                _collect_findings(source, operand, wanted, texts)
+            if not is_all or _current_value(operand) is not expected:
+                _collect_findings(source, operand, expected, texts)
     elif isinstance(node, syntax.Comparison):
         for operand in part.below:
             if not _is_literal(operand.node):

@@ -102,11 +102,11 @@ class Condition:
         a, b = left.get(), right.get()
         return holds(a, b), abs(a - b), f"{left.node.span.text(self.source)} was {value_text(a)}"
 
-    def findings(self, *, wanted: bool = True) -> str:
+    def findings(self, *, expected: bool = True) -> str:
         """Return the values that make the condition true or false."""
         if self._part is None:
             return self._fault or self._waiting_reason
-        return ", ".join(findings(self.source, self._part, wanted=wanted))
+        return ", ".join(findings(self.source, self._part, expected=expected))
 
     def _bind(self) -> None:
         try:
@@ -195,7 +195,7 @@ class ReachedCheck(ConditionCheck):
         except UndecidedValue:
             return
         if holds:
-            self._decide(True, f"was reached at {time_text(time)}: {self._condition.findings(wanted=False)}", time)
+            self._decide(True, f"was reached at {time_text(time)}: {self._condition.findings(expected=False)}", time)
         elif gap < self._nearest:
             self._nearest, self._nearest_text, self._nearest_time = gap, text, time
 
@@ -239,7 +239,7 @@ class AlwaysCheck(ConditionCheck):
             return self._decide(False, f"was never evaluated: {reason}")
         if cut:
             return self._decide(False, f"held until {now}, when {cut}")
-        found = self._condition.findings(wanted=False)
+        found = self._condition.findings(expected=False)
         if self._last < self._sim.time - 0.5 * self._sim.timestep:
             return self._decide(True, f"held from {time_text(self._since)} to {time_text(self._last)}, then: {found}")
         return self._decide(True, f"held from {time_text(self._since)} to {now}: {found}")
@@ -256,7 +256,7 @@ class FinalCheck(ConditionCheck):
             holds = self._condition.holds()
         except UndecidedValue:
             holds = False
-        return self._decide(holds, f"{self._condition.findings(wanted=not holds)} at {now}")
+        return self._decide(holds, f"{self._condition.findings(expected=not holds)} at {now}")
 
 
 class SeparationCheck(RunningCheck):

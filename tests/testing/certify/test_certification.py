@@ -115,7 +115,7 @@ def test_what_nothing_shows_is_a_note(tmp_path: Path) -> None:
     made = certified(tmp_path, "self.seen = time.time()")
     assert made.passed
     (note,) = made.notes
-    assert "'m::mine'" in note and "(seen)" in note and "nothing shows it" in note
+    assert "'m::mine'" in note and "(seen)" in note and "no output differs" in note
 
 
 def test_an_error_that_comes_in_every_run_at_the_same_tick_is_the_same(tmp_path: Path) -> None:

@@ -280,7 +280,12 @@ def test_what_an_open_simulation_cannot_change_is_refused(regression: SensorRegr
     import simkit
 
     sim = simkit.load(tmp_path / "puck.sdf")
-    with sim, pytest.raises(InputError, match="SK-GOLDEN-021 sensor_regression: plugins, seed: not possible for a simulation"):
+    with (
+        sim,
+        pytest.raises(
+            InputError, match="SK-GOLDEN-021 sensor_regression: plugins, seed: not possible for a simulation"
+        ),
+    ):
         regression(sim, seed=3, plugins=[])
     with pytest.raises(InputError, match="SK-GOLDEN-021 sensor_regression: found int"):
         regression(3)  # type: ignore[arg-type]

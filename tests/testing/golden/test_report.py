@@ -36,7 +36,8 @@ def test_the_first_line_is_what_differs_first_and_the_second_its_cause() -> None
     first, second, *_ = text_report(failing(), 200)
     assert first == "FAILED  drive: /scan.ranges: 14 of 360 rays +12 mm from t = 2.00 s"
     assert second == (
-        "  cause   wheel::collision: radius 0.033 → 0.0333 m (model.sdf:123); with this change undone, the outputs equal the golden run"
+        "  cause   wheel::collision: radius 0.033 → 0.0333 m (model.sdf:123); with this change undone, "
+        "the outputs equal the golden run"
     )
 
 
@@ -92,9 +93,7 @@ def test_a_world_that_is_another_without_effect_is_told_by_its_cause() -> None:
     explanation = Explanation([Cause("model", "model wall moved 2 mm along x", "models[wall]", 2.0, 2.002)])
     verdict = Verdict("w", record(), record(), comparison, explanation)
     head = text_report(verdict, 200)[0]
-    assert head == (
-        "FAILED  w: the world changed, but no recorded output differs: model wall moved 2 mm along x"
-    )
+    assert head == ("FAILED  w: the world changed, but no recorded output differs: model wall moved 2 mm along x")
 
 
 # ---------------------------------------------------------------------- the page

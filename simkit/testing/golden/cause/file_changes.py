@@ -136,7 +136,7 @@ def _engine_change(several: list[Edit]) -> Change:
         words = f"{part}: {words}"
     else:
         words += f", in {len(several)} places: {list_names([e.path.rpartition(' ')[0] for e in several])}"
-    # no edits: the compiled model is built anew for every run, so its fields cannot be restored
+    # no edits: the compiled model is built again for every run, so its fields cannot be restored
     return Change("model", words, first.path, a, b, "", ())
 
 

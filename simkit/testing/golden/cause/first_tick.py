@@ -175,8 +175,8 @@ def distinct_digits(golden: float, run: float) -> str:
 
 def _keeps_distance(a: float, b: float, golden: float, run: float) -> bool:
     """Check whether rounding changes the difference by at most 1 %."""
-    wanted = run - golden
-    return not np.isfinite(wanted) or abs((b - a) - wanted) <= 0.01 * abs(wanted)
+    difference = run - golden
+    return not np.isfinite(difference) or abs((b - a) - difference) <= 0.01 * abs(difference)
 
 
 def _time(seconds: float) -> str:

@@ -357,9 +357,7 @@ def _loose_fields(pair: StreamPair) -> set[str]:
 def statistic_text(
     deviance: StatisticDifference, run: Stream, path: str, golden: NoiseStatistics, other: NoiseStatistics
 ) -> Difference:
-    """Describe a difference in noise statistics.
-
-    Example: `/imu.angular_velocity.x: noise's deviation 0.0002 rad/s became 0.00024 rad/s (+20 %) in 6000 samples`.
+    """Describe a difference in noise: `/imu.angular_velocity.x: the noise's deviation 0.0002 rad/s became …`.
 
     Args:
         deviance: Statistic that differs.
