@@ -21,31 +21,37 @@ Mask = npt.NDArray[np.bool_]
 FREE, POSITION_MODE, VELOCITY_MODE, EFFORT_MODE, SPRING_MODE = range(5)
 
 _VELOCITY_DAMPING: Final = 0.5
-"""Damping of a velocity servo, times step over inertia. Contacts are solved without what the integrator knows of it: a
-wheel slips in proportion (2 mm/s at 1 and 0.8 m/s²)."""
+"""Damping of a velocity servo, as a multiple of inertia over time step.
+
+MuJoCo solves contacts without the implicit damping of the integrator, so a wheel slips in proportion to this factor (2
+mm/s at a factor of 1 and 0.8 m/s²).
+"""
 
 _CATCH_UP_TIME: Final = 0.05
-"""[s] in which a velocity servo makes up for what it lost."""
+"""Time in which a velocity servo makes up for a position lag [s]."""
 
 _POSITION_REACH: Final = 2.0
-"""Times the whole effort that a position servo asks for at most: what damping takes off leaves the whole."""
+"""Largest effort that a position servo requests, as a multiple of its effort limit.
+
+With 2, the full effort remains after the damping has taken its part.
+"""
 
 
 class ControlLoops:
-    """The loop of every joint in each mode: that of the file where it has one, else a servo's.
+    """Gains of every joint in each mode: those of the file's PID loop, or else those of a servo.
 
     Args:
-        model: the engine's.
-        ids: of the joints in it.
-        joints: the same, with their limits.
-        pids: the file's loops, by joint and interface.
+        model: compiled MuJoCo model.
+        ids: joint ids in the model, shape (joints,).
+        joints: hardware joints with their limits, in the same order.
+        pids: PID gains from the file, by joint name and interface.
 
     Attributes:
         gains: kp [N·m/rad or N/m] and kv [N·m·s/rad or N·s/m], shape (joints, modes, 2).
-        integral: ki, and the bounds of the integral's part [N·m or N], shape (joints, modes, 3).
-        is_given: whether the loop is the file's, shape (joints, modes).
+        integral: ki, and the lower and upper bound of the integral part [N·m or N], shape (joints, modes, 3).
+        is_given: true where the gains come from the file, shape (joints, modes).
         bounds: lowest and highest effort [N·m or N], shape (joints, modes, 2).
-        calm: the highest kp and kv of a spring that do not ring, shape (joints, 2).
+        calm: largest kp and kv at which a spring does not oscillate at the engine's time step, shape (joints, 2).
     """
 
     def __init__(
@@ -70,42 +76,42 @@ class ControlLoops:
         self.gains[:, VELOCITY_MODE] = np.stack((damping / _CATCH_UP_TIME, damping), 1)
         for k, joint in enumerate(joints):
             for mode, interface in ((POSITION_MODE, POSITION), (VELOCITY_MODE, VELOCITY)):
-                given = pids.get(joint.name, {}).get(interface)
-                if given:
-                    wanted = (given.p, given.d) if mode == POSITION_MODE else (0.0, given.p)
-                    self.gains[k, mode] = min(wanted[0], least[k] / step**2), min(wanted[1], least[k] / step)
-                    self.integral[k, mode] = given.i, given.i_min, given.i_max
-                    self.bounds[k, mode] = max(given.u_min, -limits[k]), min(given.u_max, limits[k])
+                pid = pids.get(joint.name, {}).get(interface)
+                if pid:
+                    kp, kv = (pid.p, pid.d) if mode == POSITION_MODE else (0.0, pid.p)
+                    self.gains[k, mode] = min(kp, least[k] / step**2), min(kv, least[k] / step)
+                    self.integral[k, mode] = pid.i, pid.i_min, pid.i_max
+                    self.bounds[k, mode] = max(pid.u_min, -limits[k]), min(pid.u_max, limits[k])
                     self.is_given[k, mode] = True
 
 
 class ActiveModes:
-    """Gains, bounds and losses of the present modes, one value for each joint; made anew when the modes change.
+    """Gains, bounds and losses of the current modes, one value for each joint; recreated when the modes change.
 
     Args:
-        modes: of the joints.
-        groups: number of the controller that has claimed each joint; 0 for none.
-        loops: of the joints.
-        addresses: of the joints' actuators, positions and velocities in the engine.
-        fastest: top speeds [rad/s or m/s].
+        modes: current mode of each joint, shape (joints,).
+        groups: number of the controller that has claimed each joint; 0 for an unclaimed joint.
+        loops: gains of the joints in all modes.
+        addresses: addresses of the joints' actuators, positions and velocities in the engine.
+        fastest: velocity limits of the joints [rad/s or m/s].
 
     Attributes:
-        modes: that it is of.
-        zeros: zeros; their product with the commands shows whether one is not finite.
+        modes: modes that these values belong to.
+        zeros: array of zeros; its product with the commands is not 0 if a command is NaN or infinite.
         kp, kv: gains of the actuators [N·m/rad or N/m, N·m·s/rad or N·s/m].
-        servo_stiffness: kp of the servos; 0 for the others.
+        servo_stiffness: kp of the servos; 0 for the other joints.
         lowest, highest: bounds of the effort [N·m or N].
-        integral: ki of the file's loops, and the bounds of that part [N·m or N].
-        is_position: whether by position.
-        is_compensated, compensation: whether gravity and friction are compensated; the same as 1 or 0.
-        effort_share: 1 where the command is an effort.
-        all_compensated, all_position: whether all joints are compensated, driven by position.
+        integral: ki of the file's loops, and the lower and upper bound of the integral part [N·m or N].
+        is_position: true for joints driven by position.
+        is_compensated, compensation: true (or 1.0) for joints whose gravity and friction are compensated.
+        effort_share: 1 where the command is an effort, else 0.
+        all_compensated, all_position: true if all joints are compensated, or driven by position.
         largest_lag: largest distance of a reference from its joint [rad or m].
-        velocity_joints: those that are not driven by position: place, addresses, stiffness and top speed.
-        slacks, catch_up_times, groups: of those joints, as `advance_references` takes them.
-        claimed_groups: the array of groups that `groups` are of.
-        has_effort, has_integral: whether any joint has such a part.
-        period: the time in which references move by `lowest_move` to `highest_move` [s].
+        velocity_joints: joints that are not driven by position: index, addresses, stiffness and velocity limit.
+        slacks, catch_up_times, groups: values of those joints, as `advance_references` takes them.
+        claimed_groups: complete array from which `groups` was taken.
+        has_effort, has_integral: true if any joint has an effort command, or an integral part.
+        period: time in which references move by `lowest_move` to `highest_move` [s].
     """
 
     def __init__(

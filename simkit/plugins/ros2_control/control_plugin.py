@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from simkit.scene import SceneModel
 
 UPDATE_RATE: Final = 100.0
-"""[Hz] of a controller manager whose file says nothing."""
+"""Default update rate of a controller manager [Hz]."""
 _PARAMS_FILE_HINT: Final = "--params-file FILE, params_files=[FILE] in Python"
 _ROS_1_NODE: Final = "gazebo_ros_control"
 
@@ -49,13 +49,13 @@ class ControlOptions(Options):
 
 
 class ControlPlugin(ModelPlugin):
-    """Reads the hardware and the controllers' parameter files, and runs the manager at its rate.
+    """Reads the hardware and the controllers' parameter files, and updates the controller manager at its rate.
 
     Attributes:
-        manager: the controller manager.
-        hardware: what it drives.
-        files: the controllers' parameters.
-        is_ros_1: whether it is ROS 1's.
+        manager: controller manager.
+        hardware: joints and sensors that the manager's controllers use.
+        files: parameter files of the controllers.
+        is_ros_1: true for the plugin of ROS 1.
     """
 
     options = OptionsOf(ControlOptions)
@@ -77,11 +77,14 @@ class ControlPlugin(ModelPlugin):
         transmissions = transmissions_of(scene, [*scene.controls, *params.all("ros2_control")])
         self.hardware = Hardware.of(describe_hardware(scene, params), scene, params.diagnostics, transmissions)
         self._manager_name = self.options.controller_manager_name or "controller_manager"
-        given = [one.file for one in builder.parameter_files if one.is_for(scene)]
-        files = [*self._read_files(params, builder, any_given=bool(given)), *self._adapted_run_files(given, params)]
+        run_files = [entry.file for entry in builder.parameter_files if entry.is_for(scene)]
+        files = [
+            *self._read_files(params, builder, has_run_files=bool(run_files)),
+            *self._adapted_run_files(run_files, params),
+        ]
         self.files = ParameterFiles(files)
         self._chosen_controllers = [
-            (word, one) for one in params.all("controllers") for word in one.value.replace(",", " ").split()
+            (name, element) for element in params.all("controllers") for name in element.value.replace(",", " ").split()
         ]
         self.hardware.holds_position = self.options.hold_joints
         self.mark_ignored_elements(params)
@@ -89,32 +92,32 @@ class ControlPlugin(ModelPlugin):
         self._report_driven_twice(builder)
         self.hardware.prepare(builder, self.name, self.read_pids())
 
-    # ------------------------------------------------------------------ what the file says
+    # ------------------------------------------------------------------ the plugin's element and its files
 
     def mark_ignored_elements(self, params: Params) -> None:
-        """Elements that mean something to the plugin in Gazebo and nothing here."""
+        """Mark elements as read that have an effect in Gazebo and none in simkit."""
         for name in ("robot_param", "robot_param_node", "position_proportional_gain"):
             params.child(name)
         for name in ("controller_manager_prefix_node_name", "controller_manager_node_name", "robotNamespace"):
             params.child(name)
 
     def read_rate(self, params: Params, builder: SpecBuilder) -> float | None:
-        """[Hz] of the manager; None for every step."""
+        """Return the update rate of the manager [Hz]; None for an update at every step."""
         own = self.files.of_node(f"{self.ros.namespace}/{self._manager_name}")
         if own is None or "update_rate" not in (own.below or {}):
             return UPDATE_RATE
         rate = own.block("controller_manager", params.diagnostics).number("update_rate", UPDATE_RATE, minimum=1e-3)
         steps = 1.0 / builder.world.physics.max_step_size
         if rate > steps * (1.0 + 1e-9):
-            message = f"the controller manager's update_rate is {rate:g} Hz, more than the {steps:g} steps a second"
+            message = f"the controller manager's update_rate is {rate:g} Hz, above the step rate of {steps:g} Hz"
             where = (own.below or {})["update_rate"].where
             params.diagnostics.warning("SK-CONTROL-017", f"{message}; it is updated at every step", where)
         return rate
 
     def read_pids(self) -> Mapping[str, Mapping[str, PidGains]]:
-        """Loops that take a servo's place, by joint and interface.
+        """Return the PID gains that replace a servo, by joint and interface.
 
-        Those of the hardware's joints, and those in `pid_gains` of the plugin's own node, which go over them.
+        They come from the hardware's joints. Gains in `pid_gains` of the plugin's own node override them.
         """
         found = {j.name: dict(j.pids) for c in self.hardware.components for j in c.joints}
         entry = self.files.of_node(f"{self.ros.namespace}/{self.name}")
@@ -127,7 +130,7 @@ class ControlPlugin(ModelPlugin):
         return {joint: pids for joint, pids in found.items() if pids}
 
     def gains_of_joints(self, block: Params) -> dict[str, PidGains]:
-        """Gains in a block by joint; a joint that the hardware does not have is told."""
+        """Return the gains of a block by joint; report joints that the hardware does not have."""
         found = {}
         forms = block.forms if isinstance(block, ParameterBlock) else {}
         for name, (_, where) in forms.items():
@@ -142,52 +145,58 @@ class ControlPlugin(ModelPlugin):
         return found
 
     def speed_bounds(self, topic: str) -> tuple[tuple[float, float], tuple[float, float]] | None:
-        """Those [m/s, rad/s] of the controller that takes velocities on a topic; None where none says."""
-        asked = (getattr(one.controller, "speed_bounds", None) for one in self.manager.controllers.values())
-        return next((found for ask in asked if ask is not None and (found := ask(topic)) is not None), None)
+        """Return the speed bounds [m/s, rad/s] of the controller that subscribes to a topic.
+
+        Returns:
+            Lowest and highest linear velocity, and the same for the angular velocity; None if no controller has such
+            bounds.
+        """
+        loaded = self.manager.controllers.values()
+        getters = (getattr(entry.controller, "speed_bounds", None) for entry in loaded)
+        return next((bounds for get in getters if get is not None and (bounds := get(topic)) is not None), None)
 
     def _report_driven_twice(self, builder: SpecBuilder) -> None:
-        """Tells of joints that another plugin drives too."""
+        """Report joints that another plugin drives too."""
         driven = {ref.joint: ref.owner for record in builder.records.values() for ref in record.actuators}
         for joint in self.hardware.joints.values():
             if joint.command_interfaces and joint.scoped in driven:
-                message = f"joint {joint.name!r} is driven by plugin {driven[joint.scoped]!r} already: both push it"
-                hint = "leave one of the two plugins out, or the joint out of <ros2_control>"
+                message = f"joint {joint.name!r} is already driven by plugin {driven[joint.scoped]!r}: both act on it"
+                hint = "remove one of the two plugins, or remove the joint from <ros2_control>"
                 self.params.diagnostics.warning("SK-CONTROL-004", message, self.where, hint)
 
-    def _adapted_run_files(self, given: Sequence[ParameterFile], params: Params) -> Iterator[ParameterFile]:
-        """The files that the run was given, as this manager looks for what they say."""
-        if given:
-            for file in given:
+    def _adapted_run_files(self, run_files: Sequence[ParameterFile], params: Params) -> Iterator[ParameterFile]:
+        """Adapt the parameter files of the run to the names that this manager looks for."""
+        if run_files:
+            for file in run_files:
                 namespace, name = self.ros.namespace, self._manager_name
                 yield adapt_to_manager(file, namespace, name, params.diagnostics, is_ros_1=self.is_ros_1)
 
-    def _read_files(self, params: Params, builder: SpecBuilder, *, any_given: bool) -> Iterator[ParameterFile]:
+    def _read_files(self, params: Params, builder: SpecBuilder, *, has_run_files: bool) -> Iterator[ParameterFile]:
         elements = params.all("parameters")
         for element in elements:
             for uri in [element.value] if element.value.startswith("$(") else element.value.split():
                 path = find_plugin_file(self, uri, builder, ("config", "../config"))
                 if path is None:
-                    message = f"the controllers' parameter file {uri[:200]} is not found: no controller of it is loaded"
-                    hint = (
-                        f"name its package's folder: --package-path NAME=DIR, or the file itself: {_PARAMS_FILE_HINT}"
+                    message = (
+                        f"the controllers' parameter file {uri[:200]} is not found: none of its controllers is loaded"
                     )
+                    hint = f"give its package: --package-path NAME=DIR, or the file itself: {_PARAMS_FILE_HINT}"
                     params.diagnostics.warning("SK-CONTROL-015", message, element.where, hint)
                     continue
                 read = read_parameter_file(path, params.diagnostics)
                 if read is not None:
                     yield read
-        if not any_given and not any(element.value for element in elements):
+        if not has_run_files and not any(element.value for element in elements):
             message = f"plugin {self.name!r} names no parameter file: no controller is loaded"
-            hint = f"give what a launch file of ROS would load: {_PARAMS_FILE_HINT}; or name it in <simkit:parameters>"
+            hint = f"give the file of the ROS launch file: {_PARAMS_FILE_HINT}; or name it in <simkit:parameters>"
             params.diagnostics.note("SK-CONTROL-018", message, self.where, hint)
 
-    # ------------------------------------------------------------------ at work
+    # ------------------------------------------------------------------ run time
 
     def load(self, parent: Model, params: Params) -> None:
         self.hardware.load(self.sim)
         self.manager = ControllerManager(self, self.hardware, self.files, self._manager_name, params.diagnostics)
-        self._take_free_namespace(parent.scoped.partition("::")[0], params)
+        self._choose_free_namespace(parent.scoped.partition("::")[0], params)
         self.manager.is_ros_1 = self.is_ros_1
         offer_services(self.manager)
         declared = self.manager.declared()
@@ -197,26 +206,26 @@ class ControlPlugin(ModelPlugin):
             if name in declared:
                 chosen.append(name)
                 continue
-            near = did_you_mean(name, declared) or "it declares: " + (", ".join(declared) or "none")
+            near = did_you_mean(name, declared) or "declared controllers: " + (", ".join(declared) or "none")
             message = f"<simkit:controllers> names {name!r}, which no parameter file declares with a type"
             params.diagnostics.error("SK-CONTROL-013", message, element.where, near)
         self.manager.start(chosen)
         report_high_rates(self.manager, self.before_step_rate, params.diagnostics)
 
-    def _take_free_namespace(self, model: str, params: Params) -> None:
-        """Takes the model's name for a namespace where another robot has a manager of this one's name."""
-        wanted = f"{self.ros.namespace}/{self._manager_name}"
-        if f"{wanted}/list_controllers" not in self.sim.communication.services.names():
+    def _choose_free_namespace(self, model: str, params: Params) -> None:
+        """Append the model's name to the namespace if another robot's manager has the same name."""
+        node = f"{self.ros.namespace}/{self._manager_name}"
+        if f"{node}/list_controllers" not in self.sim.communication.services.names():
             return
         self.ros = RosNames(self.name, f"{self.ros.namespace}/{model}", params=params)
         message = (
-            f"there is a controller manager {wanted!r} already: that of {model!r}, its controllers and their topics "
+            f"a controller manager {node!r} exists already: the manager of {model!r}, its controllers and their topics "
         )
         hint = "give each robot a <namespace> in the plugin's <ros>"
         params.diagnostics.note("SK-CONTROL-001", f"{message}are below {self.ros.namespace!r}", self.where, hint)
 
     def _remember_loaded(self) -> None:
-        """Everything it keeps can be copied: there is no need to try."""
+        """Do nothing: all attributes can be copied, so no copy has to be tried."""
 
     def before_step(self) -> None:
         try:
@@ -224,7 +233,7 @@ class ControlPlugin(ModelPlugin):
         except KeyError:
             if self.scoped.partition("::")[0] in self.sim.models:
                 raise
-            # who heard of it has removed the robot meanwhile: nothing is left to be commanded
+            # a callback removed the robot during the update, so there is nothing left to command
 
     def get_state(self) -> dict[str, Any]:
         state = super().get_state()
@@ -257,8 +266,8 @@ class GazeboRos2Control(ControlPlugin):
 class GazeboRosControl(ControlPlugin):
     """Runs the controllers of files in ROS 1's layout.
 
-    In ROS 1 a launch file loads them, so the plugin's own `<parameters>` (or `<simkit:parameters>`) is simkit's. Loops
-    in `gazebo_ros_control/pid_gains` drive the joints that have some.
+    In ROS 1 a launch file loads these files, so the plugin's own `<parameters>` (or `<simkit:parameters>`) is an
+    extension of simkit. Joints with gains in `gazebo_ros_control/pid_gains` are driven by PID loops.
     """
 
     filenames = ("libgazebo_ros_control.so",)
@@ -266,15 +275,15 @@ class GazeboRosControl(ControlPlugin):
     is_ros_1 = True
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        self._take_namespace(scene.name, params)
+        self._default_to_model_namespace(scene.name, params)
         super().prepare(scene, params, builder)
 
     def load(self, parent: Model, params: Params) -> None:
-        self._take_namespace(parent.name, params)
+        self._default_to_model_namespace(parent.name, params)
         super().load(parent, params)
 
-    def _take_namespace(self, model: str, params: Params) -> None:
-        if not params.has("robotNamespace"):  # then it is the model's name
+    def _default_to_model_namespace(self, model: str, params: Params) -> None:
+        if not params.has("robotNamespace"):  # the default namespace is the model's name
             self.ros = RosNames(self.name, model, params=params)
 
     def mark_ignored_elements(self, params: Params) -> None:
@@ -287,8 +296,8 @@ class GazeboRosControl(ControlPlugin):
 
     def read_pids(self) -> Mapping[str, Mapping[str, PidGains]]:
         found: dict[str, Mapping[str, PidGains]] = {}
-        for place in dict.fromkeys((f"{self.ros.namespace}/{_ROS_1_NODE}", f"/{_ROS_1_NODE}")):
-            entry = self.files.of_node(place)
+        for node in dict.fromkeys((f"{self.ros.namespace}/{_ROS_1_NODE}", f"/{_ROS_1_NODE}")):
+            entry = self.files.of_node(node)
             if entry is not None:
                 block = entry.block(_ROS_1_NODE, self.params.diagnostics).block("pid_gains")
                 for joint, gains in self.gains_of_joints(block).items():
@@ -297,6 +306,6 @@ class GazeboRosControl(ControlPlugin):
         return found
 
     def _gains_by_interface(self, joint: str, gains: PidGains) -> Mapping[str, PidGains]:
-        """One set of gains is for whichever interface the joint has."""
+        """Assign one set of gains to each command interface of the joint, position or velocity."""
         interfaces = self.hardware.joints[joint].command_interfaces
         return {name: gains for name in (POSITION, VELOCITY) if name in interfaces}

@@ -33,11 +33,11 @@ Handle = TypeVar("Handle")
 class ControllerEndpoints(SharedByCopies):
     """Topics, services and actions that the controllers of one name have opened.
 
-    They stay open with the controller's name: one that is unloaded and loaded again, or configured again, finds them
-    open, and what comes in meanwhile is dropped.
+    They stay open with the controller's name. A controller that is unloaded and loaded again, or configured again, uses
+    the same endpoints. Messages that arrive in the meantime are dropped.
 
     Attributes:
-        handlers: callbacks of the present controller, by the kind of endpoint and its name.
+        handlers: callbacks of the current controller, by the kind and the name of the endpoint.
     """
 
     def __init__(self) -> None:
@@ -45,14 +45,14 @@ class ControllerEndpoints(SharedByCopies):
         self.handlers: dict[Key, Relay] = {}
 
     def open(self, key: Key, make: Callable[[], Handle]) -> Handle:
-        """Return the endpoint of that name, and make it where there is none yet."""
+        """Return the endpoint of a key; create it if it does not exist yet."""
         if key not in self._handles:
             self._handles[key] = make()
         found: Handle = self._handles[key]
         return found
 
     def relay(self, key: Key, handler: Relay, absent: Relay = lambda *_: None) -> Relay:
-        """Return a callback that calls the present handler of an endpoint: `handler` from now on, or else `absent`."""
+        """Set the handler of an endpoint and return a callback for it, which calls `absent` without a handler."""
         self.handlers[key] = handler
         return lambda *values: self.handlers.get(key, absent)(*values)
 
@@ -65,25 +65,25 @@ T = TypeVar("T", bound="bool | int | float | str | tuple[float, ...]")
 
 
 class Controller(SharedByCopies, abc.ABC):
-    """Base of all controllers.
+    """Base class of all controllers.
 
-    The controller manager makes it, then calls `configure` once, `activate` and `deactivate` as it is switched, and
-    `update` at its rate while it is active. Between `activate` and `deactivate` the interfaces that it named are its
-    own. What it writes stays until it writes again.
+    The controller manager creates it and calls `configure` once. It calls `activate` and `deactivate` when the
+    controller is switched, and `update` at its rate while the controller is active. Between `activate` and `deactivate`
+    the controller has claimed the interfaces that it named. A value that it writes stays until it writes again.
 
     Attributes:
-        types: type names in YAML files that stand for this class
+        types: type names in YAML files that select this class
             (`joint_trajectory_controller/JointTrajectoryController`).
-        name: the controller's, such as `arm_controller`.
-        plugin: the plugin that hosts the controller manager.
-        params: the controller's parameters from the YAML; an element for each key, `a.b` as the element b in a, a
+        name: name of the controller, such as `arm_controller`.
+        plugin: plugin that hosts the controller manager.
+        params: parameters of the controller from the YAML file: an element for each key, `a.b` as the element b in a, a
             list as repeated elements (`[j.value for j in params.all("joints")]`).
-        hardware: joints with their limits, mimics, and the tables of interfaces.
-        states: the state interfaces it named, bound before `configure` returns to the manager.
-        commands: the command interfaces it named, bound and claimed while it is active.
-        update_rate: [Hz]; 0 for the manager's.
-        log: a logger below `simkit`.
-        endpoints: what it has opened; the manager gives it those of its name.
+        hardware: joints with their limits and mimic relations, and the tables of interfaces.
+        states: state interfaces that the controller named, bound before `configure` returns to the manager.
+        commands: command interfaces that the controller named, bound, and claimed while it is active.
+        update_rate: update rate [Hz]; 0 for the manager's.
+        log: logger below `simkit`.
+        endpoints: topics, services and actions of the controller; the manager sets those of its name.
     """
 
     types: ClassVar[tuple[str, ...]] = ()
@@ -99,60 +99,60 @@ class Controller(SharedByCopies, abc.ABC):
     endpoints: ControllerEndpoints
 
     def __init__(self, name: str, plugin: Plugin, params: Params, hardware: Hardware) -> None:
-        """Made by the controller manager.
+        """Initialise a controller; the controller manager calls this.
 
         Args:
-            name: the controller's.
-            plugin: the host.
-            params: its part of the YAML.
-            hardware: what it may claim.
+            name: name of the controller.
+            plugin: plugin that hosts the controller manager.
+            params: parameters of the controller's node.
+            hardware: joints and sensors that the controller may use.
         """
         self.name, self.plugin, self.params, self.hardware = name, plugin, params, hardware
         self.log = logging.getLogger(f"simkit.plugins.ros2_control.{name}")
         self.endpoints = ControllerEndpoints()
 
-    # ------------------------------------------------------------------ what a controller says and does
+    # ------------------------------------------------------------------ methods of a controller
 
     @abc.abstractmethod
     def configure(self) -> None:
-        """Reads `params`, opens topics, services, actions; a problem recorded in `params` keeps it unconfigured."""
+        """Read `params` and open topics, services and actions; an error in `params` keeps it unconfigured."""
 
     def command_interfaces(self) -> Sequence[str]:
-        """List the interfaces that it writes, such as `arm_1_joint/position`; called after `configure`."""
+        """List the command interfaces to claim, such as `arm_1_joint/position`; called after `configure`."""
         return ()
 
     def state_interfaces(self) -> Sequence[str]:
-        """List the interfaces that it reads, such as `arm_1_joint/velocity`; called after `configure`."""
+        """List the state interfaces to read, such as `arm_1_joint/velocity`; called after `configure`."""
         return ()
 
     def activate(self) -> None:
-        """Its interfaces are bound; takes up the present state."""
+        """Start from the current state; the interfaces are bound and claimed before this call."""
 
     def deactivate(self) -> None:
-        """Ends goals and lets go; the interfaces are released afterwards. Joints stay where they are."""
+        """End goals; the interfaces are released after this call, and joints stay where they are."""
 
     @abc.abstractmethod
     def update(self, now_ns: int, period: float) -> None:
-        """Reads `states`, writes `commands`.
+        """Read `states` and write `commands`.
 
         Args:
             now_ns: simulated time [ns].
             period: time since the last update [s].
         """
 
-    # ------------------------------------------------------------------ what it may use
+    # ------------------------------------------------------------------ methods for a controller
 
     @property
     def sim(self) -> Simulation:
-        """The simulation."""
+        """Simulation that the plugin belongs to."""
         return self.plugin.sim
 
     def topic(self, name: str) -> str:
-        """A name as the controller's node has it: `~/state` is `<namespace>/<controller>/state`."""
+        """Return a name in the controller's node: `~/state` becomes `<controller>/state`."""
         return f"{self.name}/{name[2:]}" if name.startswith("~/") else name
 
     def advertise(self, topic: str, type_name: str, *, latched: bool = False) -> Publisher:
-        """As `Plugin.advertise`, with the controller's node."""
+        """Create a publisher, like `Plugin.advertise`, in the controller's node."""
         name = self.topic(topic)
         publisher: Publisher = self.endpoints.open(
             ("advertise", f"{name} {type_name}"), lambda: self.plugin.advertise(name, type_name, latched=latched)
@@ -160,14 +160,14 @@ class Controller(SharedByCopies, abc.ABC):
         return publisher
 
     def listen(self, topic: str, types: str | Sequence[str], callback: Callable[[Message], None]) -> Listener:
-        """As `Plugin.listen`, with the controller's node."""
+        """Create a subscriber, like `Plugin.listen`, in the controller's node."""
         name, key = self.topic(topic), ("listen", f"{self.topic(topic)} {types}")
         relay = self.endpoints.relay(key, callback)
         listener: Listener = self.endpoints.open(key, lambda: self.plugin.listen(name, types, relay))
         return listener
 
     def offer(self, service: str, type_name: str, handler: Callable[[Message], object]) -> Service:
-        """As `Plugin.offer`, with the controller's node."""
+        """Create a service, like `Plugin.offer`, in the controller's node."""
         name, key = self.topic(service), ("offer", self.topic(service))
         relay = self.endpoints.relay(key, handler)
         opened: Service = self.endpoints.open(key, lambda: self.plugin.offer(name, type_name, relay))
@@ -180,7 +180,7 @@ class Controller(SharedByCopies, abc.ABC):
         on_goal: Callable[[GoalHandle], None],
         on_cancel: Callable[[GoalHandle], bool | None] | None = None,
     ) -> Action:
-        """As `Plugin.act`, with the controller's node."""
+        """Create an action server, like `Plugin.act`, in the controller's node."""
         name, key = self.topic(action), ("act", self.topic(action))
         relay = self.endpoints.relay(key, on_goal, lambda goal: goal.reject("the controller is not loaded"))
         cancel = on_cancel and self.endpoints.relay(("cancel", name), on_cancel)
@@ -198,15 +198,16 @@ class Controller(SharedByCopies, abc.ABC):
         description: str = "",
         on_change: Callable[[T], None] | None = None,
     ) -> Parameter[T]:
-        """A live parameter of the controller's node, as `Plugin.declare`; its first value is the YAML's.
+        """Declare a live parameter of the controller's node, like `Plugin.declare`; the YAML gives its first value.
 
         Args:
-            name: its name; `gains.arm_1_joint.p` is p in arm_1_joint in gains.
-            default: its value where the YAML says nothing; its type is the parameter's.
-            minimum, maximum: bounds of a number.
-            choices: what is allowed, where that is a list.
-            description: what it is, with its unit.
-            on_change: called with a new value, between two steps.
+            name: parameter name; `gains.arm_1_joint.p` is p in arm_1_joint in gains.
+            default: value where the YAML file has none; its type is the type of the parameter.
+            minimum: lower bound of a number.
+            maximum: upper bound of a number.
+            choices: allowed values, if the parameter has a fixed list of them.
+            description: meaning of the parameter, with its unit.
+            on_change: callback for a new value, called between two steps.
         """
         plugin, params = self.plugin, self.params
         *blocks, last = name.split(".")
@@ -227,9 +228,9 @@ class Controller(SharedByCopies, abc.ABC):
         return declare_at(plugin, parameter, params, last)
 
     def get_state(self) -> dict[str, object]:
-        """A copy of every attribute it gave itself; handles and publishers stand for themselves.
+        """Return a copy of every attribute that the controller set; handles and publishers are not duplicated.
 
-        What cannot be copied is left out and told once (SK-PLUGIN-006).
+        An attribute that cannot be copied is left out and reported once (SK-PLUGIN-006).
         """
         own = {k: v for k, v in vars(self).items() if k not in _OWN_ATTRIBUTES}
         memo: dict[int, object] = {id(self): self}
@@ -239,23 +240,23 @@ class Controller(SharedByCopies, abc.ABC):
             return dict(self._copy_attributes(own, memo))
 
     def set_state(self, state: Mapping[str, object]) -> None:
-        """Back to a state from `get_state`; what could not be copied stays as it is."""
+        """Restore a state from `get_state`; attributes that could not be copied keep their values."""
         uncopied = vars(self).get("_uncopied", ())
         for key in [k for k in vars(self) if k not in _OWN_ATTRIBUTES and k not in state and k not in uncopied]:
             delattr(self, key)
         vars(self).update(copy.deepcopy(dict(state), {id(self): self}))
 
     def _copy_attributes(self, own: Mapping[str, object], memo: dict[int, object]) -> Iterator[tuple[str, object]]:
-        """Copies of the attributes that can be copied."""
+        """Copy the attributes that can be copied, and report the others once."""
         uncopied: set[str] = vars(self).setdefault("_uncopied", set())
         for key, value in own.items():
             try:
                 yield key, copy.deepcopy(value, memo)
-            except Exception as error:  # noqa: BLE001 - as above
+            except Exception as error:  # noqa: BLE001 - a foreign object may raise anything when copied
                 if key not in uncopied:
                     uncopied.add(key)
                     message = f"controller {self.name!r}: attribute {key!r} cannot be copied"
-                    message = f"{message}, snapshots and reset leave it as it is: {error}"
+                    message = f"{message}, so snapshots and reset do not change it: {error}"
                     self.sim.engine.reports.warning("SK-PLUGIN-006", message, self.params.where)
 
 
@@ -265,17 +266,20 @@ _OWN_ATTRIBUTES = frozenset(
 
 
 class OneTimeWarnings(SharedByCopies):
-    """Reports of a controller that are made once each; a handle, without state that a reset forgets."""
+    """Warnings of a controller that are reported once each.
+
+    It is a handle and has no state of the simulation, so a reset does not repeat a warning.
+    """
 
     def __init__(self, controller: Controller) -> None:
         self._controller = controller
         self._reported: set[str] = set()
 
-    def warn(self, code: str, what: str, message: str, hint: str = "") -> None:
-        """A warning at the controller's place in the YAML, once for each `what`."""
-        if what in self._reported:
+    def warn(self, code: str, key: str, message: str, hint: str = "") -> None:
+        """Report a warning at the controller's place in the YAML file, once for each `key`."""
+        if key in self._reported:
             return
-        self._reported.add(what)
+        self._reported.add(key)
         controller = self._controller
         controller.sim.engine.reports.warning(
             code, f"controller {controller.name!r}: {message}", controller.params.where, hint

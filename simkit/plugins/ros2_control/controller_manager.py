@@ -25,16 +25,16 @@ _SECOND: Final = 1_000_000_000
 KNOWN_PARAMETERS: Final[Mapping[str, Sequence[str]]] = tomllib.loads(
     Path(__file__).with_name("known_parameters.toml").read_text(encoding="utf-8")
 )
-"""Names of parameters that are no controller's own, by whose they are."""
+"""Names of parameters that every node or the manager has, by the kind of their owner."""
 State = Literal["unconfigured", "inactive", "active"]
 
 
 @functools.cache
 def controller_kinds() -> Mapping[str, type[Controller]]:
-    """Every known controller class by each type name it answers to; computed once, read-only."""
+    """Return every known controller class by type name; computed once, read-only."""
 
     def names(cls: type[Controller]) -> tuple[str, ...]:
-        own: tuple[str, ...] = vars(cls).get("types", ())  # what it inherits is the other's
+        own: tuple[str, ...] = vars(cls).get("types", ())  # inherited names belong to the base class
         return own
 
     return Kinds("simkit.plugins.ros2_control.controllers", GROUP, Controller, names)  # type: ignore[type-abstract]
@@ -42,13 +42,13 @@ def controller_kinds() -> Mapping[str, type[Controller]]:
 
 @dataclass(slots=True)
 class LoadedController:
-    """A controller with where it stands.
+    """Controller with its life cycle state.
 
     Attributes:
-        controller: itself.
-        type: the name that the file gives its class.
-        state: of its life cycle.
-        last: simulated time of its last update [ns].
+        controller: controller object.
+        type: type name of the controller in the file.
+        state: life cycle state.
+        last: simulated time of the last update [ns].
     """
 
     controller: Controller
@@ -58,19 +58,19 @@ class LoadedController:
 
 
 class ControllerManager(SharedByCopies):
-    """Runs the controllers of one robot.
+    """Loads, switches and updates the controllers of one robot.
 
     Args:
-        plugin: the plugin that hosts it.
-        hardware: what controllers claim.
-        files: where parameters come from.
-        name: of its node.
-        diagnostics: where problems go while the simulation is being loaded.
+        plugin: plugin that hosts the manager.
+        hardware: joints and sensors that the controllers claim.
+        files: parameter files of the manager and its controllers.
+        name: name of the manager's node.
+        diagnostics: diagnostics of the load, used until `start` has returned.
 
     Attributes:
-        namespace: of its node and those of its controllers, as the files have it.
-        controllers: the loaded ones by name, in the order in which they were loaded.
-        is_ros_1: whether its services speak as ROS 1's do.
+        namespace: namespace of the manager's node and of the controllers' nodes.
+        controllers: loaded controllers by name, in the order in which they were loaded.
+        is_ros_1: true if the services use the states and steps of ROS 1.
     """
 
     def __init__(
@@ -83,18 +83,18 @@ class ControllerManager(SharedByCopies):
         self.is_ros_1 = False
         self._last_ns = 0
         self._endpoints: dict[str, ControllerEndpoints] = {}
-        # the active ones in their order; None after a change
+        # the active controllers in their order; None after a change
         self._active_controllers: list[tuple[LoadedController, Controller]] | None = None
 
-    # ------------------------------------------------------------------ what the files say
+    # ------------------------------------------------------------------ declarations in the files
 
     @property
     def node(self) -> str:
-        """Full name of the node whose parameters declare the controllers: in ROS 1 that is the robot's namespace."""
+        """Full name of the node whose parameters declare the controllers; in ROS 1 the robot's namespace."""
         return self.namespace if self.is_ros_1 else f"{self.namespace}/{self.name}"
 
     def declared(self) -> dict[str, str]:
-        """Controller -> type, as the files declare them, in their order."""
+        """Return the type of each controller that the files declare, in the order of the files."""
         found: dict[str, str] = {}
         own = self.files.of_node(self.node)
         for name, entry in (own.below or {}).items() if own is not None else ():
@@ -107,12 +107,12 @@ class ControllerManager(SharedByCopies):
 
     @property
     def reports(self) -> Diagnostics:
-        """Diagnostics that problems go to: those of the load, later those of the run."""
+        """Diagnostics for new problems: those of the load, and later those of the run."""
         found: Diagnostics = self.plugin.sim.engine.reports if self._diagnostics is None else self._diagnostics
         return found
 
     def load(self, name: str) -> str:
-        """Makes a controller of the type that the files declare; returns what is wrong, nothing where all is well."""
+        """Create a controller of the type that the files declare; return the problem, or an empty text."""
         if name in self.controllers:
             return f"a controller named '{name}' was already loaded inside the controller manager"
         kind = self.declared().get(name, "")
@@ -137,7 +137,7 @@ class ControllerManager(SharedByCopies):
         return made[0] if made else Params(name, where=entry.where, diagnostics=found)
 
     def configure(self, name: str) -> str:
-        """Has a controller read its parameters; returns what is wrong."""
+        """Let a controller read its parameters; return the problem, or an empty text."""
         loaded = self.controllers.get(name)
         if loaded is None:
             return self._not_found(name)
@@ -146,8 +146,8 @@ class ControllerManager(SharedByCopies):
         controller = loaded.controller
         params = controller.params
         before = params.diagnostics.error_count
-        for word in KNOWN_PARAMETERS["controller"]:
-            params.child(word)
+        for parameter in KNOWN_PARAMETERS["controller"]:
+            params.child(parameter)
         controller.update_rate = params.integer("update_rate", 0, minimum=0)
         controller.configure()
         commands, states = controller.command_interfaces(), controller.state_interfaces()
@@ -155,20 +155,21 @@ class ControllerManager(SharedByCopies):
             self._check_interfaces(controller, commands, self.hardware.commands.names, "command")
             self._check_interfaces(controller, states, self.hardware.states.names, "state")
         params.report_unread("SK-CONTROL-011", f"controller {name!r}")
-        said = [d for d in params.diagnostics if d.severity == "error"]
+        errors = [d for d in params.diagnostics if d.severity == "error"]
         self.reports.extend(params.diagnostics)
         if params.diagnostics.error_count > before:
-            return "; ".join(d.message for d in said)
+            return "; ".join(d.message for d in errors)
         controller.states = self.hardware.states.select(states)
         controller.commands = self.hardware.commands.select(commands)
         loaded.state = "inactive"
         return ""
 
-    def _check_interfaces(self, controller: Controller, names: Sequence[str], there: Sequence[str], what: str) -> None:
+    def _check_interfaces(self, controller: Controller, names: Sequence[str], known: Sequence[str], kind: str) -> None:
         for name in dict.fromkeys(names):
-            if name not in there:
-                near = did_you_mean(name, there) or ("there are: " + ", ".join(there) if there else "there are none")
-                message = f"controller {controller.name!r} needs the {what} interface {name!r}, which is not there"
+            if name not in known:
+                listed = f"the {kind} interfaces are: " + (", ".join(known) or "none")
+                near = did_you_mean(name, known) or listed
+                message = f"controller {controller.name!r} needs the {kind} interface {name!r}, which does not exist"
                 controller.params.error("SK-CONTROL-012", message, near)
 
     def _not_found(self, name: str) -> str:
@@ -178,21 +179,21 @@ class ControllerManager(SharedByCopies):
     def conflicts(
         self, name: str, leaving: Iterable[str] = (), coming: Mapping[str, str] | None = None
     ) -> dict[str, str]:
-        """Command interfaces of a controller whose joint another one drives: interface -> the other.
+        """Return the conflicting command interfaces of a controller, with the controller that drives their joint.
 
         Args:
-            name: the controller.
-            leaving: active controllers that are about to let go.
-            coming: interfaces that others are about to claim, with who.
+            name: name of the controller.
+            leaving: active controllers that are about to be deactivated.
+            coming: interfaces that are about to be claimed, with the name of the claiming controller.
         """
-        gone = set(leaving)
-        owners = {one: who for one, who in self.hardware.owners.items() if who not in gone} | dict(coming or {})
-        by_joint = {one.rpartition("/")[0]: who for one, who in owners.items() if who != name}
+        released = set(leaving)
+        owners = {i: owner for i, owner in self.hardware.owners.items() if owner not in released} | dict(coming or {})
+        by_joint = {i.rpartition("/")[0]: owner for i, owner in owners.items() if owner != name}
         needed = self.controllers[name].controller.command_interfaces()
-        return {one: by_joint[joint] for one in needed if (joint := one.rpartition("/")[0]) in by_joint}
+        return {i: by_joint[joint] for i in needed if (joint := i.rpartition("/")[0]) in by_joint}
 
     def activate(self, name: str) -> None:
-        """Gives a configured controller its interfaces."""
+        """Activate a configured controller: claim its command interfaces and bind its state interfaces."""
         loaded = self.controllers[name]
         names = loaded.controller.command_interfaces()
         self.hardware.claim(names, name)
@@ -202,13 +203,13 @@ class ControllerManager(SharedByCopies):
         loaded.controller.activate()
 
     def _update_active(self) -> None:
-        """Has the hardware read what the active controllers need."""
+        """Let the hardware read the state interfaces that the active controllers need."""
         self._active_controllers = None
         active = (c.controller for c in self.controllers.values() if c.state == "active")
         self.hardware.set_read_interfaces(name for controller in active for name in controller.states.names)
 
     def deactivate(self, name: str) -> None:
-        """Takes its interfaces from an active controller."""
+        """Deactivate an active controller and release its interfaces."""
         loaded = self.controllers[name]
         loaded.controller.deactivate()
         self.hardware.release(name)
@@ -216,33 +217,34 @@ class ControllerManager(SharedByCopies):
         self._update_active()
 
     def switch(self, activate: Sequence[str], deactivate: Sequence[str], *, strict: bool) -> str:
-        """Deactivates controllers, then activates others, all before the next update.
+        """Deactivate controllers, then activate others, all before the next update.
 
         Args:
-            activate, deactivate: names.
-            strict: whether nothing is switched where one of them cannot be; else it is left out.
+            activate: names of controllers to activate.
+            deactivate: names of controllers to deactivate.
+            strict: switch nothing if one of the controllers cannot be switched; otherwise skip that controller.
 
         Returns:
-            What is wrong; nothing where all is well.
+            Description of the problem; empty without one.
         """
         problems: list[str] = []
         leaving = self._switchable(deactivate, "deactivate", "active", problems, leaving=())
         coming = self._switchable(activate, "activate", "inactive", problems, leaving=leaving)
         claims: dict[str, str] = {}
         for name in list(coming):
-            taken = self.conflicts(name, leaving, claims)
-            if taken:
-                interface, owner = next(iter(taken.items()))
+            conflicts = self.conflicts(name, leaving, claims)
+            if conflicts:
+                interface, owner = next(iter(conflicts.items()))
                 problems.append(
                     f"resource conflict for controller '{name}': command interface '{interface}' is already claimed "
                     f"(by '{owner}')"
                 )
                 coming.remove(name)
-            claims |= {one: name for one in self.controllers[name].controller.command_interfaces() if not taken}
+            claims |= {i: name for i in self.controllers[name].controller.command_interfaces() if not conflicts}
         for problem in problems:
             self.reports.warning("SK-CONTROL-010", problem, self.plugin.where)
-        wanted = bool(activate or deactivate)
-        if problems and (strict or (wanted and not coming and not leaving)):
+        is_request = bool(activate or deactivate)
+        if problems and (strict or (is_request and not coming and not leaving)):
             return "; ".join(problems)
         for name in leaving:
             self.deactivate(name)
@@ -251,26 +253,26 @@ class ControllerManager(SharedByCopies):
         return ""
 
     def _switchable(
-        self, names: Sequence[str], what: str, needed: State, problems: list[str], leaving: Sequence[str]
+        self, names: Sequence[str], verb: str, needed: State, problems: list[str], leaving: Sequence[str]
     ) -> list[str]:
-        """Those that can be switched; what keeps the others from it goes to `problems`."""
+        """Return the names that can be switched; append the reasons for the others to `problems`."""
         found = []
         for name in dict.fromkeys(names):
             loaded = self.controllers.get(name)
             if loaded is None:
                 near = did_you_mean(name, self.controllers)
-                missing = f"could not {what} controller '{name}' because no controller with this name exists"
+                missing = f"could not {verb} controller '{name}' because no controller with this name exists"
                 problems.append(f"{missing}; {near}" if near else missing)
-            elif loaded.state == needed or (what == "activate" and name in leaving):
+            elif loaded.state == needed or (verb == "activate" and name in leaving):
                 found.append(name)
             else:
                 already = "already active" if loaded.state == "active" else f"not in {needed} state"
-                reason = already if what == "activate" else "not active"
-                problems.append(f"could not {what} controller '{name}' since it is {reason}")
+                reason = already if verb == "activate" else "not active"
+                problems.append(f"could not {verb} controller '{name}' since it is {reason}")
         return found
 
     def unload(self, name: str) -> str:
-        """Forgets a controller; returns what is wrong."""
+        """Remove a controller that is not active; return the problem, or an empty text."""
         loaded = self.controllers.get(name)
         if loaded is None:
             return self._not_found(name)
@@ -280,45 +282,45 @@ class ControllerManager(SharedByCopies):
         del self.controllers[name]
         return ""
 
-    # ------------------------------------------------------------------ at work
+    # ------------------------------------------------------------------ run time
 
     def start(self, chosen: Sequence[str]) -> None:
-        """Loads, configures and activates controllers in their order; what cannot be is told."""
+        """Load, configure and activate controllers in their order; report those that cannot be activated."""
         for name in chosen:
-            where = self._declaration_place(name)
+            where = self._declaration_location(name)
             problem = self.load(name)
             if problem:
-                self.reports.warning("SK-CONTROL-013", f"{problem}; it is left out", where)
+                self.reports.warning("SK-CONTROL-013", f"{problem}; it is not loaded", where)
                 continue
             if self.configure(name):
-                continue  # its parameters say what is wrong
-            taken = self.conflicts(name)
-            if taken:
-                message = ", ".join(f"{one!r} (of {who!r})" for one, who in taken.items())
+                continue  # the diagnostics of its parameters report the problem
+            conflicts = self.conflicts(name)
+            if conflicts:
+                message = ", ".join(f"{i!r} (of {owner!r})" for i, owner in conflicts.items())
                 self.reports.note(
                     "SK-CONTROL-014",
-                    f"controller {name!r} stays inactive: others that come first have {message}",
+                    f"controller {name!r} stays inactive: earlier controllers have claimed {message}",
                     where,
-                    "switch_controller changes over",
+                    f"call {self.name}/switch_controller to activate {name} and deactivate the other controllers",
                 )
                 continue
             self.activate(name)
         self._diagnostics = None
 
-    def _declaration_place(self, name: str) -> Where:
+    def _declaration_location(self, name: str) -> Where:
         own = self.files.of_node(self.node)
         entry = (own.below or {}).get(name) if own is not None else None
         return self.plugin.where if entry is None else entry.where
 
     def update(self, now_ns: int) -> None:
-        """Reads the hardware, updates the active controllers, writes the commands."""
+        """Read the hardware, update the active controllers and write the commands."""
         self.hardware.read()
         if self._active_controllers is None:
             self._active_controllers = [(c, c.controller) for c in self.controllers.values() if c.state == "active"]
         for loaded, controller in self._active_controllers:
             if controller.update_rate and not self._is_due(loaded, now_ns):
                 continue
-            if loaded.state == "active":  # still: others may have switched it
+            if loaded.state == "active":  # another controller's update may have deactivated it
                 controller.update(now_ns, (now_ns - loaded.last) * 1e-9)
                 loaded.last = now_ns
         self.hardware.write((now_ns - self._last_ns) * 1e-9)
@@ -329,23 +331,23 @@ class ControllerManager(SharedByCopies):
         return now_ns * rate // _SECOND > loaded.last * rate // _SECOND
 
     def get_state(self) -> object:
-        """A copy of everything that changes as it runs."""
+        """Return a copy of everything that changes at run time."""
         hardware = self.hardware
         return (
             [(n, c, c.type, c.state, c.last, c.controller.get_state()) for n, c in self.controllers.items()],
-            {name: dict(ends.handlers) for name, ends in self._endpoints.items()},
+            {name: dict(endpoints.handlers) for name, endpoints in self._endpoints.items()},
             self._last_ns,
             hardware.get_state(),
         )
 
     def set_state(self, state: Any) -> None:
-        """Back to a state from `get_state`."""
+        """Restore a state from `get_state`."""
         controllers, handlers, self._last_ns, hardware = state
-        for name, ends in self._endpoints.items():
-            ends.handlers = dict(handlers.get(name, {}))
+        for name, endpoints in self._endpoints.items():
+            endpoints.handlers = dict(handlers.get(name, {}))
         self.controllers, self._active_controllers = {}, None
-        for name, loaded, kind, where, last, own in controllers:
-            loaded.type, loaded.state, loaded.last = kind, where, last
+        for name, loaded, kind, state_name, last, own in controllers:
+            loaded.type, loaded.state, loaded.last = kind, state_name, last
             loaded.controller.set_state(own)
             self.controllers[name] = loaded
         self.hardware.set_state(hardware)

@@ -1,4 +1,4 @@
-"""The services of the controller manager: what a spawner, `ros2 control` or rqt's controller page asks."""
+"""Services of the controller manager for spawners, `ros2 control` and rqt's controller page."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ if TYPE_CHECKING:
 _STRICT: Final = 2
 _BEST_EFFORT: Final = 1
 _LIFE_CYCLE: Final = {1: "unconfigured", 2: "inactive", 3: "active", 4: "finalized"}
-"""Of `lifecycle_msgs/msg/State`."""
+"""State names of `lifecycle_msgs/msg/State` by id."""
 
 _ROS_1_STATES: Final = {"unconfigured": "initialized", "inactive": "stopped", "active": "running"}
 
 
 def offer_services(manager: ControllerManager) -> None:
-    """Opens the services of a controller manager at its node."""
+    """Offer the services of a controller manager below its node."""
     handlers: dict[str, Callable[[Message], object]] = {
         "ListControllers": lambda _: {"controller": [_state(manager, n, c) for n, c in manager.controllers.items()]},
         "ListControllerTypes": lambda _: _types(),
@@ -43,7 +43,7 @@ def offer_services(manager: ControllerManager) -> None:
 
 
 def _report_problem(manager: ControllerManager, problem: str) -> bool:
-    """Check whether there is no problem; one is reported."""
+    """Report a problem if there is one; return true without a problem."""
     if problem:
         manager.reports.warning("SK-CONTROL-010", problem, manager.plugin.where)
     return not problem
@@ -56,7 +56,7 @@ def _state(manager: ControllerManager, name: str, loaded: LoadedController) -> d
         "name": name,
         "state": _ROS_1_STATES[loaded.state] if manager.is_ros_1 else loaded.state,
         "type": loaded.type,
-        "claimed_interfaces": [one for one, who in manager.hardware.owners.items() if who == name],
+        "claimed_interfaces": [i for i, owner in manager.hardware.owners.items() if owner == name],
         "required_command_interfaces": list(controller.command_interfaces()) if is_configured else [],
         "required_state_interfaces": list(controller.state_interfaces()) if is_configured else [],
     }
@@ -69,23 +69,21 @@ def _types() -> dict[str, object]:
 
 def _load(manager: ControllerManager, name: str) -> bool:
     done = _report_problem(manager, manager.load(name))
-    # ROS 1 has no step of its own for it
+    # in ROS 1, loading includes configuring
     return _report_problem(manager, manager.configure(name)) if done and manager.is_ros_1 else done
 
 
 def _switch(manager: ControllerManager, request: SwitchController_Request) -> bool:
     strictness = int(request.strictness)
     if strictness not in (0, _BEST_EFFORT, _STRICT):
-        return _report_problem(
-            manager, f"a strictness of {strictness} is not known; allowed are 1 (best effort) and 2 (strict)"
-        )
+        return _report_problem(manager, f"the strictness {strictness} is not known; use 1 (best effort) or 2 (strict)")
     activate = [*request.activate_controllers, *request.start_controllers]
     deactivate = [*request.deactivate_controllers, *request.stop_controllers]
     return not manager.switch(activate, deactivate, strict=strictness == _STRICT)
 
 
 def _reload(manager: ControllerManager, force_kill: bool) -> bool:
-    """Unloads everything; without `force_kill` only where nothing is active. There is no library to be read again."""
+    """Unload all controllers; with an active one only if `force_kill` is set. Python has no library to reload."""
     active = [name for name, loaded in manager.controllers.items() if loaded.state == "active"]
     if active and not force_kill:
         return _report_problem(manager, "controllers are active, so libraries are not reloaded: " + ", ".join(active))
@@ -109,7 +107,7 @@ def _interfaces(manager: ControllerManager) -> dict[str, object]:
 
 
 def _component(manager: ControllerManager, component: ComponentDescription) -> dict[str, object]:
-    owners = {one.name for one in component.joints} | {one.name for one in component.sensors}
+    owners = {joint.name for joint in component.joints} | {sensor.name for sensor in component.sensors}
     hardware = manager.hardware
 
     def own(names: tuple[str, ...], *, is_command: bool) -> list[dict[str, object]]:
@@ -127,18 +125,20 @@ def _component(manager: ControllerManager, component: ComponentDescription) -> d
 
 
 def _set_component(manager: ControllerManager, request: SetHardwareComponentState_Request) -> dict[str, object]:
-    """Hardware of the simulation is always active: only that may be asked for."""
+    """Accept the state `active` only: hardware in the simulation is always active."""
     active = {"id": 3, "label": "active"}
     names = [component.name for component in manager.hardware.components]
     if request.name not in names:
         _report_problem(
-            manager, f"there is no hardware component '{request.name}'; there are: {', '.join(names) or 'none'}"
+            manager,
+            f"there is no hardware component '{request.name}'; the components are: {', '.join(names) or 'none'}",
         )
         return {"ok": False}
-    wanted = _LIFE_CYCLE.get(int(request.target_state.id), "") or str(request.target_state.label)
-    if wanted != "active":
+    target = _LIFE_CYCLE.get(int(request.target_state.id), "") or str(request.target_state.label)
+    if target != "active":
         _report_problem(
-            manager, f"the hardware '{request.name}' is the simulation and stays active, not {wanted or 'unknown'}"
+            manager,
+            f"the hardware '{request.name}' is simulated and always active; it cannot be {target or 'unknown'}",
         )
         return {"ok": False, "state": active}
     return {"ok": True, "state": active}

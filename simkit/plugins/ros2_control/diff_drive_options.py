@@ -16,17 +16,19 @@ _INFINITY = math.inf
 
 
 class RateLimits(SharedByCopies):
-    """Bounds on a speed, its rate and the rate of that, in `linear.x` or `angular.z`; SI units, infinite for none.
+    """Bounds on a speed, on its acceleration and on its jerk, in `linear.x` or `angular.z`.
 
-    A kind of limit is in force where `has_velocity_limits` and the like is true, or is not there and a bound is (they
-    went out of use); what is not bounded below is bounded as above. NaN is no bound.
+    All values are in SI units, and infinite without a bound. A kind of limit applies if `has_velocity_limits` (or the
+    like) is true. It also applies if that switch is absent and a bound is given, because newer versions have no switch.
+    A missing lower bound is the negative upper bound. NaN means no bound.
 
     Attributes:
-        least, most: of the speed.
-        acceleration, deceleration: of the rate while the speed is positive: upwards (≥ 0) and downwards (≤ 0).
-        reverse_acceleration, reverse_deceleration: the same while it is negative: away from zero (≤ 0), towards it
-            (≥ 0). From rest the bounds are those of the two accelerations.
-        least_jerk, most_jerk: of the rate of the rate.
+        least, most: bounds of the speed.
+        acceleration, deceleration: bounds of the acceleration while the speed is positive: upwards (≥ 0) and downwards
+            (≤ 0).
+        reverse_acceleration, reverse_deceleration: bounds while the speed is negative: away from zero (≤ 0) and towards
+            zero (≥ 0). At zero speed the two accelerations are the bounds.
+        least_jerk, most_jerk: bounds of the jerk.
     """
 
     def __init__(self, block: Params) -> None:
@@ -36,33 +38,34 @@ class RateLimits(SharedByCopies):
         deceleration = _read_bound(block, "max_deceleration", None, 0.0)
         reverse = _read_bound(block, "max_acceleration_reverse", None, 0.0)
         back = _read_bound(block, "max_deceleration_reverse", 0.0, None)
-        if up == _INFINITY:  # then the others bound nothing either
+        if up == _INFINITY:  # without it the other acceleration limits have no effect either
             down, deceleration, reverse, back = -_INFINITY, None, None, None
         self.acceleration = up
         self.reverse_acceleration = down if reverse is None else reverse
         self.deceleration = self.reverse_acceleration if deceleration is None else deceleration
         self.reverse_deceleration = up if back is None else back
 
-    def limit(self, wanted: float, last: float, before_last: float, period: float) -> float:
-        """The speed to command now: bounded in jerk, then in acceleration, then in speed.
+    def limit(self, target: float, last: float, before_last: float, period: float) -> float:
+        """Limit a speed in jerk, then in acceleration, then in magnitude, and return it.
 
-        Jerk is bounded while the change grows; it may end at once, or a speed would swing about the one wanted for
-        ever. (The rule of control_toolbox's RateLimiter since 2024; before that jerks of twice the bound went through,
-        and the swinging.)
+        Jerk is limited only while the change of speed grows. It may end at once: otherwise a speed would oscillate
+        about its target for ever. This is the rule of control_toolbox's RateLimiter since 2024. The older rule allowed
+        jerks of twice the bound, and it oscillated.
 
         Args:
-            wanted: the speed asked for.
-            last, before_last: what was commanded in the two periods before.
-            period: [s].
+            target: requested speed.
+            last: speed commanded in the previous period.
+            before_last: speed commanded in the period before that.
+            period: duration of a period [s].
         """
-        speed, change = wanted, last - before_last
+        speed, change = target, last - before_last
         growth = (speed - last) - change
         if growth * (speed - last) > 0:
             square = period * period
             speed = last + change + min(max(growth, self.least_jerk * square), self.most_jerk * square)
         down = self.deceleration if last > 0 else self.reverse_acceleration
         up = self.reverse_deceleration if last < 0 else self.acceleration
-        # without a bound in force the speed itself, not the one after rounding
+        # compare before adding, so that an unlimited speed keeps its exact value
         if speed - last > up * period:
             speed = last + up * period
         elif speed - last < down * period:
@@ -71,31 +74,31 @@ class RateLimits(SharedByCopies):
 
 
 def _read_bounds(block: Params, what: str) -> tuple[float, float]:
-    """The bounds `min_<what>` and `max_<what>`; infinite where none is in force."""
-    told = block.has(f"has_{what}_limits")
-    wanted = block.boolean(f"has_{what}_limits", False)
+    """Read the bounds `min_<what>` and `max_<what>`; infinite without limits."""
+    has_switch = block.has(f"has_{what}_limits")
+    is_enabled = block.boolean(f"has_{what}_limits", False)
     least, most = _read_bound(block, f"min_{what}", None, 0.0), _read_bound(block, f"max_{what}", 0.0, None)
-    if told and not wanted:
+    if has_switch and not is_enabled:
         return -_INFINITY, _INFINITY
     if most is None:
-        if wanted or least is not None:
-            # a lower bound alone would be none, and nobody would know
+        if is_enabled or least is not None:
+            # a lower bound alone would limit nothing, without any sign of it
             _report_missing_maximum(block, what)
         return -_INFINITY, _INFINITY
     return -most if least is None else least, most
 
 
 def _report_missing_maximum(block: Params, what: str) -> None:
-    given = f"has_{what}_limits is true" if block.has(f"has_{what}_limits") else f"there is min_{what}"
-    hint = "without it nothing is limited" if block.has(f"max_{what}") else f"min_{what} is -max_{what} unless given"
-    block.error("SK-CONTROL-042", f"{given}, but there is no max_{what} [{_UNITS[what]}]", hint)
+    setting = f"has_{what}_limits is true" if block.has(f"has_{what}_limits") else f"min_{what} is set"
+    hint = f"add max_{what}; min_{what} defaults to -max_{what}"
+    block.error("SK-CONTROL-042", f"{setting}, but max_{what} [{_UNITS[what]}] is missing", hint)
 
 
 _UNITS = {"velocity": "m/s or rad/s", "acceleration": "m/s² or rad/s²", "jerk": "m/s³ or rad/s³"}
 
 
 def _read_bound(block: Params, name: str, minimum: float | None, maximum: float | None) -> float | None:
-    """A bound; None where it is absent or NaN."""
+    """Read a bound; None if it is absent or NaN."""
     found = block.child(name)
     if found is None or found.value.strip().lstrip(".").lower() == "nan":
         return None
@@ -107,29 +110,30 @@ _ROS_1_NAMES = ("left_wheel", "right_wheel")
 
 
 class DriveOptions(SharedByCopies):
-    """Parameters of a differential drive but for the multipliers, which may change as it runs.
+    """Parameters of a differential drive, except for the multipliers, which may change at run time.
 
     Args:
-        params: the controller's.
-        namespace: of its node.
-        measured: gives the separation and the radius that the model has for a left and a right wheel [m], None where it
-            does not show; ROS 1's controller takes those that the file leaves out from there.
+        params: parameters of the controller.
+        namespace: namespace of the controller's node.
+        measured: function that returns the separation and the radius of the model's wheels for the joints of a left and
+            a right wheel [m], None where the model does not show them; ROS 1's controller uses them where the file has
+            no value.
 
     Attributes:
         left, right: joints of the wheels.
-        separation, radius: of the wheels as given, without multipliers [m].
-        linear, angular: limits of the speed ahead and of the rate of turning.
-        timeout_ns: after which a command counts no more [ns].
-        open_loop: odometry by what was commanded.
-        position_feedback: odometry by the wheels' angles; else by their speeds.
-        window: updates that the odometry's twist is the mean of.
-        odom_frame, base_frame: with their prefix.
+        separation, radius: distance and radius of the wheels from the file, without multipliers [m].
+        linear, angular: limits of the linear and the angular velocity.
+        timeout_ns: time after which a command expires [ns].
+        open_loop: true for odometry from the commands.
+        position_feedback: true for odometry from the wheels' angles; false for odometry from their speeds.
+        window: number of updates over which the twist of the odometry is averaged.
+        odom_frame, base_frame: frame names with their prefix.
         pose_covariance, twist_covariance: 6×6 row-major, shape (36,).
-        publish_rate: of odometry and transform [Hz]; 0 is every update.
-        publish_tf: whether the odometry's transform is told.
-        stamped: whether commands are expected with a stamp.
-        publish_limited: whether the limited command is told.
-        is_ros_1: whether the parameters are in its spelling.
+        publish_rate: rate of odometry and transform [Hz]; 0 for every update.
+        publish_tf: true if the transform of the odometry is published.
+        stamped: true if commands are expected with a stamp.
+        publish_limited: true if the limited command is published.
+        is_ros_1: true if the parameters have the names of ROS 1.
     """
 
     def __init__(
@@ -137,7 +141,7 @@ class DriveOptions(SharedByCopies):
     ) -> None:
         self.is_ros_1 = any(params.has(name) for name in _ROS_1_NAMES)
         self.left, self.right = _wheels(params, self.is_ros_1)
-        params.child("allow_multiple_cmd_vel_publishers")  # every publisher is heard, as with true
+        params.child("allow_multiple_cmd_vel_publishers")  # several publishers are always allowed, as with true
         self.separation, self.radius = _wheel_size(params, self, measured)
         self.stamped = params.boolean("use_stamped_vel", not self.is_ros_1)
         odom, base = params.text("odom_frame_id", "odom"), params.text("base_frame_id", "base_link")
@@ -157,43 +161,45 @@ class DriveOptions(SharedByCopies):
 
 
 def _wheels(params: Params, is_ros_1: bool) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Joints of the wheels on each side; what cannot be is reported."""
+    """Read the wheel joints of each side, and report invalid ones."""
     keys = _ROS_1_NAMES if is_ros_1 else ("left_wheel_names", "right_wheel_names")
     left, right = (tuple(element.value for element in params.all(key) if element.value) for key in keys)
     for key, names in zip(keys, (left, right), strict=True):
         if not names:
-            hint = f"a list of joints, such as {key}: [wheel_{key.split('_')[0]}_joint]"
+            hint = f"list its joints: {key}: [wheel_{key.split('_')[0]}_joint]"
             params.error("SK-CONTROL-040", f"{key} names no wheel", hint)
     if left and right and len(left) != len(right):
-        message = f"{keys[0]} has {len(left)} and {keys[1]} has {len(right)} wheels; each side has as many"
+        message = f"{keys[0]} has {len(left)} and {keys[1]} has {len(right)} wheels; both sides need the same number"
         params.error("SK-CONTROL-040", message)
     all_names = left + right
     for name in dict.fromkeys(n for n in all_names if all_names.count(n) > 1):
-        params.error("SK-CONTROL-041", f"joint {name!r} is named as several wheels; each wheel has a joint of its own")
+        params.error("SK-CONTROL-041", f"joint {name!r} is named for several wheels; each wheel needs its own joint")
     count = params.integer("wheels_per_side", 0, minimum=0)
     if count and left and count != len(left):
-        message = f"wheels_per_side is {count}, but {keys[0]} names {len(left)}; those named are driven"
+        message = f"wheels_per_side is {count}, but {keys[0]} names {len(left)}; the named wheels are driven"
         where = (params.child("wheels_per_side") or params).where
         params.diagnostics.warning("SK-CONTROL-043", message, where)
     return left, right
 
 
 def _wheel_size(
-    params: Params, options: DriveOptions, measured: Callable[[str, str], tuple[float | None, float | None]]
+    params: Params, options: DriveOptions, measure: Callable[[str, str], tuple[float | None, float | None]]
 ) -> tuple[float, float]:
-    """Separation and radius of the wheels [m]."""
+    """Return separation and radius of the wheels [m]."""
     keys = ("wheel_separation", "wheel_radius")
     missing = [key for key in keys if not params.has(key)]
-    shown: tuple[float | None, float | None] = (None, None)
+    measured: tuple[float | None, float | None] = (None, None)
     if options.is_ros_1 and missing and options.left and options.right:
-        shown = measured(options.left[0], options.right[0])
-        for key, value in zip(keys, shown, strict=True):
+        measured = measure(options.left[0], options.right[0])
+        for key, value in zip(keys, measured, strict=True):
             if key in missing and value is not None:
-                message = f"{params.name}: {key} is not given, the model's is taken: {value:g} m"
+                message = f"{params.name}: {key} is missing; the model's value is used: {value:g} m"
                 params.diagnostics.note("SK-CONTROL-044", message, params.where)
-    found = (params.number(k, v, required=v is None, minimum=_SMALLEST_SIZE) for k, v in zip(keys, shown, strict=True))
+    found = (
+        params.number(k, v, required=v is None, minimum=_SMALLEST_SIZE) for k, v in zip(keys, measured, strict=True)
+    )
     separation, radius = found
-    return separation or 1.0, radius or 1.0  # only where that was reported
+    return separation or 1.0, radius or 1.0  # the fallback follows a reported error
 
 
 def _frame_prefix(params: Params, namespace: str) -> str:
@@ -206,5 +212,5 @@ def _frame_prefix(params: Params, namespace: str) -> str:
 
 
 def _covariance(params: Params, name: str) -> Vector:
-    """A covariance by its diagonal: the variances of x, y, z, roll, pitch, yaw."""
+    """Read a covariance from its diagonal: the variances of x, y, z, roll, pitch and yaw."""
     return np.diag(read_numbers(params, name, [0.0] * 6, minimum=0.0)).reshape(36)

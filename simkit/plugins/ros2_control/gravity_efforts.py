@@ -1,4 +1,4 @@
-"""Efforts that hold joints against gravity, at the present state of the simulation."""
+"""Efforts that hold joints against gravity in the current state of the simulation."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ if TYPE_CHECKING:
 
 
 class GravityEfforts(SharedByCopies):
-    """Efforts that keep some one-axis joints from accelerating, all joints of the robot at rest or in motion as it is.
+    """Efforts that keep some one-axis joints from accelerating, with all joints of the robot in their current motion.
 
-    Gravity on everything that the joint carries by joints of its own model, and what the motion itself pulls; nothing
-    of contacts, so an object in a gripper is not in it.
+    They balance gravity on everything that the joint carries through joints of its own model, and the Coriolis and
+    centrifugal forces of the motion. Contacts are not included, so the weight of an object in a gripper is not either.
 
     Args:
-        sim: the simulation.
-        joints: scoped names.
+        sim: simulation that the joints belong to.
+        joints: scoped names of the joints.
     """
 
     def __init__(self, sim: Simulation, joints: Sequence[str]) -> None:
@@ -40,7 +40,7 @@ class GravityEfforts(SharedByCopies):
         if physics.fresh_velocities():
             bias: Vector = data.qfrc_bias[self._dofs]
             return bias
-        # the part of a forward pass that it takes: a tenth of the whole, and the same bits
+        # only the needed part of a forward pass: a tenth of its time, with bit-identical results
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
         mujoco.mj_comVel(model, data)

@@ -1,4 +1,4 @@
-"""The hardware that controllers command: joints with their interfaces, limits and servos."""
+"""Hardware that controllers command: joints with their interfaces, limits and servos."""
 
 from __future__ import annotations
 
@@ -38,16 +38,17 @@ class Hardware(SharedByCopies):
     """Joints and sensors of one robot.
 
     Attributes:
-        joints: by plain name, in the order of the description.
-        states: read from the simulation before the controllers are updated; what no active controller reads stays.
-        commands: written to the simulation after they were.
-        components: as described.
-        actuated: the joints that can be commanded, with their actuators.
-        sensors: by name.
-        actuators: the transmission that each belongs to, by name; their states are interfaces too.
-        owners: who claims a command interface, by its name.
-        springs: kp and kd by joint of controllers under whose efforts the joints are springs, by controller.
-        holds_position: whether a joint that nobody claims holds still, whatever interfaces it has.
+        joints: joints by plain name, in the order of the description.
+        states: state interfaces, read from the simulation before the controllers are updated; interfaces that no active
+            controller reads keep their values.
+        commands: command interfaces, written to the simulation after the controllers were updated.
+        components: description of the hardware.
+        actuated: joints with command interfaces, and their actuators.
+        sensors: sensors by name.
+        actuators: transmission of each actuator, by the actuator's name; actuators have state interfaces too.
+        owners: controller that has claimed a command interface, by the interface's name.
+        springs: kp and kd by joint for controllers whose joints behave like springs, by controller.
+        holds_position: true if an unclaimed joint holds its position, whatever interfaces it has.
     """
 
     joints: dict[str, HardwareJoint] = field(default_factory=dict)
@@ -62,11 +63,13 @@ class Hardware(SharedByCopies):
     holds_position: bool = True
     _sim: Simulation = field(init=False, repr=False)
     _sources: Indices = field(default_factory=lambda: np.zeros(0, np.intp))
-    _unclaimed: Indices = field(default_factory=lambda: np.zeros(0, np.intp))  # where in `_sources` there is none
-    _read_interfaces: frozenset[str] = frozenset()  # state interfaces that somebody reads
+    _unclaimed: Indices = field(
+        default_factory=lambda: np.zeros(0, np.intp)
+    )  # indices of `_sources` without a claimed interface
+    _read_interfaces: frozenset[str] = frozenset()  # state interfaces of the active controllers
     _model: mujoco.MjModel | None = None
     _plan: list[Reading | tuple[int, Callable[[], float]]] = field(default_factory=list)  # read at every update
-    _deferred: list[Reading] = field(default_factory=list)  # read when somebody asks
+    _deferred: list[Reading] = field(default_factory=list)  # read at the first access after an update
 
     @classmethod
     def of(
@@ -76,35 +79,35 @@ class Hardware(SharedByCopies):
         diagnostics: Diagnostics,
         transmissions: Iterable[Transmission] = (),
     ) -> Hardware:
-        """The hardware as described, before there is a simulation."""
-        scenes = {joint.name: joint for joint in scene.all_joints()}
+        """Create the hardware from its description, before a simulation exists."""
+        scenes = {scene_joint.name: scene_joint for scene_joint in scene.all_joints()}
         found = cls(components=components)
         states: list[str] = []
         commands: list[str] = []
-        for one in (joint for component in components for joint in component.joints):
-            found.joints[one.name] = _hardware_joint(one, scenes[one.name])
-            states += [f"{one.name}/{interface}" for interface in one.states]
-            commands += [f"{one.name}/{interface}" for interface in one.commands]
+        for joint in (joint for component in components for joint in component.joints):
+            found.joints[joint.name] = _hardware_joint(joint, scenes[joint.name])
+            states += [f"{joint.name}/{interface}" for interface in joint.states]
+            commands += [f"{joint.name}/{interface}" for interface in joint.commands]
         for sensor in (sensor for component in components for sensor in component.sensors):
             states += [f"{sensor.name}/{name}" for name in sensor.interfaces]
-            there = find_sensor(sensor, scene, diagnostics)
-            if there is not None:
-                found.sensors[sensor.name] = there
+            hardware_sensor = find_sensor(sensor, scene, diagnostics)
+            if hardware_sensor is not None:
+                found.sensors[sensor.name] = hardware_sensor
         for law in transmission_laws(transmissions, list(found.joints), diagnostics):
             found.actuators |= dict.fromkeys((a for a in law.actuators if a not in found.joints), law)
         states += [f"{actuator}/{interface}" for actuator in found.actuators for interface in _MODES]
         found.states, found.commands = InterfaceTable(states), InterfaceTable(commands)
         return found
 
-    # ------------------------------------------------------------------ before it runs
+    # ------------------------------------------------------------------ preparation
 
     def prepare(self, builder: SpecBuilder, owner: str, pids: Mapping[str, Mapping[str, PidGains]]) -> None:
-        """Adds a drive to every joint that can be commanded.
+        """Add an actuator to every joint that has a command interface.
 
         Args:
-            builder: the door to the spec.
-            owner: whose they are.
-            pids: loops by joint and interface that take the place of its servo.
+            builder: builder of the MuJoCo specification.
+            owner: name of the plugin that owns the actuators.
+            pids: PID gains that replace a servo, by joint and interface.
         """
         self._couple_mimics(builder)
         driven = [j for j in self.joints.values() if j.command_interfaces]
@@ -112,7 +115,7 @@ class Hardware(SharedByCopies):
         self._sources = np.full(len(driven), -1, np.intp)
 
     def _couple_mimics(self, builder: SpecBuilder) -> None:
-        """Couples joints that mimic another by the hardware's words alone."""
+        """Couple joints whose mimic relation is declared only in the hardware description."""
         for joint in self.joints.values():
             leader = self.joints.get(joint.leader)
             binding = builder.names.joint(joint.scoped)
@@ -122,7 +125,7 @@ class Hardware(SharedByCopies):
                 coupling.tie(joint.scoped, leader.scoped, joint.multiplier, joint.offset)
 
     def load(self, sim: Simulation) -> None:
-        """Ties it to a simulation; joints are put where the description has them at first."""
+        """Bind the hardware to a simulation, and move joints to their initial positions."""
         self._sim = sim
         self.joints = {n: replace(j, joint=sim.joint(j.scoped)) for n, j in self.joints.items()}
         for joint in self.joints.values():
@@ -134,21 +137,21 @@ class Hardware(SharedByCopies):
     # ------------------------------------------------------------------ claims
 
     def claim(self, names: Sequence[str], owner: str) -> None:
-        """Gives command interfaces to a controller; the joints are driven by them from now on."""
+        """Claim command interfaces for a controller; they drive the joints from now on."""
         for name in names:
             self.owners[name] = owner
             self.commands.values[self.commands.index(name)] = np.nan
         self._switch_modes()
 
     def release(self, owner: str) -> None:
-        """Takes back what a controller claimed: position joints hold, others are let go."""
-        self.owners = {name: who for name, who in self.owners.items() if who != owner}
+        """Release what a controller claimed: joints with a position interface hold, others are not driven."""
+        self.owners = {name: other for name, other in self.owners.items() if other != owner}
         self._switch_modes()
 
     def _switch_modes(self) -> None:
         claimed: dict[str, str] = {}
         for owner, _, interface in (name.rpartition("/") for name in self.owners):
-            if claimed.get(owner) != POSITION:  # with a velocity beside it, that is the servo's own affair
+            if claimed.get(owner) != POSITION:  # position wins over a velocity interface beside it
                 claimed[owner] = interface
         modes = []
         springy = {name.rpartition("/")[0] for name, owner in self.owners.items() if owner in self.springs}
@@ -164,27 +167,27 @@ class Hardware(SharedByCopies):
         self.actuated.switch(np.array(modes, np.intp))
 
     def _group_joints(self) -> None:
-        """Tells the drives which joints one controller has claimed: their wheels wait for one another."""
+        """Pass the claims to the actuators: the wheels of one controller wait for one another."""
         by_joint = {name.rpartition("/")[0]: owner for name, owner in self.owners.items()}
         numbers = {owner: k for k, owner in enumerate(dict.fromkeys(by_joint.values()), 1)}
         claimed = [numbers.get(by_joint.get(joint.name, ""), 0) for joint in self.actuated.joints]
         self.actuated.groups = np.array(claimed, np.intp)
 
     def _idle_mode(self, joint: HardwareJoint, of_leader: str) -> int:
-        """Return the mode of a joint that no controller claims; `of_leader` is the interface of its leader."""
+        """Return the mode of an unclaimed joint; `of_leader` is the claimed interface of its leader."""
         if of_leader:
             return _MODES[of_leader] if of_leader in joint.command_interfaces else FREE
         return POSITION_MODE if self.holds_position or POSITION in joint.command_interfaces else FREE
 
-    # ------------------------------------------------------------------ at work
+    # ------------------------------------------------------------------ run time
 
     def set_read_interfaces(self, names: Iterable[str]) -> None:
-        """Says which state interfaces are read from now on; the others are not kept up to date."""
+        """Set the state interfaces to read from now on; the others are not updated."""
         self._read_interfaces = frozenset(names)
         self._model = None
 
     def read(self) -> None:
-        """Brings the state interfaces up to the present."""
+        """Update the state interfaces from the simulation."""
         if self._model is not self._sim.engine.physics.model:
             self._bind()
         states = self.states
@@ -195,7 +198,7 @@ class Hardware(SharedByCopies):
             states.deferred = self._deferred.copy()
 
     def _bind(self) -> None:
-        """Plans the readings; another engine's model has other addresses."""
+        """Plan the readings for the current engine model; every model has its own addresses."""
         self._model, self._plan, self._deferred = self._sim.mj_model, [], []
         by_kind: dict[str, list[tuple[int, str]]] = {}
         for name in (n for n in self.states.names if n in self._read_interfaces):
@@ -213,14 +216,13 @@ class Hardware(SharedByCopies):
                 sensor = self.sensors[kind.removeprefix("sensor ")]
                 self._deferred.append((rows, partial(sensor.read, self._sim, places)))
             elif kind in _MODES:
-                plan = (
-                    self._deferred if kind == EFFORT else self._plan
-                )  # efforts are worked out, so only when asked for
+                # efforts have to be computed, so they are read only on access
+                plan = self._deferred if kind == EFFORT else self._plan
                 plan.append((rows, self.reading(kind, places)))
         self.states.deferred_places = frozenset(row for rows, _ in self._deferred for row in rows.tolist())
 
     def reading(self, interface: str, joints: Sequence[str]) -> Callable[[], Vector]:
-        """Return a function that reads positions, velocities or efforts of joints of the present engine model."""
+        """Return a function that reads positions, velocities or efforts of joints from the current engine model."""
         names, physics = self._sim.engine.names, self._sim.engine.physics
         bindings = [names.joint(self.joints[joint].scoped) for joint in joints]
         if interface == POSITION:
@@ -233,10 +235,16 @@ class Hardware(SharedByCopies):
         places = np.array([driven.get(joint, -1) for joint in joints], np.intp)
         if (places >= 0).all():
             return lambda: self.actuated.efforts()[places]
-        return lambda: np.append(self.actuated.efforts(), 0.0)[places]  # what nobody drives gives nothing
+        return lambda: np.append(self.actuated.efforts(), 0.0)[
+            places
+        ]  # the index -1 of a joint without actuator selects the appended 0
 
     def write(self, period: float) -> None:
-        """Hands the commands to the simulation; `period`: since the last time [s]."""
+        """Write the commands to the actuators.
+
+        Args:
+            period: time since the last call [s].
+        """
         if len(self._sources):
             commands = self.commands.values[self._sources]
             if len(self._unclaimed):
@@ -246,26 +254,26 @@ class Hardware(SharedByCopies):
     # ------------------------------------------------------------------ state
 
     def get_state(self) -> object:
-        """A copy of everything that changes as it runs."""
+        """Return a copy of everything that changes at run time."""
         values = self.states.values.copy(), self.commands.values.copy()
         own = (*values, dict(self.owners), self._sources.copy(), self._read_interfaces)
         actuated = self.actuated
         return own, (actuated.modes.copy(), actuated.targets.copy(), actuated.integrals.copy())
 
     def set_state(self, state: Any) -> None:
-        """Back to a state from `get_state`."""
+        """Restore a state from `get_state`."""
         (states, commands, owners, sources, self._read_interfaces), drives = state
         self.states.values, self.commands.values = states.copy(), commands.copy()
         self.owners, self._sources = dict(owners), sources.copy()
         self._unclaimed = np.flatnonzero(sources < 0)
         self._model = None
-        self.actuated.modes, self.actuated.targets, self.actuated.integrals = (one.copy() for one in drives)
+        self.actuated.modes, self.actuated.targets, self.actuated.integrals = (values.copy() for values in drives)
         self._group_joints()
 
 
 def _hardware_joint(described: JointDescription, joint: SceneJoint) -> HardwareJoint:
     axis = joint.axes[0]
-    has_no_ends = math.isinf(axis.lower) and math.isinf(axis.upper)
+    is_unlimited = math.isinf(axis.lower) and math.isinf(axis.upper)
     return HardwareJoint(
         described.name,
         None,
@@ -275,7 +283,7 @@ def _hardware_joint(described: JointDescription, joint: SceneJoint) -> HardwareJ
         max_velocity=axis.velocity,  # <param name="max"> of an interface bounds nothing in Gazebo
         max_effort=axis.effort,
         scoped=joint.scoped,
-        is_continuous=joint.type in ("revolute", "continuous") and has_no_ends,
+        is_continuous=joint.type in ("revolute", "continuous") and is_unlimited,
         initial=described.initial,
         leader=described.leader or (axis.mimic.joint if axis.mimic else ""),
         multiplier=axis.mimic.multiplier if axis.mimic else described.multiplier,

@@ -1,4 +1,4 @@
-"""Description of a robot's control hardware, read from <ros2_control> or <transmission>."""
+"""Description of a robot's control hardware, read from `<ros2_control>` or `<transmission>`."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 _LARGEST_NUMBER: Final = 1e15
-"""Of positions [rad or m], gains and the like; no motion can be computed with larger ones."""
+"""Largest number for positions [rad or m], gains and the like; the engine cannot compute motion with larger ones."""
 _ELEMENTS: Final = ("hardware", "joint", "sensor", "gpio", "transmission")
 _JOINT_ELEMENTS: Final = ("command_interface", "state_interface", "param", "limits", "property", "properties")
 _GAINS: Final = ("kp", "ki", "kd", "max_integral_error")
@@ -25,31 +25,31 @@ _JOINT_PARAMS: Final = ("mimic", "multiplier", "offset", *(f"{s}_{g}" for s in (
 
 
 def report_unknown_elements(block: Params, found: Diagnostics) -> None:
-    """Tells of elements that no hardware has, and of names in a joint that are nearly ones that count."""
+    """Report elements that no hardware has, and names in a joint that are nearly known ones."""
     owner = f"<ros2_control> {block.attribute('name')!r}"
-    for one in block.children:
-        if one.name not in _ELEMENTS and ":" not in one.name:
-            _report_unused(f"{owner}: <{one.name}>", one, did_you_mean(one.name, _ELEMENTS), found)
+    for child in block.children:
+        if child.name not in _ELEMENTS and ":" not in child.name:
+            _report_unused(f"{owner}: <{child.name}>", child, did_you_mean(child.name, _ELEMENTS), found)
     for joint in block.all("joint"):
         what = f"{owner}, joint {joint.attribute('name')!r}"
-        for one in joint.children:
-            near = did_you_mean(one.name, _JOINT_ELEMENTS)
-            if one.name not in _JOINT_ELEMENTS and near:
-                _report_unused(f"{what}: <{one.name}>", one, near, found)
-            word = one.attribute("name") if one.name == "param" else ""
-            near = did_you_mean(word, _JOINT_PARAMS) if word else ""
-            if word not in _JOINT_PARAMS and near:  # drivers of real hardware have words of their own
-                _report_unused(f"{what}: <param name={word!r}>", one, near, found)
+        for child in joint.children:
+            near = did_you_mean(child.name, _JOINT_ELEMENTS)
+            if child.name not in _JOINT_ELEMENTS and near:
+                _report_unused(f"{what}: <{child.name}>", child, near, found)
+            name = child.attribute("name") if child.name == "param" else ""
+            near = did_you_mean(name, _JOINT_PARAMS) if name else ""
+            if name not in _JOINT_PARAMS and near:  # drivers of real hardware have parameters of their own
+                _report_unused(f"{what}: <param name={name!r}>", child, near, found)
 
 
 def _report_unused(what: str, element: Params, near: str, found: Diagnostics) -> None:
-    found.warning("SK-CONTROL-008", f"{what} is not known and not used", element.where, near)
+    found.warning("SK-CONTROL-008", f"{what} is not known and is ignored", element.where, near)
 
 
 def parse_number(
     text: str, default: float, element: Params, found: Diagnostics, *, minimum: float = -_LARGEST_NUMBER
 ) -> float:
-    """A finite number; what is none is an error, and the default is taken."""
+    """Parse a finite number; report an invalid one as an error and return the default."""
     try:
         value = float(text)
     except ValueError:
@@ -62,26 +62,26 @@ def parse_number(
 
 
 def parse_initial_position(text: str, joint: SceneJoint, element: Params, found: Diagnostics) -> float:
-    """A first position [rad or m], within the joint's limits; NaN where there is none."""
+    """Parse an initial position [rad or m] and clamp it to the joint's limits; NaN without one."""
     value = parse_number(text, math.nan, element, found) if text else math.nan
     axis = joint.axes[0]
     if axis.lower <= value <= axis.upper or math.isnan(value):
         return value
     kept = min(max(value, axis.lower), axis.upper)
     message = (
-        f"joint {joint.name!r}: the initial_value {value:g} is outside its limits {axis.lower:g} and {axis.upper:g}"
+        f"joint {joint.name!r}: the initial_value {value:g} is outside its limits [{axis.lower:g}, {axis.upper:g}]"
     )
-    found.warning("SK-CONTROL-008", f"{message}; it begins at {kept:g}", element.where)
+    found.warning("SK-CONTROL-008", f"{message}; the joint starts at {kept:g}", element.where)
     return kept
 
 
 def mimic_circle(name: str, leaders: Mapping[str, str]) -> Sequence[str]:
-    """The joints of the circle that a joint closes by mimicking its leader; empty where it closes none."""
-    circle, one = [name], leaders[name]
-    while one and one != name and one not in circle:
-        circle.append(one)
-        one = leaders.get(one, "")
-    return circle if one == name else ()
+    """Return the joints of the circle that a joint closes by mimicking its leader; empty without a circle."""
+    circle, leader = [name], leaders[name]
+    while leader and leader != name and leader not in circle:
+        circle.append(leader)
+        leader = leaders.get(leader, "")
+    return circle if leader == name else ()
 
 
 MOTION_INTERFACES: Final = (POSITION, VELOCITY, EFFORT)
@@ -91,13 +91,15 @@ _SIMULATION_PLUGINS: Final = ("GazeboSystem", "GazeboSimSystem", "IgnitionSystem
 
 @dataclass(frozen=True, slots=True)
 class JointDescription:
-    """A joint of the hardware.
+    """Joint of the hardware.
 
     Attributes:
+        name: plain name.
         commands, states: names of its interfaces, in the order of the file.
-        pids: its own loops by interface (position, velocity).
-        leader, multiplier, offset: what it mimics by the hardware's own words; empty for nothing.
-        initial: first position [rad or m]; NaN where nothing is said.
+        where: place in the file.
+        pids: PID gains of its own by interface (position, velocity).
+        leader, multiplier, offset: mimic relation declared in the hardware description; no leader if empty.
+        initial: initial position [rad or m]; NaN if the file has none.
     """
 
     name: str
@@ -113,7 +115,7 @@ class JointDescription:
 
 @dataclass(frozen=True, slots=True)
 class SensorDescription:
-    """A sensor of the hardware: its name and interfaces, such as `orientation.x`."""
+    """Sensor of the hardware: its name and its interfaces, such as `orientation.x`."""
 
     name: str
     interfaces: tuple[str, ...]
@@ -122,11 +124,14 @@ class SensorDescription:
 
 @dataclass(frozen=True, slots=True)
 class ComponentDescription:
-    """One `<ros2_control>` block, or what stands for one.
+    """Component of the hardware: one `<ros2_control>` block, or the equivalent of one.
 
     Attributes:
+        name: name of the component.
         kind: system, actuator or sensor.
-        plugin: the hardware's class, as written.
+        plugin: class of the hardware as written in the file.
+        joints: joints of the component.
+        sensors: sensors of the component.
     """
 
     name: str
@@ -137,14 +142,14 @@ class ComponentDescription:
 
 
 def describe_hardware(scene: SceneModel, params: Params) -> list[ComponentDescription]:
-    """The control hardware of a model.
+    """Describe the control hardware of a model.
 
-    From `<ros2_control>` (of the URDF file, or in the plugin's own element), else from `<transmission>`, else every
-    joint of one axis with all interfaces, which a note tells.
+    The description comes from `<ros2_control>` (of the URDF file, or in the plugin's own element), else from
+    `<transmission>`. Without either, every joint with one axis gets all interfaces, and a note reports that.
 
     Args:
-        scene: the model.
-        params: the plugin's parameters; problems go there.
+        scene: model whose hardware is described.
+        params: parameters of the plugin; problems are recorded there.
     """
     found = params.diagnostics
     blocks = [*scene.controls, *params.all("ros2_control")]
@@ -179,11 +184,11 @@ def _component(scene: SceneModel, block: Params, found: Diagnostics) -> Componen
     plugin = hardware.text("plugin", "")
     name = block.attribute("name") or "hardware"
     if plugin.rpartition("/")[2] not in _SIMULATION_PLUGINS:
-        message = f"<ros2_control> {name!r}: the hardware {plugin or '(none)'!r} is the simulation here"
+        message = f"<ros2_control> {name!r}: the simulation replaces the hardware {plugin or '(none)'!r}"
         found.note("SK-CONTROL-006", message, block.where)
     for unknown in (c for c in block.children if c.name == "gpio"):
-        message = f"<ros2_control> {name!r}: <gpio> {unknown.attribute('name')!r} has nothing that it stands for here"
-        found.warning("SK-CONTROL-007", f"{message}; it is left out", unknown.where)
+        message = f"<ros2_control> {name!r}: <gpio> {unknown.attribute('name')!r} is not supported"
+        found.warning("SK-CONTROL-007", f"{message}; it is ignored", unknown.where)
     joints = [_joint(scene, element, found) for element in block.all("joint")]
     sensors = [_sensor(element) for element in block.all("sensor")]
     kind = block.attribute("type") or "system"
@@ -195,38 +200,38 @@ def _joint(scene: SceneModel, element: Params, found: Diagnostics) -> JointDescr
     joints = {joint.name: joint for joint in scene.all_joints()}
     if name not in joints:
         near = did_you_mean(name, joints)
-        message = f"<ros2_control> names joint {name!r}, which model {scene.scoped!r} does not have; it is left out"
+        message = f"<ros2_control> names joint {name!r}, which model {scene.scoped!r} does not have; it is ignored"
         found.warning("SK-CONTROL-008", message, element.where, near)
         return None
     if len(joints[name].axes) != 1:
-        message = f"<ros2_control> names joint {name!r}, which is {joints[name].type}; one with one axis is needed"
-        found.warning("SK-CONTROL-008", f"{message}; it is left out", element.where)
+        message = f"<ros2_control> names joint {name!r}, a {joints[name].type} joint; the joint needs exactly one axis"
+        found.warning("SK-CONTROL-008", f"{message}; it is ignored", element.where)
         return None
-    words = _param_texts(element)
+    texts = _param_texts(element)
     commands, states = element.all("command_interface"), element.all("state_interface")
     initial = _initial_position([*commands, *states], joints[name], found)
     pids = {}
-    for command in (one.attribute("name") for one in commands):
+    for command in (element.attribute("name") for element in commands):
         plain = command.removesuffix("_pid")
         short = {"position": "pos", "velocity": "vel"}.get(plain, "")
-        if short and (command != plain or f"{short}_kp" in words):
-            pids[plain] = _gains_of_joint(words, short, element, found)
+        if short and (command != plain or f"{short}_kp" in texts):
+            pids[plain] = _gains_of_joint(texts, short, element, found)
     known_commands = _known_interfaces(name, "command", commands, element, found)
     known_states = _known_interfaces(name, "state", states, element, found)
-    leader = words.get("mimic", "")
+    leader = texts.get("mimic", "")
     if leader and leader not in joints:
         message = f"joint {name!r} mimics {leader!r}, which model {scene.scoped!r} does not have"
-        found.warning("SK-CONTROL-008", f"{message}; it follows nothing", element.where, did_you_mean(leader, joints))
+        found.warning("SK-CONTROL-008", f"{message}; the mimic is ignored", element.where, did_you_mean(leader, joints))
         leader = ""
     return JointDescription(
         name,
-        tuple(one.removesuffix("_pid") for one in known_commands),
+        tuple(command.removesuffix("_pid") for command in known_commands),
         known_states,
         element.where,
         pids,
         leader,
-        parse_number(words.get("multiplier", "1"), 1.0, element, found),
-        parse_number(words.get("offset", "0"), 0.0, element, found),
+        parse_number(texts.get("multiplier", "1"), 1.0, element, found),
+        parse_number(texts.get("offset", "0"), 0.0, element, found),
         initial,
     )
 
@@ -234,46 +239,46 @@ def _joint(scene: SceneModel, element: Params, found: Diagnostics) -> JointDescr
 def _known_interfaces(
     joint: str, what: str, interfaces: Iterable[Params], element: Params, found: Diagnostics
 ) -> tuple[str, ...]:
-    """Names of the interfaces that a joint has here; tells of the others."""
+    """Return the names of the supported interfaces of a joint, and report the others."""
     known = []
     for name in (one.attribute("name") for one in interfaces):
         if name in MOTION_INTERFACES or (what == "command" and name.removesuffix("_pid") in MOTION_INTERFACES):
             known.append(name)
             continue
-        message = f"joint {joint!r}: there is no {what} interface {name!r} here, there are "
+        message = f"joint {joint!r}: {what} interface {name!r} is not supported, supported are "
         message += ", ".join(MOTION_INTERFACES)
         near = did_you_mean(name, MOTION_INTERFACES)
-        found.warning("SK-CONTROL-009", f"{message}; it is left out", element.where, near)
+        found.warning("SK-CONTROL-009", f"{message}; it is ignored", element.where, near)
     return tuple(known)
 
 
 def _param_texts(element: Params) -> dict[str, str]:
-    """Its `<param name="…">` by name."""
+    """Return the texts of an element's `<param name="…">` by name."""
     return {one.attribute("name"): one.value for one in element.all("param")}
 
 
 def _initial_position(interfaces: Iterable[Params], joint: SceneJoint, found: Diagnostics) -> float:
-    """Return the first position that interfaces say, NaN for none; checks their bounds, which bound nothing here."""
+    """Return the initial position of the interfaces, NaN without one; validate their bounds, which have no effect."""
     initial = []
     for one in interfaces:
-        words = _param_texts(one)
-        for bound in (words.get("min", ""), words.get("max", "")):
+        texts = _param_texts(one)
+        for bound in (texts.get("min", ""), texts.get("max", "")):
             if bound.strip().lower() not in ("", "inf", "-inf"):
                 parse_number(bound, 0.0, one, found)
-        if one.name == "state_interface" and one.attribute("name") == POSITION:  # the others' count for nothing
-            first = words.get("initial_value", one.attribute("initial_value"))
+        if one.name == "state_interface" and one.attribute("name") == POSITION:  # Gazebo reads it only there
+            first = texts.get("initial_value", one.attribute("initial_value"))
             initial.append(parse_initial_position(first, joint, one, found))
     return initial[0] if initial else math.nan
 
 
-def _gains_of_joint(words: dict[str, str], short: str, element: Params, found: Diagnostics) -> PidGains:
-    """Gains as `<param>`s of a joint: `pos_kp`, `pos_ki`, `pos_kd`, `pos_max_integral_error`."""
+def _gains_of_joint(texts: dict[str, str], short: str, element: Params, found: Diagnostics) -> PidGains:
+    """Read gains from the `<param>`s of a joint: `pos_kp`, `pos_ki`, `pos_kd`, `pos_max_integral_error`."""
 
     def gain(name: str) -> float:
-        text = words.get(f"{short}_{name}", "")
+        text = texts.get(f"{short}_{name}", "")
         return parse_number(text, 0.0, element, found) if text else 0.0
 
-    i, text = gain("ki"), words.get(f"{short}_max_integral_error", "")
+    i, text = gain("ki"), texts.get(f"{short}_max_integral_error", "")
     most = parse_number(text, math.inf, element, found, minimum=0.0) if text else math.inf
     limit = abs(i * most) if i else 0.0
     return PidGains(gain("kp"), i, gain("kd"), limit, -limit)
@@ -285,14 +290,14 @@ def _sensor(element: Params) -> SensorDescription:
 
 
 def _remove_repeated_joints(components: list[ComponentDescription], found: Diagnostics) -> list[ComponentDescription]:
-    """A joint that comes twice is the one of the first block."""
+    """Remove a joint from all blocks after the first one that names it."""
     seen: set[str] = set()
     kept = []
     for component in components:
         joints = []
         for joint in component.joints:
             if joint.name in seen:
-                message = f"<ros2_control> {component.name!r} names joint {joint.name!r} again; the first one counts"
+                message = f"<ros2_control> {component.name!r} names joint {joint.name!r} again; the first one is used"
                 found.warning("SK-CONTROL-004", message, joint.where)
                 continue
             seen.add(joint.name)
@@ -302,7 +307,7 @@ def _remove_repeated_joints(components: list[ComponentDescription], found: Diagn
 
 
 def _remove_mimic_circles(components: list[ComponentDescription], found: Diagnostics) -> list[ComponentDescription]:
-    """A joint that mimics itself, by others or at once, follows nothing."""
+    """Remove the leader of a joint that mimics itself, directly or through other joints."""
     leaders = {joint.name: joint.leader for component in components for joint in component.joints}
     kept = []
     for component in components:
@@ -311,7 +316,7 @@ def _remove_mimic_circles(components: list[ComponentDescription], found: Diagnos
             circle = mimic_circle(joint.name, leaders)
             if circle:
                 message = f"joint {joint.name!r} mimics {' which mimics '.join(map(repr, [*circle[1:], joint.name]))}"
-                found.warning("SK-CONTROL-008", f"{message}; it follows nothing", joint.where)
+                found.warning("SK-CONTROL-008", f"{message}; the mimic is ignored", joint.where)
                 leaders[joint.name] = ""
             joints.append(replace(joint, leader="") if circle else joint)
         kept.append(replace(component, joints=tuple(joints)))
@@ -323,35 +328,35 @@ def _remove_mimic_circles(components: list[ComponentDescription], found: Diagnos
 
 def _component_of_transmissions(scene: SceneModel, found: Diagnostics) -> ComponentDescription:
     joints = {joint.name: joint for joint in scene.all_joints()}
-    wanted: dict[str, list[str]] = {}
-    places: dict[str, Where] = {}
+    interfaces: dict[str, list[str]] = {}
+    locations: dict[str, Where] = {}
     for transmission in scene.transmissions:
         for end in transmission.joints:
             if end.name not in joints or len(joints[end.name].axes) != 1:
-                continue  # the loader tells of a joint that is not there
+                continue  # the loader has reported a missing joint
             written = end.interfaces or tuple(i for a in transmission.actuators for i in a.interfaces)
             names = _interfaces_of_ros_1(written, transmission.name, transmission.where, found)
-            wanted.setdefault(end.name, []).extend(names)
-            places.setdefault(end.name, transmission.where)
+            interfaces.setdefault(end.name, []).extend(names)
+            locations.setdefault(end.name, transmission.where)
     return ComponentDescription(
         scene.name,
         "system",
         "gazebo_ros_control/DefaultRobotHWSim",
         tuple(
-            JointDescription(name, tuple(dict.fromkeys(names)), MOTION_INTERFACES, places[name])
-            for name, names in wanted.items()
+            JointDescription(name, tuple(dict.fromkeys(names)), MOTION_INTERFACES, locations[name])
+            for name, names in interfaces.items()
         ),
     )
 
 
 def _interfaces_of_ros_1(written: Sequence[str], owner: str, where: Where, found: Diagnostics) -> list[str]:
     names = []
-    for one in written:
-        plain = one.rpartition("/")[2]
+    for interface in written:
+        plain = interface.rpartition("/")[2]
         if plain in _ROS_1:
             names.append(_ROS_1[plain])
-        elif plain != "JointStateInterface":  # that one only reads, and every joint can be read
-            message = f"transmission {owner!r}: there is no hardware interface {one!r} here, there are "
+        elif plain != "JointStateInterface":  # it only reads, and every joint has state interfaces
+            message = f"transmission {owner!r}: hardware interface {interface!r} is not supported, supported are "
             message += ", ".join(_ROS_1)
-            found.warning("SK-CONTROL-009", f"{message}; it is left out", where, did_you_mean(plain, _ROS_1))
+            found.warning("SK-CONTROL-009", f"{message}; it is ignored", where, did_you_mean(plain, _ROS_1))
     return names

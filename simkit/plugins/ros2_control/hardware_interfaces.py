@@ -1,4 +1,4 @@
-"""Command and state interfaces of the hardware: named numbers that controllers read and write together."""
+"""Command and state interfaces of the hardware: named numbers that controllers read and write in groups."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from simkit.plugins.shared_by_copies import SharedByCopies
 from simkit.pose import Vector
 
 Indices = npt.NDArray[np.intp]
-"""Places in an array, shape (n,)."""
+"""Indices of an array, shape (n,)."""
 
 POSITION: Final = "position"
 VELOCITY: Final = "velocity"
@@ -22,7 +22,7 @@ EFFORT: Final = "effort"
 
 
 def array_index(places: Sequence[int]) -> slice | Indices:
-    """Return places of an array as an index: a slice where they are consecutive, which is the fastest."""
+    """Convert indices to an array index: a slice if they are consecutive, which is the fastest kind."""
     first, count = (places[0], len(places)) if len(places) else (0, 0)
     if count and list(places) == list(range(first, first + count)):
         return slice(first, first + count)
@@ -30,7 +30,7 @@ def array_index(places: Sequence[int]) -> slice | Indices:
 
 
 Reading = tuple[Indices, Callable[[], Vector]]
-"""Places of a table, and the function that reads their values."""
+"""Indices of a table, and the function that reads their values."""
 
 
 class InterfaceTable:
@@ -38,9 +38,9 @@ class InterfaceTable:
 
     Attributes:
         names: `<joint or sensor>/<interface>`, such as `arm_1_joint/position`, in the order of the description.
-        values: theirs; rad, m, rad/s, m/s, N·m, N; NaN where there is none (yet).
-        deferred: what is only read when somebody asks for it, such as a sensor: where it is, and what reads it.
-        deferred_places: all places in `values` that may be late.
+        values: values of the interfaces [rad, m, rad/s, m/s, N·m, N]; NaN without a value (yet).
+        deferred: pending readings, such as those of a sensor, that are done at the first access.
+        deferred_places: all indices of `values` whose readings can be pending.
     """
 
     def __init__(self, names: Iterable[str] = ()) -> None:
@@ -50,18 +50,22 @@ class InterfaceTable:
         self.deferred: list[Reading] = []
         self.deferred_places: frozenset[int] = frozenset()
 
-    def read_deferred(self, wanted: frozenset[int]) -> None:
-        """Reads what is late and wanted."""
+    def read_deferred(self, requested: frozenset[int]) -> None:
+        """Do the pending readings of the requested indices."""
         now: list[Reading] = []
         later: list[Reading] = []
-        for one in self.deferred:
-            (later if wanted.isdisjoint(one[0].tolist()) else now).append(one)
+        for entry in self.deferred:
+            (later if requested.isdisjoint(entry[0].tolist()) else now).append(entry)
         self.deferred[:] = later
         for places, read in now:
             self.values[places] = read()
 
     def index(self, name: str) -> int:
-        """Return the place of a name in `values`. Raises InputError naming the closest."""
+        """Return the index of a name in `values`.
+
+        Raises:
+            InputError: the name is not known; the message has the closest one.
+        """
         found = self._index.get(name)
         if found is None:
             near = did_you_mean(name, self.names)
@@ -69,12 +73,16 @@ class InterfaceTable:
         return found
 
     def select(self, names: Sequence[str]) -> InterfaceSelection:
-        """Some of them, in the order asked for. Raises InputError."""
+        """Select some interfaces, in the given order.
+
+        Raises:
+            InputError: a name is not known.
+        """
         return InterfaceSelection(self, names)
 
 
 class InterfaceSelection(SharedByCopies):
-    """Some interfaces of a table, in the order in which a controller has them."""
+    """Some interfaces of a table, in the order of a controller."""
 
     def __init__(self, table: InterfaceTable, names: Sequence[str]) -> None:
         self._table = table
@@ -89,7 +97,7 @@ class InterfaceSelection(SharedByCopies):
 
     @property
     def values(self) -> Vector:
-        """A copy of their values."""
+        """Copy of the values."""
         table = self._table
         if table.deferred and not table.deferred_places.isdisjoint(self._places):
             table.read_deferred(self._places)

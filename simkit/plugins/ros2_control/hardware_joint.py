@@ -1,4 +1,4 @@
-"""A joint of the control hardware: its interfaces, its limits, and the gains of its own PID loops."""
+"""Joint of the control hardware: its interfaces, its limits, and the gains of its own PID loops."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class HardwareJoint:
-    """A joint as `<ros2_control>` or `<transmission>` describes it.
+    """Joint as `<ros2_control>` or `<transmission>` describes it.
 
     Attributes:
         name: plain name.
-        joint: the simulation's handle; None before the load.
-        command_interfaces: position, velocity, effort.
-        lower, upper: position limits [rad or m]; infinite where there are none.
-        max_velocity: [rad/s or m/s]; infinite where there is none.
-        max_effort: [N·m or N]; infinite where there is none.
+        joint: joint handle of the simulation; None before the load.
+        command_interfaces: command interfaces among position, velocity and effort.
+        lower, upper: position limits [rad or m]; infinite without limits.
+        max_velocity: velocity limit [rad/s or m/s]; infinite without one.
+        max_effort: effort limit [N·m or N]; infinite without one.
         scoped: scoped name.
-        is_continuous: whether its angle has no ends, so that it is wrapped.
-        initial: first position; NaN for that of the file.
-        leader: what it mimics; empty for nothing.
-        multiplier, offset: position = multiplier · leader's + offset.
+        is_continuous: true for a rotation without limits, whose angle errors are wrapped.
+        initial: initial position [rad or m]; NaN for that of the model.
+        leader: joint that it mimics; empty for none.
+        multiplier, offset: mimic relation: position = multiplier · position of the leader + offset.
     """
 
     name: str
@@ -46,23 +46,26 @@ class HardwareJoint:
 
     @property
     def handle(self) -> Joint:
-        """The simulation's joint.
+        """Joint handle of the simulation.
 
         Raises:
             RuntimeError: the hardware is not loaded into a simulation yet.
         """
         if self.joint is None:
-            raise RuntimeError(f"joint {self.name!r} is not in a simulation yet")
+            raise RuntimeError(f"joint {self.name!r} is not loaded into a simulation yet")
         return self.joint
 
 
 @dataclass(frozen=True, slots=True)
 class PidGains:
-    """Gains of a joint's own loop: effort per error, per error and second, per error's rate.
+    """Gains of a joint's own PID loop.
 
     Attributes:
-        i_max, i_min: bounds of the integral's part of the effort.
-        u_max, u_min: bounds of the whole effort.
+        p: effort per error.
+        i: effort per error and second.
+        d: effort per rate of the error.
+        i_max, i_min: bounds of the integral part of the effort.
+        u_max, u_min: bounds of the complete effort.
     """
 
     p: float = 0.0
@@ -75,7 +78,7 @@ class PidGains:
 
 
 def read_pid_gains(params: Params) -> PidGains:
-    """Gains of a joint: `kp`, `ki`, `kd` and `max_integral_error`, or `p`, `i`, `d` and `i_clamp` as in ROS 1."""
+    """Read the gains of a joint: `kp`, `ki`, `kd` and `max_integral_error`, or `p`, `i`, `d` and `i_clamp`."""
     i = params.number("ki", params.number("i", 0.0))
     clamp = abs(params.number("i_clamp", 0.0))
     if params.has("max_integral_error"):

@@ -1,4 +1,4 @@
-"""Sensors of the control hardware: what a sensor of the simulation measures, as state interfaces."""
+"""Sensors of the control hardware: measurements of the simulation's sensors as state interfaces."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ _IMU: Final = {
 _WRENCH: Final = {f"{part}.{axis}": f"wrench.{part}.{axis}" for part in ("force", "torque") for axis in "xyz"}
 _RANGE: Final = {"range": "range"}
 SENSOR_INTERFACES: Final = {"imu": _IMU, "force_torque": _WRENCH, "sonar": _RANGE}
-"""Kind of sensor -> state interface -> where its message has it."""
+"""Field of the message for each state interface, by kind of sensor."""
 
 
 @dataclass(frozen=True, slots=True)
 class HardwareSensor:
-    """A sensor as controllers see it.
+    """Sensor as controllers see it.
 
     Attributes:
-        name: the hardware's.
+        name: name in the hardware description.
         scoped: scoped name of the simulation's sensor.
-        kind: of it.
+        kind: kind of the sensor, a key of `SENSOR_INTERFACES`.
     """
 
     name: str
@@ -60,31 +60,31 @@ def _field_getter(kind: str, interfaces: tuple[str, ...]) -> attrgetter[Any]:
 
 
 def find_sensor(described: SensorDescription, scene: SceneModel, found: Diagnostics) -> HardwareSensor | None:
-    """The sensor of the simulation that a `<sensor>` of `<ros2_control>` means; None after a warning.
+    """Find the sensor of the simulation for a `<sensor>` of `<ros2_control>`; return None after a warning.
 
-    It has the same name, or is the only one of the model that measures such things.
+    The sensor has the same name, or it is the model's only sensor that measures these quantities.
     """
     kind = next((k for k, fields in SENSOR_INTERFACES.items() if any(i in fields for i in described.interfaces)), "")
     if not kind:
-        message = f"<ros2_control> sensor {described.name!r}: there is nothing here that measures its interfaces"
-        hint = "known are those of an IMU (orientation.x, …), of a force-torque sensor (force.x, …), and range"
+        message = f"<ros2_control> sensor {described.name!r}: no sensor measures its interfaces"
+        hint = "use the interfaces of an IMU (orientation.x, …), of a force-torque sensor (force.x, …), or range"
         found.warning("SK-CONTROL-008", message, described.where, hint)
         return None
-    fitting = [s for s in scene.all_sensors() if s.kind == kind]
-    chosen = next((s for s in fitting if s.name == described.name), None)
-    if chosen is None and len(fitting) == 1:
-        chosen = fitting[0]
-        message = f"<ros2_control> sensor {described.name!r} is the model's only {kind} sensor, {chosen.name!r}"
+    candidates = [s for s in scene.all_sensors() if s.kind == kind]
+    chosen = next((s for s in candidates if s.name == described.name), None)
+    if chosen is None and len(candidates) == 1:
+        chosen = candidates[0]
+        message = f"<ros2_control> sensor {described.name!r} uses the model's only {kind} sensor, {chosen.name!r}"
         found.note("SK-CONTROL-006", message, described.where)
     if chosen is None:
-        near = did_you_mean(described.name, [s.name for s in fitting])
-        message = f"<ros2_control> sensor {described.name!r}: the model has no {kind} sensor of that name"
-        listed = ", ".join(repr(s.name) for s in fitting) or "none"
-        hint = near or f"it has: {listed}"
-        found.warning("SK-CONTROL-008", f"{message}; its interfaces stay empty", described.where, hint)
+        near = did_you_mean(described.name, [s.name for s in candidates])
+        message = f"<ros2_control> sensor {described.name!r}: the model has no {kind} sensor with this name"
+        listed = ", ".join(repr(s.name) for s in candidates) or "none"
+        hint = near or f"its {kind} sensors are: {listed}"
+        found.warning("SK-CONTROL-008", f"{message}; its interfaces stay NaN", described.where, hint)
         return None
     for interface in described.interfaces:
         if interface not in SENSOR_INTERFACES[kind]:
-            message = f"<ros2_control> sensor {described.name!r}: a {kind} sensor has no {interface!r}"
+            message = f"<ros2_control> sensor {described.name!r}: a {kind} sensor has no interface {interface!r}"
             found.warning("SK-CONTROL-008", message, described.where, did_you_mean(interface, SENSOR_INTERFACES[kind]))
     return HardwareSensor(described.name, chosen.scoped, kind)

@@ -18,22 +18,22 @@ if TYPE_CHECKING:
     from simkit.runtime import Simulation
     from simkit.scene import SceneModel
 
-_GRID: Final = 25  # directions tried for each joint before the best is refined
+_GRID: Final = 25  # grid directions for each joint before the best one is refined
 _STEPS: Final = 60
 _WORLD: Final = ("world", "map")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class HeadJoints:
-    """Two joints, one on the other, and what they turn, all in the world frame and as they are now.
+    """Two joints in series and the frame that they turn, all in the world frame and in their current state.
 
     Attributes:
-        anchors: a point on each joint's axis, shape (2, 3) [m]; the outer joint, which turns both, first.
-        axes: of the joints, unit vectors, shape (2, 3).
-        angles: of the joints now [rad].
+        anchors: a point on each joint's axis, shape (2, 3) [m]; the joint nearer the base, which turns both, first.
+        axes: axes of the joints, unit vectors, shape (2, 3).
+        angles: current angles of the joints [rad].
         lower, upper: limits [rad].
-        frame: of what is to point.
-        axis: the direction in that frame that is to point, a unit vector.
+        frame: pose of the frame that is to point.
+        axis: direction in that frame that is to point, a unit vector.
     """
 
     anchors: Vector
@@ -45,19 +45,22 @@ class HeadJoints:
     axis: Vector
 
     def error(self, angles: Vector, target: Vector) -> float:
-        """Angle [rad] between where it points and the target [m], with the joints at other angles."""
+        """Return the angle [rad] between the pointing direction and a target [m], with the joints at other angles."""
         return float(self._errors(angles[None], target)[0])
 
     def aim(self, target: Vector) -> tuple[Vector, float]:
-        """The angles (2,) [rad] within the limits at which it points best, and the angle [rad] that it is off then.
+        """Find the angles within the limits that point best at a target.
 
-        The best of a grid of directions, made better by Gauss and Newton's method with a damping.
+        The best direction of a grid is refined by the damped Gauss-Newton method.
+
+        Returns:
+            Angles, shape (2,) [rad], and the remaining angle to the target [rad].
         """
         low, high = np.maximum(self.lower, self.angles - np.pi), np.minimum(self.upper, self.angles + np.pi)
         grid = np.stack(np.meshgrid(*(np.linspace(a, b, _GRID) for a, b in zip(low, high, strict=True))), -1)
-        tried = np.concatenate([np.clip(self.angles, low, high)[None], grid.reshape(-1, 2)])
-        errors = self._errors(tried, target)
-        angles = tried[int(np.argmin(errors))]
+        candidates = np.concatenate([np.clip(self.angles, low, high)[None], grid.reshape(-1, 2)])
+        errors = self._errors(candidates, target)
+        angles = candidates[int(np.argmin(errors))]
         error, damping = float(errors.min()), 1e-6
         for _ in range(_STEPS):
             miss = self._squared_errors(angles[None], target)[0]
@@ -81,7 +84,7 @@ class HeadJoints:
         return errors
 
     def _squared_errors(self, angles: Vector, target: Vector) -> Vector:
-        """Direction to the target − where it points, for angles (k, 2); shape (k, 3)."""
+        """Return the direction to the target minus the pointing direction, shape (k, 3), for angles (k, 2)."""
         turns = angles - self.angles
         points = np.repeat(self.frame.position[None], len(turns), 0)
         rays = np.repeat(self.frame.rotate(self.axis)[None], len(turns), 0)
@@ -90,51 +93,51 @@ class HeadJoints:
                 points - self.anchors[joint], self.axes[joint], turns[:, joint]
             )
             rays = _rotate_vectors(rays, self.axes[joint], turns[:, joint])
-        ways = target - points
-        lengths = np.linalg.norm(ways, axis=1, keepdims=True)
-        misses: Vector = ways / np.maximum(lengths, 1e-12) - rays
+        offsets = target - points
+        lengths = np.linalg.norm(offsets, axis=1, keepdims=True)
+        misses: Vector = offsets / np.maximum(lengths, 1e-12) - rays
         return misses
 
 
 def _rotate_vectors(vectors: Vector, axis: Vector, angles: Vector) -> Vector:
-    """Each vector (k, 3) turned about an axis by its angle (Rodrigues)."""
+    """Rotate each vector (k, 3) about an axis by its own angle (Rodrigues' formula)."""
     cos, sin = np.cos(angles)[:, None], np.sin(angles)[:, None]
     along = (vectors @ axis)[:, None]
     turned: Vector = vectors * cos + np.cross(axis, vectors) * sin + axis * along * (1.0 - cos)
     return turned
 
 
-def frame_pose(sim: Simulation, model: str, name: str, others: Mapping[str, Pose] | None = None) -> Pose:
-    """Return the present pose of a frame in the world.
+def frame_pose(sim: Simulation, model: str, name: str, extra_frames: Mapping[str, Pose] | None = None) -> Pose:
+    """Return the current pose of a frame in the world.
 
     Args:
-        sim: the simulation.
-        model: scoped name of the model whose frames come first.
-        name: of a link, of a sensor's frame, of a frame in the file, a scoped one, or `world` or `map`.
-        others: further frames by name.
+        sim: simulation to search in.
+        model: scoped name of the model whose frames are searched first.
+        name: name of a link, of a sensor's frame or of a frame in the file; a scoped name; `world` or `map`.
+        extra_frames: poses of further frames by name.
 
     Raises:
-        InputError: there is no such frame; names the closest.
+        InputError: there is no such frame; the message has the closest name.
     """
     if name.lstrip("/") in _WORLD:
         return IDENTITY
-    if others and name.lstrip("/") in others:
-        return others[name.lstrip("/")]
-    link, offset = frame_link(sim, model, name, (*_WORLD, *(others or ())))
+    if extra_frames and name.lstrip("/") in extra_frames:
+        return extra_frames[name.lstrip("/")]
+    link, offset = frame_link(sim, model, name, (*_WORLD, *(extra_frames or ())))
     return sim.link(link).pose @ offset
 
 
-def frame_link(sim: Simulation, model: str, name: str, others: Sequence[str] = ()) -> tuple[str, Pose]:
-    """The link that a frame is fixed to, by its scoped name, and where the frame is on it.
+def frame_link(sim: Simulation, model: str, name: str, extra_names: Sequence[str] = ()) -> tuple[str, Pose]:
+    """Find the link that a frame is fixed to, by its scoped name, and the pose of the frame in that link.
 
     Args:
-        sim: the simulation.
-        model: scoped name of the model whose frames come first.
-        name: as in `frame_pose`.
-        others: what else it may have been meant for.
+        sim: simulation to search in.
+        model: scoped name of the model whose frames are searched first.
+        name: name as in `frame_pose`.
+        extra_names: further names for the suggestion in the message.
 
     Raises:
-        InputError: there is no such frame; names the closest.
+        InputError: there is no such frame; the message has the closest name.
     """
     name = name.lstrip("/")
     models = [*(m for m in sim.models.values() if m.scoped == model), *sim.models.values()]
@@ -148,12 +151,12 @@ def frame_link(sim: Simulation, model: str, name: str, others: Sequence[str] = (
         found = _sensor_frame(sim, scene, name, names)
         if found is not None:
             return found
-    near = did_you_mean(name, dict.fromkeys([*names, *others]))
+    near = did_you_mean(name, dict.fromkeys([*names, *extra_names]))
     raise InputError(f"there is no frame {name!r}{near and '; ' + near}")
 
 
 def is_moved_by_joint(sim: Simulation, link: str, joint: str) -> bool:
-    """Check whether a link is what a joint turns, or fixed to that, or carried by it; both by their scoped names."""
+    """Check whether a link is the child of a joint, or is fixed to it or carried by it; both by scoped name."""
     parents, body = sim.mj_model.body_parentid, int(sim.engine.names.link(link).body)
     turning = int(sim.mj_model.jnt_bodyid[sim.mj_model.dof_jntid[sim.engine.names.joint(joint).dofs[0]]])
     while body > 0 and body != turning:
@@ -174,26 +177,27 @@ def _sensor_frame(sim: Simulation, scene: SceneModel, name: str, names: list[str
 
 
 def pixel_ray(camera_info: CameraInfo, u: float, v: float) -> Vector:
-    """The point at a distance of 1 m along the optical axis that a camera sees at a pixel; shape (3,) [m].
+    """Return the point that a camera sees at a pixel, 1 m away along the optical axis; shape (3,) [m].
 
     Args:
-        camera_info: `sensor_msgs/msg/CameraInfo`: K, and distortion by the `plumb_bob` model.
-        u, v: column and row; pixel centres are whole numbers.
+        camera_info: `sensor_msgs/msg/CameraInfo` with K, and distortion of the `plumb_bob` model.
+        u: column; pixel centres are integers.
+        v: row.
 
     Raises:
-        InputError: K is not one of a camera.
+        InputError: K is not the matrix of a camera.
     """
     k = np.asarray(camera_info.k, dtype=float).reshape(3, 3)
     if not (np.isfinite(k).all() and k[0, 0] > 0.0 and k[1, 1] > 0.0):
-        raise InputError(f"camera_info has fx = {k[0, 0]:g} and fy = {k[1, 1]:g}; both have to be positive")
-    there = np.array([(u - k[0, 2] - k[0, 1] * (v - k[1, 2]) / k[1, 1]) / k[0, 0], (v - k[1, 2]) / k[1, 1]])
+        raise InputError(f"camera_info has fx = {k[0, 0]:g} and fy = {k[1, 1]:g}; both must be positive")
+    distorted = np.array([(u - k[0, 2] - k[0, 1] * (v - k[1, 2]) / k[1, 1]) / k[0, 0], (v - k[1, 2]) / k[1, 1]])
     k1, k2, p1, p2, k3 = [*np.asarray(camera_info.d, dtype=float).tolist(), 0.0, 0.0, 0.0, 0.0, 0.0][:5]
-    x, y = there
-    for _ in range(20):  # the distortion is small: what it did, taken away again and again
+    x, y = distorted
+    for _ in range(20):  # the distortion is small, so removing it repeatedly converges
         r2 = x * x + y * y
         radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3))
-        x = (there[0] - 2.0 * p1 * x * y - p2 * (r2 + 2.0 * x * x)) / radial
-        y = (there[1] - 2.0 * p2 * x * y - p1 * (r2 + 2.0 * y * y)) / radial
+        x = (distorted[0] - 2.0 * p1 * x * y - p2 * (r2 + 2.0 * x * x)) / radial
+        y = (distorted[1] - 2.0 * p2 * x * y - p1 * (r2 + 2.0 * y * y)) / radial
     return np.array([x, y, 1.0])
 
 
@@ -205,7 +209,7 @@ def pixel_goal(
     min_duration: float = 0.5,
     max_velocity: float = 1.0,
 ) -> dict[str, object]:
-    """The goal of a `control_msgs/action/PointHead` that brings what is seen at a pixel to the optical axis.
+    """Make the goal of a `control_msgs/action/PointHead` that moves the point at a pixel to the optical axis.
 
         info = sim.subscribe("/head_front_camera/rgb/camera_info")
         sim.run(0.1)
@@ -213,16 +217,16 @@ def pixel_goal(
         sim.send_goal("/head_controller/point_head_action", goal)
 
     Args:
-        camera_info: of the picture; its `header.frame_id` is the camera's optical frame.
+        camera_info: message of the camera; its `header.frame_id` is the camera's optical frame.
         pixel: column and row.
-        distance: along the optical axis [m]; matters little as long as the camera is near the neck.
-        min_duration: how long the head takes at least [s].
-        max_velocity: of the head's joints [rad/s].
+        distance: distance along the optical axis [m]; it matters little as long as the camera is near the neck.
+        min_duration: shortest duration of the head's motion [s].
+        max_velocity: velocity limit of the head's joints [rad/s].
 
     Raises:
-        InputError: `camera_info` is not one of a camera.
+        InputError: `camera_info` has no matrix of a camera.
     """
-    x, y, z = (float(one) for one in pixel_ray(camera_info, *pixel) * distance)
+    x, y, z = (float(value) for value in pixel_ray(camera_info, *pixel) * distance)
     frame = camera_info.header.frame_id
     return {
         "target": {"header": {"frame_id": frame}, "point": {"x": x, "y": y, "z": z}},

@@ -1,16 +1,17 @@
-"""Actuators of the hardware's joints: one of the engine for each, which acts as a servo or as a motor.
+"""Actuators of the hardware's joints: one actuator of the engine for each joint, which acts as a servo or as a motor.
 
-An actuator's force is its state − kp · position − kv · velocity, within the effort limit. As a servo its state is
-kp · reference + kv · the reference's velocity + what holds the joint against gravity and dry friction, and it goes on
-with the reference by itself; as a motor it is the effort. So everything between two updates of the controllers is the
-engine's, and a hundred commands a second make no staircase: a position is commanded for the end of the period that
-begins, and the reference moves there from the last one. A velocity servo's reference is where the commanded velocities
-have led, at most one whole effort from the joint: it loses nothing under load, and stands where it stands.
+The force of an actuator is its state − kp · position − kv · velocity, within the effort limit. In a servo the state is
+kp · reference + kv · velocity of the reference + the effort that holds the joint against gravity and dry friction. The
+engine moves the reference on by itself. In a motor the state is the effort. The engine thus covers everything between
+two updates of the controllers, and a hundred commands per second do not cause steps in the motion. A position is
+commanded for the end of the coming period, and the reference moves there from the last one. The reference of a velocity
+servo is the integral of the commanded velocities, at most one full effort away from the joint. A velocity servo
+therefore loses no distance under load, and it holds its position when it stops.
 
-A file's joint damping and dry friction stand for losses inside the drive (40 N·m·s/rad on an arm whose motors give
-43 N·m at up to 1.95 rad/s). A servo makes up for them, and its effort is what reaches the link: so the joint has
-neither while a servo drives it. Under an effort command or a PID of the file's, and where nothing drives it, it has
-both.
+Joint damping and dry friction in a file represent losses inside the drive (40 N·m·s/rad on an arm whose motors give 43
+N·m at up to 1.95 rad/s). A servo makes up for these losses, and its effort is the effort at the link. The joint
+therefore has neither loss while a servo drives it. It has both under an effort command, under a PID loop from the file,
+and when it is not driven.
 """
 
 from __future__ import annotations
@@ -37,20 +38,20 @@ if TYPE_CHECKING:
     from simkit.plugins.ros2_control.hardware_joint import HardwareJoint, PidGains
     from simkit.runtime import Simulation
 
-_LARGEST_CONTROL: Final = 9e9  # controls of 1e10 or more are none for the engine
+_LARGEST_CONTROL: Final = 9e9  # MuJoCo treats controls of 1e10 or more as invalid
 
 
 class JointActuators(SharedByCopies):
-    """The actuators of all joints that can be commanded.
+    """Actuators of all joints that have command interfaces.
 
     Attributes:
-        joints: which.
-        actuators: theirs.
-        pids: loops by joint and interface that take a servo's place.
-        modes: how each is driven now.
-        targets: references of servos [rad or m]; what they hold where nothing is commanded.
-        integrals: of loops with an integral part [N·m or N].
-        groups: number of the controller that has claimed each joint; 0 for none.
+        joints: commanded joints.
+        actuators: actuators of the joints, in the same order.
+        pids: PID gains that replace a servo, by joint and interface.
+        modes: current mode of each joint.
+        targets: references of the servos [rad or m]; positions to hold without a command.
+        integrals: integral parts of the PID loops [N·m or N].
+        groups: number of the controller that has claimed each joint; 0 for an unclaimed joint.
     """
 
     def __init__(
@@ -74,7 +75,7 @@ class JointActuators(SharedByCopies):
         joints: Sequence[HardwareJoint],
         pids: Mapping[str, Mapping[str, PidGains]],
     ) -> JointActuators:
-        """Adds the actuators to the spec; `pids`: loops by joint and interface that take a servo's place."""
+        """Add the actuators to the specification; `pids` are gains that replace a servo, by joint and interface."""
         actuators = [
             builder.add_drive(
                 j.scoped,
@@ -88,7 +89,7 @@ class JointActuators(SharedByCopies):
         return cls(joints, actuators, pids)
 
     def load(self, sim: Simulation) -> None:
-        """Ties them to a simulation; everything with a position interface holds where it is."""
+        """Bind the actuators to a simulation; joints with a position interface hold their current position."""
         self._sim, self._gravity = sim, GravityEfforts(sim, [joint.scoped for joint in self.joints])
         self._is_loaded = True
         count = len(self.joints)
@@ -100,7 +101,7 @@ class JointActuators(SharedByCopies):
         self.switch(np.array(idle, np.intp))
 
     def _bind(self) -> None:
-        """Finds itself in the engine's model, another one after every change of structure."""
+        """Look up addresses in the engine's model, which is a new one after every change of structure."""
         sim = self._sim
         is_first, self._model = self._model is None, sim.mj_model
         model = self._model
@@ -112,12 +113,12 @@ class JointActuators(SharedByCopies):
         self._qpos = np.array([b.qpos[0] for b in bindings], np.intp)
         self._dofs = np.array([b.dofs[0] for b in bindings], np.intp)
         if is_first:
-            self._take_limits()
+            self._read_limits()
             ids = np.array([b.joint_ids[0] for b in bindings], np.intp)
             self._loops = ControlLoops(model, ids, self.joints, self.pids)
 
-    def _take_limits(self) -> None:
-        """Limits and laws of mimics, as arrays."""
+    def _read_limits(self) -> None:
+        """Store limits and mimic relations as arrays."""
         joints = self.joints
         index = {joint.name: k for k, joint in enumerate(joints)}
         self._leaders = np.array([index.get(j.leader, k) for k, j in enumerate(joints)], np.intp)
@@ -127,13 +128,13 @@ class JointActuators(SharedByCopies):
         self._max_velocities = np.array([j.max_velocity for j in joints], float)
         self._has_mimics = not self._is_leader.all()
 
-    # ------------------------------------------------------------------ at work
+    # ------------------------------------------------------------------ run time
 
     def set_springs(self, springs: Mapping[str, tuple[float, float]]) -> None:
-        """Sets how joints give way in `SPRING_MODE`, in which a command is an effort that kp and kd take from.
+        """Set stiffness and damping of joints in `SPRING_MODE`, where kp and kd act against the commanded effort.
 
-        Springs within the engine are calm at any rate of the controllers; what would ring at the engine's step is
-        weakened until it does not.
+        Springs inside the engine are stable at any update rate of the controllers. Gains that would oscillate at the
+        engine's time step are reduced to stable ones.
 
         Args:
             springs: kp [N·m/rad or N/m] and kd [N·m·s/rad or N·s/m] by joint.
@@ -143,13 +144,13 @@ class JointActuators(SharedByCopies):
                 self._loops.gains[k, SPRING_MODE] = np.minimum(springs[joint.name], self._loops.calm[k])
 
     def spring_gains(self, joints: Sequence[str]) -> tuple[Vector, Vector]:
-        """kp and kd of joints as `soften` has set them."""
+        """Return kp and kd of joints as `set_springs` has set them."""
         index = {joint.name: k for k, joint in enumerate(self.joints)}
         kp, kd = self._loops.gains[[index[name] for name in joints], SPRING_MODE].T
         return kp.copy(), kd.copy()
 
     def switch(self, modes: Indices) -> None:
-        """Drives each joint in a mode from now on; a servo begins where its joint is."""
+        """Switch each joint to a mode; a servo starts at the joint's current position."""
         if not self._is_loaded or not len(self.joints) or np.array_equal(modes, self.modes):
             return
         self._rebind_if_needed()
@@ -165,14 +166,14 @@ class JointActuators(SharedByCopies):
             losses = sim.engine.touch(loss)
             losses[self._dofs] = np.where(now.is_compensated, 0.0, sim.engine.original(loss)[self._dofs])
         self._limit_efforts(now)
-        # whoever commands efforts has not spoken yet: until then the joint does not fall
+        # hold the joint against gravity until its controller writes the first effort
         held = now.kp * self.targets + np.maximum(now.compensation, now.effort_share) * self._gravity.efforts()
         data.act[self._states[changed]] = held[changed]
         data.ctrl[self._ids[changed]] = 0.0
         sim.engine.physics.changed(CONTROL)
 
     def _limit_efforts(self, now: ActiveModes) -> None:
-        """Bounds the efforts as the present modes have it."""
+        """Set the effort limits of the current modes in the engine."""
         is_bound = np.isfinite(now.lowest) | np.isfinite(now.highest)
         if is_bound.any():
             limited, ranges = (
@@ -183,7 +184,7 @@ class JointActuators(SharedByCopies):
             ranges[self._ids] = np.clip(np.stack((now.lowest, now.highest), 1), -_LARGEST_CONTROL, _LARGEST_CONTROL)
 
     def _active_modes(self) -> ActiveModes:
-        """Return the gains and bounds of the present modes."""
+        """Return the gains and bounds of the current modes."""
         cached = self._cached
         if cached is not None and cached.modes is self.modes and cached.claimed_groups is self.groups:
             return cached
@@ -196,23 +197,23 @@ class JointActuators(SharedByCopies):
             self._bind()
 
     def write(self, commands: Vector, period: float) -> None:
-        """Sets the states of the actuators and how they go on.
+        """Set the states and the controls of the actuators.
 
         Args:
             commands: one for each joint in its mode; NaN for none: a position is held, a velocity or effort is 0.
-            period: since the last time [s].
+            period: time since the last call [s].
         """
         if not self.joints:
             return
         self._rebind_if_needed()
         now, physics = self._active_modes(), self._sim.engine.physics
-        data, wanted = physics.data, commands
+        data = physics.data
         if self._has_mimics:  # a mimic has no command of its own
             offset = np.where(now.is_position, self._mimic_law[1], 0.0)
-            wanted = np.where(self._is_leader, wanted, self._mimic_law[0] * wanted[self._leaders] + offset)
-        if wanted.dot(now.zeros) != 0.0:  # sooner found like this: 0 times what is not finite is not 0
-            wanted = np.where(np.isfinite(wanted), wanted, np.where(now.is_position, self.targets, 0.0))
-        reference, rate = self._move_references(now, wanted, period)
+            commands = np.where(self._is_leader, commands, self._mimic_law[0] * commands[self._leaders] + offset)
+        if commands.dot(now.zeros) != 0.0:  # fast check: 0 times NaN or infinity is not 0
+            commands = np.where(np.isfinite(commands), commands, np.where(now.is_position, self.targets, 0.0))
+        reference, rate = self._move_references(now, commands, period)
         weight = self._gravity.efforts()
         state = now.servo_stiffness * reference
         state += now.kv * rate
@@ -220,15 +221,15 @@ class JointActuators(SharedByCopies):
         if now.has_integral:
             state += self._integrate(now, reference, rate, period)
         if now.has_effort:
-            state += now.effort_share * wanted
+            state += now.effort_share * commands
         if not state.dot(state) < _LARGEST_CONTROL**2:
             state = np.minimum(np.maximum(state, -_LARGEST_CONTROL), _LARGEST_CONTROL)
         data.act[self._states] = state
         data.ctrl[self._ids] = now.servo_stiffness * rate
         physics.changed(CONTROL)
 
-    def _move_references(self, now: ActiveModes, wanted: Vector, period: float) -> tuple[Vector, Vector]:
-        """Return the references [rad or m] and their rates from now on [rad/s or m/s], within the limits."""
+    def _move_references(self, now: ActiveModes, commands: Vector, period: float) -> tuple[Vector, Vector]:
+        """Return the references [rad or m] and their rates for the next period [rad/s or m/s], within the limits."""
         targets = self.targets
         if period <= 0.0:
             return targets, np.zeros_like(targets)
@@ -236,58 +237,65 @@ class JointActuators(SharedByCopies):
         if now.period != period:
             now.period, now.highest_move = period, self._max_velocities * period
             now.lowest_move = -now.highest_move
-        # what is blocked, or was put elsewhere, does not whip back: its reference waits where it pulls with all it has
-        place, reach = data.qpos[self._qpos], now.largest_lag
-        targets = np.minimum(np.maximum(targets, place - reach), place + reach)
-        move = np.minimum(np.maximum(wanted, self._position_limits[0]), self._position_limits[1])
+        # a blocked or displaced joint must not whip back, so its reference stays where the servo gives its full effort
+        positions, reach = data.qpos[self._qpos], now.largest_lag
+        targets = np.minimum(np.maximum(targets, positions - reach), positions + reach)
+        move = np.minimum(np.maximum(commands, self._position_limits[0]), self._position_limits[1])
         move -= targets
         move = np.minimum(np.maximum(move, now.lowest_move), now.highest_move)
         if now.all_position:
             self.targets = targets + move
             return targets, move / period
-        led, speeds = self._advance_velocity_references(now, wanted, period)
+        references, speeds = self._advance_velocity_references(now, commands, period)
         rate, ahead, reference = move / period, targets + move, targets
-        for (k, *_), position, speed in zip(now.velocity_joints, led, speeds, strict=True):
+        for (k, *_), position, speed in zip(now.velocity_joints, references, speeds, strict=True):
             reference[k] = ahead[k] = position
             rate[k] = speed
         self.targets = ahead
         return reference, rate
 
     def _advance_velocity_references(
-        self, now: ActiveModes, wanted: Vector, period: float
+        self, now: ActiveModes, commands: Vector, period: float
     ) -> tuple[list[float], list[float]]:
-        """The same of those that are not driven by position, `now.velocity_joints`."""
+        """Return references and rates of the joints in `now.velocity_joints`, which are not driven by position."""
         data = self._sim.engine.physics.data
-        control, place, turning = data.ctrl.item, data.qpos.item, data.qvel.item
-        target, speed = self.targets.item, wanted.item
-        before, led, speeds, places, turns = [], [], [], [], []
-        for k, actuator, at, dof, stiffness, top in now.velocity_joints:  # a few, so number by number
-            was, fast = control(actuator) / stiffness, speed(k)
-            before.append(was)
-            led.append(target(k) + was * period)
-            speeds.append(top if fast > top else -top if fast < -top else fast)
-            places.append(place(at))
-            turns.append(turning(dof))
+        control, position, velocity = data.ctrl.item, data.qpos.item, data.qvel.item
+        target, speed = self.targets.item, commands.item
+        previous_speeds, references, speeds, positions, velocities = [], [], [], [], []
+        for (
+            k,
+            actuator,
+            qpos,
+            dof,
+            stiffness,
+            top,
+        ) in now.velocity_joints:  # only a few joints, so plain numbers are faster than arrays
+            previous, commanded = control(actuator) / stiffness, speed(k)
+            previous_speeds.append(previous)
+            references.append(target(k) + previous * period)
+            speeds.append(top if commanded > top else -top if commanded < -top else commanded)
+            positions.append(position(qpos))
+            velocities.append(velocity(dof))
         return advance_references(
-            led,
+            references,
             speeds,
-            places=places,
-            turning=turns,
-            before=before,
+            positions=positions,
+            velocities=velocities,
+            previous_speeds=previous_speeds,
             slacks=now.slacks,
-            catch_up=now.catch_up_times,
+            catch_up_times=now.catch_up_times,
             groups=now.groups,
         )
 
     def _integrate(self, now: ActiveModes, reference: Vector, rate: Vector, period: float) -> Vector:
-        """The integral parts of the file's loops, carried on [N·m or N]."""
+        """Advance the integral parts of the file's PID loops, and return them [N·m or N]."""
         data, (ki, lowest, highest) = self._sim.engine.physics.data, now.integral
         error = np.where(now.is_position, reference - data.qpos[self._qpos], rate - data.qvel[self._dofs])
         self.integrals = np.minimum(np.maximum(self.integrals + ki * error * period, lowest), highest)
         return self.integrals
 
     def efforts(self) -> Vector:
-        """Return the effort of each actuator now [N·m or N]."""
+        """Return the current effort of each actuator [N·m or N]."""
         now, data = self._active_modes(), self._sim.engine.physics.data
         force = data.act[self._states] - now.kp * data.qpos[self._qpos] - now.kv * data.qvel[self._dofs]
         effort: Vector = np.minimum(np.maximum(force, now.lowest), now.highest)

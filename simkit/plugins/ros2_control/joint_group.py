@@ -1,4 +1,4 @@
-"""The joints of one trajectory controller: their command and state interfaces, and the messages about their state."""
+"""Joints of one trajectory controller: their command and state interfaces, and the messages about their state."""
 
 from __future__ import annotations
 
@@ -44,71 +44,71 @@ class JointGroup(SharedByCopies):
     """Joints whose positions, velocities and accelerations are arrays (3, n).
 
     Attributes:
-        joints: their names, in the order of the arrays.
-        commanded_joints: those it commands, by the names that their command interfaces have.
-        commands, states: interfaces by which it commands and measures.
-        command_names, state_names: all of them: all joints' first kind, then all joints' second.
-        has_velocity_state, has_effort: whether velocities are measured, and efforts commanded.
-        places: of the commanded joints among `joints`.
-        span: the same, as the quickest index.
-        turning: which turn without end.
-        is_closed_loop: whether commands depend on what is measured, by PIDs: velocity alone or effort alone.
-        compared: shape (3, 1): 1 for what is both commanded and measured.
+        joints: names of the joints, in the order of the arrays.
+        commanded_joints: names of the commanded joints, as their command interfaces have them.
+        commands, states: kinds of the command and of the state interfaces.
+        command_names, state_names: names of all interfaces: the first kind of all joints, then the second kind.
+        has_velocity_state, has_effort: true if velocities are measured, or efforts commanded.
+        places: indices of the commanded joints in `joints`.
+        span: the same indices as the fastest array index.
+        turning: mask of the joints that rotate without limits.
+        is_closed_loop: true if PIDs compute the commands from measurements: velocity alone or effort alone.
+        compared: shape (3, 1): 1 for quantities that are both commanded and measured, else 0.
     """
 
     def __init__(
         self, params: Params, hardware: Hardware, commands: Sequence[str] = (), states: Sequence[str] = ()
     ) -> None:
-        """Reads a controller's parameters; problems are recorded there.
+        """Read the parameters of a controller; problems are recorded there.
 
         Args:
-            params: `joints`, `command_joints`, `command_interfaces`, `state_interfaces`, `gains`.
-            hardware: what there is.
-            commands, states: interfaces where the file names none.
+            params: parameters `joints`, `command_joints`, `command_interfaces`, `state_interfaces`, `gains`.
+            hardware: joints that the controller may use.
+            commands: command interfaces if the file names none.
+            states: state interfaces if the file names none.
         """
         self.joints = tuple(read_names(params, "joints", code=_BAD_INTERFACES))
         if not self.joints:
             params.error(_BAD_INTERFACES, "'joints' parameter is empty.", "joints: [arm_1_joint, arm_2_joint]")
         self.commanded_joints, self.places = _commanded_joints(params, self.joints)
         self.span = array_index(self.places.tolist())
-        self.commands = by = _read_interfaces(params, "command_interfaces", commands, _ALLOWED_COMMANDS)
+        self.commands = commanded = _read_interfaces(params, "command_interfaces", commands, _ALLOWED_COMMANDS)
         self.states = measured = _read_interfaces(params, "state_interfaces", states, _ALLOWED_STATES)
-        self.command_names = tuple(f"{joint}/{kind}" for kind in by for joint in self.commanded_joints)
+        self.command_names = tuple(f"{joint}/{kind}" for kind in commanded for joint in self.commanded_joints)
         self.state_names = tuple(f"{joint}/{kind}" for kind in measured for joint in self.joints)
-        self.has_velocity_state, self.has_effort = VELOCITY in measured, EFFORT in by
-        self.is_closed_loop = by in ((VELOCITY,), (EFFORT,))
+        self.has_velocity_state, self.has_effort = VELOCITY in measured, EFFORT in commanded
+        self.is_closed_loop = commanded in ((VELOCITY,), (EFFORT,))
         if self.is_closed_loop and VELOCITY not in measured:
-            message = (
-                f"'{by[0]}' command interface can only be used alone if 'velocity' and 'position' state interfaces"
-            )
+            kind = commanded[0]
+            message = f"'{kind}' command interface can only be used alone if 'velocity' and 'position' state interfaces"
             params.error(_BAD_INTERFACES, f"{message} are present", "state_interfaces: [position, velocity]")
         found = [hardware.joints.get(name) for name in self.commanded_joints]
         self.turning: Vector = np.zeros(len(self.joints), dtype=bool)
         self.turning[self.places] = [f is not None and f.is_continuous for f in found]
-        gains = params.block("gains")  # where Humble has it
+        gains = params.block("gains")  # Humble has these parameters there
         for j, joint in enumerate(self.joints):
-            block, was = gains.block(joint), bool(self.turning[j])
-            was = block.boolean("normalize_error", was) if block.has("normalize_error") else was
-            self.turning[j] = block.boolean("angle_wraparound", was)
-        velocities = VELOCITY in measured and (VELOCITY in by or EFFORT in by)
-        accelerations = ACCELERATION in measured and ACCELERATION in by
+            block, wraps = gains.block(joint), bool(self.turning[j])
+            wraps = block.boolean("normalize_error", wraps) if block.has("normalize_error") else wraps
+            self.turning[j] = block.boolean("angle_wraparound", wraps)
+        velocities = VELOCITY in measured and (VELOCITY in commanded or EFFORT in commanded)
+        accelerations = ACCELERATION in measured and ACCELERATION in commanded
         self.compared: Vector = np.array([[1.0], [float(velocities)], [float(accelerations)]])
 
     def command_of(self, joint: str) -> str:
-        """The name that a joint's command interface has; the joint's own where it has none."""
+        """Return the joint name in the command interface of a joint; its own name without a command interface."""
         place = self.joints.index(joint)
-        here = np.flatnonzero(self.places == place)
-        return self.commanded_joints[int(here[0])] if len(here) else joint
+        matches = np.flatnonzero(self.places == place)
+        return self.commanded_joints[int(matches[0])] if len(matches) else joint
 
     def state(self, values: Vector) -> Vector:
-        """Shape (3, n) of the values of the state interfaces; 0 for what is not measured."""
+        """Arrange the values of the state interfaces in shape (3, n), with 0 for unmeasured quantities."""
         kinds, count = len(self.states), len(self.joints)
         motion = np.zeros((3, count))
         motion[:kinds] = values[: kinds * count].reshape(kinds, count)
         return motion
 
     def commanded(self, values: Vector) -> Vector | None:
-        """Positions (n,) that the command interfaces hold; None where they do not for every joint."""
+        """Return the positions (n,) in the command interfaces; None unless every joint has a finite one."""
         count = len(self.joints)
         if POSITION not in self.commands or len(self.commanded_joints) != count:
             return None
@@ -116,13 +116,13 @@ class JointGroup(SharedByCopies):
         return positions if np.isfinite(positions).all() else None
 
     def command(self, setpoint: Setpoint, errors: Vector, period: float, pids: JointPids | None = None) -> Vector:
-        """Values of the command interfaces.
+        """Compute the values of the command interfaces.
 
         Args:
-            setpoint: what is wanted.
-            errors: shape (3, n), wanted − measured.
-            period: since the last time [s].
-            pids: of the commanded joints, in a closed loop.
+            setpoint: desired motion and efforts.
+            errors: desired − measured, shape (3, n).
+            period: time since the last call [s].
+            pids: PIDs of the commanded joints, in a closed loop.
         """
         motion, places = setpoint.motion, self.places
         if self.commands == (POSITION,):
@@ -137,7 +137,7 @@ class JointGroup(SharedByCopies):
         return np.concatenate([rows[kind][places] for kind in self.commands])
 
     def at_rest(self, values: Vector) -> Vector:
-        """Values of the command interfaces on release: positions as they are, the rest 0."""
+        """Return the values of the command interfaces on release: unchanged positions, and 0 for the rest."""
         count = len(self.commanded_joints)
         rest = values.copy()
         for k, kind in enumerate(self.commands):
@@ -147,26 +147,26 @@ class JointGroup(SharedByCopies):
 
 
 def _commanded_joints(params: Params, joints: tuple[str, ...]) -> tuple[tuple[str, ...], Indices]:
-    """The commanded joints, and their places: all, under the same or other names, or some of them."""
+    """Return the commanded joints and their indices: all joints, by the same or other names, or a subset."""
     commanded = tuple(read_names(params, "command_joints", code=_BAD_INTERFACES)) or joints
     if len(commanded) == len(joints):
         return commanded, np.arange(len(joints))
     if set(commanded) <= set(joints):
         return commanded, np.array([joints.index(name) for name in commanded], dtype=np.intp)
     message = "'command_joints' parameter must have the same size as 'joints' parameter or be a subset of it."
-    params.error(_BAD_INTERFACES, message, "joints are " + ", ".join(joints))
+    params.error(_BAD_INTERFACES, message, "command_joints: [" + ", ".join(joints) + "]")
     return joints, np.arange(len(joints))
 
 
 def _read_interfaces(params: Params, name: str, default: Sequence[str], allowed: Sequence[set[str]]) -> tuple[str, ...]:
-    wanted = [one.value for one in params.all(name)] or list(default)
-    listed = "; ".join(", ".join(kind for kind in _INTERFACE_ORDER if kind in one) for one in allowed)
-    if not wanted:
-        params.error(_BAD_INTERFACES, f"'{name}' parameter is empty.", f"allowed is one of: {listed}")
-    elif set(wanted) not in allowed or len(set(wanted)) != len(wanted):
-        params.error(_BAD_INTERFACES, f"'{name}' are {', '.join(wanted)}", f"allowed is one of: {listed}")
-        wanted = [POSITION]
-    return tuple(kind for kind in _INTERFACE_ORDER if kind in wanted) or (POSITION,)
+    requested = [element.value for element in params.all(name)] or list(default)
+    listed = "; ".join(", ".join(kind for kind in _INTERFACE_ORDER if kind in kinds) for kinds in allowed)
+    if not requested:
+        params.error(_BAD_INTERFACES, f"'{name}' parameter is empty.", f"use one of: {listed}")
+    elif set(requested) not in allowed or len(set(requested)) != len(requested):
+        params.error(_BAD_INTERFACES, f"'{name}' are {', '.join(requested)}", f"use one of: {listed}")
+        requested = [POSITION]
+    return tuple(kind for kind in _INTERFACE_ORDER if kind in requested) or (POSITION,)
 
 
 TRAJECTORY: Final = "trajectory_msgs/msg/JointTrajectory"
@@ -176,7 +176,7 @@ _FEEDBACK: Final = "control_msgs/action/FollowJointTrajectory_Feedback"
 
 
 class TrajectoryMessages(SharedByCopies):
-    """Makes them for one group of joints."""
+    """Factory of feedback and state messages for one group of joints."""
 
     STATE: Final = "control_msgs/msg/JointTrajectoryControllerState"
 
@@ -200,8 +200,8 @@ class TrajectoryMessages(SharedByCopies):
     ) -> JointTrajectoryControllerState:
         """Make the controller's state from arrays (3, n) and the values of its command interfaces."""
         measured = len(self._group.states)
-        wanted, actual = self._point(desired, 3), self._point(state, measured)
-        points = wanted, actual, self._point(errors, measured), self._command_point(commands), wanted, actual
+        reference, actual = self._point(desired, 3), self._point(state, measured)
+        points = reference, actual, self._point(errors, measured), self._command_point(commands), reference, actual
         none = (self._empty_multi_dof_point() for _ in range(6))
         return self._state_type(msgs.header(now, ""), list(self._names), *points, [], *none)
 

@@ -1,4 +1,4 @@
-"""PID controllers of several joints at once, as ros2_control's control_toolbox has them."""
+"""PID controllers of several joints, with the rules of ros2_control's control_toolbox."""
 
 from __future__ import annotations
 
@@ -9,27 +9,29 @@ import numpy as np
 from simkit.params import Params
 from simkit.pose import Vector
 
-_IGNORED_CLAMPS: Final = ("antiwindup", "save_i_term")  # the clamps of the integral count in any case
+_IGNORED_CLAMPS: Final = ("antiwindup", "save_i_term")  # the clamps of the integral part always apply
 ANTIWINDUP: Final = ("none", "back_calculation", "conditional_integration")
 
 
 class JointPids:
-    """Command = p·e + ∫i·e dt + d·ė, each for its own joint; all arrays have shape (n,).
+    """PID controllers with the command p·e + ∫i·e dt + d·ė, one for each joint; all arrays have shape (n,).
 
     Attributes:
-        p, i, d: gains: command per error, per error and second, per error's rate.
-        i_low, i_high: bounds of the integral's part of the command.
+        p: command per error.
+        i: command per error and second.
+        d: command per rate of the error.
+        i_low, i_high: bounds of the integral part of the command.
         low, high: bounds of the command.
-        feedforward: command per wanted velocity.
+        feedforward: command per desired velocity.
         tracking: time constant of back-calculation [s]; 0 for the one that control_toolbox recommends.
-        deadband: errors up to this do not add to the integral.
-        strategy: what a command at its bounds does to the integral: "none"; "back_calculation" takes the surplus back;
-            "conditional_integration" adds nothing that would go further out.
-        integral: the integral's part now.
+        deadband: largest error that does not add to the integral.
+        strategy: effect of a command at its bounds on the integral: "none"; "back_calculation" removes the surplus;
+            "conditional_integration" adds nothing in the direction of the bound.
+        integral: current integral part of the command.
     """
 
     def __init__(self, gains: Params, joints: tuple[str, ...]) -> None:
-        """Reads `gains: {<joint>: {p: …, i: …, d: …}}`; `i_clamp` bounds both ways."""
+        """Read `gains: {<joint>: {p: …, i: …, d: …}}`; `i_clamp` is a bound in both directions."""
         blocks = [gains.block(joint) for joint in joints]
         for block in blocks:
             for name in _IGNORED_CLAMPS:
@@ -54,12 +56,18 @@ class JointPids:
         self.integral = np.zeros(len(joints))
 
     def update(self, error: Vector, rate: Vector, step: float) -> Vector:
-        """The commands for errors wanted − measured and their rates, `step` [s] after the last."""
-        wanted = self.p * error + self.integral + self.d * rate
-        command = np.clip(wanted, self.low, self.high)
+        """Advance the loops and return the commands.
+
+        Args:
+            error: desired − measured.
+            rate: rate of the error.
+            step: time since the last update [s].
+        """
+        unclamped = self.p * error + self.integral + self.d * rate
+        command = np.clip(unclamped, self.low, self.high)
         growth = np.where(np.abs(error) > self.deadband, self.i * error, 0.0)
         for j, strategy in enumerate(self.strategy):
-            surplus = command[j] - wanted[j]
+            surplus = command[j] - unclamped[j]
             if strategy == "back_calculation":
                 growth[j] += surplus / self._tracking(j) if surplus else 0.0
             elif strategy == "conditional_integration" and surplus * error[j] < 0.0:
@@ -68,7 +76,7 @@ class JointPids:
         return command
 
     def restart(self) -> None:
-        """Forgets what was."""
+        """Reset the integral parts to 0."""
         self.integral = np.zeros_like(self.integral)
 
     def _tracking(self, j: int) -> float:

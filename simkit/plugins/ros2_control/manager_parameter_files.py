@@ -1,4 +1,4 @@
-"""Parameter files of a controller manager: moved to the names where it looks for them, checked for what is unused."""
+"""Parameter files of a controller manager: adaptation to the manager's names, and a check for unused parameters."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ _ROS_1_LOOPS: Final = "gazebo_ros_control"
 def adapt_to_manager(
     given: ParameterFile, namespace: str, manager: str, diagnostics: Diagnostics, *, is_ros_1: bool
 ) -> ParameterFile:
-    """Return a file as it would be on the parameter server: where a launch file had put it, and for either ROS.
+    """Return a file as it would be on the parameter server after a launch file had loaded it.
 
-    The launch file of ROS 1 loads a file into the robot's namespace; so a file that has no such name is taken to be
-    below it. A file of one ROS declares controllers for a plugin of the other too: in ROS 2 they stand, with their
-    type, below the manager's node; in ROS 1 in the robot's namespace.
+    The launch file of ROS 1 loads a file into the robot's namespace, so a file without that name is placed below it. A
+    file of one ROS version declares controllers for a plugin of the other version too. In ROS 2 the declarations, with
+    their types, are below the manager's node; in ROS 1 they are in the robot's namespace.
 
     Args:
-        given: the file.
-        namespace: of the robot, with its slash; empty for none.
+        given: parameter file.
+        namespace: namespace of the robot, with its slash; empty for none.
         manager: name of the manager's node.
-        diagnostics: gets what has no effect.
-        is_ros_1: whether the plugin is ROS 1's.
+        diagnostics: diagnostics for parameters without effect.
+        is_ros_1: true for the plugin of ROS 1.
     """
     parts = [part for part in namespace.split("/") if part]
     if given.root is not None:
@@ -52,15 +52,15 @@ def adapt_to_manager(
 
 
 def _declared_controllers(entry: Entry, *, only_type: bool) -> Iterator[tuple[str, Entry]]:
-    """The blocks with a type; only that is left in them where the rest is the controller's own."""
-    for name, one in (entry.below or {}).items():
-        kind = (one.below or {}).get("type")
+    """Yield the blocks with a type; with `only_type`, the other parameters of a block are removed."""
+    for name, block in (entry.below or {}).items():
+        kind = (block.below or {}).get("type")
         if kind is not None and kind.text:
-            yield name, Entry(one.where, below={"type": kind}) if only_type else one
+            yield name, Entry(block.where, below={"type": kind}) if only_type else block
 
 
 def _nested_entry(entry: Entry, parts: Sequence[str]) -> Entry | None:
-    """The block at a path; None where there is none."""
+    """Return the block at a path; None if there is none."""
     found: Entry | None = entry
     for part in parts:
         found = (found.below or {}).get(part) if found is not None else None
@@ -76,8 +76,10 @@ def _wrap_in_namespace(entry: Entry, parts: Sequence[str]) -> Entry:
 def _report_ros_1_gains(own: Entry, given: ParameterFile, diagnostics: Diagnostics) -> None:
     below = own.below or {}
     if _ROS_1_LOOPS in below:
-        message = f"{given.path.name}: {_ROS_1_LOOPS} has loops for the plugin of ROS 1; this robot's is of ROS 2"
-        hint = "its own node has pid_gains: {position: {JOINT: {kp: ..., kd: ...}}}"
+        message = (
+            f"{given.path.name}: {_ROS_1_LOOPS} has gains for the plugin of ROS 1, but this robot has that of ROS 2"
+        )
+        hint = "move them to the plugin's own node: pid_gains: {position: {JOINT: {kp: ..., kd: ...}}}"
         diagnostics.warning("SK-CONTROL-011", message, below[_ROS_1_LOOPS].where, hint)
 
 
@@ -85,11 +87,11 @@ _CONTROLLER_PARAMETERS: Final = ("joint", "joints", "joint_name", "left_wheel", 
 
 
 def report_unused_parameters(manager: ControllerManager, found: Diagnostics) -> None:
-    """Tells of everything in the files that has no effect, with the closest name.
+    """Report every parameter in the files that has no effect, with the closest known name.
 
     Args:
-        manager: whose files they are; nothing is loaded yet.
-        found: where it goes.
+        manager: manager that uses the files; it has not loaded a controller yet.
+        found: diagnostics for the warnings.
     """
     declared, node = manager.declared(), manager.node
     _report_misspelt_nodes(manager, declared, found)
@@ -99,24 +101,26 @@ def report_unused_parameters(manager: ControllerManager, found: Diagnostics) -> 
             _report_in_ros_1(name, entry, declared, found)
     nodes = [(pattern, entry) for file in manager.files.files for pattern, entry in file.nodes]
     for pattern, entry in nodes:
-        if not pattern.endswith("*") and node_matches(pattern, node):  # a pattern's parameters are other nodes' too
-            for name, one in (entry.below or {}).items():
-                _report_in_manager(name, one, declared, manager.files.node_names(), found)
+        if not pattern.endswith("*") and node_matches(
+            pattern, node
+        ):  # a pattern also matches other nodes, which may use its parameters
+            for name, parameter in (entry.below or {}).items():
+                _report_in_manager(name, parameter, declared, manager.files.node_names(), found)
     if not declared:
         _report_no_controllers(manager.files.files, node, found)
 
 
 def report_high_rates(manager: ControllerManager, rate: float | None, found: Diagnostics) -> None:
-    """Tells of controllers that are to be updated more often than their manager; `rate` is its own [Hz]."""
+    """Report controllers whose update rate is above the manager's `rate` [Hz]."""
     for name, loaded in manager.controllers.items():
         own = loaded.controller.update_rate
         if rate is not None and own > rate * (1.0 + 1e-9):
-            message = f"the controller {name!r} update rate: {own} Hz should be at most the manager's: {rate:g} Hz"
-            found.warning("SK-CONTROL-017", f"{message}; it is updated at that", loaded.controller.params.where)
+            message = f"controller {name!r} has an update rate of {own} Hz, above the manager's {rate:g} Hz"
+            found.warning("SK-CONTROL-017", f"{message}; the manager's rate applies", loaded.controller.params.where)
 
 
 def _report_misspelt_nodes(manager: ControllerManager, declared: Mapping[str, str], found: Diagnostics) -> None:
-    """Tells of nodes that the files have parameters for and that nobody is: mostly misspelt controllers."""
+    """Report nodes in the files that do not exist and whose name is nearly that of a controller."""
     known = {manager.name, manager.plugin.name, *declared, "**", "*"}
     for file in manager.files.files:
         for pattern, entry in file.nodes:
@@ -130,25 +134,27 @@ def _report_misspelt_nodes(manager: ControllerManager, declared: Mapping[str, st
 def _report_in_manager(
     name: str, entry: Entry, declared: Mapping[str, str], nodes: Sequence[str], found: Diagnostics
 ) -> None:
-    """One name among the manager's own parameters, in ROS 2's layout."""
+    """Check one name among the manager's own parameters, in ROS 2's layout."""
     if name in declared:
-        for word, one in (entry.below or {}).items():
-            if word not in KNOWN_PARAMETERS["declaration"]:
-                message = f"{word!r} beside the type of {name!r} is not used: a controller has a node of its own"
-                found.warning("SK-CONTROL-011", message, one.where, f"{name}: {{ros__parameters: {{{word}: ...}}}}")
+        for key, parameter in (entry.below or {}).items():
+            if key not in KNOWN_PARAMETERS["declaration"]:
+                message = f"{key!r} beside the type of {name!r} is ignored: a controller has its own node"
+                found.warning(
+                    "SK-CONTROL-011", message, parameter.where, f"{name}: {{ros__parameters: {{{key}: ...}}}}"
+                )
     elif name in KNOWN_PARAMETERS["manager"]:
         return
     elif entry.form in ("block", "nothing") or name in nodes:
         _report_no_type(name, entry, found)
     else:
         near = did_you_mean(name, KNOWN_PARAMETERS["manager"])
-        found.warning("SK-CONTROL-011", f"controller manager: <{name}> is not used", entry.where, near)
+        found.warning("SK-CONTROL-011", f"the controller manager ignores parameter <{name}>", entry.where, near)
 
 
 def _report_in_ros_1(name: str, entry: Entry, declared: Mapping[str, str], found: Diagnostics) -> None:
-    """One name in the robot's namespace: everything may stand there, so it has to look like a controller's."""
+    """Check one name in the robot's namespace, which may hold any parameter: it must look like a controller."""
     below = entry.below or {}
-    if name not in declared and any(word in below for word in _CONTROLLER_PARAMETERS):
+    if name not in declared and any(key in below for key in _CONTROLLER_PARAMETERS):
         _report_no_type(name, entry, found)
 
 
@@ -156,18 +162,22 @@ def _report_no_type(name: str, entry: Entry, found: Diagnostics) -> None:
     kind = (entry.below or {}).get("type")
     where = entry.where if kind is None else kind.where
     what = "is not defined" if kind is None else f"is {'empty' if kind.form in ('value', 'nothing') else 'no text'}"
-    message = f"the 'type' param of controller {name!r} {what}; it is left out"
-    near = did_you_mean("type", [word for word in entry.below or {} if word != "type"])
-    hint = f"it has {near.removeprefix('did you mean ').rstrip('?')}" if near else f"{name}: {{type: package/Class}}"
+    message = f"the 'type' param of controller {name!r} {what}; it is not loaded"
+    near = did_you_mean("type", [key for key in entry.below or {} if key != "type"])
+    hint = (
+        f"rename {near.removeprefix('did you mean ').rstrip('?')} to 'type'"
+        if near
+        else f"{name}: {{type: package/Class}}"
+    )
     found.warning("SK-CONTROL-013", message, where, hint)
 
 
 def _report_no_controllers(files: Sequence[ParameterFile], node: str, found: Diagnostics) -> None:
-    """No file declares a controller where the manager looks for them."""
+    """Report that no file declares a controller where the manager looks for them."""
     names = [pattern for file in files for pattern, _ in file.nodes]
     names += [f"/{name}" for file in files if file.root is not None for name in file.root.below or {}]
-    if names:  # an empty file has been told of
-        which = ", ".join(file.path.name for file in files)
-        message = f"{which} declares no controller for {node or '/'!r}: none is loaded"
-        there = "there are parameters for: " + ", ".join(names[:20])
-        found.warning("SK-CONTROL-003", message, Where(str(files[0].path), 1), did_you_mean(node, names) or there)
+    if names:  # an empty file has been reported
+        file_names = ", ".join(file.path.name for file in files)
+        message = f"{file_names} declares no controller for {node or '/'!r}: none is loaded"
+        listed = "the files have parameters for: " + ", ".join(names[:20])
+        found.warning("SK-CONTROL-003", message, Where(str(files[0].path), 1), did_you_mean(node, names) or listed)

@@ -1,7 +1,7 @@
-"""Trajectories of several joints at once: points with times, and the splines between them.
+"""Trajectories of several joints: points with times, and the splines between them.
 
-The rules are those of ros2_controllers' joint_trajectory_controller: between two points that both give velocities a
-cubic, with accelerations as well a quintic, and a straight line where either gives positions only.
+The rules are those of ros2_controllers' joint_trajectory_controller. Two points with velocities are connected by a
+cubic spline, and two points with accelerations as well by a quintic one. Otherwise the connection is a straight line.
 """
 
 from __future__ import annotations
@@ -21,17 +21,17 @@ from simkit.pose import Vector
 SECOND: Final = 1_000_000_000
 _TURN: Final = 2.0 * np.pi
 _LOOK_AHEAD: Final = 32
-"""So many setpoints are worked out at once: arrays of a few numbers each take as long as one of them all."""
+"""Number of setpoints computed at once: for arrays this small, 32 setpoints take as long as one."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TrajectoryPoint:
-    """One point; a field that the message leaves empty is None.
+    """One point of a trajectory; a field that is empty in the message is None.
 
     Attributes:
-        time: from the start [ns].
+        time: time from the start [ns].
         positions, velocities, accelerations: shape (n,), by the controller's joints [rad or m, per s, per s²].
-        efforts: likewise [N·m or N].
+        efforts: shape (n,), by the controller's joints [N·m or N].
     """
 
     time: int
@@ -42,11 +42,11 @@ class TrajectoryPoint:
 
 
 class Setpoint(NamedTuple):
-    """Targets of the joints at one moment.
+    """Targets of the joints at one time.
 
     Attributes:
         motion: shape (3, n): positions, velocities, accelerations.
-        efforts: shape (n,); None where the points have none.
+        efforts: shape (n,); None if the points have none.
     """
 
     motion: Vector
@@ -54,39 +54,40 @@ class Setpoint(NamedTuple):
 
 
 class Spline(SharedByCopies):
-    """Targets of all joints at every time.
+    """Targets of all joints as a function of time.
 
     Attributes:
-        times: where one piece ends and the next begins, since the start [ns]; rising.
-        last: after all.
+        times: boundaries of the pieces, from the start [ns]; increasing.
+        last: setpoint after the last piece.
     """
 
     def __init__(self, times: Sequence[int], pieces: Sequence[Vector], last: Setpoint) -> None:
-        """Made of what `through`, `held` and `stop` work out.
+        """Initialise a spline from the results of `through`, `held` or `stop`.
 
         Args:
-            times: one more than pieces.
-            pieces: coefficients (6, n) of rising powers of the seconds since the piece's beginning.
-            last: after the last piece.
+            times: boundaries of the pieces, one more than pieces [ns].
+            pieces: coefficients (6, n) of increasing powers of the seconds since the beginning of the piece.
+            last: setpoint after the last piece.
         """
         self.times, self.last = tuple(times), last
         self._begins = np.array(self.times[:-1], np.int64)
         self._table = _with_derivatives(pieces)
         self._ahead: dict[int, Vector] = {}
         self._efforts: tuple[tuple[Vector, Vector], ...] = ()
-        self._setpoints: tuple[Vector, ...] = ()  # of a spline that does not interpolate
+        self._setpoints: tuple[Vector, ...] = ()  # only in a spline without interpolation
 
     @property
     def end(self) -> int:
-        """End of the spline [ns since the start]."""
+        """End of the spline, from the start [ns]."""
         return self.times[-1]
 
     def at(self, now: int, step: int = 0) -> Setpoint:
         """Return the targets of the joints at a time.
 
         Args:
-            now: [ns since the start].
-            step: how much later the next time is going to be asked for [ns]; 0 where nobody knows. It changes no bit.
+            now: time from the start [ns].
+            step: expected time until the next call [ns]; 0 if unknown. It allows to compute setpoints ahead, and
+                changes no bit of the result.
         """
         motion = self._ahead.get(now)
         if motion is not None and not self._efforts:
@@ -102,7 +103,7 @@ class Spline(SharedByCopies):
         return Setpoint(self._ahead[now])
 
     def _motions(self, times: npt.NDArray[np.int64]) -> Vector:
-        """Shape (times, 3, n); number by number, so that the same time has the same bits among whatever others."""
+        """Return motions, shape (times, 3, n); bit-identical for a time, whatever the other times are."""
         pieces = np.maximum(np.searchsorted(self._begins, times, "right") - 1, 0)
         t = (np.maximum(times - self._begins[pieces], 0) / SECOND)[:, None]
         table = self._table[:, pieces]
@@ -112,7 +113,7 @@ class Spline(SharedByCopies):
         return motions.reshape(len(times), 3, -1)
 
     def _with_effort(self, now: int) -> Setpoint:
-        """The same where there are efforts, or no interpolation."""
+        """Return the setpoint of a spline with efforts or without interpolation."""
         i = max(bisect_right(self.times, now) - 1, 0)
         if self._setpoints:
             return Setpoint(self._setpoints[i], self._effort(i, 1.0))
@@ -129,21 +130,21 @@ class Spline(SharedByCopies):
 
     @classmethod
     def held(cls, positions: Vector, velocities: Vector | None = None) -> Spline:
-        """Stays at a place for ever (or gives a velocity for ever, to joints that are commanded by it)."""
+        """Create a spline that holds positions for ever (or velocities, for joints commanded by velocity)."""
         rest = np.zeros_like(positions)
         motion = np.stack([positions, rest if velocities is None else velocities, rest])
         return cls((0,), (), Setpoint(motion))
 
     @classmethod
     def through(cls, start: TrajectoryPoint, points: Sequence[TrajectoryPoint], *, steps: bool = False) -> Spline:
-        """From a state through the points.
+        """Create a spline from a state through points.
 
-        A point at or before the time of `start` is taken as it is: then the way begins there, and not at the state.
+        A first point at or before the time of `start` replaces the state: the spline then begins at that point.
 
         Args:
-            start: the state when the trajectory is taken up; its time [ns] is since the start too.
-            points: with positions, times rising.
-            steps: no interpolation: from a point's time on its successor is what is wanted.
+            start: state of the joints when the trajectory begins; its time [ns] counts from the start too.
+            points: points with positions and increasing times.
+            steps: no interpolation: from the time of a point on, the target is the next point.
         """
         count = len(_zero_if_missing(points[0].positions))
         ends = list(points)
@@ -152,23 +153,25 @@ class Spline(SharedByCopies):
         times = [point.time for point in ends]
         pairs = list(pairwise(ends))
         pieces = [] if steps else [_hermite_piece(a, b) for a, b in pairs]
-        made = cls(times, pieces, Setpoint(_point_rows(ends[-1], count), ends[-1].efforts))
+        spline = cls(times, pieces, Setpoint(_point_rows(ends[-1], count), ends[-1].efforts))
         if steps:
-            waits = ends[0] is not points[0]
-            made._setpoints = tuple(_point_rows(a if waits and k == 0 else b, count) for k, (a, b) in enumerate(pairs))
+            starts_earlier = ends[0] is not points[0]
+            spline._setpoints = tuple(
+                _point_rows(a if starts_earlier and k == 0 else b, count) for k, (a, b) in enumerate(pairs)
+            )
         if any(point.efforts is not None for point in points):
             rest = np.zeros(count)
-            made._efforts = tuple(
+            spline._efforts = tuple(
                 (rest if a.efforts is None else a.efforts, rest if b.efforts is None else b.efforts) for a, b in pairs
             )
-            if made.last.efforts is None:
-                made.last = Setpoint(made.last.motion, rest)
-        return made
+            if spline.last.efforts is None:
+                spline.last = Setpoint(spline.last.motion, rest)
+        return spline
 
     @classmethod
     def stop(cls, positions: Vector, velocities: Vector, decelerations: Vector) -> Spline:
-        """Brings each joint from its velocity to rest at its own deceleration [rad/s² or m/s²]."""
-        can_slow = decelerations > 0.0  # the others stop at once
+        """Create a spline that decelerates each joint to rest at its own deceleration [rad/s² or m/s²]."""
+        can_slow = decelerations > 0.0  # joints without deceleration stop at once
         velocities = np.where(can_slow, velocities, 0.0)
         slope = -np.sign(velocities) * decelerations
         durations = np.abs(velocities) / np.where(can_slow, decelerations, 1.0)
@@ -189,44 +192,44 @@ class Spline(SharedByCopies):
 
 
 def integrate_points(start: TrajectoryPoint, points: Sequence[TrajectoryPoint]) -> list[TrajectoryPoint]:
-    """The points with the positions that their velocities (or these from their accelerations) lead to.
+    """Add positions to points that have only velocities, or only accelerations, by integration.
 
-    The mean of both ends over the time between, as ros2_controllers does.
+    The mean of both ends is integrated over the time between them, as in ros2_controllers.
     """
-    done: list[TrajectoryPoint] = []
-    before = start
+    integrated: list[TrajectoryPoint] = []
+    previous = start
     for point in points:
         if point.positions is None:
-            t = (point.time - before.time) / SECOND
-            here = _zero_if_missing(before.positions)
-            rest = np.zeros(len(here))
-            v0, v1 = before.velocities if before.velocities is not None else rest, point.velocities
+            t = (point.time - previous.time) / SECOND
+            positions = _zero_if_missing(previous.positions)
+            rest = np.zeros(len(positions))
+            v0, v1 = previous.velocities if previous.velocities is not None else rest, point.velocities
             if v1 is None:
-                a0 = before.accelerations if before.accelerations is not None else rest
+                a0 = previous.accelerations if previous.accelerations is not None else rest
                 v1 = v0 + (a0 + _zero_if_missing(point.accelerations)) * 0.5 * t
-            point = replace(point, positions=here + (v0 + v1) * 0.5 * t, velocities=v1)
-        done.append(point)
-        before = point
-    return done
+            point = replace(point, positions=positions + (v0 + v1) * 0.5 * t, velocities=v1)
+        integrated.append(point)
+        previous = point
+    return integrated
 
 
 def whole_turn_offset(here: Vector, first: Vector, turning: Vector) -> Vector:
-    """Return the whole turns to add to a trajectory, so that continuous joints take the short way to its first point.
+    """Return the full turns to add to a trajectory so that continuous joints take the short way to its first point.
 
     Args:
-        here: positions [rad].
-        first: those of the first point.
-        turning: which of the joints turn without end.
+        here: current positions [rad].
+        first: positions of the first point [rad].
+        turning: mask of the joints that rotate without limits.
 
     Returns:
-        Whole turns [rad], 0 for the other joints.
+        Multiples of 2π [rad], 0 for the other joints.
     """
     turns: Vector = np.where(turning, np.round((here - first) / _TURN) * _TURN, 0.0)
     return turns
 
 
 def shortest_differences(errors: Vector, turning: Vector) -> Vector:
-    """Differences of angles within half a turn, for joints that turn without end [rad]."""
+    """Wrap angle differences of joints that rotate without limits to half a turn [rad]."""
     wrapped: Vector = np.where(turning, errors - np.round(errors / _TURN) * _TURN, errors)
     return wrapped
 
@@ -237,7 +240,7 @@ def _zero_if_missing(values: Vector | None) -> Vector:
 
 
 def _match_first_point(start: TrajectoryPoint, first: TrajectoryPoint) -> TrajectoryPoint:
-    """The state with 0 for what the first point has and a state that is measured lacks."""
+    """Return the state with zeros for the fields that only the first point has."""
     rest = np.zeros(len(_zero_if_missing(first.positions)))
     velocities = rest if start.velocities is None and first.velocities is not None else start.velocities
     accelerations = rest if start.accelerations is None and first.accelerations is not None else start.accelerations
@@ -251,7 +254,7 @@ def _point_rows(point: TrajectoryPoint, count: int) -> Vector:
 
 
 def _hermite_piece(a: TrajectoryPoint, b: TrajectoryPoint) -> Vector:
-    """Coefficients (6, n) of rising powers; Hermite polynomials of degree 1, 3 or 5."""
+    """Return coefficients (6, n) of increasing powers for a Hermite polynomial of degree 1, 3 or 5."""
     p0, p1 = _zero_if_missing(a.positions), _zero_if_missing(b.positions)
     t = (b.time - a.time) / SECOND
     piece = np.zeros((6, len(p0)))
@@ -275,7 +278,7 @@ def _hermite_piece(a: TrajectoryPoint, b: TrajectoryPoint) -> Vector:
 
 
 def _with_derivatives(pieces: Sequence[Vector]) -> Vector:
-    """Coefficients (powers, pieces, 3 n) of pieces (6, n), of their first and of their second derivatives."""
+    """Return coefficients (powers, pieces, 3 n) of pieces (6, n) and of their first and second derivatives."""
     if not len(pieces):
         return np.zeros((1, 0, 0))
     stacked, degrees = np.stack(pieces, 1), np.arange(6.0)[:, None, None]

@@ -1,4 +1,4 @@
-"""Checks of incoming trajectories, and tolerances of their joints, as ros2_control has them."""
+"""Checks of incoming trajectories and tolerances of their joints, with the rules of ros2_control."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from simkit.msgs import FollowJointTrajectory_Goal, JointTolerance, JointTrajectory, JointTrajectoryPoint
 
 _FIELDS: Final = ("positions", "velocities", "accelerations")
-_REST_VELOCITY: Final = 1.1920929e-07  # the smallest step of a 32-bit float at 1, which ros2_controllers compares with
+_REST_VELOCITY: Final = 1.1920929e-07  # epsilon of a 32-bit float, the threshold in ros2_controllers
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,10 +26,10 @@ class TrajectoryRules:
     """Rules for the trajectories that a controller accepts.
 
     Attributes:
-        joints: the controller's.
-        allow_partial: whether a trajectory may be for some of them only.
-        allow_integration: whether velocities or accelerations do without positions.
-        allow_velocity_at_end: whether the last point may have a velocity.
+        joints: joints of the controller.
+        allow_partial: true if a trajectory may name a subset of the joints.
+        allow_integration: true if velocities or accelerations may replace positions.
+        allow_velocity_at_end: true if the last point may have a velocity.
     """
 
     joints: tuple[str, ...]
@@ -38,10 +38,10 @@ class TrajectoryRules:
     allow_velocity_at_end: bool = False
 
     def fault(self, message: JointTrajectory, now: int) -> str:
-        """Why a `trajectory_msgs/msg/JointTrajectory` cannot be followed, in ros2_control's words; empty if it can.
+        """Return the reason, in ros2_control's words, to reject a trajectory; empty if it can be followed.
 
         Args:
-            message: the trajectory.
+            message: `trajectory_msgs/msg/JointTrajectory` to check.
             now: simulated time [ns].
         """
         names = [str(name) for name in message.joint_names]
@@ -107,23 +107,23 @@ class TrajectoryRules:
 
 
 def read_points(message: JointTrajectory, joints: Sequence[str], here: Vector) -> list[TrajectoryPoint]:
-    """The points of a trajectory that has no fault, in the controller's order.
+    """Convert a valid trajectory to points in the order of the controller's joints.
 
     Args:
-        message: `trajectory_msgs/msg/JointTrajectory`.
-        joints: the controller's.
-        here: where joints that the trajectory does not name stay.
+        message: `trajectory_msgs/msg/JointTrajectory` to convert.
+        joints: joints of the controller.
+        here: positions of joints that the trajectory does not name.
     """
     names = [str(name) for name in message.joint_names]
     places = np.array([joints.index(name) for name in names], dtype=np.intp)
     rest = np.zeros(len(joints))
 
-    def field(values: Vector, otherwise: Vector) -> Vector | None:
+    def field(values: Vector, default: Vector) -> Vector | None:
         if not len(values):
             return None
-        whole = otherwise.copy()
-        whole[places] = values
-        return whole
+        complete = default.copy()
+        complete[places] = values
+        return complete
 
     return [
         TrajectoryPoint(
@@ -139,12 +139,12 @@ def read_points(message: JointTrajectory, joints: Sequence[str], here: Vector) -
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Tolerances:
-    """Largest allowed error of each joint; infinite where nothing is checked.
+    """Largest allowed error of each joint; infinite without a check.
 
     Attributes:
-        path: shape (3, n): position, velocity, acceleration under way [rad or m, per s, per s²].
-        goal: likewise at the end.
-        goal_time: how much later than planned it may get there [s]; 0 for ever.
+        path: tolerances during the motion, shape (3, n): position, velocity, acceleration [rad or m, per s, per s²].
+        goal: tolerances at the end, in the same shape.
+        goal_time: allowed delay at the end [s]; 0 for an unlimited delay.
     """
 
     path: Vector
@@ -153,28 +153,28 @@ class Tolerances:
 
     @property
     def watches_path(self) -> bool:
-        """Check whether anything is checked under way."""
+        """True if anything is checked during the motion."""
         return bool(np.isfinite(self.path).any())
 
     @classmethod
     def of(cls, path: Sequence[float], goal: Sequence[float], stopped: float, goal_time: float) -> Tolerances:
-        """Make tolerances of a file's numbers, where 0 is no tolerance.
+        """Create tolerances from the numbers in a file, where 0 means no tolerance.
 
         Args:
-            path: of each joint's position under way.
-            goal: of each joint's position at the end.
-            stopped: of every velocity at the end.
-            goal_time: [s].
+            path: position tolerance of each joint during the motion.
+            goal: position tolerance of each joint at the end.
+            stopped: velocity tolerance of all joints at the end.
+            goal_time: allowed delay at the end [s].
         """
         none = np.full(len(path), np.inf)
         ends = np.stack([_infinite_if_zero(goal), _infinite_if_zero([stopped] * len(path)), none])
         return cls(np.stack([_infinite_if_zero(path), none, none]), ends, goal_time)
 
     def with_goal(self, goal: FollowJointTrajectory_Goal, joints: Sequence[str]) -> tuple[Tolerances, str]:
-        """With those of a `FollowJointTrajectory` goal: a positive one counts, -1 takes one away, 0 leaves it.
+        """Apply the tolerances of a `FollowJointTrajectory` goal: positive replaces, -1 removes, 0 keeps a tolerance.
 
         Returns:
-            The tolerances, and why they are the unchanged ones though the goal has some (empty otherwise).
+            Tolerances, and the reason if the goal's tolerances were invalid and therefore ignored (empty otherwise).
         """
         goal_time, fault = _resolve_tolerance(self.goal_time, stamp_ns(goal.goal_time_tolerance) / SECOND, 0.0)
         if fault:
@@ -187,29 +187,29 @@ class Tolerances:
 
     @staticmethod
     def _with_changes(
-        kind: str, table: Vector, wanted: Iterable[JointTolerance], joints: Sequence[str]
+        kind: str, table: Vector, goal: Iterable[JointTolerance], joints: Sequence[str]
     ) -> tuple[Vector, str]:
         changed = table.copy()
-        for one in wanted:
-            if one.name not in joints:
-                what = f"{kind.capitalize()} tolerance specified for unknown joint '{one.name}'."
+        for tolerance in goal:
+            if tolerance.name not in joints:
+                what = f"{kind.capitalize()} tolerance specified for unknown joint '{tolerance.name}'."
                 return table, f"{what} Using default tolerances."
-            j = joints.index(one.name)
+            j = joints.index(tolerance.name)
             for row, field in enumerate(("position", "velocity", "acceleration")):
-                changed[row, j], fault = _resolve_tolerance(table[row, j], getattr(one, field), math.inf)
+                changed[row, j], fault = _resolve_tolerance(table[row, j], getattr(tolerance, field), math.inf)
                 if fault:
-                    what = f"Illegal {field} {kind} tolerance value specified for joint '{one.name}'."
+                    what = f"Illegal {field} {kind} tolerance value specified for joint '{tolerance.name}'."
                     return table, f"{what} Using default tolerances."
         return changed, ""
 
 
 def describe_violation(off: Vector, tolerances: Vector, joints: Sequence[str]) -> str:
-    """The joint that is furthest beyond its tolerance, in ros2_control's words.
+    """Describe the joint that exceeds its tolerance most, in ros2_control's words.
 
     Args:
-        off: how far each joint is off, shape (3, n): position, velocity, acceleration [rad or m, per s, per s²].
-        tolerances: likewise.
-        joints: their names.
+        off: error of each joint, shape (3, n): position, velocity, acceleration [rad or m, per s, per s²].
+        tolerances: tolerances in the same shape.
+        joints: names of the joints.
     """
     excess = np.where(np.isfinite(tolerances), off - tolerances, -np.inf)
     row, j = np.unravel_index(int(np.argmax(excess)), excess.shape)
@@ -221,9 +221,9 @@ def _infinite_if_zero(tolerances: Sequence[float]) -> Vector:
     return np.array([t if t > 0.0 else math.inf for t in tolerances])
 
 
-def _resolve_tolerance(default: float, wanted: float, erased: float) -> tuple[float, str]:
-    if wanted > 0.0:
-        return wanted, ""
-    if wanted == -1.0:
+def _resolve_tolerance(default: float, requested: float, erased: float) -> tuple[float, str]:
+    if requested > 0.0:
+        return requested, ""
+    if requested == -1.0:
         return erased, ""
-    return default, "" if wanted == 0.0 else f"{wanted:g}"
+    return default, "" if requested == 0.0 else f"{requested:g}"

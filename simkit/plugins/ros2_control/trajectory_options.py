@@ -1,4 +1,4 @@
-"""Parameters of trajectory controllers: live tolerances, live gains of their PIDs, and the rule for stopping."""
+"""Parameters of trajectory controllers: live tolerances, live PID gains, and the rule for stopping."""
 
 from __future__ import annotations
 
@@ -22,46 +22,48 @@ _GAINS: Final = {"p": "p", "i": "i", "d": "d", "ff_velocity_scale": "feedforward
 
 
 class LiveTolerances(SharedByCopies):
-    """The `constraints` of a controller's joints, as they are at the moment; a handle on its parameters."""
+    """Live parameters in `constraints` of a controller's joints."""
 
     def __init__(self, controller: Controller, joints: tuple[str, ...]) -> None:
         def live(name: str, default: float, description: str) -> Parameter[float]:
             return controller.declare(f"constraints.{name}", default, minimum=0.0, description=description)
 
-        self._stopped = live("stopped_velocity_tolerance", 0.01, "speed of a joint at the end [rad/s or m/s]")
-        self._goal_time = live("goal_time", 0.0, "how much later than planned a goal may end [s]; 0 for ever")
-        self._path = [live(f"{joint}.trajectory", 0.0, "off its way at most [rad or m]") for joint in joints]
-        self._goal = [live(f"{joint}.goal", 0.0, "off its goal at most [rad or m]") for joint in joints]
+        self._stopped = live("stopped_velocity_tolerance", 0.01, "largest speed of a joint at the end [rad/s or m/s]")
+        self._goal_time = live("goal_time", 0.0, "allowed delay of a goal's end [s]; 0 for an unlimited delay")
+        self._path = [
+            live(f"{joint}.trajectory", 0.0, "largest error during the motion [rad or m]") for joint in joints
+        ]
+        self._goal = [live(f"{joint}.goal", 0.0, "largest error at the end [rad or m]") for joint in joints]
 
     def tolerances(self) -> Tolerances:
-        """Those of a goal that has none of its own."""
+        """Return the current tolerances, which apply to a goal without its own."""
         path, goal = [p.value for p in self._path], [p.value for p in self._goal]
         return Tolerances.of(path, goal, self._stopped.value, self._goal_time.value)
 
 
 class StopRule(SharedByCopies):
-    """Rule by which joints are brought to rest where a trajectory is aborted.
+    """Rule for stopping the joints when a trajectory is aborted.
 
     Attributes:
-        decelerations: of each joint [rad/s² or m/s²], shape (n,); 0 stops at once.
-        duration: within which all of them come to rest [s], as in ROS 1; 0 for at once.
+        decelerations: deceleration of each joint [rad/s² or m/s²], shape (n,); 0 stops at once.
+        duration: time in which all joints come to rest [s], as in ROS 1; 0 stops at once.
     """
 
     def __init__(self, params: Params, joints: tuple[str, ...]) -> None:
-        """Reads `constraints` and `stop_trajectory_duration`."""
+        """Read `constraints` and `stop_trajectory_duration`."""
         constraints = params.block("constraints")
         slows_down = constraints.boolean("decelerate_on_cancel", False)
         blocks = [constraints.block(joint) for joint in joints]
-        wanted = np.array([block.number("max_deceleration_on_cancel", 0.0, minimum=0.0) for block in blocks])
-        self.decelerations = wanted if slows_down else wanted * 0.0
+        decelerations = np.array([block.number("max_deceleration_on_cancel", 0.0, minimum=0.0) for block in blocks])
+        self.decelerations = decelerations if slows_down else decelerations * 0.0
         self.duration = params.number("stop_trajectory_duration", 0.0, minimum=0.0)
 
     def spline(self, state: Vector, *, has_velocity: bool) -> Spline:
-        """The way from a state, shape (3, n), to rest.
+        """Create the spline from a state to rest.
 
         Args:
-            state: positions, velocities, accelerations.
-            has_velocity: whether velocities are measured.
+            state: positions, velocities, accelerations, shape (3, n).
+            has_velocity: true if velocities are measured.
         """
         position, velocity, _ = state
         if has_velocity and self.decelerations.any():
@@ -72,35 +74,35 @@ class StopRule(SharedByCopies):
 
 
 def read_timeout(params: Params, goal_time: float) -> float:
-    """`cmd_timeout` [s], 0 for none; one that a goal may be later than, `goal_time` [s], is none after a warning."""
+    """Read `cmd_timeout` [s], 0 for none; a timeout up to `goal_time` [s] is ignored with a warning."""
     timeout = params.number("cmd_timeout", 0.0, minimum=0.0)
     if not 0.0 < timeout <= goal_time:
         return timeout
     message = f"Command timeout must be higher than goal_time tolerance ({timeout:f} vs. {goal_time:f})"
     where = (params.child("cmd_timeout") or params).where
-    params.diagnostics.warning("SK-CONTROL-023", f"{message}; there is none now", where)
+    params.diagnostics.warning("SK-CONTROL-023", f"{message}; the timeout is ignored", where)
     return 0.0
 
 
 def read_pids(controller: Controller, joints: tuple[str, ...], find: Callable[[], JointPids | None]) -> JointPids:
-    """PIDs of `gains`, which may be changed while they are at work.
+    """Read the PIDs in `gains`, and declare their gains as live parameters.
 
     Args:
-        controller: whose parameters they are.
-        joints: theirs.
-        find: gives the PIDs as they are at the moment of a change (restored ones are another object).
+        controller: controller that has the parameters.
+        joints: joints of the PIDs.
+        find: function that returns the current PIDs at a change; a restored state has another object.
     """
     params = controller.params
     pids = JointPids(params.block("gains"), joints)
-    feed = params.block("velocity_ff")  # where ROS 1 has it
+    feed = params.block("velocity_ff")  # ROS 1 has the gain there
     for k, joint in enumerate(joints):
         pids.feedforward[k] = feed.number(joint, float(pids.feedforward[k]))
         for name, attribute in _GAINS.items():
 
-            def take(value: float, attribute: str = attribute, k: int = k) -> None:
-                now = find()
-                if now is not None:
-                    getattr(now, attribute)[k] = value
+            def set_gain(value: float, attribute: str = attribute, k: int = k) -> None:
+                current = find()
+                if current is not None:
+                    getattr(current, attribute)[k] = value
 
-            controller.declare(f"gains.{joint}.{name}", float(getattr(pids, attribute)[k]), on_change=take)
+            controller.declare(f"gains.{joint}.{name}", float(getattr(pids, attribute)[k]), on_change=set_gain)
     return pids

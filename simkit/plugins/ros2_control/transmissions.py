@@ -1,8 +1,9 @@
-"""Transmissions: what the actuators behind the joints do, as `<transmission>` has it.
+"""Transmissions: the motion and effort of the actuators behind the joints, from `<transmission>`.
 
-Controllers command joints, in Gazebo and here; an actuator's position, velocity and effort are state interfaces of its
-name, worked out where a controller reads them. The laws are those of ros2_control's transmission_interface, with n_a
-and n_j the reductions of actuators and joints, x the joint's position less its offset:
+Controllers command joints, in Gazebo and in simkit. Position, velocity and effort of an actuator are state interfaces
+with the actuator's name, computed when a controller reads them. The laws are those of ros2_control's
+transmission_interface. In them, n_a and n_j are the reductions of actuators and joints, and x is the position of a
+joint minus its offset:
 
 * simple: a = n_a n_j x;
 * differential: a1 = n_a1 (n_j1 x1 + n_j2 x2), a2 = n_a2 (n_j1 x1 − n_j2 x2);
@@ -31,7 +32,7 @@ _KINDS: Final = {
     "DifferentialTransmission": "differential",
     "FourBarLinkageTransmission": "four_bar_linkage",
 }
-_SMALLEST_REDUCTION: Final = 1e-12  # of a reduction; its inverse is the most
+_SMALLEST_REDUCTION: Final = 1e-12  # the largest reduction is its inverse
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,9 +41,9 @@ class TransmissionLaw:
 
     Attributes:
         actuators, joints: plain names.
-        motion: position or velocity of the actuators over that of the joints (actuators, joints).
-        force: effort of the actuators over that of the joints (actuators, joints).
-        offset: of the joints [rad or m].
+        motion: matrix from joint positions or velocities to those of the actuators, shape (actuators, joints).
+        force: matrix from joint efforts to actuator efforts, shape (actuators, joints).
+        offset: position offsets of the joints [rad or m].
     """
 
     actuators: tuple[str, ...]
@@ -52,7 +53,7 @@ class TransmissionLaw:
     offset: Vector
 
     def actuate(self, interface: str, joints: Vector) -> Vector:
-        """An interface of the actuators, of that of the joints."""
+        """Convert an interface of the joints to the same interface of the actuators."""
         if interface == EFFORT:
             return np.asarray(self.force @ joints)
         return np.asarray(self.motion @ (joints - self.offset if interface == POSITION else joints))
@@ -61,34 +62,34 @@ class TransmissionLaw:
 def transmission_laws(
     transmissions: Iterable[Transmission], joints: Sequence[str], found: Diagnostics
 ) -> list[TransmissionLaw]:
-    """The laws of all transmissions whose joints the hardware has."""
-    made = []
+    """Return the laws of all transmissions whose joints the hardware has; report the others."""
+    laws = []
     for transmission in transmissions:
         law = _transmission_law(transmission)
         if law is None and transmission.kind not in _KINDS.values():
             message = f"transmission {transmission.name!r} is of type {transmission.type or transmission.kind!r}"
-            message += f", which is not known; there are {', '.join(_KINDS)}; its actuators are left out"
+            message += f", which is not known; use one of {', '.join(_KINDS)}; its actuators are ignored"
             near = did_you_mean(transmission.type.rpartition("/")[2], _KINDS)
             found.warning("SK-CONTROL-008", message, transmission.where, near)
             continue
         if law is None:
             counts = f"{len(transmission.joints)} joint(s) and {len(transmission.actuators)} actuator(s)"
             message = f"transmission {transmission.name!r} ({transmission.type or 'of no type'}) has {counts}"
-            hint = "simple has one of each; the others have two of each, all different; no reduction is 0 or nearly 0"
-            found.warning("SK-CONTROL-008", f"{message}; its actuators are left out", transmission.where, hint)
+            hint = "give a simple one 1 of each, the others 2 of each with different names, and no reduction near 0"
+            found.warning("SK-CONTROL-008", f"{message}; its actuators are ignored", transmission.where, hint)
             continue
         missing = [joint for joint in law.joints if joint not in joints]
         for joint in missing:
             message = f"transmission {transmission.name!r} names joint {joint!r}, which the hardware does not have"
             found.warning(
                 "SK-CONTROL-008",
-                f"{message}; its actuators are left out",
+                f"{message}; its actuators are ignored",
                 transmission.where,
                 did_you_mean(joint, joints),
             )
         if not missing:
-            made.append(law)
-    return made
+            laws.append(law)
+    return laws
 
 
 def _transmission_law(transmission: Transmission) -> TransmissionLaw | None:
@@ -115,12 +116,12 @@ def _transmission_law(transmission: Transmission) -> TransmissionLaw | None:
 
 
 def _by_role(ends: Sequence[TransmissionEnd]) -> list[TransmissionEnd]:
-    """In the order of their roles (`joint1`, `joint2`), where they have some."""
+    """Sort ends by their roles (`joint1`, `joint2`) if all have one."""
     return sorted(ends, key=lambda end: end.role) if all(end.role for end in ends) else list(ends)
 
 
 def transmissions_of(scene: SceneModel, blocks: Iterable[Params]) -> list[Transmission]:
-    """Those in `<ros2_control>`, else those of the robot (which ROS 1 reads)."""
+    """Return the transmissions in `<ros2_control>`, or else those of the robot (which ROS 1 reads)."""
     found = [_read_transmission(element) for block in blocks for element in block.all("transmission")]
     return found or list(scene.transmissions)
 
@@ -132,8 +133,8 @@ def _read_transmission(element: Params) -> Transmission:
         name=element.attribute("name"),
         kind=kind,
         type=plugin,
-        joints=tuple(_read_end(one) for one in element.all("joint")),
-        actuators=tuple(_read_end(one) for one in element.all("actuator")),
+        joints=tuple(_read_end(end) for end in element.all("joint")),
+        actuators=tuple(_read_end(end) for end in element.all("actuator")),
         params=element,
         where=element.where,
     )

@@ -1,9 +1,11 @@
-"""References of velocity servos: they move as commanded, but no further than the motors can follow.
+"""References of velocity servos, which move as commanded, but no further ahead than the motors can follow.
 
-A reference that its joint cannot follow would wind up, so it keeps within what the whole effort makes up for. Wheels of
-one controller go on together: where one is too weak for the moment (the load lies on its side), the others wait for it,
-so that a base is late rather than astray. What is told to stand stands where it comes to rest: it neither goes back to
-where it was told to, nor on against a wall; only what its wheels differ by from the motion that was told is made good.
+A reference that its joint cannot follow would wind up. It therefore stays within the distance that the full effort can
+make up for. The wheels of one controller move together. Where one wheel is too weak for the moment (for example because
+the load is on its side), the others wait for it. The base is then late, but it does not leave its path. A wheel that is
+commanded to stop holds the position where it comes to rest. It does not return to the position where it should have
+stopped, and does not push on against a wall. Only the lag across the commanded motion is corrected, that is, the lag by
+which the wheels of one controller differ.
 """
 
 from __future__ import annotations
@@ -12,93 +14,96 @@ from collections.abc import Sequence
 from typing import Final
 
 _ALLOWED_LAG_TIME: Final = 0.02
-"""[s] of its way that a joint may lag behind beyond what its effort makes up for; the others stand by then."""
+"""Travel time by which a joint may lag in addition to the reach of its effort; then the other joints stop [s]."""
 
 _LARGEST_SAG: Final = 0.05
-"""[rad or m] that a load may move a joint by that stands."""
+"""Largest displacement of a stopped joint under load [rad or m]."""
 
 _LARGEST_SLACK: Final = 1e9
-"""[rad or m]; of joints whose effort has no limit."""
+"""Largest slack, for joints without effort limit [rad or m]."""
 
 
 def advance_references(
-    led: Sequence[float],
+    references: Sequence[float],
     speeds: Sequence[float],
     *,
-    places: Sequence[float],
-    turning: Sequence[float],
-    before: Sequence[float],
+    positions: Sequence[float],
+    velocities: Sequence[float],
+    previous_speeds: Sequence[float],
     slacks: Sequence[float],
-    catch_up: Sequence[float],
+    catch_up_times: Sequence[float],
     groups: Sequence[int],
 ) -> tuple[list[float], list[float]]:
-    """References of velocity servos and how fast they go on; in plain numbers, as a base has a handful of wheels.
+    """Return the references of velocity servos and their speeds, in plain numbers, as a base has few wheels.
 
     Args:
-        led: where the commands have led them [rad or m].
-        speeds: commanded from now on [rad/s or m/s].
-        places, turning: of the joints now [rad, rad/s or m, m/s].
-        before: how fast the references moved up to now [rad/s or m/s].
-        slacks: behind its reference by this, a joint gets its whole effort [rad or m].
-        catch_up: in which a reference would be caught up with [s].
-        groups: number of its controller for each joint; 0 is nobody's.
+        references: integrals of the commands [rad or m].
+        speeds: new commanded speeds [rad/s or m/s].
+        positions: current positions of the joints [rad or m].
+        velocities: current velocities of the joints [rad/s or m/s].
+        previous_speeds: speeds of the references until now [rad/s or m/s].
+        slacks: lag at which a joint gets its full effort [rad or m].
+        catch_up_times: times in which a joint would make up for a lag [s].
+        groups: number of the controller of each joint; 0 for an unclaimed joint.
 
     Returns:
         References and their speeds.
     """
-    ways, lags, rooms, is_free = [], [], [], True
+    moved, lags, margins, is_free = [], [], [], True
     for k, speed in enumerate(speeds):
-        place, slack = places[k], slacks[k]
+        position, slack = positions[k], slacks[k]
         slack = slack if slack < _LARGEST_SLACK else _LARGEST_SLACK
         width = _ALLOWED_LAG_TIME * (speed if speed > 0.0 else -speed)
         width = width if width > slack else slack
         most = slack + width
-        lag = led[k] - place
+        lag = references[k] - position
         lag = most if lag > most else -most if lag < -most else lag
         lags.append(lag)
-        rooms.append((most, width))
-        ways.append(place + lag)
+        margins.append((most, width))
+        moved.append(position + lag)
         if speed == 0.0 or most - (lag if speed > 0.0 else -lag) < width:
             is_free = False
-    if is_free:  # the common case: all move, and can follow
-        return ways, list(speeds)
-    is_standing = not any(speeds) and not any(before)
+    if is_free:  # the common case: all joints move and can follow
+        return moved, list(speeds)
+    is_stopped = not any(speeds) and not any(previous_speeds)
     if 0.0 in speeds:
-        across = lags if is_standing else _lags_across_motion(lags, before, groups)
+        across = lags if is_stopped else _lags_across_motion(lags, previous_speeds, groups)
         for k, speed in enumerate(speeds):
             if speed == 0.0:
-                if before[k] != 0.0:
+                if previous_speeds[k] != 0.0:
                     lags[k] = across[k]
-                # a load lets it sag no faster than this, so what moves faster has not come to rest
-                elif abs(turning[k]) > min(slacks[k], _LARGEST_SAG) / catch_up[k]:
+                # a load moves a joint no faster than this, so a faster joint has not stopped yet
+                elif abs(velocities[k]) > min(slacks[k], _LARGEST_SAG) / catch_up_times[k]:
                     lags[k] = 0.0
-    ways = [place + lag for place, lag in zip(places, lags, strict=True)]
-    return ways, list(speeds) if is_standing else _reduce_to_slowest(speeds, lags, rooms, groups)
+    moved = [position + lag for position, lag in zip(positions, lags, strict=True)]
+    return moved, list(speeds) if is_stopped else _reduce_to_slowest(speeds, lags, margins, groups)
 
 
 def _reduce_to_slowest(
-    speeds: Sequence[float], lags: Sequence[float], rooms: Sequence[tuple[float, float]], groups: Sequence[int]
+    speeds: Sequence[float], lags: Sequence[float], margins: Sequence[tuple[float, float]], groups: Sequence[int]
 ) -> list[float]:
-    """The speeds, less what the slowest of each controller's joints cannot follow."""
-    parts = []  # of the speed that each may still go on with
-    for speed, lag, (most, width) in zip(speeds, lags, rooms, strict=True):
+    """Return the speeds, reduced for each controller to the joint that can follow least."""
+    shares = []  # share of its speed that each joint can keep
+    for speed, lag, (most, width) in zip(speeds, lags, margins, strict=True):
         behind = lag if speed > 0.0 else -lag if speed < 0.0 else 0.0
-        parts.append(min(max((most - behind) / max(width, 1e-12), 0.0), 1.0))
-    if min(parts, default=1.0) >= 1.0:
+        shares.append(min(max((most - behind) / max(width, 1e-12), 0.0), 1.0))
+    if min(shares, default=1.0) >= 1.0:
         return list(speeds)
-    pace = {group: min(p for p, g in zip(parts, groups, strict=True) if g == group) for group in set(groups)}
+    pace = {group: min(p for p, g in zip(shares, groups, strict=True) if g == group) for group in set(groups)}
     return [
-        speed * (pace[group] if group > 0 else part) for speed, part, group in zip(speeds, parts, groups, strict=True)
+        speed * (pace[group] if group > 0 else share)
+        for speed, share, group in zip(speeds, shares, groups, strict=True)
     ]
 
 
-def _lags_across_motion(lags: Sequence[float], before: Sequence[float], groups: Sequence[int]) -> list[float]:
-    """The part of lags that is across the motion of their controller's joints, which is nothing for a joint alone."""
+def _lags_across_motion(lags: Sequence[float], previous_speeds: Sequence[float], groups: Sequence[int]) -> list[float]:
+    """Return the lags across the motion of each controller's joints; 0 for a single joint."""
     sums: dict[int, tuple[float, float]] = {}
-    for lag, was, group in zip(lags, before, groups, strict=True):
-        way, square = sums.get(group, (0.0, 0.0))
-        sums[group] = way + lag * was, square + was * was
-    along = {group: way / max(square, 1e-300) for group, (way, square) in sums.items()}
+    for lag, previous, group in zip(lags, previous_speeds, groups, strict=True):
+        product, square = sums.get(group, (0.0, 0.0))
+        sums[group] = product + lag * previous, square + previous * previous
+    along = {group: product / max(square, 1e-300) for group, (product, square) in sums.items()}
     return [
-        lag - along[group] * was if group > 0 else 0.0 for lag, was, group in zip(lags, before, groups, strict=True)
+        lag - along[group] * previous if group > 0 else 0.0
+        for lag, previous, group in zip(lags, previous_speeds, groups, strict=True)
     ]

@@ -84,7 +84,7 @@ def test_joints_without_interfaces_choose_nothing_and_that_is_told(tmp_path: Pat
         messages = sim.subscribe("/joint_states")
         sim.run(0.1)
         assert list(messages.messages[-1].name) == ["j1", "j2"]
-        assert any("needed together" in message for message in told(sim, "SK-CONTROL-011"))
+        assert any("set 'joints' and 'interfaces' together" in message for message in told(sim, "SK-CONTROL-011"))
 
 
 def test_dynamic_joint_states_have_sensors_too(tmp_path: Path) -> None:

@@ -316,7 +316,7 @@ def test_a_file_of_that_name_beside_the_robot_stands_for_one_of_another_machine(
 
 def test_a_rate_beyond_the_steps_is_told(tmp_path: Path) -> None:
     with opened(tmp_path, yaml=POSITIONS.replace("update_rate: 100", "update_rate: 5000")) as sim:
-        assert "more than the 1000 steps a second" in told(sim, "SK-CONTROL-017")[0]
+        assert "above the step rate of 1000 Hz" in told(sim, "SK-CONTROL-017")[0]
 
 
 def test_a_command_of_another_length_or_with_no_number_is_told_and_left_out(tmp_path: Path) -> None:

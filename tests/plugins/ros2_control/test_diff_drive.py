@@ -376,10 +376,10 @@ def test_all_that_is_wrong_is_said_at_once() -> None:
     )
     for code, words in (
         ("SK-CONTROL-040", "left_wheel_names has 2 and right_wheel_names has 1"),
-        ("SK-CONTROL-041", "joint 'a' is named as several wheels"),
+        ("SK-CONTROL-041", "joint 'a' is named for several wheels"),
         ("SK-PARAM-002", "<wheel_radius>-1"),
         ("SK-PARAM-001", "<wheel_separation>"),
-        ("SK-CONTROL-042", "has_velocity_limits is true, but there is no max_velocity"),
+        ("SK-CONTROL-042", "has_velocity_limits is true, but max_velocity [m/s or rad/s] is missing"),
         ("SK-CONTROL-042", "there is min_acceleration, but there is no max_acceleration"),
         ("SK-PARAM-002", "<max_jerk>-3"),
         ("SK-PARAM-002", "found 2 numbers in 'pose_covariance_diagonal', allowed are 6"),

@@ -207,7 +207,11 @@ def test_a_description_may_stand_in_the_plugin_of_an_sdf_file(tmp_path: Path) ->
         ('<joint name="j1"><command_interface name="velocty"/></joint>', "SK-CONTROL-009", "'velocty'"),
         ('<gpio name="lamp"/>', "SK-CONTROL-007", "'lamp'"),
         ('<sensor name="s"><state_interface name="force.x"/></sensor>', "SK-CONTROL-008", "no force_torque sensor"),
-        ('<sensor name="s"><state_interface name="smell"/></sensor>', "SK-CONTROL-008", "nothing here that measures"),
+        (
+            '<sensor name="s"><state_interface name="smell"/></sensor>',
+            "SK-CONTROL-008",
+            "no sensor measures its interfaces",
+        ),
     ],
 )
 def test_what_the_hardware_names_and_is_not_there_is_told(tmp_path: Path, block: str, code: str, words: str) -> None:

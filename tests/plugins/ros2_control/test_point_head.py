@@ -137,7 +137,7 @@ def test_the_head_takes_the_time_that_it_is_given(sim: Any) -> None:
 def test_a_point_out_of_reach_is_looked_at_as_far_as_it_goes(sim: Any) -> None:
     goal = look(sim, (-2.0, -1.0, 1.0))
     assert goal.status is GoalStatus.ABORTED
-    assert goal.reason.startswith("the neck's limits leave it 1.")
+    assert goal.reason.startswith("the limits of the neck keep it 1.")
     assert sim.joint("rob::pan").position == pytest.approx(-1.3, abs=0.005)
 
 
@@ -164,10 +164,10 @@ def test_a_cancelled_goal_leaves_the_head_where_it_is(sim: Any) -> None:
         ({"pointing_frame": "neck"}, "the frame 'neck' is not turned by joint 'tilt'"),
         ({"pointing_frame": "map"}, "the frame 'map' is not turned by joint 'tilt'"),
         ({"pointing_frame": "base"}, "the frame 'base' is not turned by joint 'tilt'"),
-        ({"max_velocity": -1.0}, "max_velocity and min_duration have to be at least 0"),
+        ({"max_velocity": -1.0}, "max_velocity and min_duration must be at least 0"),
         (
             {"target": {"header": {"frame_id": "optical"}}, "pointing_frame": "optical"},
-            "the target is where the pointing frame is",
+            "the target is at the origin of the pointing frame",
         ),
     ],
 )
@@ -207,5 +207,5 @@ def test_a_distorted_pixel_is_led_back_to_its_ray() -> None:
     )
     ray = pixel_ray(info, 500.0 * seen[0] + 320.0, 480.0 * seen[1] + 240.0)
     assert ray == pytest.approx([x, y, 1.0], abs=1e-8)
-    with pytest.raises(InputError, match="both have to be positive"):
+    with pytest.raises(InputError, match="both must be positive"):
         pixel_ray(msgs.make("sensor_msgs/msg/CameraInfo"), 0.0, 0.0)

@@ -91,7 +91,7 @@ def test_a_file_of_ros_2_serves_a_robot_of_ros_1(tmp_path: Path) -> None:
 def test_a_file_of_ros_1_serves_a_robot_of_ros_2_but_for_its_loops(tmp_path: Path) -> None:
     with simkit.load(arm(plugin="", library=CLASSIC), params_files=[saved(tmp_path, OF_ROS_1 + PIDS)]) as sim:
         assert states(sim) == dict.fromkeys(DECLARED, "active")
-        assert "gazebo_ros_control has loops for the plugin of ROS 1" in told(sim, "SK-CONTROL-011")[0]
+        assert "gazebo_ros_control has gains for the plugin of ROS 1" in told(sim, "SK-CONTROL-011")[0]
         command(sim, "arm_controller", 0.4, -0.2)
         sim.run(2.0)
         assert position(sim, "j1", "j2") == pytest.approx([0.4, -0.2], abs=1e-3)

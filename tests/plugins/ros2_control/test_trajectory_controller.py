@@ -285,7 +285,7 @@ def test_a_goal_outside_the_limits_ends_there_with_the_goal_tolerance_violated()
     assert plugin.position("a") == 1.0
     (said,) = sim.diagnostics
     assert said.code == "SK-CONTROL-021"
-    assert "asks joint 'a' for 1.5, its limits are -1 and 1" in said.message
+    assert "moves joint 'a' to 1.5, but its limits are -1 and 1" in said.message
 
 
 def test_an_unknown_joint_among_the_tolerances_leaves_them_as_they_are() -> None:

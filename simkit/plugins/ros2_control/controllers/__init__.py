@@ -1,6 +1,6 @@
 """Controllers of ros2_controllers and of ROS 1, one file for each kind.
 
-What enters: the parameters of the controller's node, state interfaces, topics and goals. What leaves: values of command
-interfaces, messages and results. A new kind is a new file here: the manager finds it by the names in `types`.
+Inputs are the parameters of the controller's node, state interfaces, topics and goals. Outputs are values of command
+interfaces, messages and results. A new kind is a new file in this folder: the manager finds it by the names in `types`.
 Controllers never import the manager or the plugin that runs them.
 """

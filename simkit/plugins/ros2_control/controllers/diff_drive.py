@@ -1,4 +1,4 @@
-"""The differential drive of ros2_controllers, with its odometry: `diff_drive_controller/DiffDriveController`."""
+"""Differential drive controller of ros2_controllers, with odometry: `diff_drive_controller/DiffDriveController`."""
 
 from __future__ import annotations
 
@@ -32,17 +32,17 @@ if TYPE_CHECKING:
     from simkit.runtime.communication.parameter_server import Parameter
 
 
-_SHORTEST_PERIOD = 1e-4  # [s]; in less no speed can be told
+_SHORTEST_PERIOD = 1e-4  # [s]; shorter periods give no useful speed
 
 
 class RollingMeanOdometry:
-    """Pose of the point between two wheels from their rotation, and the mean of its speeds over the last updates.
+    """Pose of the point midway between two wheels, from their rotation, and the mean of its speeds over recent updates.
 
     Args:
-        window: updates that the twist is the mean of.
+        window: number of updates over which the twist is averaged.
 
     Attributes:
-        reckoning: planar pose; it begins at zero.
+        reckoning: planar pose, zero at the start.
     """
 
     def __init__(self, window: int) -> None:
@@ -50,15 +50,16 @@ class RollingMeanOdometry:
         self._speeds: deque[tuple[float, float]] = deque(maxlen=max(1, window))
 
     def roll(self, left: float, right: float, separation: float, elapsed: float) -> bool:
-        """Goes on by what the wheels rolled.
+        """Advance the pose by the distances that the wheels have rolled.
 
         Args:
-            left, right: ways of the two rims [m].
-            separation: between the wheels [m].
-            elapsed: [s].
+            left: distance of the left wheel's rim [m].
+            right: distance of the right wheel's rim [m].
+            separation: distance between the wheels [m].
+            elapsed: time since the last call [s].
 
         Returns:
-            Whether it did: in next to no time it does not.
+            False if the time was too short to compute a speed; the pose is then unchanged.
         """
         if elapsed < _SHORTEST_PERIOD:
             return False
@@ -67,15 +68,21 @@ class RollingMeanOdometry:
         return True
 
     def follow(self, ahead: float, turn: float, elapsed: float) -> None:
-        """Goes on as commanded, by a speed ahead [m/s] and a rate of turning [rad/s] over a time [s]."""
+        """Advance the pose by a command.
+
+        Args:
+            ahead: linear velocity [m/s].
+            turn: angular velocity [rad/s].
+            elapsed: time since the last call [s].
+        """
         # two wheels 1 m apart
         self.reckoning.advance((ahead - turn / 2) * elapsed, (ahead + turn / 2) * elapsed, 1.0)
         self._speeds.clear()
-        self._speeds.append((ahead, turn))  # no mean: it is known
+        self._speeds.append((ahead, turn))  # a commanded speed needs no mean
 
     @property
     def twist(self) -> BodyTwist:
-        """Mean over the window, in the body's axes."""
+        """Mean twist over the window, in the axes of the base."""
         if not self._speeds:
             return BodyTwist()
         count = len(self._speeds)
@@ -89,12 +96,12 @@ _NO_MOTION = (0.0, 0.0)
 
 
 class DiffDriveController(Controller):
-    """Drives wheels by their velocities from `~/cmd_vel`, and tells on `~/odom` and `/tf` where that led.
+    """Drives wheels by velocity from `~/cmd_vel`, and publishes odometry on `~/odom` and `/tf`.
 
-    A command holds for `cmd_vel_timeout`; then the base brakes. Commands are limited in jerk, acceleration and speed
-    before they become speeds of wheels. Where it differs from ros2_controllers on purpose: odometry in open loop is of
-    the limited command, not of the one asked for (as ROS 1's); odometry begins where the wheels are when the controller
-    is first activated, and not with a leap there; `publish_rate` is met on its grid.
+    A command is valid for `cmd_vel_timeout`; then the base brakes. Commands are limited in jerk, acceleration and speed
+    before they become wheel speeds. Three points differ from ros2_controllers on purpose. Odometry in open loop follows
+    the limited command, not the requested one (as in ROS 1). Odometry starts at the wheels' position at the first
+    activation, without a jump. Publications at `publish_rate` keep a fixed grid of times.
     """
 
     types = ("diff_drive_controller/DiffDriveController",)
@@ -108,13 +115,13 @@ class DiffDriveController(Controller):
         if self.params.diagnostics.error_count > before:
             return
         self._once = OneTimeWarnings(self.plugin)
-        self._accepts_commands = False  # commands, while it is active
+        self._accepts_commands = False  # true while the controller is active
         self._command, self._stamp_ns = _NO_MOTION, 0
         self._last, self._before_last = _NO_MOTION, _NO_MOTION
-        self._commanded: tuple[object, object] | None = None  # what the wheels are told, and by which sizes
+        self._commanded: tuple[object, object] | None = None  # last command to the wheels, and the wheel sizes for it
         self._odometry = RollingMeanOdometry(options.window)
         self._has_begun = False
-        self._angles: tuple[float, float] | None = None  # of the wheels, up to which the way is reckoned
+        self._angles: tuple[float, float] | None = None  # wheel angles at the last update of the odometry
         self._reckoned_ns = self._published_ns = 0
         self._open_topics(options)
 
@@ -128,7 +135,11 @@ class DiffDriveController(Controller):
         self._limited = self.advertise("~/cmd_vel_out", _STAMPED) if options.publish_limited else None
 
     def speed_bounds(self, topic: str) -> tuple[tuple[float, float], tuple[float, float]] | None:
-        """Least and greatest speed ahead [m/s] and rate of turning [rad/s] of commands; None of other topics."""
+        """Return the bounds of the commands on a topic; None for topics without commands.
+
+        Returns:
+            Lowest and highest linear velocity [m/s], and the same for the angular velocity [rad/s].
+        """
         if topic not in (self.plugin.ros.topic(self.topic(name)) for name in ("~/cmd_vel", "~/cmd_vel_unstamped")):
             return None
         linear, angular = self._options.linear, self._options.angular
@@ -140,8 +151,8 @@ class DiffDriveController(Controller):
     def state_interfaces(self) -> Sequence[str]:
         if self._options.open_loop:
             return ()
-        what = "position" if self._options.position_feedback else "velocity"
-        return [f"{name}/{what}" for name in (*self._options.left, *self._options.right)]
+        interface = "position" if self._options.position_feedback else "velocity"
+        return [f"{name}/{interface}" for name in (*self._options.left, *self._options.right)]
 
     def activate(self) -> None:
         now = self.sim.time_ns
@@ -159,26 +170,26 @@ class DiffDriveController(Controller):
 
     def _on_command(self, message: Twist | TwistStamped) -> None:
         if not self._accepts_commands:
-            self._warn("inactive", "a command came while it is not active, and is left out")
+            self._warn("inactive", "a command arrived while the controller is inactive; the command is ignored")
             return
         command = command_of(message)
         if command is None:
-            self._warn("finite", "a command with a number that is not finite is left out")
+            self._warn("finite", "a command has a value that is NaN or infinite; the command is ignored")
             return
         header = getattr(message, "header", None)
         stamp = 0 if header is None else msgs.stamp_ns(header.stamp)
         self._command, self._stamp_ns = command, stamp or self.sim.time_ns
 
-    def _warn(self, what: str, message: str) -> None:
-        self._once.warn("SK-CONTROL-045", f"{self.name} {what}", f"controller {self.name!r}: {message}")
+    def _warn(self, key: str, message: str) -> None:
+        self._once.warn("SK-CONTROL-045", f"{self.name} {key}", f"controller {self.name!r}: {message}")
 
     @property
     def odometry_frame(self) -> tuple[str, str, Pose]:
-        """The frame it reckons in, that of its base, and where that is in it."""
+        """Frame of the odometry, frame of the base, and pose of the base in the odometry frame."""
         return self._options.odom_frame, self._options.base_frame, self._odometry.reckoning.pose
 
     def update(self, now_ns: int, period: float) -> None:
-        """Odometry up to now, then the limited command to the wheels."""
+        """Update the odometry to the current time, then command the wheels with the limited command."""
         options = self._options
         if now_ns - self._stamp_ns > options.timeout_ns:
             self._command = _NO_MOTION
@@ -197,7 +208,7 @@ class DiffDriveController(Controller):
 
     def _drive(self, command: tuple[float, float], sizes: tuple[float, float, float]) -> None:
         if self._commanded == (command, sizes):
-            return  # what was written stays
+            return  # the command interfaces keep their values
         self._commanded = command, sizes
         separation, left_radius, right_radius = sizes
         ahead, turn = command
@@ -219,18 +230,18 @@ class DiffDriveController(Controller):
                 self._angles, self._reckoned_ns = (left, right), now_ns
                 return
             if self._options.position_feedback:
-                # what the wheels turned while it was inactive is part of the way
+                # rotation of the wheels while the controller was inactive counts as motion
                 old_left, old_right = self._angles
-                ways = (left - old_left) * left_radius, (right - old_right) * right_radius
+                distances = (left - old_left) * left_radius, (right - old_right) * right_radius
             else:
-                ways = left * left_radius * elapsed, right * right_radius * elapsed
-            if not self._odometry.roll(*ways, separation, elapsed):
+                distances = left * left_radius * elapsed, right * right_radius * elapsed
+            if not self._odometry.roll(*distances, separation, elapsed):
                 return
             self._angles = left, right
         self._reckoned_ns = now_ns
 
     def _wheel_motion(self) -> tuple[float, float]:
-        """Mean of the wheels on either side: angles [rad], or speeds [rad/s]."""
+        """Return the mean of the wheels on each side: angles [rad], or speeds [rad/s]."""
         values, count = self.states.values.tolist(), len(self._options.left)
         if count == 1:
             left, right = values
@@ -238,7 +249,7 @@ class DiffDriveController(Controller):
         return sum(values[:count]) / count, sum(values[count:]) / count
 
     def _publish(self, now_ns: int) -> None:
-        """Publishes odometry and its transform, on the grid of the publish rate."""
+        """Publish odometry and its transform, on the grid of the publish rate."""
         options, period_ns = self._options, self._period_ns
         if period_ns:
             missed = (now_ns - self._published_ns) // period_ns
@@ -250,38 +261,38 @@ class DiffDriveController(Controller):
             return
         pose, frames = self._odometry.reckoning.pose, (options.odom_frame, options.base_frame)
         if has_odom:
-            told = *frames, pose, self._odometry.twist, options.pose_covariance, options.twist_covariance
-            self._odom.publish_later(partial(odometry_message, now_ns, *told))
+            arguments = *frames, pose, self._odometry.twist, options.pose_covariance, options.twist_covariance
+            self._odom.publish_later(partial(odometry_message, now_ns, *arguments))
         if self._tf is not None and has_tf:
             self._tf.publish_later(partial(transforms, now_ns, (*frames, pose)))
 
     # ------------------------------------------------------------------ sizes
 
     def _sizes(self) -> tuple[float, float, float]:
-        """Separation and the radii of the left and the right wheels, corrected [m]."""
+        """Return the separation and the radii of the left and the right wheels, with multipliers [m]."""
         (separation, left, right), options = self._multipliers, self._options
         return options.separation * separation.value, options.radius * left.value, options.radius * right.value
 
     def _read_multipliers(self, is_ros_1: bool) -> tuple[Parameter[float], ...]:
-        """Declare multipliers of the separation and of the two radii; they may be set while the simulation runs."""
+        """Declare live multipliers of the separation and of the two radii."""
         radius = self.params.number("wheel_radius_multiplier", 1.0, minimum=1e-3) if is_ros_1 else 1.0
         defaults = {
-            "wheel_separation_multiplier": (1.0, "of the distance between the wheels"),
-            "left_wheel_radius_multiplier": (radius, "of the radius of the left wheels"),
-            "right_wheel_radius_multiplier": (radius, "of the radius of the right wheels"),
+            "wheel_separation_multiplier": (1.0, "multiplier of the distance between the wheels"),
+            "left_wheel_radius_multiplier": (radius, "multiplier of the radius of the left wheels"),
+            "right_wheel_radius_multiplier": (radius, "multiplier of the radius of the right wheels"),
         }
-        return tuple(self.declare(n, v, minimum=1e-3, description=what) for n, (v, what) in defaults.items())
+        return tuple(self.declare(n, v, minimum=1e-3, description=text) for n, (v, text) in defaults.items())
 
     def _wheel_size_of_model(self, left: str, right: str) -> tuple[float | None, float | None]:
-        """Separation and radius as the model has them [m]: by the joints' origins and the left wheel's shape."""
+        """Return separation and radius [m] from the model: from joint positions and the left wheel's shape."""
         joints = [self.hardware.joints.get(name) for name in (left, right)]
         if joints[0] is None or joints[1] is None:
             return None, None
         scenes = [joint.handle.scene for joint in joints if joint is not None]
-        apart = scenes[0].pose_world.position - scenes[1].pose_world.position
+        offset = scenes[0].pose_world.position - scenes[1].pose_world.position
         shapes = [c.geometry for c in self.sim.link(scenes[0].child_link).scene.collisions]
         radii = [shape.radius for shape in shapes if isinstance(shape, (Cylinder, Sphere))]
-        return float(np.linalg.norm(apart)), float(max(radii)) if radii else None
+        return float(np.linalg.norm(offset)), float(max(radii)) if radii else None
 
 
 def _twist_stamped(time_ns: int, frame: str, ahead: float, turn: float) -> TwistStamped:

@@ -1,4 +1,4 @@
-"""Arms that a hand can move: efforts that hold the joints against gravity, and nothing else."""
+"""Gravity compensation for arms that a person moves by hand: efforts that hold the joints against gravity only."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ _MOTOR_PARAMETERS: Final = ("motor_torque_constants", "reduction_ratios", "dt")
 
 
 class GravityCompensationController(Controller):
-    """PAL's gravity compensation: the arm weighs nothing, and stays where it is left.
+    """Compensates gravity with PAL's controller: the arm has no weight and stays where a person leaves it.
 
-    Parameters: `command_joints` (or `joints`); `control_type` of each, `COMMAND` (compensated) or `ZERO_TORQUE` (left
-    to itself), COMMAND where it is left out; `torque_gain`, which scales all of it; `static_frictions` [N·m] and
-    `viscous_frictions` [N·m·s/rad], made up for above `velocity_tolerances` [rad/s]. What concerns the real robot's
-    motors alone (`motor_torque_constants`, `reduction_ratios`, `dt`) changes nothing: commands are joint efforts.
+    Parameters: `command_joints` (or `joints`); `control_type` of each joint, `COMMAND` (compensated, the default) or
+    `ZERO_TORQUE` (no effort); `torque_gain`, which scales all efforts; `static_frictions` [N·m] and `viscous_frictions`
+    [N·m·s/rad], which are compensated above `velocity_tolerances` [rad/s]. Parameters of the real robot's motors
+    (`motor_torque_constants`, `reduction_ratios`, `dt`) have no effect, because commands are joint efforts.
     """
 
     types = (
@@ -35,18 +35,20 @@ class GravityCompensationController(Controller):
         if not self._joints:
             params.error("SK-CONTROL-050", "'command_joints' parameter is empty.", "command_joints: [arm_1_joint, …]")
         count = len(self._joints)
-        kinds = [one.value.upper() for one in params.all("control_type")] or ["COMMAND"] * count
+        kinds = [element.value.upper() for element in params.all("control_type")] or ["COMMAND"] * count
         if len(kinds) != count or not set(kinds) <= {"COMMAND", "ZERO_TORQUE"}:
-            message = f"'control_type' is {', '.join(kinds)}; each of {count} joints needs one"
-            params.error("SK-CONTROL-050", message, "allowed are COMMAND and ZERO_TORQUE")
+            message = (
+                f"'control_type' is {', '.join(kinds)}; each of the {count} joints needs one of COMMAND, ZERO_TORQUE"
+            )
+            params.error("SK-CONTROL-050", message, f"control_type: [{', '.join(['COMMAND'] * count)}]")
             kinds = ["COMMAND"] * count
         self._gain = params.number("torque_gain", 1.0) * np.array([float(kind == "COMMAND") for kind in kinds])
         self._static = np.array(read_numbers(params, "static_frictions", [0.0] * count))
         self._viscous = np.array(read_numbers(params, "viscous_frictions", [0.0] * count))
         self._tolerance = np.array(read_numbers(params, "velocity_tolerances", [0.0] * count))
         for name in _MOTOR_PARAMETERS:
-            for one in params.all(name):
-                one.mark_all_read()
+            for element in params.all(name):
+                element.mark_all_read()
         known = [self.hardware.joints[name] for name in self._joints if name in self.hardware.joints]
         self._gravity = GravityEfforts(self.sim, [joint.scoped for joint in known])
 

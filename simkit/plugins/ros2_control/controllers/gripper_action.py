@@ -1,4 +1,4 @@
-"""Closes and opens a gripper's joint: ros2_controllers' `gripper_controllers` and `parallel_gripper_controller`."""
+"""Gripper action controllers, as in ros2_controllers' `gripper_controllers` and `parallel_gripper_controller`."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ PARALLEL: Final = "control_msgs/action/ParallelGripperCommand"
 
 
 class GripperActionController(Controller):
-    """Takes goals of `~/gripper_cmd`: a position [rad or m] of one joint, and the effort that it may take [N·m or N].
+    """Moves one gripper joint to the goals of `~/gripper_cmd`: a position [rad or m] and an effort limit [N·m or N].
 
-    A goal succeeds within `goal_tolerance` of its position. Where the joint does not move faster than
-    `stall_velocity_threshold` for `stall_timeout`, something is between the fingers: with `allow_stalling` the goal
-    succeeds then, else it is aborted; the position stays commanded, so the gripper goes on pressing. A new goal takes
-    the place of the one that runs, and a cancelled one leaves the joint where it is.
+    A goal succeeds within `goal_tolerance` of its position. A joint slower than `stall_velocity_threshold` for
+    `stall_timeout` has an object between the fingers. The goal then succeeds with `allow_stalling`, and otherwise it is
+    aborted. The commanded position stays, so the gripper keeps pressing. A new goal replaces the active one. After a
+    cancelled goal the joint stays where it is.
 
-    Commanded by position, the effort that a goal asks for is only told back, as ros2_control does.
+    With position commands, the effort of a goal appears only in results and feedback, as in ros2_control.
     """
 
     types = ("position_controllers/GripperActionController",)
@@ -40,7 +40,7 @@ class GripperActionController(Controller):
         params = self.params
         self._joint = params.text("joint", "")
         if not self._joint:
-            params.error("SK-CONTROL-026", "'joint' parameter is empty: a gripper controller is for one joint")
+            params.error("SK-CONTROL-026", "'joint' parameter is empty; set it to the gripper's joint")
         self._feedback_ns = round(SECOND / params.number("action_monitor_rate", 20.0, minimum=0.1))
         self._tolerance = params.number("goal_tolerance", 0.01, minimum=0.0)
         self._default_effort = abs(params.number("max_effort", 0.0))
@@ -53,7 +53,7 @@ class GripperActionController(Controller):
         if self.interface == "effort":
             self._pids = JointPids(params.block("gains"), (self._joint,))
             if not (self._pids.p.any() or self._pids.i.any()):
-                message = f"gains of joint {self._joint!r} are all 0: no effort is ever given"
+                message = f"gains of joint {self._joint!r} are all 0, so the joint never gets an effort"
                 hint = f"gains: {{{self._joint}: {{p: 100.0, d: 10.0}}}}"
                 params.diagnostics.warning("SK-CONTROL-026", message, params.where, hint)
         self._read_own_parameters()
@@ -62,12 +62,12 @@ class GripperActionController(Controller):
         self._clear()
 
     def _read_own_parameters(self) -> None:
-        """Parameters of a kind of its own."""
+        """Read the parameters of a derived kind; does nothing here."""
 
     def _clear(self) -> None:
         self._goal: GoalHandle | None = None
         self._target, self._effort, self._limits = math.nan, self._default_effort, np.zeros(0)
-        self._commanded_effort = 0.0  # the effort that is told
+        self._commanded_effort = 0.0  # effort in results and feedback
         self._moved_ns = self._next_feedback = 0
         self._is_new = True
 
@@ -105,7 +105,7 @@ class GripperActionController(Controller):
         joint = self.hardware.joints.get(self._joint)
         if joint is not None and not joint.lower - 1e-6 <= position <= joint.upper + 1e-6:
             limits = f"its limits are {joint.lower:g} and {joint.upper:g}"
-            what = f"a goal asks joint {self._joint!r} for {position:g}, {limits}: there it stops"
+            what = f"a goal moves joint {self._joint!r} to {position:g}, but {limits}; the joint stops at its limit"
             self._warnings.warn("SK-CONTROL-021", "limits", what)
         if self._goal is not None:
             self._goal.canceled(reason="Current goal cancelled due to new incoming action.")
@@ -135,14 +135,14 @@ class GripperActionController(Controller):
         error = self._target - float(position)
         command, self._commanded_effort = self._target, self._effort
         if self._pids is not None:
-            driven = float(self._pids.update(np.array([error]), np.array([-float(velocity)]), period)[0])
-            command = self._commanded_effort = max(-abs(self._effort), min(abs(self._effort), driven))
+            effort = float(self._pids.update(np.array([error]), np.array([-float(velocity)]), period)[0])
+            command = self._commanded_effort = max(-abs(self._effort), min(abs(self._effort), effort))
         self.commands.values = np.array([command, *self._limits])
         if self._goal is not None:
             self._report_progress(self._goal, now_ns, error, float(velocity))
 
     def _report_progress(self, goal: GoalHandle, now: int, error: float, velocity: float) -> None:
-        """End the goal where it is reached or stalled, else publish its feedback."""
+        """End the goal if it is reached or stalled, else publish its feedback."""
         if abs(error) < self._tolerance:
             self._goal = None
             goal.succeed(self._result(reached_goal=True), "Successfully moved to goal.")
@@ -166,14 +166,14 @@ class GripperActionController(Controller):
 
 
 class EffortGripperActionController(GripperActionController):
-    """Commands the joint by effort: a PID (`gains.<joint>`) on its position, bounded by the goal's `max_effort`."""
+    """Moves the joint by effort: a PID (`gains.<joint>`) on its position, limited to the goal's `max_effort`."""
 
     types = ("effort_controllers/GripperActionController",)
     interface = "effort"
 
 
 class ParallelGripperActionController(GripperActionController):
-    """Takes `ParallelGripperCommand` goals, whose speed and effort go to the interfaces named for them."""
+    """Moves the joint to `ParallelGripperCommand` goals, with speed and effort on optional interfaces."""
 
     types = ("parallel_gripper_action_controller/GripperActionController",)
     action_type = PARALLEL

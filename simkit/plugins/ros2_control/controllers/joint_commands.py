@@ -1,7 +1,7 @@
-"""Controllers of the values that a topic says: handed on as they are, or brought about by a loop for each joint.
+"""Controllers of values from a topic: forwarded to command interfaces, or followed by a PID loop for each joint.
 
-Those of ROS 1 for one joint (`effort_controllers/JointPositionController` and the like), and those of both ROS for
-several (`JointGroupPositionController`, `forward_command_controller`).
+The kinds for one joint are those of ROS 1 (`effort_controllers/JointPositionController` and the like). The kinds for
+several joints exist in ROS 1 and ROS 2 (`JointGroupPositionController`, `forward_command_controller`).
 """
 
 from __future__ import annotations
@@ -29,13 +29,13 @@ STATE: Final = "control_msgs/msg/JointControllerState"
 
 
 class ForwardCommandController(Controller):
-    """`forward_command_controller`: the interface is a parameter.
+    """Forwards commands to the command interfaces of joints; a parameter names the interface.
 
-    Commands come on `~/commands` (ROS 1: `~/command`). Until the first one, and after it was let go, positions are held
-    and velocities and efforts are 0.
+    Commands come on `~/commands` (ROS 1: `~/command`). Before the first command, and after deactivation, positions are
+    held and velocities and efforts are 0.
 
     Attributes:
-        interface: which; None where `interface_name` says it.
+        interface: command interface; None if `interface_name` sets it.
     """
 
     types = ("forward_command_controller/ForwardCommandController",)
@@ -63,15 +63,15 @@ class ForwardCommandController(Controller):
         self._command = None
 
     def set_command(self, data: Sequence[float]) -> None:
-        """Takes a command; one of another length, or with a number that is none, is told and left out."""
+        """Set the command; one of another length, or with NaN or infinite values, is reported and ignored."""
         values = np.array(data, dtype=float)
         problem = ""
         if len(values) != len(self._names):
             problem = f"command size ({len(values)}) does not match number of interfaces ({len(self._names)})"
         elif not np.isfinite(values).all():
-            problem = f"a command is not finite: {values.tolist()}"
+            problem = f"a command has NaN or infinite values: {values.tolist()}"
         if problem:
-            message = f"controller {self.name!r}: {problem}; it is left out"
+            message = f"controller {self.name!r}: {problem}; the command is ignored"
             self.sim.engine.reports.warning("SK-CONTROL-016", message, self.params.where)
             return
         self._command = values
@@ -82,7 +82,7 @@ class ForwardCommandController(Controller):
 
 
 class MultiInterfaceForwardCommandController(ForwardCommandController):
-    """`forward_command_controller`: several interfaces of one joint, commanded together."""
+    """Forwards commands to several interfaces of one joint."""
 
     types = ("forward_command_controller/MultiInterfaceForwardCommandController",)
 
@@ -95,28 +95,28 @@ class MultiInterfaceForwardCommandController(ForwardCommandController):
 
 
 class PositionController(ForwardCommandController):
-    """Positions [rad or m] of several joints."""
+    """Forwards positions [rad or m] of several joints."""
 
     types = ("position_controllers/JointGroupPositionController",)
     interface = POSITION
 
 
 class VelocityController(ForwardCommandController):
-    """Velocities [rad/s or m/s] of several joints; 0 when it is let go."""
+    """Forwards velocities [rad/s or m/s] of several joints; 0 after deactivation."""
 
     types = ("velocity_controllers/JointGroupVelocityController",)
     interface = VELOCITY
 
 
 class EffortController(ForwardCommandController):
-    """Efforts [N·m or N] of several joints; 0 when it is let go."""
+    """Forwards efforts [N·m or N] of several joints; 0 after deactivation."""
 
     types = ("effort_controllers/JointGroupEffortController",)
     interface = EFFORT
 
 
 class _OneJointController(ForwardCommandController):
-    """ROS 1's controllers of one joint, which `joint` names."""
+    """Forwards commands to one joint, named by `joint`, as ROS 1's controllers."""
 
     def configure(self) -> None:
         self._names = [f"{self.params.text('joint', required=True)}/{self.interface}"]
@@ -125,32 +125,32 @@ class _OneJointController(ForwardCommandController):
 
 
 class OnePositionController(_OneJointController):
-    """ROS 1: the position [rad or m] of one joint."""
+    """Forwards the position [rad or m] of one joint (ROS 1)."""
 
     types = ("position_controllers/JointPositionController",)
     interface = POSITION
 
 
 class OneVelocityController(_OneJointController):
-    """ROS 1: the velocity [rad/s or m/s] of one joint."""
+    """Forwards the velocity [rad/s or m/s] of one joint (ROS 1)."""
 
     types = ("velocity_controllers/JointVelocityController",)
     interface = VELOCITY
 
 
 class OneEffortController(_OneJointController):
-    """ROS 1: the effort [N·m or N] of one joint."""
+    """Forwards the effort [N·m or N] of one joint (ROS 1)."""
 
     types = ("effort_controllers/JointEffortController",)
     interface = EFFORT
 
 
 class _LoopController(Controller):
-    """One loop for each joint, of wanted − measured.
+    """Runs a PID loop for each joint on the error target − measured.
 
     Attributes:
-        measured: position or velocity.
-        output: effort or velocity.
+        measured: measured quantity, position or velocity.
+        output: command interface, effort or velocity.
     """
 
     measured: ClassVar[str] = POSITION
@@ -174,7 +174,7 @@ class _LoopController(Controller):
         self._joints = joints
         for joint in joints:
             if not gains.block(joint).has("p"):
-                message = f"No p gain specified for joint {joint!r}: nothing would move it"
+                message = f"No p gain specified for joint {joint!r}, so it would not move"
                 self.params.error("SK-PARAM-001", message, "pid: {p: 100.0, i: 0.0, d: 10.0}")
         self._pids = JointPids(gains, joints)
         self._target = np.full(len(joints), np.nan)
@@ -192,46 +192,46 @@ class _LoopController(Controller):
         return [f"{joint}/{part}" for part in (POSITION, VELOCITY) for joint in self._joints]
 
     def activate(self) -> None:
-        """Keeps what is: the position, or standing still."""
+        """Set the targets to the current positions, or to zero velocity."""
         position = self.states.values[: len(self._joints)]
         self._target = position if self.measured == POSITION else np.zeros(len(self._joints))
         self._last = None
         self._pids.restart()
 
     def set_command(self, data: Sequence[float]) -> None:
-        """Takes a command; what it is not is told and left out."""
+        """Set the targets; an invalid command is reported and ignored."""
         values = np.array(data, dtype=float)
         if len(values) == len(self._joints) and np.isfinite(values).all():
             self._target = values
             return
         found = f"a command of {len(values)} numbers" if len(values) != len(self._joints) else f"{values.tolist()}"
         message = f"controller {self.name!r}: found {found}, allowed are {len(self._joints)} finite numbers"
-        self.sim.engine.reports.warning("SK-CONTROL-016", f"{message}; it is left out", self.params.where)
+        self.sim.engine.reports.warning("SK-CONTROL-016", f"{message}; the command is ignored", self.params.where)
 
     def update(self, now_ns: int, period: float) -> None:
         position, velocity = self.states.values.reshape(2, -1)
         if self.measured == POSITION:
-            wanted = np.clip(self._target, *self._position_limits)
-            error = wanted - position
+            target = np.clip(self._target, *self._position_limits)
+            error = target - position
             error = np.where(self._continuous, np.mod(error + np.pi, 2.0 * np.pi) - np.pi, error)
         else:
-            wanted = self._target
-            error = wanted - velocity
+            target = self._target
+            error = target - velocity
         rate = (error - self._last) / period if self._last is not None and period > 0.0 else np.zeros_like(error)
         self._last = error
         command = self._pids.update(error, rate, period)
         self.commands.values = command
         if self._publisher is not None and self._publisher.wanted:
             process = position if self.measured == POSITION else velocity
-            self._publisher.publish(self._state_message(now_ns, period, wanted, process, velocity, error, command))
+            self._publisher.publish(self._state_message(now_ns, period, target, process, velocity, error, command))
 
     def _state_message(self, now_ns: int, period: float, *values: Vector) -> JointControllerState:
-        wanted, process, velocity, error, command = (float(v[0]) for v in values)
+        target, process, velocity, error, command = (float(v[0]) for v in values)
         pids = self._pids
         state: JointControllerState = msgs.make(
             STATE,
             header=msgs.header(now_ns, ""),
-            set_point=wanted,
+            set_point=target,
             process_value=process,
             process_value_dot=velocity,
             error=error,
@@ -246,43 +246,43 @@ class _LoopController(Controller):
 
 
 class EffortPositionController(_LoopController):
-    """ROS 1: one joint to a position [rad or m] by effort; gains in `pid`."""
+    """Moves one joint to a position [rad or m] by effort, with gains in `pid` (ROS 1)."""
 
     types = ("effort_controllers/JointPositionController",)
 
 
 class EffortVelocityController(_LoopController):
-    """ROS 1: one joint to a velocity [rad/s or m/s] by effort; gains in `pid`."""
+    """Moves one joint at a velocity [rad/s or m/s] by effort, with gains in `pid` (ROS 1)."""
 
     types = ("effort_controllers/JointVelocityController",)
     measured = VELOCITY
 
 
 class VelocityPositionController(_LoopController):
-    """ROS 1: one joint to a position [rad or m] by velocity; gains in `pid`."""
+    """Moves one joint to a position [rad or m] by velocity, with gains in `pid` (ROS 1)."""
 
     types = ("velocity_controllers/JointPositionController",)
     output = VELOCITY
 
 
 class EffortGroupPositionController(_LoopController):
-    """Several joints to positions [rad or m] by effort; gains of each in `<joint>.pid`, or in `gains.<joint>`."""
+    """Moves several joints to positions [rad or m] by effort, with gains in `<joint>.pid` or `gains.<joint>`."""
 
     types = ("effort_controllers/JointGroupPositionController",)
 
     def configure(self) -> None:
         params = self.params
         joints = tuple(read_names(params, "joints", required=True))
-        given = params.block("gains")
+        gains = params.block("gains")
         if not params.has("gains"):
             blocks = [_renamed_block(params.block(joint).block("pid"), joint) for joint in joints]
-            given = Params("gains", children=blocks, where=params.where, diagnostics=params.diagnostics)
-        self._set_joints(joints, given)
+            gains = Params("gains", children=blocks, where=params.where, diagnostics=params.diagnostics)
+        self._set_joints(joints, gains)
         ros_1 = getattr(self.plugin, "is_ros_1", False)
         self.listen("~/command" if ros_1 else "~/commands", COMMANDS, lambda message: self.set_command(message.data))
 
 
 def _renamed_block(block: Params, name: str) -> Params:
-    """The same block under another name; what is read of it counts as read."""
+    """Return a block under another name; parameters read from it count as read."""
     block.child("antiwindup")
     return Params(name, block.value, block.attributes, block.children, block.where, block.diagnostics)

@@ -1,4 +1,4 @@
-"""`joint_state_broadcaster`: the states of the joints as topics."""
+"""Joint state broadcaster: the states of the joints as topics."""
 
 from __future__ import annotations
 
@@ -22,10 +22,11 @@ _FIELDS: Final = (POSITION, VELOCITY, EFFORT)
 
 
 class JointStateBroadcaster(Controller):
-    """All state interfaces, or those of `joints` and `interfaces`, on `joint_states` and `dynamic_joint_states`.
+    """Publishes state interfaces of the joints on `joint_states` and `dynamic_joint_states`.
 
-    A joint in `joint_states` has NaN where it has no such interface, as in ros2_controllers. `extra_joints`, which the
-    hardware does not have, are at 0.
+    All state interfaces are published, or those of `joints` and `interfaces`. In `joint_states`, a joint has NaN for an
+    interface that it lacks, as in ros2_controllers. Joints in `extra_joints`, which the hardware does not have, are at
+    0.
     """
 
     types = ("joint_state_broadcaster/JointStateBroadcaster",)
@@ -37,9 +38,9 @@ class JointStateBroadcaster(Controller):
         self._states = self._chosen_joints(read_names(params, "joints"), read_names(params, "interfaces"))
         mapping = params.block("map_interface_to_joint_state")
         fields = {(mapping.text(field, field) or field): field for field in _FIELDS}
-        params.child("use_urdf_to_filter")  # only the hardware's own joints are there
+        params.child("use_urdf_to_filter")  # only joints of the hardware are published anyway
         params.child("publish_dynamic_joint_states")
-        owners = [(owner, interface) for owner, _, interface in (one.rpartition("/") for one in self._states)]
+        owners = [(owner, interface) for owner, _, interface in (name.rpartition("/") for name in self._states)]
         joints = list(dict.fromkeys(owner for owner, interface in owners if interface in fields))
         extra = [name for name in read_names(params, "extra_joints") if name and name not in joints]
         self._names = [*joints, *extra]
@@ -56,16 +57,14 @@ class JointStateBroadcaster(Controller):
         self._dynamic = self.advertise(f"{prefix}dynamic_joint_states", DYNAMIC)
 
     def _chosen_joints(self, joints: Sequence[str], interfaces: Sequence[str]) -> list[str]:
-        """The state interfaces that it tells of; both lists are needed to choose."""
-        there = self.hardware.states.names
+        """Return the state interfaces to publish; a selection needs both lists."""
+        all_names = self.hardware.states.names
         if any(joints) and any(interfaces):
             return [f"{joint}/{interface}" for joint in joints for interface in interfaces]
         if any(joints) or any(interfaces):
-            message = (
-                f"controller {self.name!r}: 'joints' and 'interfaces' are needed together; all interfaces are published"
-            )
+            message = f"controller {self.name!r}: set 'joints' and 'interfaces' together; all interfaces are published"
             self.params.diagnostics.warning("SK-CONTROL-011", message, self.params.where)
-        return [name for name in there if name.rpartition("/")[0] not in self.hardware.actuators]
+        return [name for name in all_names if name.rpartition("/")[0] not in self.hardware.actuators]
 
     def state_interfaces(self) -> Sequence[str]:
         return self._states
@@ -78,23 +77,25 @@ class JointStateBroadcaster(Controller):
             columns = self._columns.copy()
             columns.ravel()[self._places] = self._joint_states.values
             position, velocity, effort = columns
-            made = msgs.type_of(JOINT_STATE)(msgs.header(now_ns, self._frame), self._names, position, velocity, effort)
-            self._publisher.publish(made)
+            message = msgs.type_of(JOINT_STATE)(
+                msgs.header(now_ns, self._frame), self._names, position, velocity, effort
+            )
+            self._publisher.publish(message)
         if self._dynamic.wanted:
             self._dynamic.publish(self._dynamic_message(now_ns, self.states.values))
 
     def _dynamic_message(self, now_ns: int, values: Vector) -> DynamicJointState:
-        of_joint = msgs.type_of("control_msgs/msg/InterfaceValue")
-        parts = [
-            of_joint([interface for _, interface in found], np.array([values[k] for k, _ in found]))
+        interface_value = msgs.type_of("control_msgs/msg/InterfaceValue")
+        values_by_owner = [
+            interface_value([interface for _, interface in found], np.array([values[k] for k, _ in found]))
             for found in self._by_owner.values()
         ]
         dynamic: type[DynamicJointState] = msgs.type_of(DYNAMIC)
-        return dynamic(msgs.header(now_ns, self._frame), list(self._by_owner), parts)
+        return dynamic(msgs.header(now_ns, self._frame), list(self._by_owner), values_by_owner)
 
 
 class JointStateController(JointStateBroadcaster):
-    """ROS 1's `joint_state_controller`: at `publish_rate`, with extra joints given as blocks with a name each."""
+    """Publishes joint states at `publish_rate`, with extra joints as named blocks, as in ROS 1."""
 
     types = ("joint_state_controller/JointStateController",)
 
@@ -104,6 +105,6 @@ class JointStateController(JointStateBroadcaster):
         for element in params.all("extra_joints"):
             if element.children:
                 element.value = element.text("name", "")
-                for word in (POSITION, VELOCITY, EFFORT):
-                    element.child(word)
+                for field in (POSITION, VELOCITY, EFFORT):
+                    element.child(field)
         super().configure()

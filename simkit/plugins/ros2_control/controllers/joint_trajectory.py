@@ -1,4 +1,4 @@
-"""Follows trajectories of several joints: ros2_controllers' `joint_trajectory_controller`."""
+"""Joint trajectory controller of ros2_controllers: `joint_trajectory_controller`."""
 
 from __future__ import annotations
 
@@ -36,21 +36,21 @@ QUERY: Final = "control_msgs/srv/QueryTrajectoryState"
 SCALING: Final = "control_msgs/msg/SpeedScalingFactor"
 SUCCESSFUL, INVALID_GOAL, PATH_VIOLATED, GOAL_VIOLATED = 0, -1, -4, -5
 _HOLD: Final = "hold"
-_FASTEST: Final = 1000.0  # speed scaling
-_IGNORED_PARAMETERS: Final = ("start_with_holding", "verbose")  # it always holds at first, and its log is the caller's
+_FASTEST: Final = 1000.0  # largest speed scaling
+_IGNORED_PARAMETERS: Final = ("start_with_holding", "verbose")  # it always holds first and logs through `logging`
 
 
 class JointTrajectoryController(Controller):
-    """Takes trajectories from `~/joint_trajectory` and as goals of `~/follow_joint_trajectory`.
+    """Follows trajectories from `~/joint_trajectory` and from goals of `~/follow_joint_trajectory`.
 
-    Between two points: a cubic where both give velocities, a quintic with accelerations too, else a straight line. It
-    begins at the measured state (with `interpolate_from_desired_state` at the last command), and each command is the
-    one for the end of the period that begins. A new trajectory takes the place of the one that runs.
+    Two points with velocities are connected by a cubic spline, with accelerations as well by a quintic one, else by a
+    line. A trajectory begins at the measured state, or with `interpolate_from_desired_state` at the last command. Each
+    command is the setpoint for the end of the coming period. A new trajectory replaces the active one.
 
-    A goal ends as in ros2_control: with PATH_TOLERANCE_VIOLATED as soon as a joint is further off than
-    `constraints.<joint>.trajectory`; after the last point with SUCCESSFUL once all are within
-    `constraints.<joint>.goal`, or with GOAL_TOLERANCE_VIOLATED `constraints.goal_time` later. After a violation, and
-    where a goal is cancelled, the joints hold where they are. A trajectory that cannot be followed changes nothing.
+    A goal ends as in ros2_control: with PATH_TOLERANCE_VIOLATED as soon as an error exceeds
+    `constraints.<joint>.trajectory`. After the last point it ends with SUCCESSFUL once all errors are within
+    `constraints.<joint>.goal`, or with GOAL_TOLERANCE_VIOLATED after `constraints.goal_time`. Then the joints hold. A
+    trajectory that cannot be followed changes nothing.
     """
 
     types = ("joint_trajectory_controller/JointTrajectoryController",)
@@ -59,7 +59,7 @@ class JointTrajectoryController(Controller):
     topics: ClassVar[tuple[str, ...]] = ("~/joint_trajectory",)
     may_end_moving: ClassVar[bool] = False
 
-    # ------------------------------------------------------------------ what it is made of
+    # ------------------------------------------------------------------ configuration
 
     def configure(self) -> None:
         params = self.params
@@ -91,14 +91,14 @@ class JointTrajectoryController(Controller):
         self._scaling = scaling.number("initial_scaling_factor", 1.0, minimum=0.0, maximum=_FASTEST)
         self._scaling_state = scaling.text("state_interface", "")
         self._scaling_command = scaling.text("command_interface", "")
-        # whether its commands are places on the way, whatever is measured
+        # true if the commands are positions of the spline, independent of measurements
         self._is_plain = self._group.commands == (POSITION,) and not (self._scaling_state or self._scaling_command)
         self._is_active = False
         self._open()
         self._clear()
 
     def _read_gains(self) -> JointPids | None:
-        """PIDs of the commanded joints; None where positions are commanded as they are."""
+        """Return PIDs of the commanded joints; None if the interfaces need no PID."""
         if not self._group.is_closed_loop:
             self.params.block("gains").mark_all_read()
             return None
@@ -117,16 +117,16 @@ class JointTrajectoryController(Controller):
         ]
 
     def _clear(self) -> None:
-        """As before the first trajectory."""
+        """Reset the state to that before the first trajectory."""
         self._goal: GoalHandle | None = None
-        self._next_trajectory: JointTrajectory | Spline | str | None = None  # the last is _HOLD
+        self._next_trajectory: JointTrajectory | Spline | str | None = None  # the text is _HOLD
         self._spline: Spline | None = None
         self._tolerances = self._constraints.tolerances()
         self._is_holding = self._is_first = self._is_idle = False
         self._elapsed = self._last = self._start = 0
         self._next_feedback = self._next_state = 0
         self._command: Setpoint | None = None
-        self._ahead: tuple[int, Setpoint] | None = None  # what the next period is to begin with
+        self._ahead: tuple[int, Setpoint] | None = None  # setpoint at the start of the next period
         self._watches_path = False
 
     def command_interfaces(self) -> Sequence[str]:
@@ -142,7 +142,7 @@ class JointTrajectoryController(Controller):
         if self._pids is not None:
             self._pids.restart()
         self._is_active = True
-        # updates that fall on steps come at uneven times; setpoints are as far ahead of each (as in ros2_controllers)
+        # updates happen at steps, so their times are uneven; setpoints are a full period ahead, as in ros2_controllers
         rate = self.update_rate or self.plugin.before_step_rate
         self._period_ns = max(round(SECOND / rate) if rate else 0, round(self.sim.timestep * SECOND))
         self._next_trajectory = _HOLD
@@ -157,17 +157,17 @@ class JointTrajectoryController(Controller):
             self._end_goal("abort", INVALID_GOAL, "Current goal cancelled during deactivate transition.")
         self.commands.values = self._group.at_rest(self.commands.values)
 
-    # ------------------------------------------------------------------ what comes in
+    # ------------------------------------------------------------------ messages and goals
 
     def _on_trajectory(self, message: JointTrajectory) -> None:
-        """From the topic."""
+        """Accept a trajectory from the topic."""
         fault = self._rules.fault(message, self.sim.time_ns)
         if fault:
-            self._warnings.warn("SK-CONTROL-020", fault, f"a trajectory is left out: {fault}")
+            self._warnings.warn("SK-CONTROL-020", fault, f"a trajectory is ignored: {fault}")
         if fault or not self._is_active:
             return
         if self._goal is not None:
-            what = "a trajectory on the topic takes the place of a goal's, which ends when the new one does"
+            what = "a trajectory on the topic replaces the trajectory of the active goal, which ends with the new one"
             self._warnings.warn("SK-CONTROL-022", "replaced", what, "cancel the goal first")
         else:
             self._tolerances = self._constraints.tolerances()
@@ -205,20 +205,20 @@ class JointTrajectoryController(Controller):
         if 0.0 <= message.factor <= _FASTEST:
             self._scaling = float(message.factor)
         else:
-            what = f"a speed scaling of {message.factor:g} is left out; allowed is a number from 0 to {_FASTEST:g}"
+            what = f"the speed scaling {message.factor:g} is ignored; allowed is a number from 0 to {_FASTEST:g}"
             self._warnings.warn("SK-CONTROL-020", what, what)
 
     def _report_unfollowable(self, message: JointTrajectory) -> None:
-        """Says what of a trajectory will not be as it is written."""
+        """Report parts of a trajectory that the joints cannot follow as written."""
         if not self._group.has_effort and any(len(point.effort) for point in message.points):
-            self._warnings.warn("SK-CONTROL-025", "effort", "efforts of a trajectory are not used: it commands none")
+            self._warnings.warn("SK-CONTROL-025", "effort", "efforts are ignored without effort command interface")
         for place, name in enumerate(message.joint_names):
             joint = self.hardware.joints.get(self._group.command_of(str(name)))
-            asked = [p.positions[place] for p in message.points if len(p.positions)]
-            beyond = [] if joint is None else [p for p in asked if not joint.lower - 1e-6 <= p <= joint.upper + 1e-6]
+            goals = [p.positions[place] for p in message.points if len(p.positions)]
+            beyond = [] if joint is None else [p for p in goals if not joint.lower - 1e-6 <= p <= joint.upper + 1e-6]
             if joint is not None and beyond:
                 limits = f"its limits are {joint.lower:g} and {joint.upper:g}"
-                what = f"a trajectory asks joint {name!r} for {beyond[0]:g}, {limits}: there it stops"
+                what = f"a trajectory moves joint {name!r} to {beyond[0]:g}, but {limits}; the joint stops at its limit"
                 self._warnings.warn("SK-CONTROL-021", str(name), what)
 
     # ------------------------------------------------------------------ each period
@@ -244,7 +244,7 @@ class JointTrajectoryController(Controller):
         self._follow_spline(now_ns, period, state)
 
     def _continue_spline(self, now: int) -> bool:
-        """Commands the next place on the way where nothing else is to be done; whether that was so."""
+        """Command the next setpoint if nothing else has to be done; return true if this was the case."""
         spline, scaling = self._spline, self._scaling
         if spline is None or (self._watches_path and not self._is_holding):
             return False
@@ -263,7 +263,7 @@ class JointTrajectoryController(Controller):
         return True
 
     def _begin_trajectory(self, now: int, state: Vector) -> None:
-        """Takes up the trajectory that waits."""
+        """Start the waiting trajectory."""
         waiting, self._next_trajectory, self._ahead = self._next_trajectory, None, None
         self._watches_path = self._tolerances.watches_path
         self._is_holding, self._is_first, self._is_idle = True, True, False
@@ -279,7 +279,7 @@ class JointTrajectoryController(Controller):
             self._spline = self._spline_through(waiting, state)
 
     def _spline_through(self, message: JointTrajectory, state: Vector) -> Spline:
-        """A trajectory's way from here."""
+        """Create the spline of a trajectory from the current state."""
         group = self._group
         start = TrajectoryPoint(self._elapsed, state[0], state[1] if group.has_velocity_state else None)
         if self._starts_from_desired and self._command is not None:
@@ -295,7 +295,7 @@ class JointTrajectoryController(Controller):
         return Spline.through(start, points, steps=self._steps)
 
     def _follow_spline(self, now: int, period: float, state: Vector) -> None:
-        """Compares, commands, and tells the goal."""
+        """Compute errors, write commands, and report the progress of the goal."""
         spline, goal, tolerances = self._spline, self._goal, self._tolerances
         assert spline is not None
         desired = self._ahead[1] if self._ahead is not None and self._ahead[0] == self._elapsed else None
@@ -335,7 +335,7 @@ class JointTrajectoryController(Controller):
             self._is_idle = not self._group.is_closed_loop
 
     def _handle_arrival(self, misses: bool, late: float) -> None:
-        """After the last point."""
+        """Finish the trajectory after its last point."""
         if not misses and self._goal is not None:
             self._end_goal("succeed", SUCCESSFUL, "Goal successfully reached!")
             self.log.info("Goal reached, success!")
@@ -347,7 +347,7 @@ class JointTrajectoryController(Controller):
             self._next_trajectory = _HOLD
 
     def _abort_and_hold(self, code: int, text: str, what: str) -> None:
-        """Stops where it is, after a tolerance was not kept."""
+        """Abort the goal after a violated tolerance, and hold the current position."""
         self.log.warning("%s: %s", text, what)
         if self._goal is not None:
             self._end_goal("abort", code, text, what)
@@ -360,7 +360,7 @@ class JointTrajectoryController(Controller):
     # ------------------------------------------------------------------ readings
 
     def _errors(self, desired: Vector, state: Vector) -> Vector:
-        """Wanted − measured, shape (3, n); 0 for what is not both commanded and measured."""
+        """Return desired − measured, shape (3, n); 0 for quantities that are not both commanded and measured."""
         group = self._group
         errors = (desired - state) * group.compared
         if self._has_continuous_joints:
@@ -368,11 +368,11 @@ class JointTrajectoryController(Controller):
         return errors
 
     def _has_subscribers(self) -> bool:
-        here, there = self._publishers
-        return here.wanted or there.wanted
+        current, deprecated = self._publishers
+        return current.wanted or deprecated.wanted
 
     def _is_state_due(self, now: int) -> bool:
-        """Check whether somebody wants the state now."""
+        """Check whether the state has to be published now."""
         if now < self._next_state or not self._has_subscribers():
             return False
         self._next_state = now + self._state_ns
@@ -385,7 +385,7 @@ class JointTrajectoryController(Controller):
                 publisher.publish(message)
 
     def _on_query(self, request: QueryTrajectoryState_Request) -> dict[str, object]:
-        """Answer where the joints are to be at a time."""
+        """Return the desired state of the joints at a time."""
         if not self._is_active:
             return {"success": False, "message": "Can't sample trajectory. Controller is not active."}
         if self._spline is None:

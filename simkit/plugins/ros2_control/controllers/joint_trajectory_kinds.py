@@ -1,4 +1,4 @@
-"""Further kinds of joint trajectory controllers: those of ROS 1, and PAL's, under which arms give way like springs."""
+"""Further kinds of joint trajectory controllers: those of ROS 1, and PAL's impedance controller."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from simkit.plugins.ros2_control.joint_pids import JointPids
 
 
 class PositionJointTrajectoryController(JointTrajectoryController):
-    """ROS 1's controller for joints that are commanded by position."""
+    """Follows trajectories by position commands, as ROS 1's controller."""
 
     types = ("position_controllers/JointTrajectoryController",)
     default_commands: ClassVar[tuple[str, ...]] = ("position",)
@@ -21,32 +21,33 @@ class PositionJointTrajectoryController(JointTrajectoryController):
 
 
 class VelocityJointTrajectoryController(PositionJointTrajectoryController):
-    """ROS 1's controller for joints that are commanded by velocity, through PIDs."""
+    """Follows trajectories by velocity commands from PIDs, as ROS 1's controller."""
 
     types = ("velocity_controllers/JointTrajectoryController",)
     default_commands = ("velocity",)
 
 
 class EffortJointTrajectoryController(PositionJointTrajectoryController):
-    """ROS 1's controller for joints that are commanded by effort, through PIDs."""
+    """Follows trajectories by effort commands from PIDs, as ROS 1's controller."""
 
     types = ("effort_controllers/JointTrajectoryController",)
     default_commands = ("effort",)
 
 
 class PositionVelocityJointTrajectoryController(PositionJointTrajectoryController):
-    """ROS 1's controller for joints that are commanded by position and velocity."""
+    """Follows trajectories by position and velocity commands, as ROS 1's controller."""
 
     types = ("pos_vel_controllers/JointTrajectoryController",)
     default_commands = ("position", "velocity")
 
 
 class ImpedanceController(JointTrajectoryController):
-    """PAL's joint impedance control: springs and dampers pull the joints along the trajectory; gravity is compensated.
+    """Pulls joints along a trajectory by springs and dampers, with compensated gravity: PAL's joint impedance control.
 
-    Everything is as in a joint trajectory controller that commands efforts, with `impedance_gains.<joint>` `kp` and
-    `kd` for its gains. On the robot they are those of the motors, in the direction in which each is mounted: what pulls
-    at the joint is |kp| · `motor_params.<joint>.reduction_ratio` [N·m/rad], |kd| likewise [N·m·s/rad].
+    It works like a joint trajectory controller with effort commands, and its gains are `kp` and `kd` of
+    `impedance_gains.<joint>`. On the robot these are the gains of the motors, in the direction in which each motor is
+    mounted. The stiffness at the joint is |kp| · `motor_params.<joint>.reduction_ratio` [N·m/rad], and the damping is
+    |kd| times the same ratio [N·m·s/rad].
     """
 
     types = ("impedance_controllers/JointTrajectoryController",)
@@ -55,8 +56,8 @@ class ImpedanceController(JointTrajectoryController):
 
     def configure(self) -> None:
         super().configure()
-        for one in self.params.all("robot_model_chains"):
-            one.mark_all_read()
+        for element in self.params.all("robot_model_chains"):
+            element.mark_all_read()
         joints = [name for name in self._group.commanded_joints if name in self.hardware.joints]
         self._gravity = GravityEfforts(self.sim, [self.hardware.joints[name].scoped for name in joints])
         self.hardware.springs[self.name] = dict(zip(joints, self._springs, strict=False))
@@ -69,7 +70,7 @@ class ImpedanceController(JointTrajectoryController):
             motor.child("motor_torque_constant")
             ratio = motor.number("reduction_ratio", 1.0, minimum=1e-9)
             self._springs.append((abs(gain.number("kp", 0.0)) * ratio, abs(gain.number("kd", 0.0)) * ratio))
-        return None  # the springs are the engine's
+        return None  # the engine simulates the springs
 
     def update(self, now_ns: int, period: float) -> None:
         super().update(now_ns, period)

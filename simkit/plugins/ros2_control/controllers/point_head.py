@@ -1,4 +1,4 @@
-"""Turns a head so that it looks at a point: the `point_head_action` that comes with PAL's and other robots' heads."""
+"""Point-head action: turns a head towards a point, as the `point_head_action` of PAL's and other robots' heads."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ _SETTLING_NS: Final = SECOND // 2
 
 
 class PointHeadAction(Controller):
-    """Takes goals of `<controller>/point_head_action` and moves the head by the trajectory controller named.
+    """Turns a head to goals of `<controller>/point_head_action`, through the trajectory controller in `controller`.
 
-    The frame `pointing_frame` is turned, by the two joints of the neck, so that its `pointing_axis` goes through the
-    target, which is a point in any frame: it is looked up once, when the goal comes. The head takes `min_duration` at
-    least, and no joint is to turn faster than `max_velocity`, or than its limit. The goal succeeds once the axis
-    is within `success_angle_threshold` of the target, and is aborted where the limits of the neck keep it further off.
-    It claims no interfaces; a trajectory that is sent to the head meanwhile ends the goal.
+    The two joints of the neck turn the frame `pointing_frame` so that its `pointing_axis` goes through the target. The
+    target is a point in any frame, and it is resolved once, when the goal arrives. The motion takes at least
+    `min_duration`, and no joint is faster than `max_velocity` or its limit. The goal succeeds once the axis is within
+    `success_angle_threshold` of the target. It is aborted if the limits of the neck keep the axis further away. The
+    controller claims no interfaces. Another trajectory for the head during the motion ends the goal.
     """
 
     types = ("simkit/PointHeadAction", "head_action/PointHeadAction")
@@ -47,17 +47,17 @@ class PointHeadAction(Controller):
         self._own_frame = params.text("pointing_frame", "")
         self._own_axis = np.array(
             [
-                params.block("pointing_axis").number(one, default)
-                for one, default in zip("xyz", (1.0, 0.0, 0.0), strict=True)
+                params.block("pointing_axis").number(axis, default)
+                for axis, default in zip("xyz", (1.0, 0.0, 0.0), strict=True)
             ]
         )
         if len(self._joints) != 2:
-            message = f"'joints' has {len(self._joints)} names; a neck has two joints, the one nearer the body first"
+            message = f"'joints' has {len(self._joints)} names; name two joints, the joint nearer the body first"
             params.error("SK-CONTROL-027", message, "joints: [head_1_joint, head_2_joint]")
         for name in self._joints:
             if name not in self.hardware.joints:
-                message = f"there is no joint {name!r} to turn the head by"
-                params.error("SK-CONTROL-027", message, "there are: " + ", ".join(self.hardware.joints))
+                message = f"there is no joint {name!r} for the head"
+                params.error("SK-CONTROL-027", message, "the joints are: " + ", ".join(self.hardware.joints))
         action = params.text("action", f"{self._trajectory_controller}/point_head_action")
         self.act(action, POINT_HEAD, self._on_goal, self._on_cancel)
         self._is_active = False
@@ -68,7 +68,7 @@ class PointHeadAction(Controller):
         self._motion_goal: GoalHandle | None = None
         self._pointing: tuple[str, Vector] = "", np.zeros(3)
         self._target, self._next_feedback = np.zeros(3), 0
-        self._settled_by_ns = 0  # until then the head may still be on its last way
+        self._settled_by_ns = 0  # until this time the head may still settle after its motion
 
     def activate(self) -> None:
         self._clear()
@@ -89,22 +89,22 @@ class PointHeadAction(Controller):
         try:
             request = goal.request
             target = self._read_target(request.target)
-            look = self._read_pointing(request)
-            neck = self._head_joints(look)
+            pointing = self._read_pointing(request)
+            neck = self._head_joints(pointing)
         except InputError as error:
             goal.reject(str(error))
             return
         if float(np.linalg.norm(target - neck.frame.position)) < 1e-6:
-            goal.reject("the target is where the pointing frame is")
+            goal.reject("the target is at the origin of the pointing frame")
             return
         speed = request.max_velocity
         shortest = msgs.stamp_ns(request.min_duration) / SECOND
         if not (np.isfinite(speed) and speed >= 0.0 and shortest >= 0.0):
-            goal.reject("max_velocity and min_duration have to be at least 0")
+            goal.reject("max_velocity and min_duration must be at least 0")
             return
         if self._goal is not None:
             self._end_goal(lambda old: old.canceled(reason="Current goal cancelled due to new incoming action."))
-        self._goal, self._target, self._pointing, self._next_feedback = goal, target, look, 0
+        self._goal, self._target, self._pointing, self._next_feedback = goal, target, pointing, 0
         self._send_head(neck, shortest, speed)
 
     def _read_target(self, target: PointStamped) -> Vector:
@@ -114,7 +114,7 @@ class PointHeadAction(Controller):
         return self._frame(target.header.frame_id or "world").transform(point)
 
     def _read_pointing(self, request: PointHead_Goal) -> tuple[str, Vector]:
-        """The frame that is to point, and its axis."""
+        """Return the frame that is to point, and its axis."""
         axis = np.array([request.pointing_axis.x, request.pointing_axis.y, request.pointing_axis.z])
         if not axis.any():
             axis = self._own_axis
@@ -133,7 +133,7 @@ class PointHeadAction(Controller):
         return frame_pose(self.sim, self.plugin.scoped, name, self._odometry_frames())
 
     def _odometry_frames(self) -> dict[str, Pose]:
-        """Frames that the robot's base reckons by, such as `odom`, where they lie by its reckoning."""
+        """Return the poses of odometry frames of the robot's base, such as `odom`, from its odometry."""
         manager = getattr(self.plugin, "manager", None)
         found: dict[str, Pose] = {}
         for loaded in getattr(manager, "controllers", {}).values():
@@ -143,8 +143,8 @@ class PointHeadAction(Controller):
                 found[odom] = frame_pose(self.sim, self.plugin.scoped, base) @ pose.inverse()
         return found
 
-    def _head_joints(self, look: tuple[str, Vector]) -> HeadJoints:
-        """As it is now."""
+    def _head_joints(self, pointing: tuple[str, Vector]) -> HeadJoints:
+        """Return the current state of the neck."""
         data = self.sim.engine.physics.fresh()
         joints = [self.hardware.joints[name] for name in self._joints]
         ids = [int(self.sim.mj_model.dof_jntid[joint.handle.mj_dofs[0]]) for joint in joints]
@@ -154,18 +154,18 @@ class PointHeadAction(Controller):
             np.array([float(joint.handle.position) for joint in joints]),
             np.array([joint.lower for joint in joints]),
             np.array([joint.upper for joint in joints]),
-            self._frame(look[0]),
-            look[1],
+            self._frame(pointing[0]),
+            pointing[1],
         )
 
     def _send_head(self, neck: HeadJoints, shortest: float, speed: float) -> None:
-        """Sends the head where it points at the target."""
+        """Send the trajectory that turns the head towards the target."""
         angles, _ = neck.aim(self._target)
         limits = np.array([self.hardware.joints[name].max_velocity for name in self._joints])
         speeds = np.minimum(limits, speed) if speed > 0.0 else limits
-        ways = np.abs(angles - neck.angles)
-        # a cubic between two rests is half as fast again in its middle as on average
-        duration = max(shortest, float((1.5 * ways / np.where(speeds > 0.0, speeds, np.inf)).max()), 0.05)
+        distances = np.abs(angles - neck.angles)
+        # the peak speed of a cubic between two states at rest is 1.5 times its mean speed
+        duration = max(shortest, float((1.5 * distances / np.where(speeds > 0.0, speeds, np.inf)).max()), 0.05)
         point = {
             "positions": angles,
             "velocities": np.zeros(2),
@@ -181,7 +181,7 @@ class PointHeadAction(Controller):
 
     def _on_cancel(self, goal: GoalHandle) -> None:
         if goal is self._goal:
-            self._end_goal(lambda one: one.canceled())
+            self._end_goal(lambda ended: ended.canceled())
             self._stop()
 
     def _stop(self) -> None:
@@ -210,12 +210,12 @@ class PointHeadAction(Controller):
             self._settled_by_ns = now_ns + _SETTLING_NS
             return
         if error <= self._tolerance:
-            self._end_goal(lambda one: one.succeed())
+            self._end_goal(lambda ended: ended.succeed())
         elif now_ns < self._settled_by_ns and move.status is GoalStatus.SUCCEEDED:
             return
         elif move.status is GoalStatus.SUCCEEDED:
-            what = f"the neck's limits leave it {error:.3f} rad from the target"
-            self._end_goal(lambda one: one.abort(reason=what))
+            reason = f"the limits of the neck keep it {error:.3f} rad from the target"
+            self._end_goal(lambda ended: ended.abort(reason=reason))
         else:
-            said = move.reason
-            self._end_goal(lambda one: one.abort(reason=f"the head did not get there: {said}"))
+            reason = f"the head did not reach the target: {move.reason}"
+            self._end_goal(lambda ended: ended.abort(reason=reason))

@@ -18,7 +18,7 @@ _IMU_FIELDS: Final = tuple(SENSOR_INTERFACES["imu"])
 
 
 class ImuSensorBroadcaster(Controller):
-    """The sensor that `sensor_name` names, on `~/imu`, stamped with `frame_id`."""
+    """Publishes the IMU that `sensor_name` names on `~/imu`, in the frame `frame_id`."""
 
     types = ("imu_sensor_broadcaster/IMUSensorBroadcaster",)
 
@@ -43,10 +43,10 @@ class ImuSensorBroadcaster(Controller):
             return  # nothing has been measured yet
         imu, quaternion, vector = msgs.types_of(IMU, "geometry_msgs/msg/Quaternion", "geometry_msgs/msg/Vector3")
         orientation, rate, acceleration = (np.array(covariance) for covariance in self._covariances)
-        turn, turning, pull = (part.tolist() for part in (values[:4], values[4:7], values[7:]))
+        rotation, angular, linear = (part.tolist() for part in (values[:4], values[4:7], values[7:]))
         header = msgs.header(now_ns, self._frame)
-        told = imu(header, quaternion(*turn), orientation, vector(*turning), rate, vector(*pull), acceleration)
-        self._publisher.publish(told)
+        message = imu(header, quaternion(*rotation), orientation, vector(*angular), rate, vector(*linear), acceleration)
+        self._publisher.publish(message)
 
 
 WRENCH: Final = "geometry_msgs/msg/WrenchStamped"
@@ -54,7 +54,7 @@ _WRENCH_FIELDS: Final = tuple(SENSOR_INTERFACES["force_torque"])
 
 
 class ForceTorqueSensorBroadcaster(Controller):
-    """The sensor that `sensor_name` names, or the interfaces that `interface_names` names, on `~/wrench`."""
+    """Publishes the sensor in `sensor_name`, or the interfaces in `interface_names`, on `~/wrench`."""
 
     types = ("force_torque_sensor_broadcaster/ForceTorqueSensorBroadcaster",)
 
@@ -65,13 +65,13 @@ class ForceTorqueSensorBroadcaster(Controller):
         single = {part: block.block(part.partition(".")[0]).text(part.partition(".")[2], "") for part in _WRENCH_FIELDS}
         self._frame = params.text("frame_id", required=True)
         if sensor and any(single.values()):
-            params.error("SK-PARAM-002", "both 'sensor_name' and 'interface_names' are given, one is needed")
+            params.error("SK-PARAM-002", "both 'sensor_name' and 'interface_names' are set; remove one of them")
         elif not sensor and not any(single.values()):
             params.text("sensor_name", required=True)
-        given = {p: f"{sensor}/{p}" for p in _WRENCH_FIELDS} if sensor else {p: n for p, n in single.items() if n}
-        self._names = list(given.values())
-        self._columns = [_WRENCH_FIELDS.index(part) for part in given]
-        self._has_all_parts = tuple(given) == _WRENCH_FIELDS
+        names = {p: f"{sensor}/{p}" for p in _WRENCH_FIELDS} if sensor else {p: n for p, n in single.items() if n}
+        self._names = list(names.values())
+        self._columns = [_WRENCH_FIELDS.index(part) for part in names]
+        self._has_all_parts = tuple(names) == _WRENCH_FIELDS
         offset, multiplier = params.block("offset"), params.block("multiplier")
         self._offset = np.array([_number(offset, part, 0.0) for part in _WRENCH_FIELDS])
         self._multiplier = np.array([_number(multiplier, part, 1.0) for part in _WRENCH_FIELDS])
@@ -85,8 +85,8 @@ class ForceTorqueSensorBroadcaster(Controller):
             return
         values = self.states.values
         if not self._has_all_parts:
-            there, values = values, np.full(6, np.nan)  # what has no interface is not measured
-            values[self._columns] = there
+            measured, values = values, np.full(6, np.nan)  # components without interface are not measured
+            values[self._columns] = measured
         values *= self._multiplier
         values += self._offset
         stamped, wrench, vector = msgs.types_of(WRENCH, "geometry_msgs/msg/Wrench", "geometry_msgs/msg/Vector3")
